@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The narrow waist: a model as everything below sees it. It is asked for whole blocks of samples
+// and answers with the rows [A | D | b]; whether it was compiled in, composed at run time or
+// written in Python makes no difference from here on.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "sepcal/quantity.hpp"
+
+namespace sepcal {
+
+/// Consecutive samples of one segment of a record. A block never crosses a segment's edge.
+struct Block {
+  std::span<const double* const> inputs;  // n_u columns, each `rows` values long
+  std::size_t rows = 0;
+  std::size_t first = 0;       // the record's row at which the block begins
+  bool starts_segment = true;  // no history before this block's first row
+};
+
+/// What a trajectory model carries from block to block. Plain models have none.
+class Carry {
+ public:
+  Carry() = default;
+  Carry(const Carry&) = delete;
+  Carry& operator=(const Carry&) = delete;
+  virtual ~Carry() = default;
+};
+
+class BlockModel {
+ public:
+  explicit BlockModel(Tables tables);  // throws Error where names clash
+  BlockModel(const BlockModel&) = delete;
+  BlockModel& operator=(const BlockModel&) = delete;
+  virtual ~BlockModel() = default;
+
+  const Tables& tables() const { return tables_; }
+
+  /// Fills `rows`, (n_z * block.rows) x (n_1 + 1) with [A | b], or, where xi1 is given,
+  /// (n_z * block.rows) x (n_1 + n_2 + 1) with [A | D | b], D = d(A xi1 + b)/d xi2.
+  /// Output j takes the rows from j * block.rows on.
+  ///   xi2    n_2 values; xi1: n_1 values, or nullptr for [A | b] alone
+  ///   carry  what new_carry() gave for this pass, or nullptr where it gave none
+  /// Pure but for `carry`: called from several threads at once.
+  virtual void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
+                        Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
+
+  /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
+  /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.
+  virtual std::unique_ptr<Carry> new_carry() const { return nullptr; }
+
+ private:
+  Tables tables_;
+};
+
+}  // namespace sepcal

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The two-stage batch estimator (Sun & Gebre-Egziabher): sample xi2 and solve xi1 linearly, then
+// fit by constrained maximum likelihood. What sepcal exists for, in one call.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sepcal/identifiability.hpp"
+#include "sepcal/options.hpp"
+#include "sepcal/record.hpp"
+#include "sepcal/stage_one.hpp"
+#include "sepcal/static_model.hpp"
+
+namespace sepcal {
+
+enum class FitStatus { converged, not_converged, not_identifiable };
+
+/// "converged", "not_converged", "not_identifiable".
+std::string_view to_string(FitStatus status);
+
+/// "joint", "projected", "auto".
+std::string_view to_string(SecondStage method);
+
+struct Parameter {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  double standard_error = 0.0;        // NaN where undefined: fixed, at a bound, singular
+  double standard_error_white = 0.0;  // the same as long as residuals are taken as white
+  double lower = -infinity;
+  double upper = infinity;
+  bool at_bound = false;
+  bool fixed = false;
+};
+
+/// One value an output.
+struct OutputValue {
+  std::string name;
+  double value = 0.0;
+};
+
+struct Fit {
+  FitStatus status = FitStatus::not_converged;
+  std::string message;  // one line; empty where there is nothing to say
+
+  /// Linear, then nonlinear, in the model's order; fixed ones among them.
+  std::vector<Parameter> parameters;
+  int n_1 = 0;  // how many of them are linear
+
+  /// Covariance of the estimates (n x n, parameters' order): (J' R^-1 J)^-1, times M / (M - n)
+  /// where R was estimated, M = rows x outputs. NaN in the rows of parameters without a standard
+  /// error.
+  Eigen::MatrixXd covariance;
+  Eigen::MatrixXd correlation;
+
+  std::vector<OutputValue> noise;  // standard deviation: given, or from R-hat = SSE / N
+  std::vector<OutputValue> rmse;   // unwhitened, in the output's unit
+  double cost = 0.0;               // J of Eq. 6
+  Identifiability identifiability;
+
+  StageOne stage_one;
+  SecondStage method = SecondStage::joint;  // joint or projected, what stage two used in the end
+  int iterations = 0;                       // of stage two's minimisations
+  int noise_iterations = 0;                 // of R against the parameters
+  std::size_t rows = 0;                     // that stage two used
+
+  /// Throws Error for a name that is not a parameter.
+  const Parameter& operator[](std::string_view name) const;
+
+  Eigen::VectorXd values() const;  // n
+  Eigen::VectorXd xi1() const { return values().head(n_1); }
+  Eigen::VectorXd xi2() const { return values().tail(values().size() - n_1); }
+};
+
+/// Fits `model` to `record`. Non-convergence and what the record does not determine are statuses of
+/// the result; misuse throws Error (see stage_one(), check_model()).
+Fit fit(const BlockModel& model, const Record& record, const FitOptions& options = {});
+
+template <SeparableModel M>
+Fit fit(const M& model, const Record& record, const FitOptions& options = {}) {
+  return fit(StaticModel<M>(model), record, options);
+}
+
+}  // namespace sepcal

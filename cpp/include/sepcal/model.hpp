@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a model is: four tables and one function, z = A(u, xi2) xi1 + b(u, xi2) + v
+// (Sun & Gebre-Egziabher, Eq. 4). A model is a pure function of a sample: it owns no data.
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <limits>
+
+#include "sepcal/quantity.hpp"
+
+namespace sepcal {
+
+template <class T, int N>
+using Vec = Eigen::Matrix<T, N, 1>;
+
+/// A (n_z x n_1) and b (n_z) of one sample. Both start as NaN, so an entry that a model forgets to
+/// set is seen by check_model() and by the first fit instead of passing for a number.
+template <class T, int NZ, int N1>
+struct Affine {
+  Eigen::Matrix<T, NZ, N1> A = Eigen::Matrix<T, NZ, N1>::Constant(T(poison));
+  Eigen::Matrix<T, NZ, 1> b = Eigen::Matrix<T, NZ, 1>::Constant(T(poison));
+
+ private:
+  static constexpr double poison = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// A table: a sized, constant-expression array of Quantity (std::array; empty ones are typed
+/// std::array<Quantity, 0>).
+template <class Table>
+concept QuantityTable = requires(const Table& table) {
+  { table.size() } -> std::convertible_to<std::size_t>;
+  { table.data() } -> std::convertible_to<const Quantity*>;
+};
+
+/// The sizes of a model, read off its tables.
+template <class M>
+struct Sizes {
+  static constexpr int n_u = static_cast<int>(M::inputs.size());
+  static constexpr int n_z = static_cast<int>(M::outputs.size());
+  static constexpr int n_1 = static_cast<int>(M::linear.size());
+  static constexpr int n_2 = static_cast<int>(M::nonlinear.size());
+
+  template <class T>
+  using Result = Affine<T, n_z, n_1>;
+};
+
+/// The contract that a user's model fulfils. What a concept can't check, check_model() does.
+template <class M>
+concept SeparableModel =
+    // four tables of names and units, sized at compile time
+    QuantityTable<decltype(M::inputs)> && QuantityTable<decltype(M::outputs)> &&
+    QuantityTable<decltype(M::linear)> && QuantityTable<decltype(M::nonlinear)> &&
+    // something is measured, something is estimated
+    (Sizes<M>::n_z > 0) && (Sizes<M>::n_1 + Sizes<M>::n_2 > 0) &&
+    // at(u, xi2) returns A (n_z x n_1) and b (n_z); const: a model has no state
+    requires(const M& model, const Vec<double, Sizes<M>::n_u>& u,
+             const Vec<double, Sizes<M>::n_2>& xi2) {
+      { model.at(u, xi2) } -> std::same_as<typename Sizes<M>::template Result<double>>;
+    };
+
+}  // namespace sepcal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A five-hole Pitot probe calibrated in flight against the inertial velocity
+// (Sun & Gebre-Egziabher, Eqs. 36-42):  V = C_b^n [C(eps) V_s - w x r] + W.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "sepcal/model.hpp"
+#include "sepcal/rotation.hpp"
+
+namespace sepcal {
+
+/// k_alpha, k_beta: sensitivity of the flow-angle ports, dp/(pt - ps) per radian [1/rad].
+/// lever_arm: from the velocity's reference point to the probe, body axes [m].
+struct FiveHoleProbe {
+  static constexpr std::array inputs{
+      Quantity{"roll", "rad"}, Quantity{"pitch", "rad"}, Quantity{"yaw", "rad"},
+      Quantity{"p", "rad/s"},  Quantity{"q", "rad/s"},   Quantity{"r", "rad/s"},
+      Quantity{"pt", "Pa"},    Quantity{"ps", "Pa"},     Quantity{"dpa", "Pa"},
+      Quantity{"dpb", "Pa"},   Quantity{"rho", "kg/m^3"}};
+  static constexpr std::array outputs{Quantity{"vn", "m/s"}, Quantity{"ve", "m/s"},
+                                      Quantity{"vd", "m/s"}};
+  static constexpr std::array linear{Quantity{"lambda_va", "1"}, Quantity{"b_va", "m/s"},
+                                     Quantity{"w_n", "m/s"}, Quantity{"w_e", "m/s"},
+                                     Quantity{"w_d", "m/s"}};
+  static constexpr double ten_degrees = 10.0 * std::numbers::pi / 180.0;
+  static constexpr std::array nonlinear{Quantity{"lambda_alpha", "1", -0.5, 0.5},
+                                        Quantity{"b_alpha", "rad", -ten_degrees, ten_degrees},
+                                        Quantity{"lambda_beta", "1", -0.5, 0.5},
+                                        Quantity{"b_beta", "rad", -ten_degrees, ten_degrees},
+                                        Quantity{"eps_phi", "rad", -0.2618, 0.2618}};
+
+  double k_alpha;
+  double k_beta;
+  Eigen::Vector3d lever_arm = Eigen::Vector3d::Zero();
+
+  template <class U, class X>
+  Affine<X, 3, 5> at(const Vec<U, 11>& u, const Vec<X, 5>& xi2) const {
+    using std::sqrt;
+    enum { roll, pitch, yaw, p, q, r, pt, ps, dpa, dpb, rho };
+    const U pressure = u[pt] - u[ps];
+    const U airspeed = sqrt(2.0 * pressure / u[rho]);                          // as read
+    const Vec<X, 2> angles = flow_angles<U, X>(u[dpa] / (k_alpha * pressure),  //
+                                               u[dpb] / (k_beta * pressure), xi2);
+    const Eigen::Matrix<U, 3, 3> C_bn = body_to_ned<U>(u[roll], u[pitch], u[yaw]);
+    const Vec<U, 3> rates(u[p], u[q], u[r]);
+    const Vec<U, 3> arm = lever_arm.template cast<U>();
+
+    const Vec<X, 3> F = C_bn * air_direction<X>(angles[0], angles[1], xi2[4]);
+    Affine<X, 3, 5> z;
+    z.A.col(0) = F * airspeed;                                         // lambda_va
+    z.A.col(1) = F;                                                    // b_va
+    z.A.template rightCols<3>() = Eigen::Matrix<X, 3, 3>::Identity();  // w_n, w_e, w_d
+    z.b = F * airspeed - (C_bn * rates.cross(arm)).template cast<X>();
+    return z;
+  }
+
+  /// [alpha, beta] (rad) from the angles as read (Eq. 36).
+  template <class U, class X>
+  static Vec<X, 2> flow_angles(const U& alpha_read, const U& beta_read, const Vec<X, 5>& xi2) {
+    return {(1.0 + xi2[0]) * alpha_read + xi2[1], (1.0 + xi2[2]) * beta_read + xi2[3]};
+  }
+
+  /// C(eps) [cos a cos b, sin b, sin a cos b]: the air's direction in body axes (Eqs. 38, 41).
+  template <class X>
+  static Vec<X, 3> air_direction(const X& alpha, const X& beta, const X& eps) {
+    using std::cos;
+    using std::sin;
+    const X x = cos(alpha) * cos(beta);
+    const X y = sin(beta);
+    const X z = sin(alpha) * cos(beta);
+    return {x, cos(eps) * y + sin(eps) * z, cos(eps) * z - sin(eps) * y};
+  }
+};
+
+}  // namespace sepcal

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A three-axis magnetometer against a known field (Sun & Gebre-Egziabher, Eqs. B1-B3):
+// m = C_alpha C_eta C_lambda h + n, with C_lambda = I + diag(lambda), C_eta = I + [eta x] (Eq. A2,
+// entry (3,2) read as eta_1) and C_alpha symmetric with a unit diagonal: nine entries of C, nine
+// parameters, so that none is hidden behind another.
+#pragma once
+
+#include <array>
+
+#include "sepcal/model.hpp"
+
+namespace sepcal {
+
+struct Magnetometer {
+  static constexpr std::array inputs{Quantity{"hx", "uT"}, Quantity{"hy", "uT"},
+                                     Quantity{"hz", "uT"}};  // the true field in body axes
+  static constexpr std::array outputs{Quantity{"mx", "uT"}, Quantity{"my", "uT"},
+                                      Quantity{"mz", "uT"}};
+  static constexpr std::array linear{Quantity{"lambda_x", "1"}, Quantity{"lambda_y", "1"},
+                                     Quantity{"lambda_z", "1"}, Quantity{"n_x", "uT"},
+                                     Quantity{"n_y", "uT"},     Quantity{"n_z", "uT"}};
+  static constexpr std::array nonlinear{
+      Quantity{"eta_x", "rad", -0.5, 0.5},  Quantity{"eta_y", "rad", -0.5, 0.5},
+      Quantity{"eta_z", "rad", -0.5, 0.5},  Quantity{"alpha_xy", "1", -0.5, 0.5},
+      Quantity{"alpha_xz", "1", -0.5, 0.5}, Quantity{"alpha_yz", "1", -0.5, 0.5}};
+
+  template <class U, class X>
+  Affine<X, 3, 6> at(const Vec<U, 3>& h, const Vec<X, 6>& xi2) const {
+    const Eigen::Matrix<X, 3, 3> CC = soft_iron_and_misalignment(xi2);
+    Affine<X, 3, 6> z;
+    for (int i = 0; i < 3; ++i) z.A.col(i) = CC.col(i) * h[i];
+    z.A.template rightCols<3>() = Eigen::Matrix<X, 3, 3>::Identity();
+    z.b = CC * h;
+    return z;
+  }
+
+  /// C_alpha C_eta (3 x 3).
+  template <class X>
+  static Eigen::Matrix<X, 3, 3> soft_iron_and_misalignment(const Vec<X, 6>& xi2) {
+    const X one(1.0);
+    Eigen::Matrix<X, 3, 3> C_eta;
+    C_eta << one, -xi2[2], xi2[1],  //
+        xi2[2], one, -xi2[0],       //
+        -xi2[1], xi2[0], one;
+    Eigen::Matrix<X, 3, 3> C_alpha;
+    C_alpha << one, xi2[3], xi2[4],  //
+        xi2[3], one, xi2[5],         //
+        xi2[4], xi2[5], one;
+    return C_alpha * C_eta;
+  }
+};
+
+}  // namespace sepcal

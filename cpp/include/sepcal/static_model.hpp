@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a model written as a struct to the waist: one templated loop that evaluates at(u, xi2) with
+// doubles, or with Ceres' dual numbers in xi2 alone. The columns of A are already the derivatives
+// with respect to xi1, so nothing else is differentiated.
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <memory>
+#include <utility>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/model.hpp"
+
+namespace sepcal {
+
+/// The four tables of a model, at run time.
+template <SeparableModel M>
+Tables tables_of() {
+  const auto variables = [](const auto& table) {
+    return std::vector<Variable>(table.begin(), table.end());
+  };
+  return {variables(M::inputs), variables(M::outputs), variables(M::linear),
+          variables(M::nonlinear)};
+}
+
+/// at() must take any number for xi2 and answer in it: sepcal differentiates it with dual numbers.
+template <class M>
+concept DifferentiableModel =
+    requires(const M& model, const Vec<double, Sizes<M>::n_u>& u,
+             const Vec<ceres::Jet<double, Sizes<M>::n_2>, Sizes<M>::n_2>& xi2) {
+      {
+        model.at(u, xi2)
+      } -> std::same_as<typename Sizes<M>::template Result<ceres::Jet<double, Sizes<M>::n_2>>>;
+    };
+
+template <SeparableModel M>
+class StaticModel final : public BlockModel {
+  static_assert(Sizes<M>::n_2 == 0 || DifferentiableModel<M>,
+                "at(u, xi2) must be a template in xi2's number type and return an Affine of it");
+
+ public:
+  explicit StaticModel(M model) : BlockModel(tables_of<M>()), model_(std::move(model)) {}
+
+  void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* /*carry*/,
+                Eigen::Ref<Eigen::MatrixXd> rows) const override {
+    if constexpr (n_2 > 0) {
+      if (xi1 != nullptr) return fill_tangent(block, xi2, xi1, rows);
+    }
+    fill_values(block, xi2, rows);
+  }
+
+ private:
+  static constexpr int n_u = Sizes<M>::n_u;
+  static constexpr int n_z = Sizes<M>::n_z;
+  static constexpr int n_1 = Sizes<M>::n_1;
+  static constexpr int n_2 = Sizes<M>::n_2;
+
+  static Vec<double, n_u> sample(const Block& block, std::size_t row) {
+    Vec<double, n_u> u;
+    for (int i = 0; i < n_u; ++i) u[i] = block.inputs[static_cast<std::size_t>(i)][row];
+    return u;
+  }
+
+  void fill_values(const Block& block, const double* xi2, Eigen::Ref<Eigen::MatrixXd> rows) const {
+    const Vec<double, n_2> x = Eigen::Map<const Vec<double, n_2>>(xi2);
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      const auto [A, b] = model_.at(sample(block, row), x);
+      for (int j = 0; j < n_z; ++j) {
+        const auto at = static_cast<Eigen::Index>(static_cast<std::size_t>(j) * block.rows + row);
+        for (int k = 0; k < n_1; ++k) rows(at, k) = A(j, k);
+        rows(at, n_1) = b[j];
+      }
+    }
+  }
+
+  void fill_tangent(const Block& block, const double* xi2, const double* xi1,
+                    Eigen::Ref<Eigen::MatrixXd> rows) const {
+    using Dual = ceres::Jet<double, n_2>;
+    Vec<Dual, n_2> x;
+    for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[i], i);
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      const auto [A, b] = model_.at(sample(block, row), x);
+      for (int j = 0; j < n_z; ++j) {
+        const auto at = static_cast<Eigen::Index>(static_cast<std::size_t>(j) * block.rows + row);
+        auto tangent = b[j].v;
+        for (int k = 0; k < n_1; ++k) {
+          rows(at, k) = A(j, k).a;
+          tangent += xi1[k] * A(j, k).v;
+        }
+        for (int i = 0; i < n_2; ++i) rows(at, n_1 + i) = tangent[i];
+        rows(at, n_1 + n_2) = b[j].a;
+      }
+    }
+  }
+
+  M model_;
+};
+
+/// A model as everything below the waist takes it.
+template <SeparableModel M>
+std::shared_ptr<const BlockModel> block_model(M model) {
+  return std::make_shared<const StaticModel<M>>(std::move(model));
+}
+
+}  // namespace sepcal

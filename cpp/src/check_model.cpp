@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/check_model.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "sampling.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/measurements.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t samples_tried = 16;
+constexpr int points_tried = 3;
+constexpr double derivative_tolerance = 1e-4;  // relative to the largest entry of the column's row
+constexpr double difference_step = 1e-5;       // times the parameter's size or 1
+
+/// Points of xi2: the nominal one and draws where the bounds are finite.
+MatrixXd points_to_try(const Tables& tables) {
+  FitOptions options;
+  options.samples = points_tried - 1;
+  const VectorXd nominal = nominal_point(tables.nonlinear, options);
+  MatrixXd points = nominal.replicate(1, points_tried);
+  const bool bounded = std::ranges::all_of(tables.nonlinear, [](const Variable& parameter) {
+    return std::isfinite(parameter.lower) && std::isfinite(parameter.upper);
+  });
+  if (bounded) points.rightCols(points_tried - 1) = draw_samples(tables.nonlinear, options);
+  return points;
+}
+
+std::string entry_name(const Tables& tables, Index output, Index column) {
+  const std::string of = " (output '" + tables.outputs[static_cast<std::size_t>(output)].name + "'";
+  if (column == tables.n_1()) return "b[" + std::to_string(output) + "]" + of + ")";
+  return "A(" + std::to_string(output) + ", " + std::to_string(column) + ")" + of +
+         ", parameter '" + tables.linear[static_cast<std::size_t>(column)].name + "')";
+}
+
+class Trial {
+ public:
+  Trial(const BlockModel& model, const Block& block) : model_(model), block_(block) {}
+
+  MatrixXd values(const VectorXd& xi2) const { return evaluate(xi2, nullptr); }
+  MatrixXd tangent(const VectorXd& xi2, const VectorXd& xi1) const { return evaluate(xi2, &xi1); }
+
+ private:
+  MatrixXd evaluate(const VectorXd& xi2, const VectorXd* xi1) const {
+    const Tables& tables = model_.tables();
+    const int columns = tables.n_1() + (xi1 == nullptr ? 0 : tables.n_2()) + 1;
+    MatrixXd rows = MatrixXd::Constant(tables.n_z() * static_cast<Index>(block_.rows), columns,
+                                       std::numeric_limits<double>::quiet_NaN());
+    const auto carry = model_.new_carry();
+    model_.evaluate(block_, xi2.data(), xi1 == nullptr ? nullptr : xi1->data(), carry.get(), rows);
+    return rows;
+  }
+
+  const BlockModel& model_;
+  const Block& block_;
+};
+
+void check_entries_set(const Tables& tables, const std::vector<MatrixXd>& values, Index rows) {
+  for (Index column = 0; column <= tables.n_1(); ++column) {
+    for (Index j = 0; j < tables.n_z(); ++j) {
+      const bool ever = std::ranges::any_of(values, [&](const MatrixXd& at) {
+        return at.col(column).segment(j * rows, rows).array().isFinite().any();
+      });
+      if (ever) continue;
+      throw Error(
+          "the model's " + entry_name(tables, j, column) +
+          " is not a finite number at any sample tried; set every entry of A and b in at()");
+    }
+  }
+}
+
+void check_same(const Tables& tables, const MatrixXd& once, const MatrixXd& again, Index rows) {
+  for (Index column = 0; column < once.cols(); ++column) {
+    for (Index row = 0; row < once.rows(); ++row) {
+      const auto bits = std::bit_cast<std::uint64_t>(once(row, column));
+      if (bits == std::bit_cast<std::uint64_t>(again(row, column))) continue;
+      throw Error(
+          "the model's " + entry_name(tables, row / rows, column) +
+          " differs between two evaluations of the same sample; at() must be a pure function");
+    }
+  }
+}
+
+void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd& xi2, Index rows) {
+  const Index n_1 = tables.n_1();
+  const VectorXd xi1 = VectorXd::Ones(n_1);
+  const MatrixXd tangent = trial.tangent(xi2, xi1);
+  if (!tangent.allFinite()) return;
+  VectorXd contrast(n_1 + 1);
+  contrast.setOnes();
+  for (Index k = 0; k < tables.n_2(); ++k) {
+    const double step = difference_step * std::max(1.0, std::abs(xi2[k]));
+    VectorXd above = xi2;
+    VectorXd below = xi2;
+    above[k] += step;
+    below[k] -= step;
+    const VectorXd numeric =
+        (trial.values(above) - trial.values(below)) * contrast / (above[k] - below[k]);
+    const VectorXd given = tangent.col(n_1 + k);
+    if (!numeric.allFinite()) continue;
+    const double scale = std::max({numeric.cwiseAbs().maxCoeff(), given.cwiseAbs().maxCoeff(),
+                                   1e-6 * trial.values(xi2).cwiseAbs().maxCoeff()});
+    Index row = 0;
+    const double difference = (numeric - given).cwiseAbs().maxCoeff(&row);
+    if (difference <= derivative_tolerance * scale) continue;
+    throw Error("the model's derivative of output '" +
+                tables.outputs[static_cast<std::size_t>(row / rows)].name + "' with respect to '" +
+                tables.nonlinear[static_cast<std::size_t>(k)].name +
+                "' is not that of its values (at() gives " + std::to_string(given[row]) +
+                ", central differences " + std::to_string(numeric[row]) +
+                "); compute in the type of xi2 throughout");
+  }
+}
+
+}  // namespace
+
+void check_model(const BlockModel& model, const Record& record) {
+  const Measurements measurements(model, record);
+  if (measurements.chunks().empty()) {
+    throw Error("the record has no rows; a model can't be tried on it");
+  }
+  Measurements::Range range = measurements.chunks().front().front();
+  range.rows = std::min(range.rows, samples_tried);
+  std::vector<const double*> pointers;
+  const Block block = measurements.block(range, pointers);
+  const auto rows = static_cast<Index>(range.rows);
+  const Trial trial(model, block);
+  const Tables& tables = model.tables();
+
+  const MatrixXd points = points_to_try(tables);
+  std::vector<MatrixXd> values;
+  for (Index i = 0; i < points.cols(); ++i) values.push_back(trial.values(points.col(i)));
+  check_entries_set(tables, values, rows);
+  for (Index i = 0; i < points.cols(); ++i) {
+    check_same(tables, values[static_cast<std::size_t>(i)], trial.values(points.col(i)), rows);
+    check_derivatives(trial, tables, points.col(i), rows);
+  }
+}
+
+}  // namespace sepcal

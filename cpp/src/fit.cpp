@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sepcal/check_model.hpp"
+#include "sepcal/error.hpp"
+#include "stages.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+/// What an uncertainty is held against: half the width of the bounds, or rms(z) / rms(column) for a
+/// parameter without two finite bounds; columns and z unwhitened, over all outputs.
+VectorXd plausible_scale(const std::vector<Variable>& parameters,
+                         const std::vector<TriangularFactor>& factors,
+                         const Measurements& measurements) {
+  double z_square = 0.0;
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    z_square += measurements.output_square(static_cast<int>(j));
+  }
+  VectorXd scale(static_cast<Index>(parameters.size()));
+  for (Index k = 0; k < scale.size(); ++k) {
+    const Variable& parameter = parameters[static_cast<std::size_t>(k)];
+    scale[k] = 0.5 * (parameter.upper - parameter.lower);
+    if (std::isfinite(scale[k])) continue;
+    double column_square = 0.0;
+    for (const TriangularFactor& factor : factors) {
+      column_square += factor.matrix().col(k).squaredNorm();
+    }
+    scale[k] = std::sqrt(z_square / column_square);
+  }
+  return scale;
+}
+
+std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
+  std::vector<OutputValue> result;
+  for (Index j = 0; j < values.size(); ++j) {
+    result.push_back({tables.outputs[static_cast<std::size_t>(j)].name, values[j]});
+  }
+  return result;
+}
+
+/// (R' R)^-1 by way of R^-1; NaN throughout where R is singular.
+MatrixXd inverse_of_square(const MatrixXd& R) {
+  const Index n = R.cols();
+  if ((R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any()) {
+    return MatrixXd::Constant(n, n, undefined);
+  }
+  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
+  return inverse * inverse.transpose();
+}
+
+/// The free parameters whose estimate has a distribution: those not held by a bound.
+std::vector<Index> inner(const std::vector<bool>& at_bound) {
+  std::vector<Index> indices;
+  for (std::size_t k = 0; k < at_bound.size(); ++k) {
+    if (!at_bound[k]) indices.push_back(static_cast<Index>(k));
+  }
+  return indices;
+}
+
+/// The factor of a selection of columns.
+MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
+  TriangularFactor factor(static_cast<int>(columns.size()));
+  MatrixXd rows = R(Eigen::all, columns);
+  factor.absorb(rows);
+  return factor.matrix();
+}
+
+/// Cost J of Eq. 6 from the factors at the solution.
+double cost(const std::vector<TriangularFactor>& factors, const VectorXd& noise, double rows) {
+  double J = 0.0;
+  for (Index j = 0; j < noise.size(); ++j) {
+    const MatrixXd& T = factors[static_cast<std::size_t>(j)].matrix();
+    J +=
+        0.5 * T.col(T.cols() - 1).squaredNorm() / (noise[j] * noise[j]) + rows * std::log(noise[j]);
+  }
+  return J;
+}
+
+/// Spreads the free parameters' estimate and covariance over all of the model's parameters.
+void fill_parameters(Fit& result, const BlockModel& model, const Problem& problem,
+                     const StageTwo& two, const MatrixXd& covariance,
+                     const std::vector<Index>& inside) {
+  const std::vector<Variable> all = model.tables().parameters();
+  const auto n = static_cast<Index>(all.size());
+  result.n_1 = model.tables().n_1();
+  result.covariance = MatrixXd::Constant(n, n, undefined);
+  result.correlation = result.covariance;
+  std::vector<Index> place;  // of each free parameter among all
+  for (const Variable& variable : all) {
+    Parameter parameter{.name = variable.name,
+                        .unit = variable.unit,
+                        .standard_error = undefined,
+                        .standard_error_white = undefined};
+    const auto fixed = problem.options().fixed.find(variable.name);
+    if (fixed != problem.options().fixed.end()) {
+      parameter.fixed = true;
+      parameter.value = parameter.lower = parameter.upper = fixed->second;
+    } else {
+      const auto k = place.size();
+      place.push_back(static_cast<Index>(result.parameters.size()));
+      parameter.value = two.x[static_cast<Index>(k)];
+      parameter.lower = problem.parameters()[k].lower;
+      parameter.upper = problem.parameters()[k].upper;
+      parameter.at_bound = two.at_bound[k];
+    }
+    result.parameters.push_back(std::move(parameter));
+  }
+  for (std::size_t a = 0; a < inside.size(); ++a) {
+    const Index row = place[static_cast<std::size_t>(inside[a])];
+    Parameter& parameter = result.parameters[static_cast<std::size_t>(row)];
+    parameter.standard_error_white =
+        std::sqrt(covariance(static_cast<Index>(a), static_cast<Index>(a)));
+    parameter.standard_error = parameter.standard_error_white;
+    for (std::size_t b = 0; b < inside.size(); ++b) {
+      const Index column = place[static_cast<std::size_t>(inside[b])];
+      const double value = covariance(static_cast<Index>(a), static_cast<Index>(b));
+      result.covariance(row, column) = value;
+      result.correlation(row, column) =
+          a == b ? (std::isnan(value) ? undefined : 1.0)
+                 : value / std::sqrt(covariance(static_cast<Index>(a), static_cast<Index>(a)) *
+                                     covariance(static_cast<Index>(b), static_cast<Index>(b)));
+    }
+  }
+}
+
+void describe(Fit& result, const BlockModel& model, const Problem& problem,
+              const Measurements& measurements, const StageTwo& two) {
+  const auto n = static_cast<Index>(problem.parameters().size());
+  const auto rows = static_cast<double>(measurements.rows());
+  const auto count = rows * static_cast<double>(model.tables().n_z());
+  const bool noise_given = problem.noise().size() > 0;
+
+  const TriangularFactor factor = combine(two.factors, two.noise.cwiseInverse());
+  const std::vector<Index> inside = inner(two.at_bound);
+  const MatrixXd R = select_columns(factor.matrix().leftCols(n), inside);
+  const double freedom = count - static_cast<double>(n);
+  const double inflation = noise_given ? 1.0 : freedom > 0 ? count / freedom : undefined;
+  fill_parameters(result, model, problem, two, inverse_of_square(R) * inflation, inside);
+
+  std::vector<std::string> names;
+  for (const Index k : inside)
+    names.push_back(problem.parameters()[static_cast<std::size_t>(k)].name);
+  const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements)(inside);
+  result.identifiability =
+      identify(R, names, scale, std::isnan(inflation) ? 1.0 : std::sqrt(inflation));
+
+  VectorXd rmse(two.noise.size());
+  for (Index j = 0; j < rmse.size(); ++j) {
+    rmse[j] = two.factors[static_cast<std::size_t>(j)].matrix().col(n).norm() / std::sqrt(rows);
+  }
+  result.rmse = by_output(model.tables(), rmse);
+  result.noise = by_output(model.tables(), two.noise);
+  result.cost = cost(two.factors, two.noise, rows);
+  result.method = two.method;
+  result.iterations = two.iterations;
+  result.noise_iterations = two.noise_iterations;
+  result.rows = measurements.rows();
+  result.message = two.message + result.identifiability.message();
+  if (result.message.ends_with("; ")) result.message.resize(result.message.size() - 2);
+  result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
+                  : two.converged                              ? FitStatus::converged
+                                                               : FitStatus::not_converged;
+}
+
+}  // namespace
+
+std::string_view to_string(FitStatus status) {
+  switch (status) {
+    case FitStatus::converged:
+      return "converged";
+    case FitStatus::not_identifiable:
+      return "not_identifiable";
+    default:
+      return "not_converged";
+  }
+}
+
+std::string_view to_string(SecondStage method) {
+  switch (method) {
+    case SecondStage::joint:
+      return "joint";
+    case SecondStage::projected:
+      return "projected";
+    default:
+      return "auto";
+  }
+}
+
+const Parameter& Fit::operator[](std::string_view name) const {
+  const auto at = std::ranges::find(parameters, name, &Parameter::name);
+  if (at != parameters.end()) return *at;
+  std::string known;
+  for (const Parameter& parameter : parameters)
+    known += (known.empty() ? "" : ", ") + parameter.name;
+  throw Error("there is no parameter '" + std::string(name) + "'; the fit has: " + known);
+}
+
+VectorXd Fit::values() const {
+  VectorXd result(static_cast<Index>(parameters.size()));
+  for (Index k = 0; k < result.size(); ++k)
+    result[k] = parameters[static_cast<std::size_t>(k)].value;
+  return result;
+}
+
+Fit fit(const BlockModel& model, const Record& record, const FitOptions& options) {
+  const Problem problem(model, options);
+  ThreadPool pool(options.threads);
+  const Record second = record.select(options.stage_two_segments);
+  const Measurements measurements(problem.model(), second);
+  problem.check_measurements(measurements.rows());
+  check_model(problem.model(), second);
+
+  Fit result;
+  result.stage_one = run_stage_one(problem, record, pool);
+  const StageTwo two = run_stage_two(problem, measurements, result.stage_one, pool);
+  describe(result, model, problem, measurements, two);
+  return result;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/identifiability.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+
+#include "sepcal/quantity.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double share_to_take_part = 0.1;         // of the largest, in units of the scale
+constexpr double share_to_be_weak_together = 0.3;  // of the largest, in columns of unit length
+constexpr double share_to_be_written = 0.01;       // of the largest, in the combination's own
+constexpr double weak_singular_value = 1.0 / 50.0;
+
+/// Those with at least `share` of the largest, largest first.
+std::vector<Index> participants(const VectorXd& direction, double share) {
+  std::vector<Index> order(static_cast<std::size_t>(direction.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  const double limit = share * direction.cwiseAbs().maxCoeff();
+  std::erase_if(order, [&](Index k) { return !(std::abs(direction[k]) > limit); });
+  std::ranges::stable_sort(
+      order, [&](Index a, Index b) { return std::abs(direction[a]) > std::abs(direction[b]); });
+  return order;
+}
+
+VectorXd only(const VectorXd& values, const std::vector<Index>& kept) {
+  VectorXd result = VectorXd::Zero(values.size());
+  for (const Index k : kept) result[k] = values[k];
+  return result;
+}
+
+std::vector<std::string> names_of(const std::vector<Index>& indices,
+                                  const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  result.reserve(indices.size());
+  for (const Index k : indices) result.push_back(names[static_cast<std::size_t>(k)]);
+  return result;
+}
+
+std::string spoken_list(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// A direction xi + t d along which the residuals stay as they are.
+struct Valley {
+  VectorXd direction;  // in the parameters' own units
+  std::vector<Index> parameters;
+  Combination combination;
+};
+
+std::string sentence(const Valley& valley, bool shares_parameters,
+                     const std::vector<std::string>& names) {
+  const auto& involved = valley.combination.parameters;
+  if (involved.size() == 1) return involved.front() + " can't be determined from this record";
+  std::string text = spoken_list(involved) + " can't be told apart: ";
+  if (involved.size() == 2 && !shares_parameters) {
+    VectorXd determined = VectorXd::Zero(valley.direction.size());
+    determined[valley.parameters[0]] = valley.direction[valley.parameters[1]];
+    determined[valley.parameters[1]] = -valley.direction[valley.parameters[0]];
+    return text + "only " + combination_text(determined, names) + " is determined";
+  }
+  return text + valley.combination.text + " is not determined";
+}
+
+}  // namespace
+
+std::string combination_text(const VectorXd& coefficients, const std::vector<std::string>& names) {
+  VectorXd c = coefficients / coefficients.norm();
+  const double limit = share_to_be_written * c.cwiseAbs().maxCoeff();
+  std::string text;
+  double sign = 0.0;
+  for (Index k = 0; k < c.size(); ++k) {
+    if (!(std::abs(c[k]) > limit)) continue;
+    if (sign == 0.0) sign = c[k] < 0 ? -1.0 : 1.0;  // the first coefficient is written positive
+    const double value = sign * c[k];
+    if (!text.empty()) text += value < 0 ? " - " : " + ";
+    const std::string size = number(std::abs(value));
+    if (size != "1") text += size + " ";
+    text += names[static_cast<std::size_t>(k)];
+  }
+  return text;
+}
+
+MatrixXd sparsify(const MatrixXd& basis) {
+  MatrixXd v = basis;
+  std::vector<bool> reduced(static_cast<std::size_t>(v.cols()), false);
+  for (Index step = 0; step < v.cols(); ++step) {
+    Index row = 0;
+    Index column = -1;
+    double largest = 0.0;
+    for (Index j = 0; j < v.cols(); ++j) {
+      if (reduced[static_cast<std::size_t>(j)]) continue;
+      Index at = 0;
+      const double size = v.col(j).cwiseAbs().maxCoeff(&at);
+      if (size > largest) {
+        largest = size;
+        row = at;
+        column = j;
+      }
+    }
+    if (column < 0) break;
+    reduced[static_cast<std::size_t>(column)] = true;
+    v.col(column) /= v(row, column);
+    for (Index j = 0; j < v.cols(); ++j) {
+      if (j != column) v.col(j) -= v(row, j) * v.col(column);
+    }
+  }
+  v.colwise().normalize();
+  return v;
+}
+
+Identifiability identify(const MatrixXd& R, const std::vector<std::string>& names,
+                         const VectorXd& scale, double noise_factor) {
+  const Index n = R.cols();
+  Identifiability result;
+  if (n == 0) return result;
+
+  // Unobservable: in coordinates where one means "as far as is plausible".
+  const VectorXd s = scale.unaryExpr([](double x) { return std::isfinite(x) && x > 0 ? x : 1.0; });
+  const Eigen::JacobiSVD<MatrixXd> svd(R * s.asDiagonal(), Eigen::ComputeFullV);
+  const auto& singular = svd.singularValues();
+  const double epsilon = static_cast<double>(n) * std::numeric_limits<double>::epsilon();
+  std::vector<Index> open;
+  for (Index i = 0; i < n; ++i) {
+    const bool zero = !(singular[i] > epsilon * singular[0]);
+    if (!zero) ++result.rank;
+    if (zero || noise_factor > singular[i]) open.push_back(i);
+  }
+  MatrixXd basis(n, static_cast<Index>(open.size()));
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    basis.col(static_cast<Index>(i)) = svd.matrixV().col(open[i]);
+  }
+  basis = sparsify(basis);
+
+  std::vector<Valley> valleys;
+  for (Index i = 0; i < basis.cols(); ++i) {
+    const std::vector<Index> involved = participants(basis.col(i), share_to_take_part);
+    const VectorXd v = only(basis.col(i), involved);
+    const VectorXd functional = v.cwiseQuotient(s);
+    const double length = (R * s.cwiseProduct(v)).norm();
+    Valley valley{s.cwiseProduct(v),
+                  involved,
+                  {names_of(involved, names), combination_text(functional, names), infinity}};
+    if (length > epsilon * singular[0]) {
+      valley.combination.standard_error = noise_factor / length / functional.norm();
+    }
+    valleys.push_back(std::move(valley));
+  }
+  for (const Valley& valley : valleys) {
+    const bool shares = std::ranges::any_of(valleys, [&](const Valley& other) {
+      return &other != &valley && std::ranges::any_of(other.parameters, [&](Index k) {
+        return std::ranges::find(valley.parameters, k) != valley.parameters.end();
+      });
+    });
+    result.sentences.push_back(sentence(valley, shares, names));
+    result.unobservable.push_back(valley.combination);
+  }
+
+  // Weak: in columns of unit length, what is left of them.
+  VectorXd lengths = R.colwise().norm();
+  for (double& length : lengths) length = length > 0 ? length : 1.0;
+  const Eigen::JacobiSVD<MatrixXd> unit(R * lengths.cwiseInverse().asDiagonal(),
+                                        Eigen::ComputeFullV);
+  for (Index i = 0; i < n; ++i) {
+    const double value = unit.singularValues()[i];
+    if (value > weak_singular_value * unit.singularValues()[0]) continue;
+    if (!(value > epsilon * unit.singularValues()[0])) continue;
+    const VectorXd v = unit.matrixV().col(i);
+    const VectorXd shift = v.cwiseQuotient(lengths) * (noise_factor / value);
+    if (shift.cwiseQuotient(s).norm() > 1.0) continue;  // listed as unobservable already
+    // The main parts of c = sum v_k |column_k| xi_k; se(c) = |R^-T c|.
+    const std::vector<Index> involved = participants(v, share_to_be_weak_together);
+    const VectorXd functional = only(v.cwiseProduct(lengths), involved).normalized();
+    const VectorXd deviation = R.triangularView<Eigen::Upper>().transpose().solve(functional);
+    Combination weak{names_of(involved, names), combination_text(functional, names),
+                     noise_factor * deviation.norm()};
+    result.sentences.push_back(spoken_list(weak.parameters) +
+                               " are hard to tell apart: " + weak.text +
+                               " has a standard error of " + number(weak.standard_error));
+    result.weak.push_back(std::move(weak));
+  }
+  return result;
+}
+
+std::string Identifiability::message() const {
+  std::string text;
+  for (const std::string& part : sentences) text += (text.empty() ? "" : "; ") + part;
+  return text;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The two compressed least-squares problems of stage two: `joint` over (xi1, xi2) and `projected`
+// over xi2 with xi1 = xi1hat(xi2) solved inside. However long the record, each has n_1 + n_2 + 1
+// residuals [Q'r; what remains] whose sum of squares is the whitened record's, and the Jacobian
+// -[R; 0].
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sweep.hpp"
+
+namespace sepcal {
+
+class Objective {
+ public:
+  /// `weights` (n_z): 1 / noise standard deviation of each output.
+  Objective(const Sweep& sweep, Eigen::VectorXd weights)
+      : sweep_(sweep), weights_(std::move(weights)) {}
+  Objective(const Objective&) = delete;
+  Objective& operator=(const Objective&) = delete;
+  virtual ~Objective() = default;
+
+  virtual int parameters() const = 0;
+  int residuals() const { return sweep_.tables().n_1() + sweep_.tables().n_2() + 1; }
+
+  /// Sum of whitened squares at x; not finite where the model is not.
+  virtual double square(const Eigen::VectorXd& x) = 0;
+
+  /// Residual (residuals()) and Jacobian (residuals() x parameters()) at x; false where the model
+  /// is not finite.
+  virtual bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+                         Eigen::MatrixXd& jacobian) = 0;
+
+ protected:
+  const Sweep& sweep_;
+  Eigen::VectorXd weights_;
+};
+
+/// x = (xi1, xi2), Eq. 20's left-hand side.
+class JointObjective final : public Objective {
+ public:
+  using Objective::Objective;
+  int parameters() const override { return residuals() - 1; }
+  double square(const Eigen::VectorXd& x) override;
+  bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+                 Eigen::MatrixXd& jacobian) override;
+};
+
+/// x = xi2, Eq. 20's right-hand side, with Kaufman's Jacobian: the D-D block of the factor of
+/// [A D r] at xi1hat(xi2) is the projected Jacobian's R factor. A singular A loses only what it
+/// does not see: the rows U_perp' R_AD join, and the pseudo-inverse stands for the inverse.
+class ProjectedObjective final : public Objective {
+ public:
+  using Objective::Objective;
+  int parameters() const override { return sweep_.tables().n_2(); }
+  double square(const Eigen::VectorXd& x) override;
+  bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+                 Eigen::MatrixXd& jacobian) override;
+
+  /// xi1hat(xi2), Eq. 27 (n_1).
+  Eigen::VectorXd linear_estimate(const Eigen::VectorXd& xi2);
+
+ private:
+  /// The whitened factor of [A | z - b]; kept for the point asked for last.
+  const TriangularFactor& linear_factor(const Eigen::VectorXd& xi2);
+
+  Eigen::VectorXd at_;
+  TriangularFactor factor_{0};
+};
+
+}  // namespace sepcal

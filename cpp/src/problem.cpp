@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fixed_model.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+std::string list_names(const std::vector<Variable>& variables) {
+  std::string text;
+  for (const Variable& variable : variables) text += (text.empty() ? "" : ", ") + variable.name;
+  return text;
+}
+
+/// The variable of that name, or an Error that lists those there are.
+Variable& find(std::vector<Variable>& variables, const std::string& name, const std::string& what) {
+  const auto at = std::ranges::find(variables, name, &Variable::name);
+  if (at == variables.end()) {
+    throw Error("there is no " + what + " '" + name + "'; the model has: " + list_names(variables));
+  }
+  return *at;
+}
+
+Box box_of(const std::vector<Variable>& parameters, std::size_t first) {
+  const auto n = static_cast<Index>(parameters.size() - first);
+  Box box{VectorXd(n), VectorXd(n)};
+  for (Index k = 0; k < n; ++k) {
+    box.lower[k] = parameters[first + static_cast<std::size_t>(k)].lower;
+    box.upper[k] = parameters[first + static_cast<std::size_t>(k)].upper;
+  }
+  return box;
+}
+
+}  // namespace
+
+Problem::Problem(const BlockModel& model, const FitOptions& options)
+    : options_(options), free_(&model) {
+  std::vector<Variable> all = model.tables().parameters();
+  for (const auto& [name, bounds] : options.bounds) {
+    Variable& parameter = find(all, name, "parameter");
+    if (!(bounds.lower < bounds.upper)) {
+      throw Error("the bounds of '" + name + "' leave no room; the lower must be below the upper" +
+                  " (to hold a parameter at a value, fix it)");
+    }
+    parameter.lower = bounds.lower;
+    parameter.upper = bounds.upper;
+  }
+  for (const auto& [name, prior] : options.priors) {
+    std::vector<Variable> nonlinear = model.tables().nonlinear;
+    find(nonlinear, name, "nonlinear parameter (only these are sampled)");
+  }
+  for (const auto& [name, value] : options.fixed) {
+    const Variable& parameter = find(all, name, "parameter");
+    if (!std::isfinite(value) || value < parameter.lower || value > parameter.upper) {
+      throw Error("the fixed value of '" + name + "' is outside its bounds; widen them or mend it");
+    }
+  }
+  if (!options.fixed.empty()) {
+    held_ = std::make_unique<const FixedModel>(model, options.fixed);
+    free_ = held_.get();
+  }
+  for (const Variable& parameter : all) {
+    if (!options.fixed.contains(parameter.name)) parameters_.push_back(parameter);
+  }
+  if (parameters_.empty()) {
+    throw Error("every parameter is fixed, so that nothing is left to estimate; free one");
+  }
+
+  std::vector<Variable> outputs = model.tables().outputs;
+  for (const auto& [name, sd] : options.noise) {
+    find(outputs, name, "output");
+    if (!(sd > 0) || !std::isfinite(sd)) {
+      throw Error("the noise of output '" + name + "' must be a positive standard deviation");
+    }
+  }
+  if (!options.noise.empty()) {
+    noise_.resize(model.tables().n_z());
+    for (Index j = 0; j < noise_.size(); ++j) {
+      const std::string& name = outputs[static_cast<std::size_t>(j)].name;
+      const auto at = options.noise.find(name);
+      if (at == options.noise.end()) {
+        throw Error("noise is given, but not for output '" + name + "'; give it for every output");
+      }
+      noise_[j] = at->second;
+    }
+  }
+  if (options.samples < 0 || options.descents < 1 || options.iterations < 1 ||
+      options.noise_iterations < 1 || !(options.noise_tolerance > 0)) {
+    throw Error("samples must not be negative; descents, iterations, noise_iterations and" +
+                std::string(" noise_tolerance must be positive"));
+  }
+}
+
+std::vector<Variable> Problem::nonlinear() const {
+  return {parameters_.begin() + model().tables().n_1(), parameters_.end()};
+}
+
+Box Problem::box() const { return box_of(parameters_, 0); }
+
+Box Problem::nonlinear_box() const {
+  return box_of(parameters_, static_cast<std::size_t>(model().tables().n_1()));
+}
+
+void Problem::check_measurements(std::size_t rows) const {
+  const std::size_t outputs = model().tables().outputs.size();
+  if (rows * outputs >= parameters_.size()) return;
+  throw Error("the record has " + std::to_string(rows) + " rows of " + std::to_string(outputs) +
+              " outputs, fewer measurements than the " + std::to_string(parameters_.size()) +
+              " parameters; log more or fix parameters");
+}
+
+}  // namespace sepcal

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a record is cut into segments, and which of them a selection such as
+// "wind_circle_1,510.9:530" takes.
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <set>
+
+#include "sepcal/error.hpp"
+#include "sepcal/quantity.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal {
+namespace {
+
+/// Seconds, both ends included.
+struct Span {
+  double from = 0;
+  double to = 0;
+};
+
+std::string_view trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::optional<double> parse_time(std::string_view text) {
+  double time = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole ? std::optional(time) : std::nullopt;
+}
+
+std::optional<Span> parse_span(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const auto from = parse_time(trim(text.substr(0, colon)));
+  const auto to = parse_time(trim(text.substr(colon + 1)));
+  if (!from || !to) return std::nullopt;
+  return Span{*from, *to};
+}
+
+/// The rows of `segment` whose time lies in `span`; time increases within a segment.
+Segment intersect(const Segment& segment, std::span<const double> time, const Span& span) {
+  const auto rows = time.subspan(segment.first, segment.rows());
+  const auto first = std::ranges::lower_bound(rows, span.from) - rows.begin();
+  const auto last = std::ranges::upper_bound(rows, span.to) - rows.begin();
+  return {segment.label, segment.first + static_cast<std::size_t>(first),
+          segment.first + static_cast<std::size_t>(last)};
+}
+
+std::string list_labels(const std::vector<Segment>& segments) {
+  std::string list;
+  std::set<std::string_view> listed;
+  for (const Segment& segment : segments) {
+    if (segment.label.empty() || !listed.insert(segment.label).second) continue;
+    list += (list.empty() ? "" : ", ") + segment.label;
+  }
+  return list.empty() ? "none" : list;
+}
+
+/// The middle one of the intervals, or the mean of the middle two; there is at least one.
+double find_median_interval(std::span<const double> time) {
+  std::vector<double> intervals(time.size() - 1);
+  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = time[i + 1] - time[i];
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  if (intervals.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(intervals.begin(), middle)) / 2;
+}
+
+}  // namespace
+
+Record Record::select(std::string_view selection) const {
+  if (trim(selection).empty()) return *this;
+  // What each item takes of each segment, by the segment's index.
+  std::vector<std::vector<Segment>> taken(segments_.size());
+  for (std::size_t at = 0; at <= selection.size();) {
+    const std::size_t comma = std::min(selection.find(',', at), selection.size());
+    const auto item = trim(selection.substr(at, comma - at));
+    at = comma + 1;
+    bool matched = false;
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      if (item.empty() || segments_[i].label != item) continue;
+      taken[i].push_back(segments_[i]);
+      matched = true;
+    }
+    if (matched) continue;
+    if (const auto span = parse_span(item)) {
+      const auto time = column("time");
+      for (std::size_t i = 0; i < segments_.size(); ++i) {
+        const Segment part = intersect(segments_[i], time, *span);
+        if (part.first >= part.last) continue;
+        taken[i].push_back(part);
+        matched = true;
+      }
+    }
+    if (!matched) {
+      throw Error("no segment is '" + std::string(item) + "' in '" + std::string(selection) +
+                  "'; name a label or a span FROM:TO of time in s; the labels are: " +
+                  list_labels(segments_));
+    }
+  }
+  std::vector<Segment> selected;
+  for (auto& parts : taken) {
+    std::ranges::sort(parts, {}, &Segment::first);
+    const std::size_t segment_begins = selected.size();
+    for (const Segment& part : parts) {
+      // Parts that overlap or touch are one: there is no gap between them.
+      if (selected.size() > segment_begins && part.first <= selected.back().last) {
+        selected.back().last = std::max(selected.back().last, part.last);
+      } else {
+        selected.push_back(part);
+      }
+    }
+  }
+  Record record = *this;
+  record.cut(std::move(selected));
+  return record;
+}
+
+std::vector<Segment> find_segments(std::span<const double> time,
+                                   std::span<const std::string> labels) {
+  if (!labels.empty() && labels.size() != time.size()) {
+    throw Error("there are " + std::to_string(labels.size()) + " labels for " +
+                std::to_string(time.size()) + " rows; give one a row or none");
+  }
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (!(time[i] > time[i - 1])) {
+      throw Error("time does not increase at row " + std::to_string(i) +
+                  " (the first is 0): sort the rows and delete repeated ones");
+    }
+  }
+  // A gap is an interval > 5 (1 + 1e-6) medians: four lost samples of a regular record are exactly
+  // five intervals, which rounding must not turn into a gap.
+  constexpr double gap_intervals = 5 * (1 + 1e-6);
+  const double gap = time.size() < 2 ? infinity : gap_intervals * find_median_interval(time);
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const bool begins =
+        i == 0 || time[i] - time[i - 1] > gap || (!labels.empty() && labels[i] != labels[i - 1]);
+    if (begins) segments.push_back({labels.empty() ? "" : labels[i], i, i});
+    segments.back().last = i + 1;
+  }
+  return segments;
+}
+
+}  // namespace sepcal

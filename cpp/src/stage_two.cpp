@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stage two: the constrained maximum-likelihood fit (Sun & Gebre-Egziabher, Step 5, Eqs. 6, 20,
+// 24-27). Ceres descends; Gauss-Newton steps then take the last digits that a comparison of costs
+// can't see; R and the parameters alternate until Eq. 26 holds.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "objective.hpp"
+#include "stages.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The last Gauss-Newton step, in standard errors (|R dx|), and what still passes for converged
+/// where rounding keeps the step from getting there.
+constexpr double smallest_step = 1e-12;  // times 1 + |r|, the whitened residual's norm
+constexpr double passable_step = 1e-3;
+constexpr int refinements = 60;
+
+/// Sum of squared residuals by output, off the factors of [A D r].
+VectorXd squares(const std::vector<TriangularFactor>& factors) {
+  VectorXd sums(static_cast<Index>(factors.size()));
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    const MatrixXd& T = factors[j].matrix();
+    sums[static_cast<Index>(j)] = T.col(T.cols() - 1).squaredNorm();
+  }
+  return sums;
+}
+
+/// Bounds that hold x back: it lies on one and the cost falls beyond it.
+std::vector<bool> active_bounds(const VectorXd& x, const VectorXd& gradient, const Box& box) {
+  std::vector<bool> active;
+  for (Index k = 0; k < x.size(); ++k) {
+    active.push_back((x[k] <= box.lower[k] && gradient[k] >= 0) ||
+                     (x[k] >= box.upper[k] && gradient[k] <= 0));
+  }
+  return active;
+}
+
+/// The Gauss-Newton step over the parameters that no bound holds; of least norm where singular.
+VectorXd gauss_newton_step(const MatrixXd& R, const VectorXd& q, const std::vector<bool>& active) {
+  std::vector<Index> free;
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    if (!active[k]) free.push_back(static_cast<Index>(k));
+  }
+  VectorXd step = VectorXd::Zero(R.cols());
+  if (free.empty()) return step;
+  MatrixXd columns = R(Eigen::all, free);
+  VectorXd lengths = columns.colwise().norm();
+  for (double& length : lengths) length = length > 0 ? length : 1.0;
+  columns *= lengths.cwiseInverse().asDiagonal();
+  step(free) = columns.completeOrthogonalDecomposition().solve(q).cwiseQuotient(lengths);
+  return step;
+}
+
+class Alternation {
+ public:
+  Alternation(const Problem& problem, const Sweep& sweep, StageTwo& result)
+      : problem_(problem), sweep_(sweep), box_(problem.box()), result_(result) {}
+
+  /// Minimises J over the parameters at the present R, from result.x.
+  void descend() {
+    if (result_.method == SecondStage::projected && descend_projected()) return;
+    result_.method = SecondStage::joint;
+    JointObjective objective(sweep_, weights());
+    const Descent descent =
+        minimise(objective, result_.x, box_, {.iterations = problem_.options().iterations});
+    result_.iterations += descent.iterations;
+    result_.x = descent.x;
+    solver_message_ = descent.message;
+  }
+
+  /// Gauss-Newton steps to the last digit. False where they don't shrink: the point isn't near a
+  /// minimum of the present J, or the model is not finite there.
+  bool refine() {
+    double before = infinity;
+    for (int i = 0; i < refinements; ++i) {
+      result_.factors = sweep_.tangent_factors(xi1(), xi2());
+      const TriangularFactor factor = combine(result_.factors, weights());
+      if (!factor.all_finite()) return false;
+      const Index n = result_.x.size();
+      const MatrixXd R = factor.matrix().leftCols(n);
+      const VectorXd q = factor.matrix().col(n);
+      result_.at_bound = active_bounds(result_.x, -R.transpose() * q, box_);
+      const VectorXd step = gauss_newton_step(R, q, result_.at_bound);
+      const VectorXd next = box_.clip(result_.x + step);
+      const double size = (R * (next - result_.x)).norm();
+      if (size <= smallest_step * (1.0 + q.norm())) return true;
+      if (size >= before) return size <= passable_step;
+      before = size;
+      result_.x = next;
+      ++result_.iterations;
+    }
+    result_.factors = sweep_.tangent_factors(xi1(), xi2());
+    return before <= passable_step;
+  }
+
+  /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
+  double update_noise() {
+    const auto rows = static_cast<double>(sweep_.measurements().rows());
+    const VectorXd sums = squares(result_.factors);
+    double change = 0.0;
+    for (Index j = 0; j < sums.size(); ++j) {
+      const double next = std::max(std::sqrt(sums[j] / rows), noise_floor(j));
+      const double ratio = next / result_.noise[j];
+      change = std::max(change, std::abs(ratio * ratio - 1.0));
+      result_.noise[j] = next;
+    }
+    return change;
+  }
+
+  /// Keeps a noise-free output from sending J to minus infinity.
+  double noise_floor(Index j) const {
+    const auto rows = static_cast<double>(sweep_.measurements().rows());
+    const double square = sweep_.measurements().output_square(static_cast<int>(j)) / rows;
+    return std::max(1e-12 * std::sqrt(square), std::sqrt(std::numeric_limits<double>::min()));
+  }
+
+  const std::string& solver_message() const { return solver_message_; }
+
+ private:
+  VectorXd xi1() const { return result_.x.head(sweep_.tables().n_1()); }
+  VectorXd xi2() const { return result_.x.tail(sweep_.tables().n_2()); }
+  VectorXd weights() const { return result_.noise.cwiseInverse(); }
+
+  /// False where a linear parameter left its bounds, which the inner problem does not know.
+  bool descend_projected() {
+    ProjectedObjective objective(sweep_, weights());
+    const Descent descent = minimise(objective, xi2(), problem_.nonlinear_box(),
+                                     {.iterations = problem_.options().iterations});
+    result_.iterations += descent.iterations;
+    solver_message_ = descent.message;
+    VectorXd x(result_.x.size());
+    x << objective.linear_estimate(descent.x), descent.x;
+    result_.x = box_.clip(x);
+    if (result_.x == x) return true;
+    for (Index k = 0; k < x.size(); ++k) {
+      if (result_.x[k] == x[k]) continue;
+      result_.message += "projected fell back to joint, because the bound of " +
+                         problem_.parameters()[static_cast<std::size_t>(k)].name + " is active; ";
+      break;
+    }
+    return false;
+  }
+
+  const Problem& problem_;
+  const Sweep& sweep_;
+  Box box_;
+  StageTwo& result_;
+  std::string solver_message_;
+};
+
+}  // namespace
+
+StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
+                       const StageOne& start, ThreadPool& pool) {
+  const FitOptions& options = problem.options();
+  const Sweep sweep(problem.model(), measurements, pool);
+  const bool noise_given = problem.noise().size() > 0;
+
+  StageTwo result;
+  result.method = options.second_stage;
+  if (result.method == SecondStage::automatic) {
+    result.method = start.unique_minimum ? SecondStage::projected : SecondStage::joint;
+  }
+  result.x.resize(start.xi1.size() + start.xi2.size());
+  result.x << start.xi1, start.xi2;
+  result.x = problem.box().clip(result.x);
+  result.noise = noise_given ? problem.noise() : start.noise;
+
+  Alternation alternation(problem, sweep, result);
+  if (!noise_given) {
+    for (Index j = 0; j < result.noise.size(); ++j) {
+      result.noise[j] = std::max(result.noise[j], alternation.noise_floor(j));
+    }
+  }
+  alternation.descend();
+  bool refined = alternation.refine();
+  bool settled = noise_given;
+  while (!settled && result.noise_iterations < options.noise_iterations) {
+    settled = alternation.update_noise() < options.noise_tolerance;
+    ++result.noise_iterations;
+    if (options.progress) {
+      options.progress("stage two", static_cast<double>(result.noise_iterations) /
+                                        static_cast<double>(options.noise_iterations));
+    }
+    if (settled) break;
+    refined = alternation.refine();
+    if (!refined) {
+      alternation.descend();
+      refined = alternation.refine();
+    }
+  }
+  result.converged = refined && settled;
+  if (!refined) {
+    result.message += "the minimisation did not converge (" + alternation.solver_message() + "); ";
+  } else if (!settled) {
+    result.message +=
+        "R did not settle within " + std::to_string(options.noise_iterations) + " iterations; ";
+  }
+  return result;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The two stages as fit() runs them, on one checked problem and one pool of threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "problem.hpp"
+#include "sepcal/measurements.hpp"
+#include "sepcal/stage_one.hpp"
+#include "sepcal/triangular_factor.hpp"
+#include "thread_pool.hpp"
+
+namespace sepcal {
+
+/// Steps 2-4.
+StageOne run_stage_one(const Problem& problem, const Record& record, ThreadPool& pool);
+
+/// Where stage two ended, over the free parameters (n of them).
+struct StageTwo {
+  Eigen::VectorXd x;                        // n: xi1, xi2
+  Eigen::VectorXd noise;                    // n_z standard deviations
+  std::vector<bool> at_bound;               // n
+  std::vector<TriangularFactor> factors;    // n_z, [A | D | r] at x, not whitened
+  SecondStage method = SecondStage::joint;  // joint or projected: what was used in the end
+  int noise_iterations = 0;
+  int iterations = 0;
+  bool converged = false;
+  std::string message;
+};
+
+/// Step 5, from where stage one ended.
+StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
+                       const StageOne& start, ThreadPool& pool);
+
+}  // namespace sepcal

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Passes over a record: the rows that a model gives for every block, reduced to one triangular
+// factor an output or to sums. Chunks are reduced apart and merged in the record's order, so that
+// the result is the same, bit for bit, on any number of threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/measurements.hpp"
+#include "sepcal/triangular_factor.hpp"
+#include "thread_pool.hpp"
+
+namespace sepcal {
+
+class Sweep {
+ public:
+  /// All three must outlive the sweep.
+  Sweep(const BlockModel& model, const Measurements& measurements, ThreadPool& pool)
+      : model_(model), measurements_(measurements), pool_(pool) {}
+
+  const Tables& tables() const { return model_.tables(); }
+  const Measurements& measurements() const { return measurements_; }
+  ThreadPool& pool() const { return pool_; }
+
+  /// [A | z - b] at xi2: n_z factors of n_1 + 1 columns.
+  std::vector<TriangularFactor> linear_factors(const Eigen::VectorXd& xi2) const;
+
+  /// [A | D | r] at (xi1, xi2), r = z - A xi1 - b: n_z factors of n_1 + n_2 + 1 columns.
+  std::vector<TriangularFactor> tangent_factors(const Eigen::VectorXd& xi1,
+                                                const Eigen::VectorXd& xi2) const;
+
+  /// Sum of r^2 by output (n_z).
+  Eigen::VectorXd squared_residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
+
+  /// r of every selected row, in the record's order: rows() x n_z.
+  Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
+
+  /// One unweighted factor of [A | z - b] over all outputs for every column of `samples`
+  /// (n_2 x S). A block of data stays in the cache while all samples pass over it.
+  /// `on_progress` hears the fraction done, from any thread, one call at a time.
+  std::vector<TriangularFactor> sample_factors(
+      const Eigen::MatrixXd& samples, const std::function<void(double)>& on_progress) const;
+
+ private:
+  using Visit = std::function<void(std::size_t chunk, const Measurements::Range& range,
+                                   const Block& block, Carry* carry, Eigen::MatrixXd& rows)>;
+
+  /// Visits every block, a chunk's blocks in order; `rows` is scratch of the chunk's own.
+  void for_each_block(const Visit& visit) const;
+
+  /// A block's rows, (n_z * rows) x (n_1 + 1): [A | z - b].
+  void fill_linear(const Block& block, const Measurements::Range& range, const double* xi2,
+                   Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows) const;
+  /// r of a block, its rows x n_z; `rows` is scratch.
+  Eigen::MatrixXd block_residuals(const Block& block, const Measurements::Range& range,
+                                  const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                                  Carry* carry, Eigen::MatrixXd& rows) const;
+  void subtract_from_outputs(const Measurements::Range& range,
+                             Eigen::Ref<Eigen::VectorXd> values) const;
+
+  const BlockModel& model_;
+  const Measurements& measurements_;
+  ThreadPool& pool_;
+};
+
+}  // namespace sepcal
