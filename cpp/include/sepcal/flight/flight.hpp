@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of one flight log, read from a CSV file or given as arrays: columns under their whole
+// header, in the log's own units. Choosing columns, converting units and dropping rows come later
+// (probe_columns.hpp), so what was logged stays as it was logged.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/flight/csv.hpp"
+
+namespace sepcal {
+
+class Flight {
+ public:
+  /// A cell that is no finite number.
+  struct Cell {
+    std::size_t row = 0;
+    std::string text;
+  };
+
+  struct Column {
+    std::string header;                 // "roll_deg"
+    std::span<const double> values;     // rows() of them, in the header's unit; NaN for text
+    std::shared_ptr<const void> owner;  // keeps the values alive; may be empty
+    std::optional<Cell> first_text;     // read from a file: the first cell that is no number
+  };
+
+  /// An empty table. `name` opens its error messages.
+  explicit Flight(std::string name = "flight") : name_(std::move(name)) {}
+
+  /// Adds a column that the flight owns. Throws Error for an empty name, a name used twice,
+  /// "maneuver" (which holds labels) and another length than the columns before.
+  Flight& add(std::string header, std::vector<double> values);
+
+  /// Adds a column without copying it; `owner` keeps the memory alive (or the caller does).
+  Flight& view(std::string header, std::span<const double> values,
+               std::shared_ptr<const void> owner = nullptr);
+
+  /// Sets a label a row. Throws Error for a second set and for another length than the columns'.
+  Flight& label(std::vector<std::string> maneuvers);
+
+  /// The file as it was named, or the name given.
+  const std::string& name() const { return name_; }
+
+  /// Of the file's bytes, 64 hexadecimal digits; empty for arrays.
+  const std::string& sha256() const { return sha256_; }
+
+  std::size_t rows() const { return rows_; }
+  const std::vector<Column>& columns() const { return columns_; }
+
+  /// A label a row, or none at all where the log has no column "maneuver".
+  std::span<const std::string> maneuvers() const { return maneuvers_; }
+
+  /// The column with that whole header, or nullptr.
+  const Column* find(std::string_view header) const;
+
+  /// How a message names a row: "flight.csv line 17" (1 is the header), "flight row 15" (from 0).
+  std::string locate(std::size_t row) const;
+
+  /// How a message lists the columns: "the file has: time_s, vn_mps".
+  std::string list_columns() const;
+
+  /// Which way out a message offers for rows with invalid cells: the option's name, as typed.
+  std::string_view drop_invalid_option() const {
+    return from_file() ? "--drop-invalid" : "drop_invalid";
+  }
+
+ private:
+  friend Flight read_csv(const std::string& file, const Progress& progress);
+
+  bool from_file() const { return !sha256_.empty(); }
+  void check_length(std::string_view header, std::size_t length);
+
+  std::string name_;
+  std::string sha256_;
+  std::vector<Column> columns_;
+  std::vector<std::string> maneuvers_;
+  std::size_t rows_ = 0;
+};
+
+/// Reads a whole CSV file (csv.hpp says which). A column "maneuver" becomes the labels; every other
+/// becomes numbers, with NaN and a memory of the first such cell where one is no finite number.
+/// Throws Error as CsvReader does.
+Flight read_csv(const std::string& file, const Progress& progress = {});
+
+}  // namespace sepcal

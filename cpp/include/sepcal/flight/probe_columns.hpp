@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a flight as it was logged to the record that a probe's model takes: columns found by
+// quantity and converted, bad rows refused or dropped and counted, the rest cut into segments.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sepcal/flight/flight.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal {
+
+/// Rows that were left out, and why.
+struct Dropped {
+  std::string reason;  // "a cell of a needed column is no finite number"
+  std::size_t rows = 0;
+};
+
+/// What a fit takes. The record's columns are the probe's quantities by their base name, in SI with
+/// fields in uT ("time", "roll", "pt"), and every other numeric column of the flight under its
+/// whole header and as it stands ("altitude_m"): a candidate driver of missing effects.
+struct ProbeRecord {
+  Record record;                         // cut at gaps and changes of maneuver
+  std::size_t rows_read = 0;             // rows of the flight
+  std::vector<Dropped> dropped;          // only reasons that a row was dropped for
+  std::vector<std::string> notes;        // one line each, for people
+  std::vector<std::size_t> flight_rows;  // the flight's row of each row of the record
+
+  std::size_t rows_used() const { return record.length(); }
+};
+
+/// What applying a calibration takes: every row of the flight, whatever its worth.
+struct ProbeReadings {
+  Record record;            // only the columns that the probe reads; one segment
+  std::vector<bool> valid;  // a row each; false: there is nothing to calibrate
+  std::vector<Dropped> dropped;
+  std::vector<std::string> notes;
+};
+
+struct FiveHoleColumns {
+  bool lever_arm = false;     // a lever arm is given, so the body rates are needed
+  bool drop_invalid = false;  // drop rows with a bad cell in a needed column instead of refusing
+};
+
+/// time [s]; roll, pitch, yaw [rad]; p, q, r [rad/s]; vn, ve, vd [m/s]; pt, ps, dpa, dpb [Pa]; rho
+/// [kg/m^3], from rho_kgpm3 or else ps / (287.05287 T). The rates are zeros where they are not
+/// needed and not logged. Rows with pt <= ps are dropped.
+/// Throws Error for a missing column, an unknown unit on one of these quantities or on temp, a
+/// quantity logged in two units, a cell of a needed column that is no finite number or a density
+/// <= 0 (unless drop_invalid), time that does not increase, pt <= ps in more than a fifth of the
+/// rows, and a flight of which no row is left.
+ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& options = {});
+
+/// pt, ps, dpa, dpb [Pa] and rho [kg/m^3] of every row; pt <= ps makes a row not valid. Throws
+/// Error as prepare_five_hole() does, but for pt <= ps.
+ProbeReadings read_five_hole(const Flight& flight, bool drop_invalid = false);
+
+struct MagnetometerColumns {
+  std::optional<std::array<double, 3>> field;  // north, east, down [uT]: instead of logged columns
+  bool drop_invalid = false;
+};
+
+/// time [s]; mx, my, mz [uT]; hx, hy, hz [uT], the true field in body axes: logged, or from roll,
+/// pitch, yaw [rad] and the field bn, be, bd [uT], logged or given (then it replaces logged
+/// columns, with a note). What of attitude, rates p, q, r [rad/s] and bn, be, bd is there is kept
+/// as well. Throws Error as prepare_five_hole() does, and where none of these ways to the true
+/// field is there.
+ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options = {});
+
+/// mx, my, mz [uT] of every row. Throws Error as prepare_magnetometer() does for these columns.
+ProbeReadings read_magnetometer(const Flight& flight, bool drop_invalid = false);
+
+}  // namespace sepcal

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+constexpr std::string_view maneuver = "maneuver";
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// A column while its rows come in.
+struct GrowingColumn {
+  std::vector<double> values;
+  std::optional<Flight::Cell> first_text;
+
+  void take(std::string_view cell) {
+    const auto number = parse_number(cell);
+    if (!number && !first_text) first_text = Flight::Cell{values.size(), std::string(cell)};
+    values.push_back(number.value_or(not_a_number));
+  }
+};
+
+}  // namespace
+
+Flight& Flight::add(std::string header, std::vector<double> values) {
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  return view(std::move(header), *owned, owned);
+}
+
+Flight& Flight::view(std::string header, std::span<const double> values,
+                     std::shared_ptr<const void> owner) {
+  if (header.empty()) throw Error(name_ + ": a column has no name");
+  if (header == maneuver) {
+    throw Error(name_ + ": column 'maneuver' is for labels, a text a row, not for numbers");
+  }
+  if (find(header) != nullptr) {
+    throw Error(fmt::format("{}: column '{}' is there twice; rename or delete one", name_, header));
+  }
+  check_length(header, values.size());
+  columns_.push_back({std::move(header), values, std::move(owner), std::nullopt});
+  return *this;
+}
+
+Flight& Flight::label(std::vector<std::string> maneuvers) {
+  if (!maneuvers_.empty()) throw Error(name_ + ": column 'maneuver' is there twice");
+  check_length(maneuver, maneuvers.size());
+  maneuvers_ = std::move(maneuvers);
+  return *this;
+}
+
+const Flight::Column* Flight::find(std::string_view header) const {
+  const auto found = std::ranges::find(columns_, header, &Column::header);
+  return found == columns_.end() ? nullptr : &*found;
+}
+
+std::string Flight::locate(std::size_t row) const {
+  return from_file() ? fmt::format("{} line {}", name_, row + 2)
+                     : fmt::format("{} row {}", name_, row);
+}
+
+std::string Flight::list_columns() const {
+  std::string list = from_file() ? "the file has: " : "the flight has: ";
+  const std::size_t prefix = list.size();
+  const auto append = [&](std::string_view header) {
+    if (list.size() > prefix) list += ", ";
+    list += header;
+  };
+  for (const Column& column : columns_) append(column.header);
+  if (!maneuvers_.empty()) append(maneuver);
+  if (list.size() == prefix) list += "none";
+  return list;
+}
+
+/// The first column sets the length; the others keep to it.
+void Flight::check_length(std::string_view header, std::size_t length) {
+  if (columns_.empty() && maneuvers_.empty()) {
+    rows_ = length;
+  } else if (length != rows_) {
+    throw Error(fmt::format("{}: column '{}' has {} values, the others have {}", name_, header,
+                            length, rows_));
+  }
+}
+
+Flight read_csv(const std::string& file, const Progress& progress) {
+  CsvReader reader(file, progress);
+  const auto& header = reader.header();
+  std::vector<GrowingColumn> columns(header.size());
+  std::vector<std::string> labels;
+  const auto maneuver_at =
+      static_cast<std::size_t>(std::ranges::find(header, maneuver) - header.begin());
+  while (reader.next()) {
+    const auto cells = reader.cells();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (i == maneuver_at) {
+        labels.emplace_back(cells[i]);
+      } else {
+        columns[i].take(cells[i]);
+      }
+    }
+  }
+  Flight flight(file);
+  flight.sha256_ = reader.sha256();
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (i == maneuver_at) continue;
+    flight.add(header[i], std::move(columns[i].values));
+    flight.columns_.back().first_text = std::move(columns[i].first_text);
+  }
+  if (maneuver_at < header.size()) flight.label(std::move(labels));
+  return flight;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+constexpr std::size_t buffer_size = std::size_t{1} << 16U;
+constexpr mode_t before_umask = 0666;
+constexpr mode_t permissions = 07777;
+
+/// Where a chain of symbolic links ends, whether or not a file is there.
+std::filesystem::path follow_links(std::filesystem::path path) {
+  constexpr int longest_chain = 40;  // Linux's own limit
+  std::error_code ignored;
+  for (int i = 0; i < longest_chain && std::filesystem::is_symlink(path, ignored); ++i) {
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  }
+  return path;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::filesystem::path target)
+    : named_(std::move(target)), target_(follow_links(named_)), stream_(this) {
+  pending_.reserve(buffer_size);
+  struct stat old{};
+  if (::stat(named_.c_str(), &old) != 0) {
+    if (!named_.has_filename()) fail("names no file; end the path with a file's name", 0);
+    open_beside_target();
+    return;
+  }
+  if (S_ISDIR(old.st_mode)) fail("is a folder; name a file in it", 0);
+  if (!S_ISREG(old.st_mode)) {
+    descriptor_ = ::open(named_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail("can't be written", errno);
+    return;
+  }
+  if (::faccessat(AT_FDCWD, target_.c_str(), W_OK, AT_EACCESS) != 0)
+    fail("can't be written", errno);
+  open_beside_target();
+  // The owner can be kept by root alone; for anyone else the file becomes the writer's own.
+  if (::fchown(descriptor_, old.st_uid, old.st_gid) != 0 && errno != EPERM) {
+    fail("can't keep its owner", errno);
+  }
+  if (::fchmod(descriptor_, old.st_mode & permissions) != 0) {
+    fail("can't keep its permissions", errno);
+  }
+}
+
+OutputFile::~OutputFile() { abandon(); }
+
+void OutputFile::open_beside_target() {
+  const auto folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    fail(fmt::format("folder '{}' isn't there; make it first", folder.string()), 0);
+  }
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    hidden_ = folder / fmt::format(".sepcal-{}-{}.part", ::getpid(), attempt);
+    descriptor_ = ::open(hidden_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, before_umask);
+    if (descriptor_ < 0 && errno != EEXIST) {
+      const int error = errno;
+      hidden_.clear();
+      fail("can't be written", error);
+    }
+  }
+}
+
+void OutputFile::write(std::string_view text) {
+  if (sputn(text.data(), static_cast<std::streamsize>(text.size())) !=
+      static_cast<std::streamsize>(text.size())) {
+    fail("writing failed", error_);
+  }
+}
+
+void OutputFile::commit() {
+  if (descriptor_ < 0) throw Error(named_.string() + ": was written already");
+  if (error_ != 0 || !flush()) fail("writing failed", error_);
+  // Where the hidden file reaches the disc only after the rename, a power cut leaves an empty one.
+  if (!hidden_.empty() && ::fsync(descriptor_) != 0) fail("writing failed", errno);
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0) fail("writing failed", errno);
+  if (!hidden_.empty() && ::rename(hidden_.c_str(), target_.c_str()) != 0) {
+    fail("can't be put in place", errno);
+  }
+  hidden_.clear();
+}
+
+std::streamsize OutputFile::xsputn(const char* text, std::streamsize count) {
+  if (error_ != 0 || descriptor_ < 0) return 0;
+  pending_.insert(pending_.end(), text, text + count);
+  return pending_.size() < buffer_size || flush() ? count : 0;
+}
+
+OutputFile::int_type OutputFile::overflow(int_type c) {
+  const char character = traits_type::to_char_type(c);
+  return xsputn(&character, 1) == 1 ? c : traits_type::eof();
+}
+
+/// Hands the pending bytes to the system; false, with error_ set, where it doesn't take them.
+bool OutputFile::flush() {
+  for (std::size_t sent = 0; sent < pending_.size();) {
+    const auto count = ::write(descriptor_, pending_.data() + sent, pending_.size() - sent);
+    if (count < 0 && errno != EINTR) {
+      error_ = errno;
+      return false;
+    }
+    if (count > 0) sent += static_cast<std::size_t>(count);
+  }
+  pending_.clear();
+  return true;
+}
+
+void OutputFile::abandon() noexcept {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (!hidden_.empty()) ::unlink(hidden_.c_str());
+  hidden_.clear();
+}
+
+void OutputFile::fail(const std::string& what, int error) {
+  abandon();
+  throw Error(error == 0 ? fmt::format("{}: {}", named_.string(), what)
+                         : fmt::format("{}: {}: {}", named_.string(), what, std::strerror(error)));
+}
+
+}  // namespace sepcal

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
+                             bool drop_invalid)
+    : flight_(flight), quantities_(quantities), drop_invalid_(drop_invalid), rows_(flight.rows()) {
+  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+  for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
+}
+
+/// An unknown unit counts only where the quantity isn't there in a known one: beside time_s, a
+/// column time_utc is a column like any other.
+void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
+  LoggedQuantity found;
+  const Flight::Column* unknown = nullptr;
+  for (const Flight::Column& column : flight_.columns()) {
+    const std::string_view header = column.header;
+    const std::size_t split = std::min(header.rfind('_'), header.size());
+    if (header.substr(0, split) != quantity.name) continue;
+    const auto suffix = header.substr(std::min(split + 1, header.size()));
+    const Unit* unit = find_unit(quantity.kind, suffix);
+    if (unit == nullptr) {
+      unknown = &column;
+    } else if (found.column != nullptr) {
+      throw Error(fmt::format("{}: {} is there twice, as '{}' and '{}'; rename or delete one",
+                              flight_.name(), quantity.name, found.column->header, header));
+    } else {
+      found = {&column, unit};
+    }
+  }
+  if (found.column != nullptr) {
+    logged_.emplace(quantity.name, found);
+  } else if (unknown != nullptr) {
+    std::string known;
+    for (const Unit& unit : known_units(quantity.kind)) {
+      known += fmt::format("{}{}_{}", known.empty() ? "" : ", ", quantity.name, unit.suffix);
+    }
+    throw Error(fmt::format("{}: column '{}' has no known unit; {} may be logged as: {}",
+                            flight_.name(), unknown->header, quantity.name, known));
+  }
+}
+
+bool RecordBuilder::has(Names names) const {
+  return std::ranges::all_of(names, [&](std::string_view name) { return logged_.contains(name); });
+}
+
+const LoggedQuantity& RecordBuilder::logged(std::string_view name) const {
+  const auto found = logged_.find(name);
+  if (found == logged_.end()) fail_missing(name);
+  return found->second;
+}
+
+void RecordBuilder::fail_missing(std::string_view name) const {
+  const auto* quantity = std::ranges::find(quantities_, name, &ProbeQuantity::name).base();
+  throw Error(fmt::format("{}: column '{}_{}' is missing; {}", flight_.name(), name,
+                          known_units(quantity->kind).front().suffix, flight_.list_columns()));
+}
+
+void RecordBuilder::need(Names names) {
+  consult(names);
+  taken_.insert(taken_.end(), names);
+}
+
+void RecordBuilder::consult(Names names) {
+  for (const std::string_view name : names) logged(name);
+  checked_.insert(checked_.end(), names);
+}
+
+bool RecordBuilder::offer(Names names) {
+  if (!has(names)) return false;
+  for (const std::string_view name : names) {
+    const Flight::Column& column = *logged(name).column;
+    if (const std::size_t* row = find_invalid_row(column)) {
+      note(fmt::format("column '{}' is not used: {}", column.header, describe_cell(column, *row)));
+      return false;
+    }
+  }
+  taken_.insert(taken_.end(), names);
+  return true;
+}
+
+void RecordBuilder::keep_valid() {
+  std::vector<const Flight::Column*> columns;
+  columns.reserve(checked_.size());
+  for (const std::string_view name : checked_) columns.push_back(logged(name).column);
+  const auto find_invalid_column = [&columns](std::size_t row) {
+    return std::ranges::find_if(
+        columns, [row](const auto* column) { return !std::isfinite(column->values[row]); });
+  };
+  keep_or_refuse([&](std::size_t row) { return find_invalid_column(row) == columns.end(); },
+                 "a cell of a needed column is no finite number",
+                 [&](std::size_t row) {
+                   const Flight::Column& column = **find_invalid_column(row);
+                   return fmt::format("column '{}' {}, not a finite number", column.header,
+                                      describe_cell(column, row));
+                 });
+}
+
+void RecordBuilder::check_time() const {
+  const Flight::Column& time = *logged("time").column;
+  for (std::size_t i = 1; i < rows_.size(); ++i) {
+    const double before = time.values[rows_[i - 1]];
+    const double now = time.values[rows_[i]];
+    if (now > before) continue;
+    throw Error(
+        fmt::format("{}: {} {} at {}, after {}; time must increase: sort the rows and "
+                    "delete repeated ones",
+                    flight_.locate(rows_[i]), time.header, now == before ? "repeats" : "runs back",
+                    now, before));
+  }
+}
+
+RecordBuilder::Loss RecordBuilder::keep(const RowTest& test, std::string_view reason) {
+  const auto lost_from = std::ranges::find_if_not(rows_, test);
+  if (lost_from == rows_.end()) return {};
+  Loss loss{0, *lost_from};
+  const auto removed = std::ranges::remove_if(rows_, [&](std::size_t row) { return !test(row); });
+  loss.rows = removed.size();
+  rows_.erase(removed.begin(), removed.end());
+  dropped_.push_back({std::string(reason), loss.rows});
+  return loss;
+}
+
+void RecordBuilder::keep_or_refuse(const RowTest& test, std::string_view reason,
+                                   const std::function<std::string(std::size_t row)>& complaint) {
+  const Loss loss = keep(test, reason);
+  if (loss.rows == 0 || drop_invalid_) return;
+  throw Error(fmt::format("{}: {}; {} drops such rows", flight_.locate(loss.first),
+                          complaint(loss.first), flight_.drop_invalid_option()));
+}
+
+void RecordBuilder::compute(std::string name, RowValue value) {
+  computed_.emplace_back(std::move(name), std::move(value));
+}
+
+void RecordBuilder::note(std::string_view text) {
+  notes_.push_back(fmt::format("{}: {}", flight_.name(), text));
+}
+
+ProbeRecord RecordBuilder::finish() {
+  if (rows_.empty()) {
+    throw Error(fmt::format("{}: no row is left of {}: {}", flight_.name(), flight_.rows(),
+                            dropped_.empty() ? "there was none" : dropped_.back().reason));
+  }
+  take_quantities();
+  take_drivers();
+  std::vector<std::string> labels;
+  if (!flight_.maneuvers().empty()) {
+    labels.reserve(rows_.size());
+    for (const std::size_t row : rows_) labels.push_back(flight_.maneuvers()[row]);
+  }
+  record_.cut(find_segments(record_.column("time"), labels));
+  note_dropped("were dropped");
+  return {std::move(record_), flight_.rows(), std::move(dropped_), std::move(notes_),
+          std::move(rows_)};
+}
+
+ProbeReadings RecordBuilder::finish_readings() {
+  std::vector<bool> valid(flight_.rows(), false);
+  for (const std::size_t row : rows_) valid[row] = true;
+  rows_.resize(flight_.rows());
+  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+  take_quantities();
+  note_dropped("can't be calibrated");
+  return {std::move(record_), std::move(valid), std::move(dropped_), std::move(notes_)};
+}
+
+/// The kept row in which the column first holds no finite number, or nullptr.
+const std::size_t* RecordBuilder::find_invalid_row(const Flight::Column& column) const {
+  const auto found = std::ranges::find_if_not(
+      rows_, [&column](std::size_t row) { return std::isfinite(column.values[row]); });
+  return found == rows_.end() ? nullptr : &*found;
+}
+
+/// "holds 'n/a'", "is empty" or, from arrays, "holds nan".
+std::string RecordBuilder::describe_cell(const Flight::Column& column, std::size_t row) const {
+  if (!column.first_text) return fmt::format("holds {}", column.values[row]);
+  if (column.first_text->row != row) return "holds text";
+  std::string_view text = column.first_text->text;
+  if (text.empty()) return "is empty";
+  std::size_t end = std::min<std::size_t>(text.size(), 40);
+  const auto continues = [&](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+  while (end < text.size() && continues(text[end])) --end;  // never through a UTF-8 character
+  return fmt::format("holds '{}'", text.substr(0, end));
+}
+
+/// Takes a column's kept rows; without a copy where they are all rows and in the unit used inside.
+void RecordBuilder::take(std::string name, const Flight::Column& column, const Unit* unit) {
+  const bool converts = unit != nullptr && !unit->is_inside();
+  if (!converts && rows_.size() == flight_.rows()) {
+    record_.view(std::move(name), column.values, column.owner);
+    return;
+  }
+  std::vector<double> values(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double value = column.values[rows_[i]];
+    values[i] = converts ? unit->convert(value) : value;
+  }
+  record_.add(std::move(name), std::move(values));
+}
+
+void RecordBuilder::take_quantities() {
+  for (const std::string_view name : taken_) {
+    const LoggedQuantity& quantity = logged(name);
+    take(std::string(name), *quantity.column, quantity.unit);
+  }
+  for (const auto& [name, value] : computed_) {
+    std::vector<double> values(rows_.size());
+    std::ranges::transform(rows_, values.begin(), value);
+    record_.add(name, std::move(values));
+  }
+}
+
+void RecordBuilder::take_drivers() {
+  const auto is_quantity = [&](const Flight::Column& column) {
+    return std::ranges::any_of(quantities_, [&](const ProbeQuantity& quantity) {
+      const auto found = logged_.find(quantity.name);
+      return !quantity.is_driver && found != logged_.end() && found->second.column == &column;
+    });
+  };
+  for (const Flight::Column& column : flight_.columns()) {
+    if (is_quantity(column)) continue;
+    if (const std::size_t* row = find_invalid_row(column)) {
+      note(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
+                       flight_.locate(*row), describe_cell(column, *row)));
+    } else if (record_.has(column.header)) {
+      note(
+          fmt::format("column '{}' can't drive an effect: it is named like a quantity of the "
+                      "probe; rename it",
+                      column.header));
+    } else {
+      take(column.header, column, nullptr);
+    }
+  }
+}
+
+void RecordBuilder::note_dropped(std::string_view consequence) {
+  for (const Dropped& dropped : dropped_) {
+    note(fmt::format("{} of {} rows {}: {}", dropped.rows, flight_.rows(), consequence,
+                     dropped.reason));
+  }
+}
+
+}  // namespace sepcal

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+using enum UnitKind;
+using std::numbers::pi;
+
+// Kinds stand together, the unit used inside first.
+constexpr std::array units{
+    Unit{"s", time},
+    Unit{"ms", time, 1, 1000},
+    Unit{"us", time, 1, 1'000'000},
+    Unit{"rad", angle},
+    Unit{"deg", angle, pi, 180},
+    Unit{"radps", rate},
+    Unit{"degps", rate, pi, 180},
+    Unit{"mps", speed},
+    Unit{"kt", speed, 1852, 3600},  // the international nautical mile an hour
+    Unit{"kmh", speed, 1000, 3600},
+    Unit{"pa", pressure},
+    Unit{"hpa", pressure, 100, 1},
+    Unit{"kpa", pressure, 1000, 1},
+    Unit{"psi", pressure, 4.4482216152605, 0.0254 * 0.0254},  // lbf/in^2
+    Unit{"torr", pressure, 101325, 760},
+    Unit{"ut", field},
+    Unit{"nt", field, 1, 1000},
+    Unit{"gauss", field, 100, 1},
+    Unit{"mgauss", field, 1, 10},
+    Unit{"k", temperature},
+    Unit{"degc", temperature, 1, 1, 273.15},
+    Unit{"kgpm3", density},
+};
+
+struct ModelUnit {
+  std::string_view text;
+  UnitKind kind;
+};
+
+constexpr std::array model_units{
+    ModelUnit{"s", time},        ModelUnit{"rad", angle},      ModelUnit{"rad/s", rate},
+    ModelUnit{"m/s", speed},     ModelUnit{"Pa", pressure},    ModelUnit{"uT", field},
+    ModelUnit{"K", temperature}, ModelUnit{"kg/m^3", density},
+};
+
+}  // namespace
+
+std::span<const Unit> known_units(UnitKind kind) {
+  const auto found = std::ranges::equal_range(units, kind, {}, &Unit::kind);
+  return {found.begin(), found.end()};
+}
+
+const Unit* find_unit(UnitKind kind, std::string_view suffix) {
+  for (const Unit& unit : known_units(kind)) {
+    if (unit.suffix == suffix) return &unit;
+  }
+  return nullptr;
+}
+
+std::optional<UnitKind> find_kind(std::string_view model_unit) {
+  const auto* found = std::ranges::find(model_units, model_unit, &ModelUnit::text);
+  return found == model_units.end() ? std::nullopt : std::optional(found->kind);
+}
+
+std::string csv_header(std::string_view quantity, std::string_view model_unit) {
+  const auto kind = find_kind(model_unit);
+  if (!kind) {
+    throw Error(
+        fmt::format("'{}' is in '{}', which no CSV column can be in; the units are s, rad, "
+                    "rad/s, m/s, Pa, uT, K, kg/m^3",
+                    quantity, model_unit));
+  }
+  return fmt::format("{}_{}", quantity, known_units(*kind).front().suffix);
+}
+
+}  // namespace sepcal

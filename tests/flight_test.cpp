@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flight: what was logged, as it was logged.
+#include "sepcal/flight/flight.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "sepcal/error.hpp"
+#include "temporary_folder.hpp"
+
+using doctest::Contains;
+using sepcal::Error;
+using sepcal::Flight;
+using sepcal::read_csv;
+using sepcal::test::TemporaryFolder;
+
+TEST_CASE("a file's columns keep their header, order and unit") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("time_s,maneuver,roll_deg\n0,climb,1.5\n0.5,,-2\n1,\"a, b\",+3\n");
+  const Flight flight = read_csv(file);
+  REQUIRE(flight.columns().size() == 2);
+  CHECK(flight.columns()[0].header == "time_s");
+  CHECK(flight.rows() == 3);
+  const auto* roll = flight.find("roll_deg");
+  REQUIRE(roll != nullptr);
+  CHECK(std::vector(roll->values.begin(), roll->values.end()) == std::vector<double>{1.5, -2, 3});
+  CHECK_FALSE(roll->first_text.has_value());
+  CHECK(flight.find("roll") == nullptr);
+  const auto labels = flight.maneuvers();
+  CHECK(std::vector(labels.begin(), labels.end()) == std::vector<std::string>{"climb", "", "a, b"});
+  CHECK(flight.name() == file);
+  CHECK(flight.locate(0) == file + " line 2");
+  CHECK(flight.list_columns() == "the file has: time_s, roll_deg, maneuver");
+  CHECK(flight.drop_invalid_option() == "--drop-invalid");
+  // sha256sum of the same bytes (GNU coreutils).
+  CHECK(flight.sha256() == "3fa2f19cdb6c3963fcb6079a648b4c720300f1d8e91653beeca5c54c21663dad");
+}
+
+TEST_CASE("text becomes NaN, and the first of it is remembered") {
+  const TemporaryFolder folder;
+  const Flight flight = read_csv(folder.write("a,b,c\n1,x,nan\n,y,2\nn/a,3,inf\n"));
+  const auto* a = flight.find("a");
+  REQUIRE(a->first_text.has_value());
+  CHECK(a->first_text->row == 1);
+  CHECK(a->first_text->text.empty());
+  CHECK(a->values[0] == 1);
+  CHECK(std::isnan(a->values[1]));
+  CHECK(std::isnan(a->values[2]));
+  CHECK(flight.find("b")->first_text->text == "x");
+  CHECK(flight.find("b")->values[2] == 3);
+  CHECK(flight.find("c")->first_text->text == "nan");
+  CHECK(std::isnan(flight.find("c")->values[2]));
+  CHECK(flight.maneuvers().empty());
+}
+
+TEST_CASE("arrays go in with and without a copy") {
+  auto owner = std::make_shared<std::vector<double>>(std::vector<double>{1, 2});
+  Flight flight;
+  flight.add("time_s", {0, 1}).view("roll_rad", *owner, owner).label({"a", "b"});
+  CHECK(flight.find("roll_rad")->values.data() == owner->data());
+  CHECK(owner.use_count() == 2);
+  CHECK(flight.rows() == 2);
+  CHECK(flight.maneuvers()[1] == "b");
+  CHECK(flight.sha256().empty());
+  CHECK(flight.locate(0) == "flight row 0");
+  CHECK(flight.list_columns() == "the flight has: time_s, roll_rad, maneuver");
+  CHECK(flight.drop_invalid_option() == "drop_invalid");
+  CHECK(Flight("log").locate(3) == "log row 3");
+  CHECK(Flight().list_columns() == "the flight has: none");
+}
+
+TEST_CASE("arrays that don't fit are refused") {
+  Flight flight("log");
+  flight.add("time_s", {0, 1});
+  CHECK_THROWS_WITH_AS(flight.add("time_s", {0, 1}),
+                       "log: column 'time_s' is there twice; rename or delete one", Error);
+  CHECK_THROWS_WITH_AS(flight.add("a", {0}), "log: column 'a' has 1 values, the others have 2",
+                       Error);
+  CHECK_THROWS_WITH_AS(flight.add("", {0, 1}), Contains("has no name"), Error);
+  CHECK_THROWS_WITH_AS(flight.add("maneuver", {0, 1}), Contains("is for labels"), Error);
+  CHECK_THROWS_WITH_AS(flight.label({"a"}), Contains("'maneuver' has 1 values"), Error);
+  flight.label({"a", "b"});
+  CHECK_THROWS_WITH_AS(flight.label({"a", "b"}), Contains("'maneuver' is there twice"), Error);
+  Flight labels_first;
+  labels_first.label({"a", "b"});
+  CHECK_THROWS_WITH_AS(labels_first.add("a", {1}), Contains("the others have 2"), Error);
+}
+
+TEST_CASE("a file's faults come through, and progress ends at one") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH_AS(read_csv(folder.write("a,b\n1\n")), Contains("line 2: 1 cells"), Error);
+  double last = 0;
+  read_csv(folder.write("a\n1\n"), [&](double fraction) { last = fraction; });
+  CHECK(last == 1);
+}

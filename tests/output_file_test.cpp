@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An output appears whole or not at all.
+#include "sepcal/flight/output_file.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "sepcal/error.hpp"
+#include "temporary_folder.hpp"
+
+using doctest::Contains;
+using sepcal::Error;
+using sepcal::OutputFile;
+using sepcal::test::read_bytes;
+using sepcal::test::TemporaryFolder;
+
+namespace {
+
+std::size_t count_files(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+mode_t mode_of(const std::filesystem::path& file) {
+  struct stat status{};
+  REQUIRE(::stat(file.c_str(), &status) == 0);
+  return status.st_mode & 07777U;
+}
+
+/// A disc with room for `bytes` more in a file: beyond, writing fails and raises SIGXFSZ.
+class SmallDisc {
+ public:
+  explicit SmallDisc(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit small{bytes, old_.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+  }
+  SmallDisc(const SmallDisc&) = delete;
+  SmallDisc& operator=(const SmallDisc&) = delete;
+  ~SmallDisc() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit old_{};
+};
+
+/// An unprivileged user for root, so that permissions count.
+class Unprivileged {
+ public:
+  Unprivileged() : root_(::geteuid() == 0) {
+    if (root_) REQUIRE(::seteuid(65534) == 0);
+  }
+  Unprivileged(const Unprivileged&) = delete;
+  Unprivileged& operator=(const Unprivileged&) = delete;
+  ~Unprivileged() {
+    if (root_ && ::seteuid(0) != 0) std::abort();
+  }
+
+ private:
+  bool root_;
+};
+
+}  // namespace
+
+TEST_CASE("nothing is there before commit, all of it after") {
+  const TemporaryFolder folder;
+  const auto target = folder.path() / "base.json";
+  OutputFile output(target);
+  output.write("one ");
+  output.stream() << "two " << 3;
+  CHECK_FALSE(std::filesystem::exists(target));
+  output.commit();
+  CHECK(read_bytes(target) == "one two 3");
+  CHECK(count_files(folder.path()) == 1);
+  CHECK_THROWS_WITH_AS(output.commit(), Contains("was written already"), Error);
+}
+
+TEST_CASE("without commit the old file stays and nothing is left behind") {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.write("old", "base.json");
+  {
+    OutputFile output(target);
+    output.write(std::string(1'000'000, 'x'));
+    CHECK(count_files(folder.path()) == 2);
+  }
+  CHECK(read_bytes(target) == "old");
+  CHECK(count_files(folder.path()) == 1);
+}
+
+TEST_CASE("large output arrives whole") {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 100'000; ++i) text += std::to_string(i) + '\n';
+  OutputFile output(folder.path() / "all.csv");
+  for (std::size_t at = 0; at < text.size(); at += 1000) {
+    output.stream() << text.substr(at, 999);
+    if (at + 999 < text.size()) output.stream().put(text[at + 999]);
+  }
+  output.commit();
+  CHECK(read_bytes(folder.path() / "all.csv") == text);
+}
+
+TEST_CASE("two outputs at a time don't meet") {
+  const TemporaryFolder folder;
+  OutputFile first(folder.path() / "a");
+  OutputFile second(folder.path() / "b");
+  first.write("first");
+  second.write("second");
+  second.commit();
+  first.commit();
+  CHECK(read_bytes(folder.path() / "a") == "first");
+  CHECK(read_bytes(folder.path() / "b") == "second");
+}
+
+TEST_CASE("targets that can't be") {
+  const TemporaryFolder folder;
+  const auto nowhere = folder.path() / "missing" / "base.json";
+  CHECK_THROWS_WITH_AS(OutputFile{nowhere},
+                       (nowhere.string() + ": folder '" + nowhere.parent_path().string() +
+                        "' isn't there; make it first")
+                           .c_str(),
+                       Error);
+  CHECK_THROWS_WITH_AS(OutputFile{folder.path()}, Contains("is a folder"), Error);
+  CHECK_THROWS_WITH_AS(OutputFile{folder.path() / ""}, Contains("is a folder"), Error);
+  CHECK_THROWS_WITH_AS(OutputFile{""}, Contains("names no file"), Error);
+  const auto file = folder.write("x", "file");
+  CHECK_THROWS_WITH_AS(OutputFile{file + "/base.json"}, Contains("isn't there"), Error);
+  CHECK(count_files(folder.path()) == 1);
+}
+
+TEST_CASE("permissions are respected") {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.write("old", "base.json");
+  ::chmod(target.c_str(), 0444);
+  ::chmod(folder.path().c_str(), 0777);
+  {
+    const Unprivileged user;
+    CHECK_THROWS_WITH_AS(OutputFile{target}, Contains("can't be written: Permission denied"),
+                         Error);
+  }
+  ::chmod(folder.path().c_str(), 0555);
+  {
+    const Unprivileged user;
+    CHECK_THROWS_WITH_AS(OutputFile{folder.path() / "new.json"},
+                         Contains("can't be written: Permission denied"), Error);
+  }
+  ::chmod(folder.path().c_str(), 0755);
+  CHECK(read_bytes(target) == "old");
+  CHECK(count_files(folder.path()) == 1);
+}
+
+TEST_CASE("a full disc leaves the old file as it was") {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.write("old", "base.json");
+  const std::string text(1'000'000, 'x');
+  const SmallDisc disc(100'000);
+  SUBCASE("writing") {
+    OutputFile output(target);
+    CHECK_THROWS_WITH_AS(output.write(text), Contains("writing failed: File too large"), Error);
+  }
+  SUBCASE("streaming") {
+    OutputFile output(target);
+    output.stream() << text << "more";
+    CHECK_FALSE(output.stream().good());
+    CHECK_THROWS_WITH_AS(output.commit(), Contains("writing failed: File too large"), Error);
+  }
+  SUBCASE("the last bytes, at commit") {
+    OutputFile output(target);
+    output.write(text.substr(0, 70'000));
+    output.write(text.substr(0, 40'000));
+    CHECK_THROWS_WITH_AS(output.commit(), Contains("writing failed: File too large"), Error);
+  }
+  CHECK(read_bytes(target) == "old");
+  CHECK(count_files(folder.path()) == 1);
+}
+
+TEST_CASE("a device is written directly and stays a device") {
+  OutputFile full("/dev/full");
+  full.write("x");
+  CHECK_THROWS_WITH_AS(full.commit(), "/dev/full: writing failed: No space left on device", Error);
+  OutputFile null("/dev/null");
+  null.write("x");
+  null.commit();
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("an old file keeps its permissions, a new one has the umask's") {
+  const TemporaryFolder folder;
+  const std::filesystem::path old = folder.write("old", "old.json");
+  ::chmod(old.c_str(), 0640);
+  const mode_t before = ::umask(0027);
+  for (const auto& target : {old, folder.path() / "new.json"}) {
+    OutputFile output(target);
+    output.write("x");
+    output.commit();
+  }
+  CHECK(mode_of(folder.path() / "new.json") == 0640);
+  ::chmod(old.c_str(), 0604);
+  OutputFile output(old);
+  output.write("y");
+  output.commit();
+  ::umask(before);
+  CHECK(mode_of(old) == 0604);
+  CHECK(read_bytes(old) == "y");
+}
+
+TEST_CASE("symbolic links are followed, also to a file that isn't there yet") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "results");
+  folder.write("old", "results/one.json");
+  std::filesystem::create_symlink("results/one.json", folder.path() / "one");
+  std::filesystem::create_symlink("results/two.json", folder.path() / "two");
+  for (const char* link : {"one", "two"}) {
+    OutputFile output(folder.path() / link);
+    output.write(link);
+    output.commit();
+    CHECK(std::filesystem::is_symlink(folder.path() / link));
+    CHECK(read_bytes(folder.path() / "results" / (std::string(link) + ".json")) == link);
+  }
+}
+
+TEST_CASE("a name without a folder goes to the current one") {
+  const TemporaryFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  OutputFile output("base.json");
+  output.write("x");
+  output.commit();
+  std::filesystem::current_path(before);
+  CHECK(read_bytes(folder.path() / "base.json") == "x");
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Units: factors from their definitions, and values in the inside unit bit for bit.
+#include "sepcal/flight/units.hpp"
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "sepcal/error.hpp"
+
+using doctest::Approx;
+using doctest::Contains;
+using sepcal::find_unit;
+using sepcal::UnitKind;
+
+namespace {
+
+double convert(UnitKind kind, const char* suffix, double value) {
+  const auto* unit = find_unit(kind, suffix);
+  REQUIRE(unit != nullptr);
+  return unit->convert(value);
+}
+
+const std::vector<UnitKind> kinds{UnitKind::time,        UnitKind::angle,    UnitKind::rate,
+                                  UnitKind::speed,       UnitKind::pressure, UnitKind::field,
+                                  UnitKind::temperature, UnitKind::density};
+
+std::string list_suffixes(UnitKind kind) {
+  std::string list;
+  for (const auto& unit : sepcal::known_units(kind)) list += std::string(unit.suffix) + " ";
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("each kind has its units, the inside one first") {
+  CHECK(list_suffixes(UnitKind::time) == "s ms us ");
+  CHECK(list_suffixes(UnitKind::angle) == "rad deg ");
+  CHECK(list_suffixes(UnitKind::rate) == "radps degps ");
+  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ");
+  CHECK(list_suffixes(UnitKind::pressure) == "pa hpa kpa psi torr ");
+  CHECK(list_suffixes(UnitKind::field) == "ut nt gauss mgauss ");
+  CHECK(list_suffixes(UnitKind::temperature) == "k degc ");
+  CHECK(list_suffixes(UnitKind::density) == "kgpm3 ");
+  for (const UnitKind kind : kinds) CHECK(sepcal::known_units(kind).front().is_inside());
+}
+
+TEST_CASE("conversions") {
+  const auto exactly = [](double value) { return Approx(value).epsilon(1e-15); };
+  CHECK(convert(UnitKind::time, "ms", 1500) == 1.5);
+  CHECK(convert(UnitKind::time, "us", 1'500'000) == 1.5);
+  CHECK(convert(UnitKind::angle, "deg", 180) == 3.141592653589793);
+  CHECK(convert(UnitKind::rate, "degps", -90) == exactly(-1.5707963267948966));
+  CHECK(convert(UnitKind::speed, "kt", 3600) == 1852);
+  CHECK(convert(UnitKind::speed, "kmh", 36) == 10);
+  CHECK(convert(UnitKind::pressure, "hpa", 1013.25) == 101325);
+  CHECK(convert(UnitKind::pressure, "kpa", 101.325) == exactly(101325));
+  // NIST SP 811, B.8: 1 psi = 6.894 757 293 168 36 E+03 Pa; 1 torr = 101325/760 Pa.
+  CHECK(convert(UnitKind::pressure, "psi", 1) == exactly(6894.75729316836));
+  CHECK(convert(UnitKind::pressure, "torr", 760) == 101325);
+  CHECK(convert(UnitKind::field, "nt", 50'000) == 50);
+  CHECK(convert(UnitKind::field, "gauss", 0.5) == 50);
+  CHECK(convert(UnitKind::field, "mgauss", 500) == 50);
+  CHECK(convert(UnitKind::temperature, "degc", 15) == 288.15);
+  CHECK(convert(UnitKind::temperature, "degc", -273.15) == 0);
+}
+
+TEST_CASE("a value in the inside unit passes bit for bit") {
+  for (const UnitKind kind : kinds) {
+    for (const double value : {-0.0, 0.1, 1.7e308, 5e-324}) {
+      const double converted = sepcal::known_units(kind).front().convert(value);
+      CHECK(std::bit_cast<std::uint64_t>(converted) == std::bit_cast<std::uint64_t>(value));
+    }
+  }
+}
+
+TEST_CASE("unknown units are not found") {
+  CHECK(find_unit(UnitKind::angle, "grad") == nullptr);
+  CHECK(find_unit(UnitKind::angle, "") == nullptr);
+  CHECK(find_unit(UnitKind::angle, "RAD") == nullptr);
+  CHECK(find_unit(UnitKind::speed, "rad") == nullptr);
+  CHECK_FALSE(sepcal::find_kind("ft").has_value());
+}
+
+TEST_CASE("a model's unit and a CSV suffix") {
+  CHECK(sepcal::csv_header("time", "s") == "time_s");
+  CHECK(sepcal::csv_header("roll", "rad") == "roll_rad");
+  CHECK(sepcal::csv_header("p", "rad/s") == "p_radps");
+  CHECK(sepcal::csv_header("vn", "m/s") == "vn_mps");
+  CHECK(sepcal::csv_header("pt", "Pa") == "pt_pa");
+  CHECK(sepcal::csv_header("mx", "uT") == "mx_ut");
+  CHECK(sepcal::csv_header("temp", "K") == "temp_k");
+  CHECK(sepcal::csv_header("rho", "kg/m^3") == "rho_kgpm3");
+  CHECK(sepcal::find_kind("m/s") == UnitKind::speed);
+  CHECK_THROWS_WITH_AS(sepcal::csv_header("lambda", "1"), Contains("'lambda' is in '1'"),
+                       sepcal::Error);
+}
