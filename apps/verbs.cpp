@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+#include "progress.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/apply.hpp"
+#include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/flight/output_file.hpp"
+#include "tables.hpp"
+
+namespace sepcal::app {
+namespace {
+
+/// Prints a result and makes sure that it arrived: a full disc behind a redirection is an error.
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw Error("standard output can't be written; is the disc full?");
+  }
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
+int exit_code(FitStatus status) {
+  switch (status) {
+    case FitStatus::converged:
+      return 0;
+    case FitStatus::not_identifiable:
+      return 4;
+    default:
+      return 5;
+  }
+}
+
+std::string read_text(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) throw Error(file + " can't be read");
+  return text.str();
+}
+
+}  // namespace
+
+Flight Verbs::read_flight() const {
+  ProgressLine line;
+  return read_csv(arguments_.flight,
+                  [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
+}
+
+int Verbs::fit(CalibrationOptions options) const {
+  std::optional<OutputFile> output;
+  if (!arguments_.output.empty()) output.emplace(arguments_.output);
+  const Flight flight = read_flight();
+  ProgressLine line;
+  options.fit.progress = [&](std::string_view task, double fraction) { line.show(task, fraction); };
+  const Calibration calibration = calibrate(instrument_.probe(flight), flight, options);
+  line.clear();
+  print_notes(calibration.notes);
+  const std::string json = to_json(calibration);
+  if (output) output->write(json);
+  print(arguments_.json ? json : calibration_table(calibration));
+  if (output) {
+    output->commit();
+    if (!arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  }
+  return exit_code(calibration.fit.status);
+}
+
+int Verbs::compare() const {
+  const Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
+  const Comparison comparison = sepcal::compare(calibration, read_flight());
+  print_notes(comparison.notes);
+  print(arguments_.json ? to_json(comparison) : comparison_table(comparison));
+  return 0;
+}
+
+int Verbs::apply() const {
+  const Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
+  ProgressLine line;
+  const Applied applied =
+      apply_to_file(calibration, arguments_.flight, arguments_.output,
+                    [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
+  line.clear();
+  print_notes(applied.notes);
+  print(arguments_.json ? applied_json(applied, calibration, arguments_.output)
+                        : applied_text(applied, calibration, arguments_.output));
+  return 0;
+}
+
+int Verbs::simulate(const SimulationOptions& options) const {
+  OutputFile output(arguments_.output);
+  const bool given = !arguments_.truth.empty() && std::filesystem::exists(arguments_.truth);
+  std::optional<OutputFile> truth;
+  if (!arguments_.truth.empty() && !given) truth.emplace(arguments_.truth);
+  const Simulation simulation =
+      instrument_.simulate(given ? read_text(arguments_.truth) : "", arguments_.truth, options);
+  write_csv(simulation.flight, output.stream());
+  output.commit();
+  if (truth) {
+    truth->write(simulation.truth);
+    truth->commit();
+  }
+  if (arguments_.json) {
+    print(simulation.truth);
+  } else {
+    print(fmt::format("wrote {}: {} rows\n", arguments_.output, simulation.flight.rows()));
+    if (!arguments_.truth.empty()) {
+      print(
+          fmt::format("{} {}: the true parameters\n", given ? "read" : "wrote", arguments_.truth));
+    }
+  }
+  return 0;
+}
+
+int Verbs::effects() const {
+  for (const std::string& model : instrument_.models()) {
+    print(arguments_.json ? effects_json(model) : effects_table(model));
+  }
+  return 0;
+}
+
+}  // namespace sepcal::app

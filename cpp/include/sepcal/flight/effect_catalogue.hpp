@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The physical effects that a probe's model may lack: what each adds, what drives it, in which
+// unit.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace sepcal {
+
+struct CataloguedEffect {
+  std::string_view name;      // as `port[driver]`, or a name of its own
+  std::string_view equation;  // what joins the model
+  std::string_view drivers;   // the columns it needs
+  std::string_view unit;      // of its coefficient, per unit of the driver where it has one
+};
+
+/// The catalogue of "five-hole" or "magnetometer"; empty for another name.
+std::span<const CataloguedEffect> effect_catalogue(std::string_view model);
+
+}  // namespace sepcal

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A probe is a model together with what it takes to bring a flight to it and back: the columns it
+// needs, what must be known of the instrument, and the correction that a calibration makes.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/flight/flight.hpp"
+#include "sepcal/flight/probe_columns.hpp"
+
+namespace sepcal {
+
+/// Columns that applying a calibration adds: header and a value a row (NaN where there is none).
+struct CorrectedColumn {
+  std::string header;
+  std::vector<double> values;
+};
+
+class Probe {
+ public:
+  Probe() = default;
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
+  virtual ~Probe() = default;
+
+  /// "five-hole", "magnetometer": the JSON's `model`.
+  virtual std::string_view name() const = 0;
+
+  /// The command that calibrates it: "sepcal-pitot", "sepcal-mag".
+  virtual std::string_view app() const = 0;
+
+  virtual const BlockModel& model() const = 0;
+
+  /// What must be known of the instrument, by the names of the options, e.g. k_alpha {4.5},
+  /// lever_arm {0.35, 0, -0.02}. make_probe() takes them back.
+  virtual std::map<std::string, std::vector<double>> settings() const = 0;
+
+  /// What a fit takes of a flight; throws Error as prepare_five_hole() and its like do.
+  virtual ProbeRecord prepare(const Flight& flight, bool drop_invalid) const = 0;
+
+  /// What applying a calibration takes of a flight.
+  virtual ProbeReadings read(const Flight& flight, bool drop_invalid) const = 0;
+
+  /// Headers of the columns that correct() gives.
+  virtual std::vector<std::string> corrected_headers() const = 0;
+
+  /// The corrected readings; `values` are the model's parameters, linear then nonlinear. Throws
+  /// Error where the calibration can't be inverted.
+  virtual std::vector<CorrectedColumn> correct(const ProbeReadings& readings,
+                                               const Eigen::VectorXd& values) const = 0;
+};
+
+/// K_alpha, K_beta [1/rad] and the lever arm from the velocity's reference point [m, body axes].
+/// Throws Error where a sensitivity is not positive.
+std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
+                                             const std::array<double, 3>& lever_arm);
+
+/// The Earth's field, north, east, down [uT], or nothing where the flight logs it.
+std::unique_ptr<const Probe> magnetometer_probe(const std::optional<std::array<double, 3>>& field);
+
+/// The probe of that name with settings as Probe::settings() gives them. Throws Error for a name
+/// that is unknown, a setting that is missing or of the wrong length.
+std::unique_ptr<const Probe> make_probe(std::string_view name,
+                                        const std::map<std::string, std::vector<double>>& settings);
+
+}  // namespace sepcal

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// BASE.json, written and read. Every key of interface.md's "Results" is here and nowhere else.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "json_values.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/calibration.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> estimated_names(const Fit& fit) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : fit.parameters) {
+    if (!parameter.fixed) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+std::vector<std::string> sampled_names(const Fit& fit) {
+  std::vector<std::string> names;
+  for (std::size_t k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
+    if (!fit.parameters[k].fixed) names.push_back(fit.parameters[k].name);
+  }
+  return names;
+}
+
+std::vector<Index> estimated_indices(const Fit& fit) {
+  std::vector<Index> indices;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    if (!fit.parameters[k].fixed) indices.push_back(static_cast<Index>(k));
+  }
+  return indices;
+}
+
+// --- options
+
+Json write_options(const Calibration& calibration) {
+  const FitOptions& fit = calibration.options.fit;
+  Json options = Json::object();
+  for (const auto& [name, values] : calibration.probe->settings()) {
+    options[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+  }
+  options["effects"] = Json::array();
+  options["stage_one"] = fit.stage_one_segments;
+  options["stage_two"] = fit.stage_two_segments;
+  options["bounds"] = Json::object();
+  for (const auto& [name, bounds] : fit.bounds) {
+    options["bounds"][name] = {number(bounds.lower), number(bounds.upper)};
+  }
+  options["fix"] = fit.fixed;
+  options["free"] = calibration.options.free;
+  options["noise"] = fit.noise;
+  options["samples"] = fit.samples;
+  options["sampling"] = fit.sampling == Sampling::uniform ? "uniform" : "low_discrepancy";
+  options["priors"] = Json::object();
+  for (const auto& [name, prior] : fit.priors) {
+    options["priors"][name] = {prior.mean, prior.standard_deviation};
+  }
+  options["seed"] = fit.seed;
+  options["descents"] = fit.descents;
+  options["second_stage"] = to_string(fit.second_stage);
+  options["noise_tolerance"] = fit.noise_tolerance;
+  options["noise_iterations"] = fit.noise_iterations;
+  options["iterations"] = fit.iterations;
+  options["threads"] = fit.threads;
+  options["drop_invalid"] = calibration.options.drop_invalid;
+  return options;
+}
+
+SecondStage second_stage_of(const std::string& name) {
+  for (const SecondStage method :
+       {SecondStage::automatic, SecondStage::joint, SecondStage::projected}) {
+    if (to_string(method) == name) return method;
+  }
+  throw Error("second_stage '" + name + "' is unknown");
+}
+
+CalibrationOptions read_options(const Json& options) {
+  CalibrationOptions result;
+  FitOptions& fit = result.fit;
+  fit.stage_one_segments = options.at("stage_one").get<std::string>();
+  fit.stage_two_segments = options.at("stage_two").get<std::string>();
+  for (const auto& [name, bounds] : options.at("bounds").items()) {
+    fit.bounds[name] = {number_or(bounds.at(0), -infinity), number_or(bounds.at(1), infinity)};
+  }
+  fit.fixed = options.at("fix").get<std::map<std::string, double>>();
+  result.free = options.at("free").get<std::vector<std::string>>();
+  fit.noise = options.at("noise").get<std::map<std::string, double>>();
+  fit.samples = options.at("samples").get<int>();
+  fit.sampling = options.at("sampling").get<std::string>() == "uniform" ? Sampling::uniform
+                                                                        : Sampling::low_discrepancy;
+  for (const auto& [name, prior] : options.at("priors").items()) {
+    fit.priors[name] = {prior.at(0).get<double>(), prior.at(1).get<double>()};
+  }
+  fit.seed = options.at("seed").get<std::uint64_t>();
+  fit.descents = options.at("descents").get<int>();
+  fit.second_stage = second_stage_of(options.at("second_stage").get<std::string>());
+  fit.noise_tolerance = options.at("noise_tolerance").get<double>();
+  fit.noise_iterations = options.at("noise_iterations").get<int>();
+  fit.iterations = options.at("iterations").get<int>();
+  fit.threads = options.at("threads").get<int>();
+  result.drop_invalid = options.at("drop_invalid").get<bool>();
+  return result;
+}
+
+std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options) {
+  std::map<std::string, std::vector<double>> settings;
+  for (const char* name : {"k_alpha", "k_beta", "lever_arm", "field"}) {
+    if (!options.contains(name)) continue;
+    const Json& value = options.at(name);
+    settings[name] = value.is_array() ? value.get<std::vector<double>>()
+                                      : std::vector<double>{value.get<double>()};
+  }
+  return make_probe(model, settings);
+}
+
+// --- parameters
+
+Json write_parameters(const Fit& fit) {
+  Json parameters = Json::object();
+  for (const Parameter& parameter : fit.parameters) {
+    parameters[parameter.name] = {{"value", number(parameter.value)},
+                                  {"standard_error", number(parameter.standard_error)},
+                                  {"standard_error_white", number(parameter.standard_error_white)},
+                                  {"unit", parameter.unit},
+                                  {"lower", number(parameter.lower)},
+                                  {"upper", number(parameter.upper)},
+                                  {"at_bound", parameter.at_bound}};
+  }
+  return parameters;
+}
+
+void read_parameters(const Json& parameters, const Calibration& calibration, Fit& fit) {
+  for (const Variable& variable : calibration.probe->model().tables().parameters()) {
+    const Json& entry = parameters.at(variable.name);
+    fit.parameters.push_back(
+        {.name = variable.name,
+         .unit = entry.at("unit").get<std::string>(),
+         .value = entry.at("value").get<double>(),
+         .standard_error = number_or(entry.at("standard_error"), undefined),
+         .standard_error_white = number_or(entry.at("standard_error_white"), undefined),
+         .lower = number_or(entry.at("lower"), -infinity),
+         .upper = number_or(entry.at("upper"), infinity),
+         .at_bound = entry.at("at_bound").get<bool>(),
+         .fixed = calibration.options.fit.fixed.contains(variable.name)});
+  }
+  fit.n_1 = calibration.probe->model().tables().n_1();
+}
+
+Json write_combinations(const std::vector<Combination>& combinations) {
+  Json list = Json::array();
+  for (const Combination& combination : combinations) {
+    list.push_back({{"combination", combination.text},
+                    {"parameters", combination.parameters},
+                    {"standard_error", number(combination.standard_error)}});
+  }
+  return list;
+}
+
+std::vector<Combination> read_combinations(const Json& list) {
+  std::vector<Combination> combinations;
+  for (const Json& entry : list) {
+    combinations.push_back({entry.at("parameters").get<std::vector<std::string>>(),
+                            entry.at("combination").get<std::string>(),
+                            number_or(entry.at("standard_error"), infinity)});
+  }
+  return combinations;
+}
+
+/// Correlation holds all that the covariance does beyond the standard errors.
+void read_correlation(const Json& correlation, Fit& fit) {
+  const auto n = static_cast<Index>(fit.parameters.size());
+  fit.correlation = Eigen::MatrixXd::Constant(n, n, undefined);
+  const std::vector<Index> indices = estimated_indices(fit);
+  fit.correlation(indices, indices) = matrix_of(correlation.at("matrix"));
+  VectorXd errors(n);
+  for (Index k = 0; k < n; ++k) {
+    errors[k] = fit.parameters[static_cast<std::size_t>(k)].standard_error_white;
+  }
+  fit.covariance = errors.asDiagonal() * fit.correlation * errors.asDiagonal();
+}
+
+// --- stages
+
+Json write_stage_one(const Calibration& calibration) {
+  const Fit& fit = calibration.fit;
+  const std::vector<std::string> names = sampled_names(fit);
+  Json minima = Json::array();
+  for (const LocalMinimum& minimum : fit.stage_one.minima) {
+    minima.push_back({{"xi2", point(names, minimum.xi2)}, {"trace_r", number(minimum.trace_r)}});
+  }
+  return {{"samples", calibration.options.fit.samples},
+          {"best", point(names, fit.stage_one.best)},
+          {"trace_r", number(fit.stage_one.best_trace_r)},
+          {"minima", minima},
+          {"unique_minimum", fit.stage_one.unique_minimum},
+          {"flat_directions", fit.stage_one.flat_directions}};
+}
+
+StageOne read_stage_one(const Json& object, const Fit& fit) {
+  const std::vector<std::string> names = sampled_names(fit);
+  StageOne stage_one;
+  stage_one.best = point_of(names, object.at("best"));
+  stage_one.best_trace_r = number_or(object.at("trace_r"), undefined);
+  for (const Json& minimum : object.at("minima")) {
+    stage_one.minima.push_back(
+        {point_of(names, minimum.at("xi2")), number_or(minimum.at("trace_r"), undefined)});
+  }
+  stage_one.unique_minimum = object.at("unique_minimum").get<bool>();
+  stage_one.flat_directions = object.at("flat_directions").get<std::vector<std::string>>();
+  return stage_one;
+}
+
+FitStatus status_of(const std::string& name) {
+  for (const FitStatus status :
+       {FitStatus::converged, FitStatus::not_converged, FitStatus::not_identifiable}) {
+    if (to_string(status) == name) return status;
+  }
+  throw Error("status '" + name + "' is unknown");
+}
+
+Calibration read(const Json& root) {
+  Calibration calibration;
+  calibration.probe = read_probe(root.at("model").get<std::string>(), root.at("options"));
+  calibration.options = read_options(root.at("options"));
+  const Json& inputs = root.at("inputs");
+  calibration.flight = {
+      inputs.at("file").get<std::string>(), inputs.at("sha256").get<std::string>(),
+      inputs.at("rows").get<std::size_t>(), inputs.at("rows_used").get<std::size_t>()};
+  Fit& fit = calibration.fit;
+  fit.status = status_of(root.at("status").get<std::string>());
+  fit.message = root.at("message").get<std::string>();
+  read_parameters(root.at("parameters"), calibration, fit);
+  read_correlation(root.at("correlation"), fit);
+  fit.identifiability.unobservable = read_combinations(root.at("unobservable"));
+  fit.identifiability.weak = read_combinations(root.at("weak"));
+  fit.cost = number_or(root.at("cost"), undefined);
+  fit.rmse = values_by_name(root.at("rmse"));
+  fit.noise = values_by_name(root.at("noise"));
+  fit.iterations = root.at("iterations").get<int>();
+  fit.rows = calibration.flight.rows_used;
+  fit.stage_one = read_stage_one(root.at("stage_one"), fit);
+  fit.method = second_stage_of(root.at("stage_two").at("method").get<std::string>());
+  fit.noise_iterations = root.at("stage_two").at("r_iterations").get<int>();
+  return calibration;
+}
+
+}  // namespace
+
+std::string to_json(const Calibration& calibration) {
+  const Fit& fit = calibration.fit;
+  const std::vector<Index> estimated = estimated_indices(fit);
+  Json root;
+  root["schema_version"] = schema_version;
+  root["model"] = calibration.probe->name();
+  root["inputs"] = {{"file", calibration.flight.file},
+                    {"sha256", calibration.flight.sha256},
+                    {"rows", calibration.flight.rows},
+                    {"rows_used", calibration.flight.rows_used}};
+  root["options"] = write_options(calibration);
+  root["status"] = to_string(fit.status);
+  root["message"] = fit.message;
+  root["parameters"] = write_parameters(fit);
+  root["derived"] = Json::object();
+  root["correlation"] = {{"names", estimated_names(fit)},
+                         {"matrix", matrix(fit.correlation(estimated, estimated))}};
+  root["unobservable"] = write_combinations(fit.identifiability.unobservable);
+  root["weak"] = write_combinations(fit.identifiability.weak);
+  root["cost"] = number(fit.cost);
+  root["rmse"] = by_name(fit.rmse);
+  root["noise"] = by_name(fit.noise);
+  root["iterations"] = fit.iterations;
+  root["stage_one"] = write_stage_one(calibration);
+  root["stage_two"] = {{"method", to_string(fit.method)}, {"r_iterations", fit.noise_iterations}};
+  root["history"] = Json::array();
+  return text_of(root);
+}
+
+Calibration parse_calibration(std::string_view json, const std::string& source,
+                              std::string_view app) {
+  const Json root = Json::parse(json, nullptr, false);
+  if (root.is_discarded() || !root.is_object() || !root.contains("schema_version") ||
+      !root.contains("model") || !root["model"].is_string()) {
+    throw Error(source + " is not a calibration; give the JSON that fit wrote with -o");
+  }
+  if (root["schema_version"] != schema_version) {
+    throw Error(
+        fmt::format("{} has schema version {}, this sepcal reads version {}; fit the flight again",
+                    source, root["schema_version"].dump(), schema_version));
+  }
+  try {
+    Calibration calibration = read(root);
+    if (!app.empty() && calibration.probe->app() != app) {
+      throw Error(fmt::format("it calibrates a {}; use {}", calibration.probe->name(),
+                              calibration.probe->app()));
+    }
+    return calibration;
+  } catch (const Json::exception&) {
+    throw Error(source +
+                " is damaged: a calibration's entries are missing or of another kind; fit "
+                "the flight again");
+  } catch (const Error& error) {
+    throw Error(source + ": " + error.what());
+  }
+}
+
+Calibration read_calibration(const std::string& file, std::string_view app) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    throw Error(file + ": can't be read as a calibration; give the JSON that fit wrote with -o");
+  }
+  return parse_calibration(text.str(), file, app);
+}
+
+}  // namespace sepcal

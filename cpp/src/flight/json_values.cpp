@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "json_values.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace sepcal {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+double number_or(const Json& value, double missing) {
+  return value.is_null() ? missing : value.get<double>();
+}
+
+Json by_name(const std::vector<OutputValue>& values) {
+  Json object = Json::object();
+  for (const OutputValue& value : values) object[value.name] = number(value.value);
+  return object;
+}
+
+std::vector<OutputValue> values_by_name(const Json& object) {
+  std::vector<OutputValue> values;
+  for (const auto& [name, value] : object.items()) {
+    values.push_back({name, number_or(value, std::numeric_limits<double>::quiet_NaN())});
+  }
+  return values;
+}
+
+Json matrix(const MatrixXd& values) {
+  Json rows = Json::array();
+  for (Index i = 0; i < values.rows(); ++i) {
+    Json row = Json::array();
+    for (Index k = 0; k < values.cols(); ++k) row.push_back(number(values(i, k)));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+MatrixXd matrix_of(const Json& rows) {
+  const auto n = static_cast<Index>(rows.size());
+  MatrixXd values(n, n);
+  for (Index i = 0; i < n; ++i) {
+    for (Index k = 0; k < n; ++k) {
+      values(i, k) = number_or(rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(k)),
+                               std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return values;
+}
+
+Json point(const std::vector<std::string>& names, const VectorXd& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    object[names[i]] = number(values[static_cast<Index>(i)]);
+  }
+  return object;
+}
+
+VectorXd point_of(const std::vector<std::string>& names, const Json& object) {
+  VectorXd values(static_cast<Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    values[static_cast<Index>(i)] = object.at(names[i]).get<double>();
+  }
+  return values;
+}
+
+std::string text_of(const Json& value) {
+  return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sepcal
