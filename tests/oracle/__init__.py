@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Independent references in NumPy and SciPy. They share no code with sepcal and never import it."""
