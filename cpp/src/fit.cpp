@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "plausibility.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/error.hpp"
 #include "stages.hpp"
@@ -17,29 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
-/// What an uncertainty is held against: half the width of the bounds, or rms(z) / rms(column) for a
-/// parameter without two finite bounds; columns and z unwhitened, over all outputs.
-VectorXd plausible_scale(const std::vector<Variable>& parameters,
-                         const std::vector<TriangularFactor>& factors,
-                         const Measurements& measurements) {
-  double z_square = 0.0;
-  for (std::size_t j = 0; j < factors.size(); ++j) {
-    z_square += measurements.output_square(static_cast<int>(j));
-  }
-  VectorXd scale(static_cast<Index>(parameters.size()));
-  for (Index k = 0; k < scale.size(); ++k) {
-    const Variable& parameter = parameters[static_cast<std::size_t>(k)];
-    scale[k] = 0.5 * (parameter.upper - parameter.lower);
-    if (std::isfinite(scale[k])) continue;
-    double column_square = 0.0;
-    for (const TriangularFactor& factor : factors) {
-      column_square += factor.matrix().col(k).squaredNorm();
-    }
-    scale[k] = std::sqrt(z_square / column_square);
-  }
-  return scale;
-}
 
 std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
   std::vector<OutputValue> result;

@@ -20,6 +20,7 @@ using Eigen::VectorXd;
 constexpr double share_to_take_part = 0.1;         // of the largest, in units of the scale
 constexpr double share_to_be_weak_together = 0.3;  // of the largest, in columns of unit length
 constexpr double share_to_be_written = 0.01;       // of the largest, in the combination's own
+constexpr double singular_floor = 1e-12;           // of the largest singular value: as good as zero
 constexpr double weak_singular_value = 1.0 / 50.0;
 
 /// Those with at least `share` of the largest, largest first.
@@ -62,6 +63,11 @@ std::string number(double value) {
   return text;
 }
 
+/// A length of one where none is known: nothing measures that parameter, whatever its length.
+VectorXd usable(const VectorXd& scale) {
+  return scale.unaryExpr([](double x) { return std::isfinite(x) && x > 0 ? x : 1.0; });
+}
+
 /// A direction xi + t d along which the residuals stay as they are.
 struct Valley {
   VectorXd direction;  // in the parameters' own units
@@ -69,18 +75,46 @@ struct Valley {
   Combination combination;
 };
 
-std::string sentence(const Valley& valley, bool shares_parameters,
-                     const std::vector<std::string>& names) {
-  const auto& involved = valley.combination.parameters;
+/// Valleys that have a parameter in common, joined into groups, in order.
+std::vector<std::vector<Valley>> group(const std::vector<Valley>& valleys) {
+  const auto share = [](const Valley& a, const Valley& b) {
+    return std::ranges::find_first_of(a.parameters, b.parameters) != a.parameters.end();
+  };
+  std::vector<std::vector<Valley>> groups;
+  for (const Valley& valley : valleys) {
+    std::vector<Valley> joined{valley};
+    std::erase_if(groups, [&](std::vector<Valley>& members) {
+      if (std::ranges::none_of(members,
+                               [&](const Valley& other) { return share(valley, other); })) {
+        return false;
+      }
+      joined.insert(joined.begin(), members.begin(), members.end());
+      return true;
+    });
+    groups.push_back(std::move(joined));
+  }
+  return groups;
+}
+
+std::string sentence(const std::vector<Valley>& valleys, const std::vector<std::string>& names) {
+  std::vector<std::string> involved;
+  std::vector<std::string> open;
+  for (const Valley& valley : valleys) {
+    for (const std::string& name : valley.combination.parameters) {
+      if (std::ranges::find(involved, name) == involved.end()) involved.push_back(name);
+    }
+    open.push_back(valley.combination.text);
+  }
   if (involved.size() == 1) return involved.front() + " can't be determined from this record";
   std::string text = spoken_list(involved) + " can't be told apart: ";
-  if (involved.size() == 2 && !shares_parameters) {
+  if (valleys.size() == 1 && involved.size() == 2) {
+    const Valley& valley = valleys.front();
     VectorXd determined = VectorXd::Zero(valley.direction.size());
     determined[valley.parameters[0]] = valley.direction[valley.parameters[1]];
     determined[valley.parameters[1]] = -valley.direction[valley.parameters[0]];
     return text + "only " + combination_text(determined, names) + " is determined";
   }
-  return text + valley.combination.text + " is not determined";
+  return text + spoken_list(open) + (open.size() == 1 ? " is" : " are") + " not determined";
 }
 
 }  // namespace
@@ -137,13 +171,12 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
   if (n == 0) return result;
 
   // Unobservable: in coordinates where one means "as far as is plausible".
-  const VectorXd s = scale.unaryExpr([](double x) { return std::isfinite(x) && x > 0 ? x : 1.0; });
+  const VectorXd s = usable(scale);
   const Eigen::JacobiSVD<MatrixXd> svd(R * s.asDiagonal(), Eigen::ComputeFullV);
   const auto& singular = svd.singularValues();
-  const double epsilon = static_cast<double>(n) * std::numeric_limits<double>::epsilon();
   std::vector<Index> open;
   for (Index i = 0; i < n; ++i) {
-    const bool zero = !(singular[i] > epsilon * singular[0]);
+    const bool zero = !(singular[i] > singular_floor * singular[0]);
     if (!zero) ++result.rank;
     if (zero || noise_factor > singular[i]) open.push_back(i);
   }
@@ -162,19 +195,14 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
     Valley valley{s.cwiseProduct(v),
                   involved,
                   {names_of(involved, names), combination_text(functional, names), infinity}};
-    if (length > epsilon * singular[0]) {
+    if (length > singular_floor * singular[0]) {
       valley.combination.standard_error = noise_factor / length / functional.norm();
     }
     valleys.push_back(std::move(valley));
   }
-  for (const Valley& valley : valleys) {
-    const bool shares = std::ranges::any_of(valleys, [&](const Valley& other) {
-      return &other != &valley && std::ranges::any_of(other.parameters, [&](Index k) {
-        return std::ranges::find(valley.parameters, k) != valley.parameters.end();
-      });
-    });
-    result.sentences.push_back(sentence(valley, shares, names));
-    result.unobservable.push_back(valley.combination);
+  for (const auto& members : group(valleys)) {
+    result.sentences.push_back(sentence(members, names));
+    for (const Valley& valley : members) result.unobservable.push_back(valley.combination);
   }
 
   // Weak: in columns of unit length, what is left of them.
@@ -185,7 +213,7 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
   for (Index i = 0; i < n; ++i) {
     const double value = unit.singularValues()[i];
     if (value > weak_singular_value * unit.singularValues()[0]) continue;
-    if (!(value > epsilon * unit.singularValues()[0])) continue;
+    if (!(value > singular_floor * unit.singularValues()[0])) continue;
     const VectorXd v = unit.matrixV().col(i);
     const VectorXd shift = v.cwiseQuotient(lengths) * (noise_factor / value);
     if (shift.cwiseQuotient(s).norm() > 1.0) continue;  // listed as unobservable already
@@ -201,6 +229,12 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
     result.weak.push_back(std::move(weak));
   }
   return result;
+}
+
+bool leaves_open(const MatrixXd& R, const VectorXd& scale) {
+  if (R.cols() == 0) return false;
+  const Eigen::JacobiSVD<MatrixXd> svd(R * usable(scale).asDiagonal());
+  return svd.singularValues().minCoeff() < 1.0;
 }
 
 std::string Identifiability::message() const {

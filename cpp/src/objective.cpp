@@ -12,14 +12,14 @@ using Eigen::VectorXd;
 double JointObjective::square(const VectorXd& x) {
   const Index n_1 = sweep_.tables().n_1();
   const VectorXd sums = sweep_.squared_residuals(x.head(n_1), x.tail(x.size() - n_1));
-  return sums.dot(weights_.cwiseAbs2());
+  return sums.dot(weights_.cwiseAbs2()) + (prior_ ? prior_->square(x) : 0.0);
 }
 
 bool JointObjective::linearise(const VectorXd& x, VectorXd& residual, MatrixXd& jacobian) {
   const Index n = parameters();
   const Index n_1 = sweep_.tables().n_1();
-  const TriangularFactor factor =
-      combine(sweep_.tangent_factors(x.head(n_1), x.tail(n - n_1)), weights_);
+  TriangularFactor factor = combine(sweep_.tangent_factors(x.head(n_1), x.tail(n - n_1)), weights_);
+  if (prior_) prior_->join(factor, x);
   if (!factor.all_finite()) return false;
   residual = factor.matrix().col(n);
   jacobian = -factor.matrix().leftCols(n);

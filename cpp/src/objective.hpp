@@ -6,8 +6,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "plausibility.hpp"
 #include "sweep.hpp"
 
 namespace sepcal {
@@ -37,14 +40,18 @@ class Objective {
   Eigen::VectorXd weights_;
 };
 
-/// x = (xi1, xi2), Eq. 20's left-hand side.
+/// x = (xi1, xi2), Eq. 20's left-hand side, and what is known of x beforehand, if anything.
 class JointObjective final : public Objective {
  public:
-  using Objective::Objective;
+  JointObjective(const Sweep& sweep, Eigen::VectorXd weights, std::optional<Prior> prior = {})
+      : Objective(sweep, std::move(weights)), prior_(std::move(prior)) {}
   int parameters() const override { return residuals() - 1; }
   double square(const Eigen::VectorXd& x) override;
   bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                  Eigen::MatrixXd& jacobian) override;
+
+ private:
+  std::optional<Prior> prior_;
 };
 
 /// x = xi2, Eq. 20's right-hand side, with Kaufman's Jacobian: the D-D block of the factor of

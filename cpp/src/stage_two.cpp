@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "objective.hpp"
+#include "plausibility.hpp"
+#include "sepcal/identifiability.hpp"
 #include "stages.hpp"
 
 namespace sepcal {
@@ -64,11 +67,26 @@ class Alternation {
   Alternation(const Problem& problem, const Sweep& sweep, StageTwo& result)
       : problem_(problem), sweep_(sweep), box_(problem.box()), result_(result) {}
 
+  /// Where the record leaves a combination of parameters open at the start, nothing in it would
+  /// keep them from running away: a loose prior does, and the fit is joint.
+  void hold_what_is_open() {
+    result_.factors = sweep_.tangent_factors(xi1(), xi2());
+    const TriangularFactor factor = combine(result_.factors, weights());
+    if (!factor.all_finite()) return;
+    const Index n = result_.x.size();
+    const std::vector<Variable>& parameters = problem_.parameters();
+    const VectorXd scale = plausible_scale(parameters, result_.factors, sweep_.measurements());
+    if (!leaves_open(factor.matrix().topLeftCorner(n, n), scale)) return;
+    prior_ = loose_prior(parameters, scale);
+    result_.method = SecondStage::joint;
+    result_.x.head(sweep_.tables().n_1()) = box_.clip(prior_->mean).head(sweep_.tables().n_1());
+  }
+
   /// Minimises J over the parameters at the present R, from result.x.
   void descend() {
     if (result_.method == SecondStage::projected && descend_projected()) return;
     result_.method = SecondStage::joint;
-    JointObjective objective(sweep_, weights());
+    JointObjective objective(sweep_, weights(), prior_);
     const Descent descent =
         minimise(objective, result_.x, box_, {.iterations = problem_.options().iterations});
     result_.iterations += descent.iterations;
@@ -82,8 +100,9 @@ class Alternation {
     double before = infinity;
     for (int i = 0; i < refinements; ++i) {
       result_.factors = sweep_.tangent_factors(xi1(), xi2());
-      const TriangularFactor factor = combine(result_.factors, weights());
+      TriangularFactor factor = combine(result_.factors, weights());
       if (!factor.all_finite()) return false;
+      if (prior_) prior_->join(factor, result_.x);
       const Index n = result_.x.size();
       const MatrixXd R = factor.matrix().leftCols(n);
       const VectorXd q = factor.matrix().col(n);
@@ -153,6 +172,7 @@ class Alternation {
   const Sweep& sweep_;
   Box box_;
   StageTwo& result_;
+  std::optional<Prior> prior_;
   std::string solver_message_;
 };
 
@@ -180,6 +200,7 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
       result.noise[j] = std::max(result.noise[j], alternation.noise_floor(j));
     }
   }
+  alternation.hold_what_is_open();
   alternation.descend();
   bool refined = alternation.refine();
   bool settled = noise_given;

@@ -26,6 +26,10 @@ double length_of(const Eigen::Ref<const VectorXd>& x) {
   return safe ? std::sqrt(square) : x.stableNorm();
 }
 
+// Singular values below this part of the largest are rounding: A's columns carry a few digits of
+// error.
+constexpr double singular_floor = 1e-12;
+
 struct Scaled {
   MatrixXd matrix;   // columns of unit length, zero columns left as they are
   VectorXd lengths;  // what they were divided by; 1 for a zero column
@@ -133,7 +137,7 @@ TriangularSolution solve_triangular(const MatrixXd& R, const VectorXd& q) {
   }
   const Scaled scaled = scale_columns(R);
   Eigen::JacobiSVD<MatrixXd> svd(scaled.matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(default_tolerance(n));
+  svd.setThreshold(singular_floor);
   solution.rank = static_cast<int>(svd.rank());
   solution.x = svd.solve(q).cwiseQuotient(scaled.lengths);
   solution.unseen = svd.matrixU().rightCols(n - solution.rank);

@@ -38,6 +38,9 @@ struct Identifiability {
 Identifiability identify(const Eigen::MatrixXd& R, const std::vector<std::string>& names,
                          const Eigen::VectorXd& scale, double noise_factor);
 
+/// Whether identify() would list anything as unobservable (noise_factor 1), without the words.
+bool leaves_open(const Eigen::MatrixXd& R, const Eigen::VectorXd& scale);
+
 /// "0.8 w_n - 0.6 lambda_va": coefficients below a hundredth of the largest are left out.
 std::string combination_text(const Eigen::VectorXd& coefficients,
                              const std::vector<std::string>& names);

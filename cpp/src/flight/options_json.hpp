@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The `options` of a calibration's JSON: every option of its fit, so that later verbs need no more.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "json_values.hpp"
+#include "sepcal/flight/calibration.hpp"
+
+namespace sepcal {
+
+/// The probe's settings and the fit's options, one object.
+Json write_options(const Calibration& calibration);
+
+/// Throw Error or Json::exception for an object that write_options() did not write.
+CalibrationOptions read_options(const Json& options);
+std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options);
+
+/// "auto", "joint", "projected". Throws Error for anything else.
+SecondStage second_stage_of(const std::string& name);
+
+}  // namespace sepcal
