@@ -42,7 +42,10 @@ double noticeable_rise(double square, double measurements, double parameters) {
 }
 
 /// Whether no point between a and b lies noticeably higher than both.
-bool joined(Objective& objective, const Descent& a, const Descent& b, double rise) {
+bool joined(Objective& objective, const Descent& a, const Descent& b, const VectorXd& widths,
+            double rise) {
+  constexpr double same_point = 1e-6;  // of the widths: not worth a pass over the record
+  if ((a.x - b.x).cwiseQuotient(widths).norm() < same_point) return true;
   // Denser towards the ends: a minimum at the edge of the box may lie behind a near, low rise.
   for (const double t : {0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98}) {
     const double between = objective.square(a.x + t * (b.x - a.x));
@@ -86,10 +89,10 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
     Descent descent = minimise(objective, result.samples.col(basin.lowest), problem.nonlinear_box(),
                                within_the_basin);
     if (!std::isfinite(descent.square)) continue;
-    const double n = static_cast<double>(problem.parameters().size());
+    const auto n = static_cast<double>(problem.parameters().size());
     const auto same = std::ranges::find_if(minima, [&](const Descent& other) {
       const double lower = std::min(descent.square, other.square);
-      return joined(objective, descent, other, noticeable_rise(lower, measurements, n));
+      return joined(objective, descent, other, widths, noticeable_rise(lower, measurements, n));
     });
     if (same == minima.end()) {
       minima.push_back(std::move(descent));

@@ -13,7 +13,9 @@
 
 namespace sepcal {
 
-/// Consecutive samples of one segment of a record. A block never crosses a segment's edge.
+/// Consecutive samples of one segment of a record. A block never crosses a segment's edge. An input
+/// that is derived from others (a rate of change, a delayed channel) is a column like any other:
+/// the record computes it, within a segment, before a model sees it.
 struct Block {
   std::span<const double* const> inputs;  // n_u columns, each `rows` values long
   std::size_t rows = 0;

@@ -30,7 +30,7 @@ std::vector<std::string> estimated_names(const Fit& fit) {
 
 std::vector<std::string> sampled_names(const Fit& fit) {
   std::vector<std::string> names;
-  for (std::size_t k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
+  for (auto k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
     if (!fit.parameters[k].fixed) names.push_back(fit.parameters[k].name);
   }
   return names;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arrays.hpp"
+
+#include <numeric>
+#include <string>
+
+namespace sepcal::bindings {
+namespace {
+
+py::capsule keep(std::shared_ptr<const void> owner) {
+  auto kept = std::make_unique<std::shared_ptr<const void>>(std::move(owner));
+  py::capsule capsule(
+      kept.get(), [](void* pointer) { delete static_cast<std::shared_ptr<const void>*>(pointer); });
+  kept.release();
+  return capsule;
+}
+
+}  // namespace
+
+ArrayView view_array(const Array& array) {
+  if (array.ndim() != 1) throw py::type_error("a column is an array of one dimension");
+  const std::shared_ptr<const void> owner(array.inc_ref().ptr(), [](const void* object) {
+    const py::gil_scoped_acquire gil;
+    py::handle(static_cast<PyObject*>(const_cast<void*>(object))).dec_ref();
+  });
+  return {{array.data(), static_cast<std::size_t>(array.size())}, owner};
+}
+
+Array read_only_array(std::span<const double> values, std::shared_ptr<const void> owner) {
+  Array array(static_cast<py::ssize_t>(values.size()), values.data(), keep(std::move(owner)));
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+Array adopt(std::vector<double> values) {
+  const auto owner = std::make_shared<const std::vector<double>>(std::move(values));
+  return {static_cast<py::ssize_t>(owner->size()), owner->data(), keep(owner)};
+}
+
+Record record_of(const py::dict& columns, const std::vector<std::string>& labels) {
+  Record record;
+  for (const auto& [name, values] : columns) {
+    auto [span, owner] = view_array(values.cast<Array>());
+    record.view(name.cast<std::string>(), span, std::move(owner));
+  }
+  if (record.has("time")) {
+    record.cut(find_segments(record.column("time"), labels));
+  } else if (!labels.empty()) {
+    std::vector<double> rows(record.length());  // stand in for time: no gap anywhere
+    std::iota(rows.begin(), rows.end(), 0.0);
+    record.cut(find_segments(rows, labels));
+  }
+  return record;
+}
+
+}  // namespace sepcal::bindings

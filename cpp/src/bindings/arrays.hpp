@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Memory across the border, never copied: NumPy's seen from C++, and C++'s seen from NumPy.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sepcal/record.hpp"
+
+namespace sepcal::bindings {
+
+namespace py = pybind11;
+
+/// One column: a C-contiguous array of float64, (N,).
+using Array = py::array_t<double, py::array::c_style>;
+
+struct ArrayView {
+  std::span<const double> values;
+  std::shared_ptr<const void> owner;  // a reference to the array; takes the GIL to give it back
+};
+
+ArrayView view_array(const Array& array);
+
+/// A read-only array (N,) over memory that `owner` keeps.
+Array read_only_array(std::span<const double> values, std::shared_ptr<const void> owner);
+
+/// An array (N,) that has taken the values over.
+Array adopt(std::vector<double> values);
+
+/// The columns {name: array} seen as a record. Where there are a column `time` [s] or `labels` (N or
+/// none), it is cut at gaps and at changes of label. Throws Error as Record::view() and
+/// find_segments() do.
+Record record_of(const py::dict& columns, const std::vector<std::string>& labels);
+
+}  // namespace sepcal::bindings

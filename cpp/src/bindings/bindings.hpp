@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of sepcal._core, a file each, and the types that they share. Results cross over as plain
+// dictionaries and arrays, which python/sepcal/ turns into its documented classes.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/fit.hpp"
+#include "sepcal/flight/probe.hpp"
+
+namespace sepcal::bindings {
+
+namespace py = pybind11;
+
+/// A model, and the probe that brings flights to it where there is one.
+struct Model {
+  explicit Model(std::shared_ptr<const BlockModel> model) : block(std::move(model)) {}
+  explicit Model(const std::shared_ptr<const Probe>& given)
+      : block(given, &given->model()), probe(given) {}
+
+  std::shared_ptr<const BlockModel> block;
+  std::shared_ptr<const Probe> probe;  // may be empty
+};
+
+/// Keys as the fields of sepcal.Fit; its parts are dictionaries in turn.
+py::dict describe(const Fit& fit);
+
+void define_options(py::module_& module);
+void define_engine(py::module_& module);
+void define_flight(py::module_& module);
+void define_simulation(py::module_& module);
+
+}  // namespace sepcal::bindings

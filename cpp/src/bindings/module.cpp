@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sepcal._core: the engine and its flights for the Python front, which documents it.
+#include "bindings.hpp"
+#include "minimise.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+/// sepcal.Error, with the text of the C++ one.
+void define_error(py::module_& module) {
+  const auto& error = py::register_exception<sepcal::Error>(module, "Error", PyExc_ValueError);
+  error.attr("__module__") = "sepcal";
+  error.attr("__doc__") =
+      "Bad input or misuse: one line that names the culprit and the way out.\n\n"
+      "Non-convergence is no error: it is the `status` of a fit.";
+}
+
+}  // namespace
+}  // namespace sepcal::bindings
+
+PYBIND11_MODULE(_core, module) {
+  using namespace sepcal::bindings;
+  sepcal::silence_solver_log();
+  module.attr("__version__") = SEPCAL_VERSION;
+  define_error(module);
+  define_options(module);
+  define_engine(module);
+  define_flight(module);
+  define_simulation(module);
+}

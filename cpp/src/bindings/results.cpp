@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A fit as plain dictionaries and arrays.
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <string>
+
+#include "bindings.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+using namespace py::literals;
+
+py::list describe(const std::vector<Parameter>& parameters) {
+  py::list list;
+  for (const Parameter& parameter : parameters) {
+    list.append(py::dict("name"_a = parameter.name, "value"_a = parameter.value,
+                         "standard_error"_a = parameter.standard_error,
+                         "standard_error_white"_a = parameter.standard_error_white,
+                         "unit"_a = parameter.unit, "lower"_a = parameter.lower,
+                         "upper"_a = parameter.upper, "at_bound"_a = parameter.at_bound,
+                         "fixed"_a = parameter.fixed));
+  }
+  return list;
+}
+
+py::list describe(const std::vector<Combination>& combinations) {
+  py::list list;
+  for (const Combination& combination : combinations) {
+    list.append(py::dict("text"_a = combination.text,
+                         "parameters"_a = py::tuple(py::cast(combination.parameters)),
+                         "standard_error"_a = combination.standard_error));
+  }
+  return list;
+}
+
+py::dict describe(const std::vector<OutputValue>& values) {
+  py::dict dictionary;
+  for (const OutputValue& value : values) dictionary[py::str(value.name)] = value.value;
+  return dictionary;
+}
+
+/// {name: value} of the parameters that stage one samples: nonlinear and not fixed.
+py::dict describe_point(const Fit& fit, const Eigen::VectorXd& xi2) {
+  py::dict point;
+  Eigen::Index k = 0;
+  for (auto at = fit.parameters.begin() + fit.n_1; at != fit.parameters.end(); ++at) {
+    if (!at->fixed && k < xi2.size()) point[py::str(at->name)] = xi2[k++];
+  }
+  return point;
+}
+
+py::dict describe_stage_one(const Fit& fit) {
+  const StageOne& stage_one = fit.stage_one;
+  py::list minima;
+  for (const LocalMinimum& minimum : stage_one.minima) {
+    minima.append(py::dict("xi2"_a = describe_point(fit, minimum.xi2),
+                           "trace_r"_a = minimum.trace_r));
+  }
+  return py::dict("samples"_a = Eigen::MatrixXd(stage_one.samples.transpose()),
+                  "trace_r"_a = stage_one.trace_r,
+                  "best"_a = describe_point(fit, stage_one.best),
+                  "best_trace_r"_a = stage_one.best_trace_r, "minima"_a = minima,
+                  "unique_minimum"_a = stage_one.unique_minimum,
+                  "flat_directions"_a = stage_one.flat_directions);
+}
+
+}  // namespace
+
+py::dict describe(const Fit& fit) {
+  return py::dict("status"_a = to_string(fit.status), "message"_a = fit.message,
+                  "parameters"_a = describe(fit.parameters), "covariance"_a = fit.covariance,
+                  "correlation"_a = fit.correlation, "noise"_a = describe(fit.noise),
+                  "rmse"_a = describe(fit.rmse), "cost"_a = fit.cost, "rows"_a = fit.rows,
+                  "unobservable"_a = describe(fit.identifiability.unobservable),
+                  "weak"_a = describe(fit.identifiability.weak),
+                  "stage_one"_a = describe_stage_one(fit), "method"_a = to_string(fit.method),
+                  "iterations"_a = fit.iterations, "noise_iterations"_a = fit.noise_iterations);
+}
+
+}  // namespace sepcal::bindings
