@@ -29,10 +29,11 @@ VectorXd column(std::initializer_list<double> values) { return row(values).trans
 }  // namespace
 
 TEST_CASE("two valleys on a line are as deep as the pass between them is high") {
-  // Neighbours on a line: values 3 1 2 5 4 0 6; the pass between the minima 1 and 0 stands at 5.
-  const auto basins = find_basins(row({0, 1, 2, 3, 4, 5, 6}), column({3, 1, 2, 5, 4, 0, 6}));
+  // Two neighbours on either side; the pass between the minima 1 and 0 is two samples wide, at 5.
+  const auto basins =
+      find_basins(row({0, 1, 2, 3, 4, 5, 6, 7}), column({3, 1, 2, 5, 5.5, 4, 0, 6}));
   REQUIRE(basins.size() == 2);
-  CHECK(basins[0].lowest == 5);
+  CHECK(basins[0].lowest == 6);
   CHECK(basins[0].depth == infinity_depth);
   CHECK(basins[1].lowest == 1);
   CHECK(basins[1].depth == 4.0);
@@ -45,11 +46,13 @@ TEST_CASE("a slope has one basin, wherever its samples stand") {
 }
 
 TEST_CASE("samples where the function is not defined join nothing") {
+  const double undefined = infinity_depth;
   const auto basins = find_basins(
-      row({0, 1, 2, 3, 4, 5}), column({1, 0, infinity_depth, infinity_depth, infinity_depth, 2}));
+      row({0, 1, 2, 10, 11, 12, 13, 14, 20, 21, 22}),
+      column({1, 0, 3, undefined, undefined, undefined, undefined, undefined, 4, 2, 5}));
   REQUIRE(basins.size() == 2);
   CHECK(basins[0].lowest == 1);
-  CHECK(basins[1].lowest == 5);
+  CHECK(basins[1].lowest == 9);
 }
 
 TEST_CASE("a single sample is a basin") {
@@ -78,4 +81,5 @@ TEST_CASE("scatter within a narrow valley makes shallow basins, a second minimum
   CHECK(std::min(x_of(0), x_of(1)) == doctest::Approx(0.0).epsilon(0.25));
   CHECK(std::max(x_of(0), x_of(1)) == doctest::Approx(1.0).epsilon(0.25));
   CHECK(basins[1].depth > 0.8);
+  for (std::size_t i = 2; i < basins.size(); ++i) CHECK(basins[i].depth < basins[1].depth);
 }

@@ -14,10 +14,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Indices = std::vector<Index>;
 
-/// The 2 n nearest neighbours of every point, made mutual.
+/// The 4 n nearest neighbours of every point, made mutual: fewer leave a narrow valley in pieces.
 std::vector<Indices> neighbours_of(const MatrixXd& points) {
   const Index count = points.cols();
-  const Index near = std::min<Index>(2 * points.rows(), count - 1);
+  const Index near = std::min<Index>(4 * points.rows(), count - 1);
   std::vector<Indices> neighbours(static_cast<std::size_t>(count));
   Indices order(static_cast<std::size_t>(count));
   for (Index s = 0; s < count; ++s) {

@@ -83,7 +83,8 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
   const DescentOptions within_the_basin{.iterations = 50, .first_radius = 0.1};
   const MatrixXd scaled = widths.cwiseInverse().asDiagonal() * result.samples;
   std::vector<Descent> minima;
-  std::vector<Basin> basins = find_basins(scaled, result.trace_r);
+  std::vector<Basin> basins =
+      find_basins(scaled, result.trace_r.array().log().matrix());  // depth as a ratio
   basins.resize(std::min(basins.size(), static_cast<std::size_t>(problem.options().descents)));
   for (const Basin& basin : basins) {
     Descent descent = minimise(objective, result.samples.col(basin.lowest), problem.nonlinear_box(),
