@@ -24,6 +24,9 @@ using Eigen::VectorXd;
 /// where rounding keeps the step from getting there.
 constexpr double smallest_step = 1e-12;  // times 1 + |r|, the whitened residual's norm
 constexpr double passable_step = 1e-3;
+/// The same in plausible lengths: without noise, standard errors are as small as rounding.
+constexpr double smallest_relative_step = 1e-14;
+constexpr double passable_relative_step = 1e-9;
 constexpr int refinements = 60;
 
 /// Sum of squared residuals by output, off the factors of [A D r].
@@ -65,7 +68,11 @@ VectorXd gauss_newton_step(const MatrixXd& R, const VectorXd& q, const std::vect
 class Alternation {
  public:
   Alternation(const Problem& problem, const Sweep& sweep, StageTwo& result)
-      : problem_(problem), sweep_(sweep), box_(problem.box()), result_(result) {}
+      : problem_(problem),
+        sweep_(sweep),
+        box_(problem.box()),
+        scale_(VectorXd::Ones(box_.lower.size())),
+        result_(result) {}
 
   /// Where the record leaves a combination of parameters open at the start, nothing in it would
   /// keep them from running away: a loose prior does, and the fit is joint.
@@ -75,9 +82,9 @@ class Alternation {
     if (!factor.all_finite()) return;
     const Index n = result_.x.size();
     const std::vector<Variable>& parameters = problem_.parameters();
-    const VectorXd scale = plausible_scale(parameters, result_.factors, sweep_.measurements());
-    if (!leaves_open(factor.matrix().topLeftCorner(n, n), scale)) return;
-    prior_ = loose_prior(parameters, scale);
+    scale_ = plausible_scale(parameters, result_.factors, sweep_.measurements());
+    if (!leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) return;
+    prior_ = loose_prior(parameters, scale_);
     result_.method = SecondStage::joint;
     result_.x.head(sweep_.tables().n_1()) = box_.clip(prior_->mean).head(sweep_.tables().n_1());
   }
@@ -98,6 +105,7 @@ class Alternation {
   /// minimum of the present J, or the model is not finite there.
   bool refine() {
     double before = infinity;
+    bool passable = false;
     for (int i = 0; i < refinements; ++i) {
       result_.factors = sweep_.tangent_factors(xi1(), xi2());
       TriangularFactor factor = combine(result_.factors, weights());
@@ -110,14 +118,18 @@ class Alternation {
       const VectorXd step = gauss_newton_step(R, q, result_.at_bound);
       const VectorXd next = box_.clip(result_.x + step);
       const double size = (R * (next - result_.x)).norm();
-      if (size <= smallest_step * (1.0 + q.norm())) return true;
-      if (size >= before) return size <= passable_step;
+      const double relative = (next - result_.x).cwiseQuotient(scale_).cwiseAbs().maxCoeff();
+      passable = size <= passable_step || relative <= passable_relative_step;
+      if (size <= smallest_step * (1.0 + q.norm()) || relative <= smallest_relative_step) {
+        return true;
+      }
+      if (size >= before) return passable;
       before = size;
       result_.x = next;
       ++result_.iterations;
     }
     result_.factors = sweep_.tangent_factors(xi1(), xi2());
-    return before <= passable_step;
+    return passable;
   }
 
   /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
@@ -171,6 +183,7 @@ class Alternation {
   const Problem& problem_;
   const Sweep& sweep_;
   Box box_;
+  VectorXd scale_;  // plausible length of each parameter
   StageTwo& result_;
   std::optional<Prior> prior_;
   std::string solver_message_;

@@ -33,7 +33,7 @@ Array read_only_array(std::span<const double> values, std::shared_ptr<const void
 }
 
 Array adopt(std::vector<double> values) {
-  const auto owner = std::make_shared<const std::vector<double>>(std::move(values));
+  const auto owner = std::make_shared<std::vector<double>>(std::move(values));
   return {static_cast<py::ssize_t>(owner->size()), owner->data(), keep(owner)};
 }
 

@@ -61,8 +61,6 @@ void define_engine(py::module_& module) {
                              [](const Model& self) { return describe(self.block->tables().linear); })
       .def_property_readonly(
           "nonlinear", [](const Model& self) { return describe(self.block->tables().nonlinear); })
-      .def_property_readonly("takes_flights",
-                             [](const Model& self) { return self.probe != nullptr; })
       .def("evaluate", &evaluate);
 
   using Vector = std::array<double, 3>;
