@@ -2,12 +2,12 @@
 // Stage two: the constrained maximum-likelihood fit (Sun & Gebre-Egziabher, Step 5, Eqs. 6, 20,
 // 24-27). Ceres descends; Gauss-Newton steps then take the last digits that a comparison of costs
 // can't see; R and the parameters alternate until Eq. 26 holds.
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "bounded_least_squares.hpp"
 #include "objective.hpp"
 #include "plausibility.hpp"
 #include "sepcal/identifiability.hpp"
@@ -39,32 +39,6 @@ VectorXd squares(const std::vector<TriangularFactor>& factors) {
   return sums;
 }
 
-/// Bounds that hold x back: it lies on one and the cost falls beyond it.
-std::vector<bool> active_bounds(const VectorXd& x, const VectorXd& gradient, const Box& box) {
-  std::vector<bool> active;
-  for (Index k = 0; k < x.size(); ++k) {
-    active.push_back((x[k] <= box.lower[k] && gradient[k] >= 0) ||
-                     (x[k] >= box.upper[k] && gradient[k] <= 0));
-  }
-  return active;
-}
-
-/// The Gauss-Newton step over the parameters that no bound holds; of least norm where singular.
-VectorXd gauss_newton_step(const MatrixXd& R, const VectorXd& q, const std::vector<bool>& active) {
-  std::vector<Index> free;
-  for (std::size_t k = 0; k < active.size(); ++k) {
-    if (!active[k]) free.push_back(static_cast<Index>(k));
-  }
-  VectorXd step = VectorXd::Zero(R.cols());
-  if (free.empty()) return step;
-  MatrixXd columns = R(Eigen::all, free);
-  VectorXd lengths = columns.colwise().norm();
-  for (double& length : lengths) length = length > 0 ? length : 1.0;
-  columns *= lengths.cwiseInverse().asDiagonal();
-  step(free) = columns.completeOrthogonalDecomposition().solve(q).cwiseQuotient(lengths);
-  return step;
-}
-
 class Alternation {
  public:
   Alternation(const Problem& problem, const Sweep& sweep, StageTwo& result)
@@ -77,8 +51,7 @@ class Alternation {
   /// Where the record leaves a combination of parameters open at the start, nothing in it would
   /// keep them from running away: a loose prior does, and the fit is joint.
   void hold_what_is_open() {
-    result_.factors = sweep_.tangent_factors(xi1(), xi2());
-    const TriangularFactor factor = combine(result_.factors, weights());
+    const TriangularFactor factor = linearise();
     if (!factor.all_finite()) return;
     const Index n = result_.x.size();
     const std::vector<Variable>& parameters = problem_.parameters();
@@ -101,35 +74,36 @@ class Alternation {
     solver_message_ = descent.message;
   }
 
-  /// Gauss-Newton steps to the last digit. False where they don't shrink: the point isn't near a
-  /// minimum of the present J, or the model is not finite there.
+  /// Gauss-Newton steps within the bounds, to the last digit. False, with x as it was, where they
+  /// don't shrink: x isn't near a minimum of the present J, or the model is not finite there.
   bool refine() {
+    const VectorXd start = result_.x;
     double before = infinity;
-    bool passable = false;
     for (int i = 0; i < refinements; ++i) {
-      result_.factors = sweep_.tangent_factors(xi1(), xi2());
-      TriangularFactor factor = combine(result_.factors, weights());
-      if (!factor.all_finite()) return false;
-      if (prior_) prior_->join(factor, result_.x);
+      const TriangularFactor factor = linearise();
+      if (!factor.all_finite()) break;
       const Index n = result_.x.size();
       const MatrixXd R = factor.matrix().leftCols(n);
       const VectorXd q = factor.matrix().col(n);
-      result_.at_bound = active_bounds(result_.x, -R.transpose() * q, box_);
-      const VectorXd step = gauss_newton_step(R, q, result_.at_bound);
-      const VectorXd next = box_.clip(result_.x + step);
-      const double size = (R * (next - result_.x)).norm();
-      const double relative = (next - result_.x).cwiseQuotient(scale_).cwiseAbs().maxCoeff();
-      passable = size <= passable_step || relative <= passable_relative_step;
-      if (size <= smallest_step * (1.0 + q.norm()) || relative <= smallest_relative_step) {
-        return true;
-      }
-      if (size >= before) return passable;
+      const BoundedSolution step =
+          solve_bounded(R, q, {box_.lower - result_.x, box_.upper - result_.x});
+      const double size = (R * step.x).norm();
+      const double relative = step.x.cwiseQuotient(scale_).cwiseAbs().maxCoeff();
+      const bool last_digit =
+          size <= smallest_step * (1.0 + q.norm()) || relative <= smallest_relative_step;
+      const bool passable = size <= passable_step || relative <= passable_relative_step;
+      if (!last_digit && !passable && size >= before) break;
+      result_.x = box_.clip(result_.x + step.x);
+      result_.at_bound = step.active;
+      if (last_digit || size >= before) return true;
       before = size;
-      result_.x = next;
       ++result_.iterations;
     }
-    result_.factors = sweep_.tangent_factors(xi1(), xi2());
-    return passable;
+    result_.x = start;
+    const MatrixXd T = linearise().matrix();
+    const Index n = start.size();
+    result_.at_bound = held_by_bounds(start, T.leftCols(n).transpose() * T.col(n));
+    return false;
   }
 
   /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
@@ -156,6 +130,24 @@ class Alternation {
   const std::string& solver_message() const { return solver_message_; }
 
  private:
+  /// Factors of [A D r] at x, kept by output; whitened and merged, with what is known beforehand.
+  TriangularFactor linearise() {
+    result_.factors = sweep_.tangent_factors(xi1(), xi2());
+    TriangularFactor factor = combine(result_.factors, weights());
+    if (prior_) prior_->join(factor, result_.x);
+    return factor;
+  }
+
+  /// Which parameters lie on a bound that `pull`, the negative gradient, pushes them against.
+  std::vector<bool> held_by_bounds(const VectorXd& x, const VectorXd& pull) const {
+    std::vector<bool> held;
+    for (Index k = 0; k < x.size(); ++k) {
+      held.push_back((x[k] <= box_.lower[k] && pull[k] <= 0) ||
+                     (x[k] >= box_.upper[k] && pull[k] >= 0));
+    }
+    return held;
+  }
+
   VectorXd xi1() const { return result_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return result_.x.tail(sweep_.tables().n_2()); }
   VectorXd weights() const { return result_.noise.cwiseInverse(); }
@@ -217,7 +209,10 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
   alternation.descend();
   bool refined = alternation.refine();
   bool settled = noise_given;
-  while (!settled && result.noise_iterations < options.noise_iterations) {
+  int failures = refined ? 0 : 1;
+  constexpr int most_failures = 3;  // then another R will not help
+  while (!settled && failures < most_failures &&
+         result.noise_iterations < options.noise_iterations) {
     settled = alternation.update_noise() < options.noise_tolerance;
     ++result.noise_iterations;
     if (options.progress) {
@@ -229,11 +224,14 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
     if (!refined) {
       alternation.descend();
       refined = alternation.refine();
+      if (!refined) ++failures;
     }
   }
+  if (!settled) alternation.update_noise();  // the noise of the parameters that are returned
   result.converged = refined && settled;
   if (!refined) {
-    result.message += "the minimisation did not converge (" + alternation.solver_message() + "); ";
+    result.message += "the minimisation did not converge (the solver's last words: " +
+                      alternation.solver_message() + "); ";
   } else if (!settled) {
     result.message +=
         "R did not settle within " + std::to_string(options.noise_iterations) + " iterations; ";

@@ -42,20 +42,20 @@ using FitProgress = std::function<void(std::string_view task, double fraction)>;
 struct FitOptions {
   /// Bounds in the parameters' units, instead of the model's. Parameters not named keep the
   /// model's.
-  std::map<std::string, Interval> bounds;
+  std::map<std::string, Interval> bounds = {};
   /// Parameters held at a value and not estimated.
-  std::map<std::string, double> fixed;
+  std::map<std::string, double> fixed = {};
   /// Noise standard deviation of every output; empty: R is estimated (Eqs. 24-26).
-  std::map<std::string, double> noise;
+  std::map<std::string, double> noise = {};
 
   /// Segments that each stage uses, as in Record::select(); empty: all.
-  std::string stage_one_segments;
-  std::string stage_two_segments;
+  std::string stage_one_segments = {};
+  std::string stage_two_segments = {};
 
   /// Samples of xi2 in stage one; 0: none, stage two starts from the middle of the bounds.
   int samples = 500;
   Sampling sampling = Sampling::uniform;
-  std::map<std::string, Normal> priors;
+  std::map<std::string, Normal> priors = {};
   std::uint64_t seed = 0;
   /// Stage one descends into at most this many of its samples' basins to tell minima apart.
   int descents = 8;
@@ -70,7 +70,7 @@ struct FitOptions {
 
   /// Threads, the caller's included; 0: one a core. The result does not depend on it.
   int threads = 0;
-  FitProgress progress;
+  FitProgress progress = {};
 };
 
 }  // namespace sepcal

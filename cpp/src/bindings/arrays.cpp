@@ -8,11 +8,8 @@ namespace sepcal::bindings {
 namespace {
 
 py::capsule keep(std::shared_ptr<const void> owner) {
-  auto kept = std::make_unique<std::shared_ptr<const void>>(std::move(owner));
-  py::capsule capsule(
-      kept.get(), [](void* pointer) { delete static_cast<std::shared_ptr<const void>*>(pointer); });
-  kept.release();
-  return capsule;
+  using Owner = std::shared_ptr<const void>;
+  return {new Owner(std::move(owner)), [](void* pointer) { delete static_cast<Owner*>(pointer); }};
 }
 
 }  // namespace
@@ -34,7 +31,7 @@ Array read_only_array(std::span<const double> values, std::shared_ptr<const void
 
 Array adopt(std::vector<double> values) {
   const auto owner = std::make_shared<std::vector<double>>(std::move(values));
-  return {static_cast<py::ssize_t>(owner->size()), owner->data(), keep(owner)};
+  return Array(static_cast<py::ssize_t>(owner->size()), owner->data(), keep(owner));
 }
 
 Record record_of(const py::dict& columns, const std::vector<std::string>& labels) {

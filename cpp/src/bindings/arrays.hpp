@@ -30,8 +30,8 @@ Array read_only_array(std::span<const double> values, std::shared_ptr<const void
 /// An array (N,) that has taken the values over.
 Array adopt(std::vector<double> values);
 
-/// The columns {name: array} seen as a record. Where there are a column `time` [s] or `labels` (N or
-/// none), it is cut at gaps and at changes of label. Throws Error as Record::view() and
+/// The columns {name: array} seen as a record. Where there are a column `time` [s] or `labels` (N
+/// or none), it is cut at gaps and at changes of label. Throws Error as Record::view() and
 /// find_segments() do.
 Record record_of(const py::dict& columns, const std::vector<std::string>& labels);
 

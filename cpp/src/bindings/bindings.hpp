@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of sepcal._core, a file each, and the types that they share. Results cross over as plain
-// dictionaries and arrays, which python/sepcal/ turns into its documented classes.
+// The parts of sepcal._core, a file each, and the types that they share. Results cross over as
+// plain dictionaries and arrays, which python/sepcal/ turns into its documented classes.
 #pragma once
 
 #include <pybind11/pybind11.h>

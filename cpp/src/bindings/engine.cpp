@@ -15,9 +15,10 @@ namespace sepcal::bindings {
 namespace {
 
 /// [(name, unit, lower, upper), ...]
-py::list describe(const std::vector<Variable>& variables) {
+template <auto Table>
+py::list describe_table(const Model& model) {
   py::list list;
-  for (const Variable& variable : variables) {
+  for (const Variable& variable : model.block->tables().*Table) {
     list.append(py::make_tuple(variable.name, variable.unit, variable.lower, variable.upper));
   }
   return list;
@@ -53,14 +54,10 @@ py::dict fit_columns(const Model& model, const py::dict& columns,
 
 void define_engine(py::module_& module) {
   py::class_<Model>(module, "Model")
-      .def_property_readonly("inputs",
-                             [](const Model& self) { return describe(self.block->tables().inputs); })
-      .def_property_readonly(
-          "outputs", [](const Model& self) { return describe(self.block->tables().outputs); })
-      .def_property_readonly("linear",
-                             [](const Model& self) { return describe(self.block->tables().linear); })
-      .def_property_readonly(
-          "nonlinear", [](const Model& self) { return describe(self.block->tables().nonlinear); })
+      .def_property_readonly("inputs", &describe_table<&Tables::inputs>)
+      .def_property_readonly("outputs", &describe_table<&Tables::outputs>)
+      .def_property_readonly("linear", &describe_table<&Tables::linear>)
+      .def_property_readonly("nonlinear", &describe_table<&Tables::nonlinear>)
       .def("evaluate", &evaluate);
 
   using Vector = std::array<double, 3>;

@@ -44,9 +44,8 @@ void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
       .def(py::init<std::string>())
       .def("view", &view, "header"_a, "values"_a.noconvert())
-      .def("label", [](Flight& self, std::vector<std::string> labels) {
-        self.label(std::move(labels));
-      })
+      .def("label",
+           [](Flight& self, std::vector<std::string> labels) { self.label(std::move(labels)); })
       .def("column", &column)
       .def("list_columns", &Flight::list_columns)
       .def_property_readonly("name", &Flight::name)

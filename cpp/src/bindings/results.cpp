@@ -55,12 +55,11 @@ py::dict describe_stage_one(const Fit& fit) {
   const StageOne& stage_one = fit.stage_one;
   py::list minima;
   for (const LocalMinimum& minimum : stage_one.minima) {
-    minima.append(py::dict("xi2"_a = describe_point(fit, minimum.xi2),
-                           "trace_r"_a = minimum.trace_r));
+    minima.append(
+        py::dict("xi2"_a = describe_point(fit, minimum.xi2), "trace_r"_a = minimum.trace_r));
   }
   return py::dict("samples"_a = Eigen::MatrixXd(stage_one.samples.transpose()),
-                  "trace_r"_a = stage_one.trace_r,
-                  "best"_a = describe_point(fit, stage_one.best),
+                  "trace_r"_a = stage_one.trace_r, "best"_a = describe_point(fit, stage_one.best),
                   "best_trace_r"_a = stage_one.best_trace_r, "minima"_a = minima,
                   "unique_minimum"_a = stage_one.unique_minimum,
                   "flat_directions"_a = stage_one.flat_directions);

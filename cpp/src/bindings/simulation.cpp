@@ -27,8 +27,7 @@ std::pair<Flight, std::map<std::string, double>> simulate_flight(const std::stri
                                                                  const std::string& truth,
                                                                  double rate, std::size_t rows,
                                                                  std::uint64_t seed) {
-  SimulatedFlight simulated =
-      simulate(probe, truth, {.rate = rate, .rows = rows, .seed = seed});
+  SimulatedFlight simulated = simulate(probe, truth, {.rate = rate, .rows = rows, .seed = seed});
   Flight flight("simulated flight");
   for (SimulatedColumn& column : simulated.columns) {
     flight.add(std::move(column.name), std::move(column.values));
