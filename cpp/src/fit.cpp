@@ -126,12 +126,12 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   const double inflation = noise_given ? 1.0 : freedom > 0 ? count / freedom : undefined;
   fill_parameters(result, model, problem, two, inverse_of_square(R) * inflation, inside);
 
+  // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
-  for (const Index k : inside)
-    names.push_back(problem.parameters()[static_cast<std::size_t>(k)].name);
-  const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements)(inside);
-  result.identifiability =
-      identify(R, names, scale, std::isnan(inflation) ? 1.0 : std::sqrt(inflation));
+  for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
+  const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
+  result.identifiability = identify(factor.matrix().topLeftCorner(n, n), names, scale,
+                                    std::isnan(inflation) ? 1.0 : std::sqrt(inflation));
 
   VectorXd rmse(two.noise.size());
   for (Index j = 0; j < rmse.size(); ++j) {

@@ -18,7 +18,8 @@ double JointObjective::square(const VectorXd& x) {
 bool JointObjective::linearise(const VectorXd& x, VectorXd& residual, MatrixXd& jacobian) {
   const Index n = parameters();
   const Index n_1 = sweep_.tables().n_1();
-  TriangularFactor factor = combine(sweep_.tangent_factors(x.head(n_1), x.tail(n - n_1)), weights_);
+  factors_ = sweep_.tangent_factors(x.head(n_1), x.tail(n - n_1));
+  TriangularFactor factor = combine(factors_, weights_);
   if (prior_) prior_->join(factor, x);
   if (!factor.all_finite()) return false;
   residual = factor.matrix().col(n);

@@ -50,8 +50,12 @@ class JointObjective final : public Objective {
   bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                  Eigen::MatrixXd& jacobian) override;
 
+  /// One factor of [A | D | r] an output, not whitened, of the point linearised last.
+  const std::vector<TriangularFactor>& factors() const { return factors_; }
+
  private:
   std::optional<Prior> prior_;
+  std::vector<TriangularFactor> factors_;
 };
 
 /// x = xi2, Eq. 20's right-hand side, with Kaufman's Jacobian: the D-D block of the factor of

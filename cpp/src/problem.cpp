@@ -28,6 +28,12 @@ Variable& find(std::vector<Variable>& variables, const std::string& name, const 
   return *at;
 }
 
+void check_at_least(const std::string& option, int value, int least) {
+  if (value >= least) return;
+  throw Error(option + " is " + std::to_string(value) + "; it must be at least " +
+              std::to_string(least));
+}
+
 Box box_of(const std::vector<Variable>& parameters, std::size_t first) {
   const auto n = static_cast<Index>(parameters.size() - first);
   Box box{VectorXd(n), VectorXd(n)};
@@ -91,11 +97,12 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
       noise_[j] = at->second;
     }
   }
-  if (options.samples < 0 || options.descents < 1 || options.iterations < 1 ||
-      options.noise_iterations < 1 || !(options.noise_tolerance > 0)) {
-    throw Error("samples must not be negative; descents, iterations, noise_iterations and" +
-                std::string(" noise_tolerance must be positive"));
-  }
+  check_at_least("samples", options.samples, 0);
+  check_at_least("descents", options.descents, 1);
+  check_at_least("iterations", options.iterations, 1);
+  check_at_least("noise_iterations", options.noise_iterations, 1);
+  check_at_least("threads", options.threads, 0);
+  if (!(options.noise_tolerance > 0)) throw Error("noise_tolerance must be positive");
 }
 
 std::vector<Variable> Problem::nonlinear() const {

@@ -7,6 +7,7 @@
 
 #include "basins.hpp"
 #include "objective.hpp"
+#include "refine.hpp"
 #include "sampling.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/identifiability.hpp"
@@ -90,6 +91,8 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
     Descent descent = minimise(objective, result.samples.col(basin.lowest), problem.nonlinear_box(),
                                within_the_basin);
     if (!std::isfinite(descent.square)) continue;
+    descent.x = refine(objective, descent.x, problem.nonlinear_box(), widths).x;
+    descent.square = objective.square(descent.x);
     const auto n = static_cast<double>(problem.parameters().size());
     const auto same = std::ranges::find_if(minima, [&](const Descent& other) {
       const double lower = std::min(descent.square, other.square);

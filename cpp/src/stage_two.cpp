@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "bounded_least_squares.hpp"
 #include "objective.hpp"
 #include "plausibility.hpp"
+#include "refine.hpp"
 #include "sepcal/identifiability.hpp"
 #include "stages.hpp"
 
@@ -19,15 +19,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// The last Gauss-Newton step, in standard errors (|R dx|), and what still passes for converged
-/// where rounding keeps the step from getting there.
-constexpr double smallest_step = 1e-12;  // times 1 + |r|, the whitened residual's norm
-constexpr double passable_step = 1e-3;
-/// The same in plausible lengths: without noise, standard errors are as small as rounding.
-constexpr double smallest_relative_step = 1e-14;
-constexpr double passable_relative_step = 1e-9;
-constexpr int refinements = 60;
 
 /// Sum of squared residuals by output, off the factors of [A D r].
 VectorXd squares(const std::vector<TriangularFactor>& factors) {
@@ -51,11 +42,12 @@ class Alternation {
   /// Where the record leaves a combination of parameters open at the start, nothing in it would
   /// keep them from running away: a loose prior does, and the fit is joint.
   void hold_what_is_open() {
-    const TriangularFactor factor = linearise();
+    const auto factors = sweep_.tangent_factors(xi1(), xi2());
+    const TriangularFactor factor = combine(factors, weights());
     if (!factor.all_finite()) return;
     const Index n = result_.x.size();
     const std::vector<Variable>& parameters = problem_.parameters();
-    scale_ = plausible_scale(parameters, result_.factors, sweep_.measurements());
+    scale_ = plausible_scale(parameters, factors, sweep_.measurements());
     if (!leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) return;
     prior_ = loose_prior(parameters, scale_);
     result_.method = SecondStage::joint;
@@ -74,36 +66,15 @@ class Alternation {
     solver_message_ = descent.message;
   }
 
-  /// Gauss-Newton steps within the bounds, to the last digit. False, with x as it was, where they
-  /// don't shrink: x isn't near a minimum of the present J, or the model is not finite there.
+  /// Takes x to the last digit at the present R; false, with x as it was, where no minimum is near.
   bool refine() {
-    const VectorXd start = result_.x;
-    double before = infinity;
-    for (int i = 0; i < refinements; ++i) {
-      const TriangularFactor factor = linearise();
-      if (!factor.all_finite()) break;
-      const Index n = result_.x.size();
-      const MatrixXd R = factor.matrix().leftCols(n);
-      const VectorXd q = factor.matrix().col(n);
-      const BoundedSolution step =
-          solve_bounded(R, q, {box_.lower - result_.x, box_.upper - result_.x});
-      const double size = (R * step.x).norm();
-      const double relative = step.x.cwiseQuotient(scale_).cwiseAbs().maxCoeff();
-      const bool last_digit =
-          size <= smallest_step * (1.0 + q.norm()) || relative <= smallest_relative_step;
-      const bool passable = size <= passable_step || relative <= passable_relative_step;
-      if (!last_digit && !passable && size >= before) break;
-      result_.x = box_.clip(result_.x + step.x);
-      result_.at_bound = step.active;
-      if (last_digit || size >= before) return true;
-      before = size;
-      ++result_.iterations;
-    }
-    result_.x = start;
-    const MatrixXd T = linearise().matrix();
-    const Index n = start.size();
-    result_.at_bound = held_by_bounds(start, T.leftCols(n).transpose() * T.col(n));
-    return false;
+    JointObjective objective(sweep_, weights(), prior_);
+    const Refinement refinement = sepcal::refine(objective, result_.x, box_, scale_);
+    result_.x = refinement.x;
+    result_.at_bound = refinement.at_bound;
+    result_.factors = objective.factors();
+    result_.iterations += refinement.iterations;
+    return refinement.converged;
   }
 
   /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
@@ -130,24 +101,6 @@ class Alternation {
   const std::string& solver_message() const { return solver_message_; }
 
  private:
-  /// Factors of [A D r] at x, kept by output; whitened and merged, with what is known beforehand.
-  TriangularFactor linearise() {
-    result_.factors = sweep_.tangent_factors(xi1(), xi2());
-    TriangularFactor factor = combine(result_.factors, weights());
-    if (prior_) prior_->join(factor, result_.x);
-    return factor;
-  }
-
-  /// Which parameters lie on a bound that `pull`, the negative gradient, pushes them against.
-  std::vector<bool> held_by_bounds(const VectorXd& x, const VectorXd& pull) const {
-    std::vector<bool> held;
-    for (Index k = 0; k < x.size(); ++k) {
-      held.push_back((x[k] <= box_.lower[k] && pull[k] <= 0) ||
-                     (x[k] >= box_.upper[k] && pull[k] >= 0));
-    }
-    return held;
-  }
-
   VectorXd xi1() const { return result_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return result_.x.tail(sweep_.tables().n_2()); }
   VectorXd weights() const { return result_.noise.cwiseInverse(); }
