@@ -18,10 +18,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t samples_tried = 16;
+constexpr std::size_t places_tried = 4;  // spread over the record, which may begin at rest
+constexpr std::size_t samples_a_place = 4;
 constexpr int points_tried = 3;
 constexpr double derivative_tolerance = 1e-4;  // relative to the largest entry of the column's row
-constexpr double difference_step = 1e-5;       // times the parameter's size or 1
+constexpr double difference_step = 1e-5;       // times half the bounds' width, else size or 1
 
 /// Points of xi2: the nominal one and draws where the bounds are finite.
 MatrixXd points_to_try(const Tables& tables) {
@@ -34,6 +35,20 @@ MatrixXd points_to_try(const Tables& tables) {
   });
   if (bounded) points.rightCols(points_tried - 1) = draw_samples(tables.nonlinear, options);
   return points;
+}
+
+/// The first samples of blocks that lie evenly over the record.
+std::vector<Measurements::Range> ranges_to_try(const Measurements& measurements) {
+  std::vector<Measurements::Range> all;
+  for (const auto& chunk : measurements.chunks()) all.insert(all.end(), chunk.begin(), chunk.end());
+  std::vector<Measurements::Range> tried;
+  const std::size_t places = std::min(places_tried, all.size());
+  for (std::size_t i = 0; i < places; ++i) {
+    tried.push_back(all[places == 1 ? 0 : i * (all.size() - 1) / (places - 1)]);
+    tried.back().rows = std::min(tried.back().rows, samples_a_place);
+  }
+  if (places == 1) tried.front().rows = std::min(all.front().rows, places_tried * samples_a_place);
+  return tried;
 }
 
 std::string entry_name(const Tables& tables, Index output, Index column) {
@@ -57,7 +72,8 @@ class Trial {
     MatrixXd rows = MatrixXd::Constant(tables.n_z() * static_cast<Index>(block_.rows), columns,
                                        std::numeric_limits<double>::quiet_NaN());
     const auto carry = model_.new_carry();
-    model_.evaluate(block_, xi2.data(), xi1 == nullptr ? nullptr : xi1->data(), carry.get(), rows);
+    model_.evaluate(block_, xi2.data(), xi1 == nullptr ? nullptr : values_of(*xi1), carry.get(),
+                    rows);
     return rows;
   }
 
@@ -65,11 +81,17 @@ class Trial {
   const Block& block_;
 };
 
-void check_entries_set(const Tables& tables, const std::vector<MatrixXd>& values, Index rows) {
+/// [A | b] at one place and point.
+struct Seen {
+  MatrixXd values;
+  Index rows = 0;
+};
+
+void check_entries_set(const Tables& tables, const std::vector<Seen>& seen) {
   for (Index column = 0; column <= tables.n_1(); ++column) {
     for (Index j = 0; j < tables.n_z(); ++j) {
-      const bool ever = std::ranges::any_of(values, [&](const MatrixXd& at) {
-        return at.col(column).segment(j * rows, rows).array().isFinite().any();
+      const bool ever = std::ranges::any_of(seen, [&](const Seen& at) {
+        return at.values.col(column).segment(j * at.rows, at.rows).array().isFinite().any();
       });
       if (ever) continue;
       throw Error(
@@ -99,7 +121,10 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
   VectorXd contrast(n_1 + 1);
   contrast.setOnes();
   for (Index k = 0; k < tables.n_2(); ++k) {
-    const double step = difference_step * std::max(1.0, std::abs(xi2[k]));
+    const Variable& parameter = tables.nonlinear[static_cast<std::size_t>(k)];
+    const double width = 0.5 * (parameter.upper - parameter.lower);
+    const double step =
+        difference_step * (std::isfinite(width) ? width : std::max(1.0, std::abs(xi2[k])));
     VectorXd above = xi2;
     VectorXd below = xi2;
     above[k] += step;
@@ -115,10 +140,9 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
     if (difference <= derivative_tolerance * scale) continue;
     throw Error("the model's derivative of output '" +
                 tables.outputs[static_cast<std::size_t>(row / rows)].name + "' with respect to '" +
-                tables.nonlinear[static_cast<std::size_t>(k)].name +
-                "' is not that of its values (at() gives " + std::to_string(given[row]) +
-                ", central differences " + std::to_string(numeric[row]) +
-                "); compute in the type of xi2 throughout");
+                parameter.name + "' is not that of its values (at() gives " +
+                std::to_string(given[row]) + ", central differences " +
+                std::to_string(numeric[row]) + "); compute in the type of xi2 throughout");
   }
 }
 
@@ -129,22 +153,21 @@ void check_model(const BlockModel& model, const Record& record) {
   if (measurements.chunks().empty()) {
     throw Error("the record has no rows; a model can't be tried on it");
   }
-  Measurements::Range range = measurements.chunks().front().front();
-  range.rows = std::min(range.rows, samples_tried);
-  std::vector<const double*> pointers;
-  const Block block = measurements.block(range, pointers);
-  const auto rows = static_cast<Index>(range.rows);
-  const Trial trial(model, block);
   const Tables& tables = model.tables();
-
   const MatrixXd points = points_to_try(tables);
-  std::vector<MatrixXd> values;
-  for (Index i = 0; i < points.cols(); ++i) values.push_back(trial.values(points.col(i)));
-  check_entries_set(tables, values, rows);
-  for (Index i = 0; i < points.cols(); ++i) {
-    check_same(tables, values[static_cast<std::size_t>(i)], trial.values(points.col(i)), rows);
-    check_derivatives(trial, tables, points.col(i), rows);
+  std::vector<Seen> seen;
+  for (const Measurements::Range& range : ranges_to_try(measurements)) {
+    std::vector<const double*> pointers;
+    const Block block = measurements.block(range, pointers);
+    const auto rows = static_cast<Index>(range.rows);
+    const Trial trial(model, block);
+    for (Index i = 0; i < points.cols(); ++i) {
+      seen.push_back({trial.values(points.col(i)), rows});
+      check_same(tables, seen.back().values, trial.values(points.col(i)), rows);
+      check_derivatives(trial, tables, points.col(i), rows);
+    }
   }
+  check_entries_set(tables, seen);
 }
 
 }  // namespace sepcal

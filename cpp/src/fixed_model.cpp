@@ -52,7 +52,7 @@ void FixedModel::evaluate(const Block& block, const double* xi2, const double* x
     model_.evaluate(block, whole_2.data(), nullptr, carry, whole);
   } else {
     const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
-    model_.evaluate(block, whole_2.data(), whole_1.data(), carry, whole);
+    model_.evaluate(block, values_of(whole_2), values_of(whole_1), carry, whole);
   }
   Index column = 0;
   for (const Index k : free_1_) rows.col(column++) = whole.col(k);

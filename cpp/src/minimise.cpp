@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include "sepcal/fit.hpp"
+
 namespace sepcal {
 namespace {
 

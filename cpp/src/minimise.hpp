@@ -37,7 +37,4 @@ struct DescentOptions {
 Descent minimise(Objective& objective, const Eigen::VectorXd& start, const Box& box,
                  const DescentOptions& options);
 
-/// Keeps Ceres and glog from writing to standard error in this process.
-void silence_solver_log();
-
 }  // namespace sepcal

@@ -71,6 +71,13 @@ std::function<double(double)> quantile_of(const Variable& parameter, const FitOp
   const auto prior = options.priors.find(parameter.name);
   if (prior != options.priors.end()) {
     const auto [mean, sd] = prior->second;
+    if (lower > mean) {
+      // In the upper tail probabilities crowd against one: draw the mirror image.
+      FitOptions mirrored;
+      mirrored.priors[parameter.name] = {-mean, sd};
+      const auto image = quantile_of({parameter.name, parameter.unit, -upper, -lower}, mirrored);
+      return [image](double u) { return -image(1.0 - u); };
+    }
     const double p_lower = normal_probability((lower - mean) / sd);
     const double p_upper = normal_probability((upper - mean) / sd);
     if (!(sd > 0) || !(p_upper > p_lower)) {
@@ -92,13 +99,13 @@ std::function<double(double)> quantile_of(const Variable& parameter, const FitOp
 }  // namespace
 
 double normal_quantile(double p) {
+  if (p > 0.5) return -normal_quantile(1.0 - p);
   // A rational start that is good to 5e-4 (Abramowitz & Stegun 26.2.23) and cubic steps to the
   // root.
-  const double tail = std::min(p, 1.0 - p);
-  const double t = std::sqrt(-2.0 * std::log(tail));
+  const double t = std::sqrt(-2.0 * std::log(p));
   double x = t - (2.515517 + t * (0.802853 + t * 0.010328)) /
                      (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-  if (p < 0.5) x = -x;
+  x = -x;
   for (int step = 0; step < 3; ++step) {
     const double density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
     const double error = (normal_probability(x) - p) / density;

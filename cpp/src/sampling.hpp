@@ -17,7 +17,7 @@ namespace sepcal {
 /// for.
 Eigen::MatrixXd draw_samples(const std::vector<Variable>& parameters, const FitOptions& options);
 
-/// Phi^-1(p), |relative error| < 1e-14, p in (0, 1): Newton steps on erfc from a rational start.
+/// Phi^-1(p), p in (0, 1), |error| < 1e-14 max(1, |Phi^-1(p)|): Newton steps on erfc.
 double normal_quantile(double p);
 
 /// The point that stage two starts from where nothing was sampled (n_2): the middle of the bounds,

@@ -156,6 +156,11 @@ StageOne run_stage_one(const Problem& problem, const Record& record, ThreadPool&
         describe_flat_directions(objective, result.xi2, widths, rise, nonlinear);
     result.unique_minimum = result.minima.size() == 1 && result.flat_directions.empty();
   }
+  if (!std::isfinite(objective.square(result.xi2))) {
+    throw Error(
+        "the model is not finite at some row of the record, whatever its linear parameters; "
+        "check its inputs, the fixed parameters and the bounds");
+  }
   result.xi1 = objective.linear_estimate(result.xi2);
   result.noise = (sweep.squared_residuals(result.xi1, result.xi2) / rows).cwiseSqrt();
   if (!sampled) {

@@ -54,6 +54,18 @@ class Alternation {
     result_.x.head(sweep_.tables().n_1()) = box_.clip(prior_->mean).head(sweep_.tables().n_1());
   }
 
+  /// Drops the prior where the solution turns out to determine everything; whether it did.
+  bool release_what_is_determined() {
+    if (!prior_) return false;
+    const TriangularFactor factor = combine(result_.factors, weights());
+    const Index n = result_.x.size();
+    if (!factor.all_finite() || leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) {
+      return false;
+    }
+    prior_.reset();
+    return true;
+  }
+
   /// Minimises J over the parameters at the present R, from result.x.
   void descend() {
     if (result_.method == SecondStage::projected && descend_projected()) return;
@@ -134,6 +146,38 @@ class Alternation {
   std::string solver_message_;
 };
 
+struct Outcome {
+  bool refined = false;
+  bool settled = false;
+};
+
+/// The parameters at R, R at the parameters, and so on until Eq. 26 holds.
+Outcome alternate(Alternation& alternation, StageTwo& result, const FitOptions& options,
+                  bool noise_given) {
+  constexpr int most_failures = 3;  // then another R will not help
+  alternation.descend();
+  Outcome outcome{alternation.refine(), noise_given};
+  int failures = outcome.refined ? 0 : 1;
+  int updates = 0;
+  while (!outcome.settled && failures < most_failures && updates < options.noise_iterations) {
+    outcome.settled = alternation.update_noise() < options.noise_tolerance;
+    ++updates;
+    if (options.progress) {
+      options.progress("stage two", static_cast<double>(updates) /
+                                        static_cast<double>(options.noise_iterations));
+    }
+    if (outcome.settled) break;
+    outcome.refined = alternation.refine();
+    if (outcome.refined) continue;
+    alternation.descend();
+    outcome.refined = alternation.refine();
+    if (!outcome.refined) ++failures;
+  }
+  if (!outcome.settled) alternation.update_noise();  // the noise of the parameters returned
+  result.noise_iterations += updates;
+  return outcome;
+}
+
 }  // namespace
 
 StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
@@ -159,33 +203,16 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
     }
   }
   alternation.hold_what_is_open();
-  alternation.descend();
-  bool refined = alternation.refine();
-  bool settled = noise_given;
-  int failures = refined ? 0 : 1;
-  constexpr int most_failures = 3;  // then another R will not help
-  while (!settled && failures < most_failures &&
-         result.noise_iterations < options.noise_iterations) {
-    settled = alternation.update_noise() < options.noise_tolerance;
-    ++result.noise_iterations;
-    if (options.progress) {
-      options.progress("stage two", static_cast<double>(result.noise_iterations) /
-                                        static_cast<double>(options.noise_iterations));
-    }
-    if (settled) break;
-    refined = alternation.refine();
-    if (!refined) {
-      alternation.descend();
-      refined = alternation.refine();
-      if (!refined) ++failures;
-    }
+  Outcome outcome = alternate(alternation, result, options, noise_given);
+  // A poor start may have seen less than the solution does: what holds nothing open has to go.
+  if (alternation.release_what_is_determined()) {
+    outcome = alternate(alternation, result, options, noise_given);
   }
-  if (!settled) alternation.update_noise();  // the noise of the parameters that are returned
-  result.converged = refined && settled;
-  if (!refined) {
+  result.converged = outcome.refined && outcome.settled;
+  if (!outcome.refined) {
     result.message += "the minimisation did not converge (the solver's last words: " +
                       alternation.solver_message() + "); ";
-  } else if (!settled) {
+  } else if (!outcome.settled) {
     result.message +=
         "R did not settle within " + std::to_string(options.noise_iterations) + " iterations; ";
   }

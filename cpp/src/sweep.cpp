@@ -84,7 +84,7 @@ std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
   for_each_block(
       [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
         rows.resize(n_z * rows_of(range), columns);
-        model_.evaluate(block, xi2.data(), xi1.data(), carry, rows);
+        model_.evaluate(block, values_of(xi2), values_of(xi1), carry, rows);
         subtract_from_outputs(range, rows.col(columns - 1));
         rows.col(columns - 1).noalias() -= rows.leftCols(n_1) * xi1;
         absorb_by_output(rows, rows_of(range), parts[c]);

@@ -22,6 +22,7 @@ constexpr double largest_safe_square = 1e200;
 
 double length_of(const Eigen::Ref<const VectorXd>& x) {
   const double square = x.squaredNorm();
+  if (std::isnan(square)) return square;  // stableNorm() drops some NaNs
   const bool safe = square > smallest_safe_square && square < largest_safe_square;
   return safe ? std::sqrt(square) : x.stableNorm();
 }

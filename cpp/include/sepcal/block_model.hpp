@@ -32,6 +32,13 @@ class Carry {
   virtual ~Carry() = default;
 };
 
+/// Where the values of x begin, never nullptr: to evaluate(), a null xi1 means "no tangent asked
+/// for", which an empty xi1 (n_1 = 0) is not.
+inline const double* values_of(const Eigen::VectorXd& x) {
+  static constexpr double none = 0.0;
+  return x.size() > 0 ? x.data() : &none;
+}
+
 class BlockModel {
  public:
   explicit BlockModel(Tables tables);  // throws Error where names clash
@@ -44,7 +51,8 @@ class BlockModel {
   /// Fills `rows`, (n_z * block.rows) x (n_1 + 1) with [A | b], or, where xi1 is given,
   /// (n_z * block.rows) x (n_1 + n_2 + 1) with [A | D | b], D = d(A xi1 + b)/d xi2.
   /// Output j takes the rows from j * block.rows on.
-  ///   xi2    n_2 values; xi1: n_1 values, or nullptr for [A | b] alone
+  ///   xi2    n_2 values
+  ///   xi1    n_1 values (values_of()), or nullptr for [A | b] alone
   ///   carry  what new_carry() gave for this pass, or nullptr where it gave none
   /// Pure but for `carry`: called from several threads at once.
   virtual void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,

@@ -77,6 +77,10 @@ struct Fit {
   Eigen::VectorXd xi2() const { return values().tail(values().size() - n_1); }
 };
 
+/// Keeps Ceres and glog, on which the fit is built, from writing to standard error in this process.
+/// The apps and the Python module call it; a program that logs through glog itself may not want it.
+void silence_solver_log();
+
 /// Fits `model` to `record`. Non-convergence and what the record does not determine are statuses of
 /// the result; misuse throws Error (see stage_one(), check_model()).
 Fit fit(const BlockModel& model, const Record& record, const FitOptions& options = {});

@@ -36,7 +36,7 @@ Eigen::MatrixXd evaluate(const Model& model, const py::dict& columns, const Eige
   Eigen::MatrixXd rows(measurements, tables.n_1() + (xi1 ? tables.n_2() : 0) + 1);
   const auto carry = model.block->new_carry();
   model.block->evaluate({.inputs = inputs, .rows = record.length()}, xi2.data(),
-                        xi1 ? xi1->data() : nullptr, carry.get(), rows);
+                        xi1 ? values_of(*xi1) : nullptr, carry.get(), rows);
   return rows;
 }
 

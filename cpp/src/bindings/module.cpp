@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal._core: the engine and its flights for the Python front, which documents it.
 #include "bindings.hpp"
-#include "minimise.hpp"
+#include "sepcal/fit.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::bindings {
