@@ -32,7 +32,6 @@ TEST_CASE("a file's columns keep their header, order and unit") {
   CHECK(flight.name() == file);
   CHECK(flight.locate(0) == file + " line 2");
   CHECK(flight.list_columns() == "the file has: time_s, roll_deg, maneuver");
-  CHECK(flight.drop_invalid_option() == "--drop-invalid");
   // sha256sum of the same bytes (GNU coreutils).
   CHECK(flight.sha256() == "3fa2f19cdb6c3963fcb6079a648b4c720300f1d8e91653beeca5c54c21663dad");
 }
@@ -65,7 +64,6 @@ TEST_CASE("arrays go in with and without a copy") {
   CHECK(flight.sha256().empty());
   CHECK(flight.locate(0) == "flight row 0");
   CHECK(flight.list_columns() == "the flight has: time_s, roll_rad, maneuver");
-  CHECK(flight.drop_invalid_option() == "drop_invalid");
   CHECK(Flight("log").locate(3) == "log row 3");
   CHECK(Flight().list_columns() == "the flight has: none");
 }

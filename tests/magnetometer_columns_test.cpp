@@ -102,7 +102,7 @@ TEST_CASE("a magnetometer's flight that lacks something") {
   Log log = make_magnetometer_log();
   CHECK_THROWS_WITH_AS(prepare_magnetometer(log.build()), Contains("the true field is missing"),
                        Error);
-  CHECK_THROWS_WITH_AS(prepare_magnetometer(log.build()), Contains("--field N,E,D"), Error);
+  CHECK_THROWS_WITH_AS(prepare_magnetometer(log.build()), Contains("or field N,E,D"), Error);
   CHECK_THROWS_WITH_AS(prepare_magnetometer(log.build(), {.field = {{1, not_a_number, 3}}}),
                        Contains("three finite numbers"), Error);
   CHECK_THROWS_WITH_AS(

@@ -200,7 +200,7 @@ TEST_CASE("a bad cell in a needed column names line and column") {
   const auto file = with_cell("n/a");
   CHECK(refuse(read_csv(file)) == file +
                                       " line 3: column 'yaw_rad' holds 'n/a', not a finite "
-                                      "number; --drop-invalid drops such rows");
+                                      "number; drop_invalid drops such rows");
   CHECK_MESSAGE(refuse(read_csv(with_cell(""))).find("'yaw_rad' is empty") != std::string::npos,
                 "");
   for (const char* cell : {"nan", "inf", "0x1", "1e999"}) {

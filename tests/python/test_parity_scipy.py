@@ -53,6 +53,7 @@ def fit_case(case: Case, second_stage: str, noise: dict[str, float] | None) -> s
         seed=0,
     )
     assert fit.status == "converged", fit.message
+    assert fit.method == second_stage
     assert not any(parameter.at_bound for parameter in fit.parameters.values())
     return fit
 

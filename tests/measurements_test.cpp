@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A record in a model's order, cut into blocks and chunks.
+#include "sepcal/measurements.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "sepcal/error.hpp"
+#include "sepcal/static_model.hpp"
+#include "small_models.hpp"
+
+using doctest::Contains;
+using sepcal::Error;
+using sepcal::Measurements;
+using sepcal::Record;
+
+namespace {
+
+const auto line = sepcal::block_model(sepcal::test::Line{});
+
+/// u counts the rows, z is its negative.
+Record count_rows(std::size_t rows) {
+  std::vector<double> u(rows);
+  std::iota(u.begin(), u.end(), 0.0);
+  std::vector<double> z = u;
+  for (double& value : z) value = -value;
+  Record record;
+  record.add("z", z).add("u", u);
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("blocks cover every selected row once, in order, and never cross a segment's edge") {
+  Record record = count_rows(10'000);
+  record.cut({{"a", 3, 700}, {"b", 700, 701}, {"c", 1000, 9999}});
+  const Measurements measurements(*line, record);
+  CHECK(measurements.rows() == 697 + 1 + 8999);
+
+  std::size_t offset = 0;
+  std::size_t segment = 0;
+  std::size_t next = 3;
+  for (const auto& chunk : measurements.chunks()) {
+    for (const auto& range : chunk) {
+      const auto& segments = record.segments();
+      if (next == segments[segment].last) next = segments[++segment].first;
+      CHECK(range.first == next);
+      CHECK(range.offset == offset);
+      CHECK(range.starts_segment == (range.first == segments[segment].first));
+      CHECK(range.rows > 0);
+      CHECK(range.rows <= Measurements::block_rows);
+      next += range.rows;
+      offset += range.rows;
+      CHECK(next <= segments[segment].last);
+    }
+  }
+  CHECK(offset == measurements.rows());
+  CHECK(measurements.chunks().size() == 3);  // 9697 rows, 4096 to a chunk
+}
+
+TEST_CASE("a block views the record's memory at its rows") {
+  const Record record = count_rows(600);
+  const Measurements measurements(*line, record);
+  const auto& range = measurements.chunks().front()[1];
+  std::vector<const double*> pointers;
+  const sepcal::Block block = measurements.block(range, pointers);
+  CHECK(block.inputs[0] == record.column("u").data() + 256);
+  CHECK(block.first == 256);
+  CHECK(block.rows == 256);
+  CHECK_FALSE(block.starts_segment);
+  CHECK(measurements.output(0, range).data() == record.column("z").data() + 256);
+}
+
+TEST_CASE("the sum of squares is over the selected rows alone") {
+  Record record = count_rows(600);
+  record.cut({{"", 1, 4}, {"", 10, 11}});
+  CHECK(Measurements(*line, record).output_square(0) == 1 + 4 + 9 + 100);
+}
+
+TEST_CASE("a column that is missing or not finite in a selected row is an error that names it") {
+  Record missing;
+  missing.add("u", {1, 2});
+  CHECK_THROWS_WITH_AS(Measurements(*line, missing), Contains("column 'z' is missing"), Error);
+
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL}) {
+    Record record;
+    record.add("u", {1, 2, 3, 4}).add("z", {1, 2, bad, 4});
+    CHECK_THROWS_WITH_AS(Measurements(*line, record),
+                         Contains("column 'z' is not a finite number in row 2"), Error);
+    record.cut({{"", 0, 2}, {"", 3, 4}});
+    CHECK_NOTHROW(Measurements(*line, record));
+  }
+}

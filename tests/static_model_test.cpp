@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A struct turned into blocks of rows [A | D | b].
+#include "sepcal/static_model.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "dense_reference.hpp"
+#include "simulated_records.hpp"
+#include "small_models.hpp"
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using sepcal::test::Growth;
+using sepcal::test::Line;
+using sepcal::test::Simulated;
+
+namespace {
+
+std::vector<const double*> inputs_of(const Simulated& simulated) {
+  std::vector<const double*> inputs;
+  for (const auto& input : simulated.model->tables().inputs) {
+    inputs.push_back(simulated.record.column(input.name).data());
+  }
+  return inputs;
+}
+
+}  // namespace
+
+TEST_CASE("the tables are the struct's, bounds and all") {
+  const sepcal::Tables tables = sepcal::tables_of<sepcal::FiveHoleProbe>();
+  CHECK(tables.n_u() == 11);
+  CHECK(tables.n_z() == 3);
+  CHECK(tables.n_1() == 5);
+  CHECK(tables.n_2() == 5);
+  CHECK(tables.linear[2].name == "w_n");
+  CHECK(tables.linear[2].unit == "m/s");
+  CHECK(tables.nonlinear[4].name == "eps_phi");
+  CHECK(tables.nonlinear[4].lower == -0.2618);
+}
+
+TEST_CASE("output j takes the rows from j times the block's length on, with at()'s A and b") {
+  const auto flight = sepcal::test::simulate_five_hole(7);
+  const sepcal::FiveHoleProbe probe{4.5, 4.0, {0.35, -0.1, -0.02}};
+  const auto inputs = inputs_of(flight);
+  MatrixXd rows(21, 6);
+  flight.model->evaluate({inputs, 7, 0, true}, flight.xi2.data(), nullptr, nullptr, rows);
+  for (Index k = 0; k < 7; ++k) {
+    sepcal::Vec<double, 11> u;
+    for (Index i = 0; i < 11; ++i) u[i] = inputs[static_cast<std::size_t>(i)][k];
+    const sepcal::Vec<double, 5> xi2 = flight.xi2;
+    const auto z = probe.at(u, xi2);
+    for (Index j = 0; j < 3; ++j) {
+      CHECK(rows.row(7 * j + k).head<5>() == z.A.row(j));
+      CHECK(rows(7 * j + k, 5) == z.b[j]);
+    }
+  }
+}
+
+TEST_CASE("D is the derivative of A xi1 + b, for all four models") {
+  for (const Simulated& simulated : sepcal::test::simulate_all(40)) {
+    CAPTURE(simulated.name);
+    const auto& tables = simulated.model->tables();
+    const auto inputs = inputs_of(simulated);
+    MatrixXd rows(40 * tables.n_z(), tables.n_1() + tables.n_2() + 1);
+    simulated.model->evaluate({inputs, 40, 0, true}, simulated.xi2.data(), simulated.xi1.data(),
+                              nullptr, rows);
+    const MatrixXd expected =
+        sepcal::test::dense_rows(*simulated.model, simulated.record, simulated.xi1, simulated.xi2);
+    const MatrixXd D = rows.middleCols(tables.n_1(), tables.n_2());
+    const MatrixXd numeric = expected.middleCols(tables.n_1(), tables.n_2());
+    CHECK((D - numeric).cwiseAbs().maxCoeff() < 1e-9 * numeric.cwiseAbs().maxCoeff());
+    CHECK((rows.leftCols(tables.n_1()) - expected.leftCols(tables.n_1())).norm() < 1e-12);
+    const VectorXd b = sepcal::test::dense_values(*simulated.model, simulated.record, simulated.xi2)
+                           .rightCols<1>();
+    CHECK((rows.rightCols<1>() - b).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("a model with nothing linear gives [D | b], one with nothing nonlinear [A | b]") {
+  const double u[] = {0.5, -2.0};
+  const double* const inputs[] = {u};
+  const double xi2 = 0.3;
+  const double nothing = 0;
+  MatrixXd rows(2, 2);
+  sepcal::block_model(Growth{})->evaluate({inputs, 2, 0, true}, &xi2, &nothing, nullptr, rows);
+  MatrixXd expected(2, 2);
+  expected << 0.5 * std::exp(0.15), std::exp(0.15), -2 * std::exp(-0.6), std::exp(-0.6);
+  CHECK((rows - expected).norm() < 1e-15);
+
+  MatrixXd linear(2, 3);
+  const double xi1[] = {1, 1};
+  sepcal::block_model(Line{})->evaluate({inputs, 2, 0, true}, nullptr, xi1, nullptr, linear);
+  MatrixXd line(2, 3);
+  line << 0.5, 1, 0, -2, 1, 0;
+  CHECK(linear == line);
+}
