@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From what a caller has (arrays, lists, a DataFrame's columns) to what C++ takes: float64 columns.
+
+A C-contiguous float64 array passes as it is, uncopied; everything else is converted once.
+"""
+
+from collections.abc import Iterable, Iterator
+from typing import Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sepcal import _core
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+class Columns(Protocol):
+    """Columns by name: a dict of arrays, a pandas DataFrame, a Flight."""
+
+    def __iter__(self) -> Iterator[str]:
+        """The names."""
+
+    def __getitem__(self, name: str, /) -> ArrayLike:
+        """One column, shape (N,)."""
+
+
+def to_column(owner: str, name: str, values: ArrayLike) -> Array:
+    """The values as a C-contiguous float64 array of shape (N,); the same array where it is one.
+
+    Masked entries become NaN. Raises Error for what is not one-dimensional or holds no numbers;
+    `owner` opens the message.
+    """
+    if isinstance(values, np.ma.MaskedArray):
+        array = np.ma.filled(values.astype(np.float64), np.nan)
+    else:
+        array = np.asarray(values)
+    if array.ndim != 1:
+        raise _core.Error(
+            f"{owner}: column '{name}' has the shape {array.shape}; give one value a row, (N,)"
+        )
+    if array.dtype.kind not in "fiub":
+        raise _core.Error(
+            f"{owner}: column '{name}' holds {array.dtype}, not numbers; convert it or leave it out"
+        )
+    return np.require(array, dtype=np.float64, requirements=["C_CONTIGUOUS", "ALIGNED"])
+
+
+def take_columns(owner: str, columns: Columns, names: Iterable[str]) -> dict[str, Array]:
+    """The named columns. Raises Error for one that is missing, listing those that are there."""
+    there = list(columns)
+    taken = {}
+    for name in names:
+        if name not in there:
+            known = ", ".join(map(str, there)) or "none"
+            raise _core.Error(
+                f"{owner}: column '{name}' is missing; the data have: {known}; name columns as the "
+                "model does, or give a sepcal.Flight"
+            )
+        taken[name] = to_column(owner, name, columns[name])
+    return taken
+
+
+def to_labels(labels: Iterable[object]) -> list[str]:
+    """One text a row."""
+    return [str(label) for label in labels]

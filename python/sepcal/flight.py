@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Flight logs: the table of a CSV file, or arrays under the same headers."""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Self
+
+from sepcal import _core
+from sepcal.columns import Array, Columns, to_column, to_labels
+
+
+class Flight(Mapping[str, Array]):
+    """A flight log: columns under headers with units, `<quantity>_<unit>`, as in a CSV file.
+
+    A C-contiguous float64 array is viewed, not copied: a later change of it shows in the flight.
+    Everything else (lists, other types, strides) is converted once. It is a mapping:
+    `flight["pt_pa"]` is a read-only array of shape (rows,) in the header's unit, uncopied.
+
+    Args:
+        columns: Arrays of shape (N,) by header; a DataFrame will do. A column "maneuver" holds
+            labels, as in a file.
+        maneuver: A label a row, N of them; a run of one label is a segment.
+        name: What messages call the flight.
+
+    Raises:
+        Error: A column of another length, without a name, not one-dimensional or not of numbers.
+    """
+
+    def __init__(
+        self, columns: Columns, maneuver: Iterable[object] | None = None, name: str = "flight"
+    ) -> None:
+        self._core = _core.Flight(name)
+        for header in columns:
+            if header == "maneuver":
+                self._core.label(to_labels(columns[header]))  # type: ignore[arg-type]
+            else:
+                self._core.view(header, to_column(name, header, columns[header]))
+        if maneuver is not None:
+            self._core.label(to_labels(maneuver))
+
+    @classmethod
+    def _of(cls, core: _core.Flight) -> Self:
+        flight = cls.__new__(cls)
+        flight._core = core
+        return flight
+
+    @property
+    def name(self) -> str:
+        """The file as it was named, or the name given."""
+        return self._core.name
+
+    @property
+    def sha256(self) -> str:
+        """Of the file's bytes, 64 hexadecimal digits; empty for arrays."""
+        return self._core.sha256
+
+    @property
+    def rows(self) -> int:
+        """Length of the columns, N."""
+        return self._core.rows
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The headers, in order, without "maneuver"."""
+        return tuple(self._core.headers)
+
+    @property
+    def maneuvers(self) -> list[str]:
+        """A label a row; empty where the log has none."""
+        return self._core.maneuvers
+
+    def __getitem__(self, header: str) -> Array:
+        """The column, shape (rows,), read-only; NaN where a file's cell is no number."""
+        values = self._core.column(header)
+        if values is None:
+            raise KeyError(f"column '{header}' is missing; {self._core.list_columns()}")
+        return values
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def __repr__(self) -> str:
+        headers = ", ".join(self.columns)
+        return f"<{type(self).__name__} {self.name!r}: {self.rows} rows of {headers}>"
+
+
+def read_csv(file: str | os.PathLike[str]) -> Flight:
+    """Reads a whole CSV flight log: one header line, comma separated, one row a sample.
+
+    Units are converted and bad cells found when the flight is used, so that a column that is not
+    needed can't stop the reading.
+
+    Raises:
+        Error: No such file, binary, separated by semicolons, a column twice, a short row, no rows;
+            the message names file, line and column.
+    """
+    return Flight._of(_core.read_csv(os.fspath(file)))

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The models, z = A(u, xi2) xi1 + b(u, xi2) + v: names, units and bounds of their tables."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sepcal import _core
+from sepcal.columns import Array, Columns, take_columns
+
+Vector = Sequence[float]  # three of them
+
+
+class Model:
+    """A separable model (Sun & Gebre-Egziabher, Eq. 4); use one of the subclasses.
+
+    Attributes:
+        inputs: Names of u.
+        outputs: Names of z, n_z of them.
+        linear: Names of xi1, n_1.
+        nonlinear: Names of xi2, n_2.
+        units: Unit of every input, output and parameter by name.
+        bounds: Default (lower, upper) of every parameter by name, in its unit; infinite where open.
+    """
+
+    def __init__(self, core: _core.Model) -> None:
+        self._core = core
+        tables = (core.inputs, core.outputs, core.linear, core.nonlinear)
+        self.inputs, self.outputs, self.linear, self.nonlinear = (
+            tuple(name for name, *_ in table) for table in tables
+        )
+        self.units = {name: unit for table in tables for name, unit, *_ in table}
+        self.bounds = {
+            name: (lower, upper) for table in tables[2:] for name, _, lower, upper in table
+        }
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Linear, then nonlinear: the order of every estimate and covariance."""
+        return self.linear + self.nonlinear
+
+    def evaluate(
+        self,
+        record: Columns,
+        xi2: Mapping[str, float] | ArrayLike,
+        xi1: Mapping[str, float] | ArrayLike | None = None,
+    ) -> tuple[Array, ...]:
+        """A and b of every sample and, where xi1 is given, D = d(A xi1 + b)/d xi2.
+
+        Args:
+            record: The inputs by name, each of shape (N,), in the units of the table; other columns
+                are ignored.
+            xi2: The n_2 nonlinear parameters, by name or in the table's order.
+            xi1: The n_1 linear parameters likewise.
+
+        Returns:
+            A (N, n_z, n_1) and b (N, n_z), or A, b and D (N, n_z, n_2): views of one buffer. D is
+            exact, by automatic differentiation.
+
+        Raises:
+            Error: An input is missing or of another length, a parameter is missing or unknown.
+        """
+        columns = take_columns(type(self).__name__, record, self.inputs)
+        at = _to_point("xi2", xi2, self.nonlinear)
+        along = None if xi1 is None else _to_point("xi1", xi1, self.linear)
+        rows = self._core.evaluate(columns, at, along)
+        n_z, n_1 = len(self.outputs), len(self.linear)
+        rows = rows.reshape((-1, n_z, rows.shape[1]), order="F")  # output after output, by columns
+        if along is None:
+            return rows[:, :, :n_1], rows[:, :, -1]
+        return rows[:, :, :n_1], rows[:, :, -1], rows[:, :, n_1:-1]
+
+    def __repr__(self) -> str:
+        settings = ", ".join(f"{name}={value!r}" for name, value in self._settings().items())
+        return f"{type(self).__name__}({settings})"
+
+    def _settings(self) -> dict[str, float | tuple[float, ...]]:
+        """What is known of the instrument, by the names of the constructor."""
+        return {}
+
+
+class ScalarExample1(Model):
+    """z = (1 + a) cos(eta + b) + c (Eqs. 21, 22); linear a, c, nonlinear b [rad]."""
+
+    def __init__(self) -> None:
+        super().__init__(_core.scalar_example_1())
+
+
+class ScalarExample2(Model):
+    """z = (1 + a) cos(eta (1 + b) + c) + d (Eq. 33); linear a, d, nonlinear b, c [rad]."""
+
+    def __init__(self) -> None:
+        super().__init__(_core.scalar_example_2())
+
+
+class FiveHoleProbe(Model):
+    """A five-hole Pitot probe against the inertial velocity (Eqs. 36-42).
+
+    V = C_b^n [C(eps) V_s - w x r] + W: the velocity over the ground from the air data, the attitude
+    and a steady wind.
+
+    Args:
+        k_alpha: Sensitivity of the angle-of-attack ports, dp/(pt - ps) per radian [1/rad].
+        k_beta: The same of the sideslip ports [1/rad].
+        lever_arm: From the velocity's reference point to the probe, body axes [m].
+
+    Raises:
+        Error: A sensitivity is not positive.
+    """
+
+    name = "five-hole"
+
+    def __init__(
+        self, *, k_alpha: float, k_beta: float, lever_arm: Vector = (0.0, 0.0, 0.0)
+    ) -> None:
+        self.k_alpha, self.k_beta = float(k_alpha), float(k_beta)
+        self.lever_arm = _to_vector("lever_arm", lever_arm)
+        super().__init__(_core.five_hole_probe(self.k_alpha, self.k_beta, self.lever_arm))
+
+    def _settings(self) -> dict[str, float | tuple[float, ...]]:
+        return {"k_alpha": self.k_alpha, "k_beta": self.k_beta, "lever_arm": self.lever_arm}
+
+
+class Magnetometer(Model):
+    """A three-axis magnetometer against a known field (Eqs. B1-B3).
+
+    m = C_alpha C_eta C_lambda h + n: soft iron, misalignment and scale of the true field h in body
+    axes, and hard iron n [uT].
+
+    Args:
+        field: The Earth's field, north, east, down [uT]; None where the flight logs it.
+    """
+
+    name = "magnetometer"
+
+    def __init__(self, field: Vector | None = None) -> None:
+        self.field = None if field is None else _to_vector("field", field)
+        super().__init__(_core.magnetometer(self.field))
+
+    def _settings(self) -> dict[str, float | tuple[float, ...]]:
+        return {} if self.field is None else {"field": self.field}
+
+
+def _to_vector(name: str, values: Vector) -> tuple[float, float, float]:
+    """Three numbers. Raises Error for any other count."""
+    numbers = tuple(float(value) for value in values)
+    if len(numbers) != 3:
+        raise _core.Error(f"{name} has {len(numbers)} numbers; give three")
+    return numbers
+
+
+def _to_point(owner: str, values: Mapping[str, float] | ArrayLike, names: tuple[str, ...]) -> Array:
+    """Parameters in the table's order, (n,). Raises Error for other names or another count."""
+    if isinstance(values, Mapping):
+        if set(values) != set(names):
+            given = ", ".join(values) or "none"
+            raise _core.Error(f"{owner} takes {', '.join(names) or 'none'}; it was given: {given}")
+        values = [values[name] for name in names]
+    point = np.asarray(values, dtype=np.float64)
+    if point.shape != (len(names),):
+        raise _core.Error(
+            f"{owner} takes {len(names)} numbers, {', '.join(names)}; it was given the shape "
+            f"{point.shape}"
+        )
+    return point

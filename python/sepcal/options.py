@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The keyword arguments of fit(). Their defaults are the engine's own and stand nowhere else."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, TypedDict
+
+from sepcal import _core
+
+
+class FitOptions(TypedDict, total=False):
+    """Every choice of a fit; None, like leaving it out, means the default, given in brackets.
+
+    Attributes:
+        bounds: (lower, upper) of parameters by name, in their units, None for an open side, instead
+            of the model's [the model's].
+        fixed: Parameters held at a value and not estimated [none].
+        noise: Noise standard deviation of every output; without it R is estimated, Eqs. 24-26.
+        priors: (mean, standard deviation) of nonlinear parameters, for drawing samples [none].
+        stage_one: Segments that stage one uses, "wind_circle_1,510.9:530": labels, or spans of time
+            in s [all].
+        stage_two: The same of stage two [all].
+        samples: Samples of xi2 in stage one [500]; 0: none.
+        sampling: Independent draws or a shifted Halton sequence ["uniform"].
+        seed: The same seed gives the same result, on any number of threads [0].
+        second_stage: Over all parameters, over xi2 with xi1 solved inside, or as stage one finds a
+            unique minimum or not (Step 5) ["auto"].
+        noise_tolerance: R and the parameters alternate until every relative change of R is below
+            this, Eq. 26 [1e-10; the paper's is 0.05].
+        noise_iterations: At most so many alternations [100].
+        iterations: Of one nonlinear minimisation [200].
+        descents: Stage one descends from at most so many samples to tell minima apart [8].
+        threads: The caller's included; 0: one a core [0]. The result does not depend on it.
+        free: For flights: parameters freed that the probe holds by default [none].
+        drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
+    """
+
+    bounds: Mapping[str, tuple[float | None, float | None]] | None
+    fixed: Mapping[str, float] | None
+    noise: Mapping[str, float] | None
+    priors: Mapping[str, tuple[float, float]] | None
+    stage_one: str | None
+    stage_two: str | None
+    samples: int | None
+    sampling: Literal["uniform", "low_discrepancy"] | None
+    seed: int | None
+    second_stage: Literal["auto", "joint", "projected"] | str | None
+    noise_tolerance: float | None
+    noise_iterations: int | None
+    iterations: int | None
+    descents: int | None
+    threads: int | None
+    free: Sequence[str] | None
+    drop_invalid: bool | None
+
+
+def to_core(options: Mapping[str, Any]) -> _core.Options:
+    """The options as C++ takes them. Raises TypeError for an unknown name or a wrong kind."""
+    core = _core.Options()
+    for name, value in options.items():
+        if name not in FitOptions.__annotations__:
+            known = ", ".join(FitOptions.__annotations__)
+            raise TypeError(f"fit() has no option '{name}'; it has: {known}")
+        if value is None:
+            continue
+        try:
+            setattr(core, name, dict(value) if isinstance(value, Mapping) else value)
+        except TypeError:
+            raise TypeError(
+                f"fit() can't take {name}={value!r}; help(sepcal.FitOptions) says what it takes"
+            ) from None
+    return core

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a fit says: estimates with their uncertainty, the noise, and what stage one saw.
+
+Undefined numbers (the standard error of a fixed parameter, say) are NaN.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sepcal import _core
+from sepcal.columns import Array
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One estimate, in `unit`."""
+
+    name: str
+    value: float
+    standard_error: float  # NaN where undefined: fixed, at a bound, singular
+    standard_error_white: float  # the same as long as residuals are taken as white
+    unit: str
+    lower: float
+    upper: float
+    at_bound: bool
+    fixed: bool
+
+    @property
+    def remark(self) -> str:
+        """Fixed, at its lower or at its upper bound; else nothing."""
+        if self.fixed:
+            return "fixed"
+        if not self.at_bound:
+            return ""
+        side = "lower" if self.value - self.lower <= self.upper - self.value else "upper"
+        return f"at its {side} bound"
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A linear combination of parameters that the record leaves open or determines poorly."""
+
+    text: str  # "0.8 w_n - 0.6 lambda_va", coefficients of unit length
+    parameters: tuple[str, ...]  # those that take part, largest share first
+    standard_error: float  # of the combination; infinite where it is singular
+
+
+@dataclass(frozen=True)
+class LocalMinimum:
+    """A local minimum of Tr[R] within the bounds."""
+
+    xi2: dict[str, float]
+    trace_r: float  # sum over outputs of the mean squared residual, in the outputs' units
+
+
+@dataclass(frozen=True, eq=False)
+class StageOne:
+    """Samples of xi2 and Tr[R] at each (Eqs. 16, 19, Steps 2-4).
+
+    Fixed parameters have no part in it. The samples are not kept in a calibration's JSON.
+    """
+
+    samples: Array  # (S, n_2), in the model's order
+    trace_r: Array  # (S,); infinite where the model is not finite
+    best: dict[str, float]  # the sample with the least Tr[R]
+    best_trace_r: float
+    minima: list[LocalMinimum]  # distinct ones, lowest first
+    unique_minimum: bool  # one minimum and no flat direction
+    flat_directions: list[str]  # in words: a valley of Tr[R] and no point (Fig. 6)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter."""
+
+    status: str  # "converged", "not_converged" or "not_identifiable"
+    message: str  # one line; empty where there is nothing to say
+    parameters: dict[str, Parameter]  # linear, then nonlinear, in the model's order
+    covariance: Array  # (n, n), in that order; NaN where there is no standard error
+    correlation: Array  # (n, n)
+    noise: dict[str, float]  # by output: standard deviation, given or from R-hat = SSE / N
+    rmse: dict[str, float]  # by output, unwhitened, in its unit
+    cost: float  # J of Eq. 6
+    rows: int  # that stage two used
+    unobservable: list[Combination]  # singular, or uncertain beyond half the width of their bounds
+    weak: list[Combination]  # singular value below a fiftieth of the largest
+    stage_one: StageOne
+    method: str  # "joint" or "projected": what stage two used in the end
+    iterations: int  # of stage two's minimisations
+    noise_iterations: int  # of R against the parameters
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The n parameters, linear, then nonlinear."""
+        return tuple(self.parameters)
+
+    @property
+    def values(self) -> Array:
+        """The estimates, shape (n,)."""
+        return np.array([parameter.value for parameter in self.parameters.values()])
+
+    def __getitem__(self, name: str) -> Parameter:
+        """The parameter of that name. Raises KeyError listing the names."""
+        if name not in self.parameters:
+            raise KeyError(f"there is no parameter '{name}'; the fit has: {', '.join(self.names)}")
+        return self.parameters[name]
+
+    def __str__(self) -> str:
+        width = max(map(len, self.names))
+        lines = [f"{'parameter':<{width}}{'value':>14}{'std. error':>12}  unit"]
+        for parameter in self.parameters.values():
+            error = f"{parameter.standard_error:.2g}" if parameter.standard_error >= 0 else "-"
+            line = f"{parameter.name:<{width}}{parameter.value:>14.6g}{error:>12}"
+            lines.append(f"{line}  {parameter.unit:<6}{parameter.remark}".rstrip())
+        rmse = ", ".join(f"{name} {value:.4g}" for name, value in self.rmse.items())
+        lines += [f"rmse: {rmse}; {self.rows} rows", f"{self.status}, {self.method}"]
+        if self.message:
+            lines[-1] += f": {self.message}"
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.status}\n{self}>"
+
+
+def to_fields(described: _core.FitDescription) -> dict[str, Any]:
+    """The fields of a Fit from what C++ says of it."""
+    stage_one: Mapping[str, Any] = described["stage_one"]
+    fields: Mapping[str, Any] = {
+        "parameters": {entry["name"]: Parameter(**entry) for entry in described["parameters"]},
+        "unobservable": [Combination(**entry) for entry in described["unobservable"]],
+        "weak": [Combination(**entry) for entry in described["weak"]],
+        "stage_one": StageOne(
+            **{**stage_one, "minima": [LocalMinimum(**at) for at in stage_one["minima"]]}
+        ),
+    }
+    return {**described, **fields}
