@@ -43,9 +43,6 @@ class Instrument {
                               const SimulationOptions& options) const = 0;
 };
 
-/// "X,Y,Z": exactly three finite numbers. Throws Error naming the option.
-std::array<double, 3> parse_triple(const std::string& option, const std::string& text);
-
 /// Runs the app: parses the command line, carries out the verb, maps every error to one line on
 /// standard error. Returns the exit code (0, 2, 4 or 5).
 int run(Instrument& instrument, int argc, char** argv);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal-mag: calibrates three-axis magnetometers.
 #include "instrument.hpp"
+#include "option_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/truth.hpp"
 
@@ -29,7 +30,8 @@ class Magnetometer final : public Instrument {
           "--field N,E,D, or the logged field hx_ut, hy_ut, hz_ut");
     }
     if (field_.empty()) return magnetometer_probe(std::nullopt);
-    return magnetometer_probe(parse_triple("--field", field_));
+    return magnetometer_probe(
+        parse_triple("--field", field_, "19.7,-1.4,49.4 (north, east, down in uT)"));
   }
 
   Simulation simulate(const std::string& truth, const std::string& source,

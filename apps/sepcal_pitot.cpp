@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "instrument.hpp"
+#include "option_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/truth.hpp"
 
@@ -38,7 +39,9 @@ class Pitot final : public Instrument {
           "a five-hole probe needs --k-alpha K and --k-beta K, the ports' sensitivities in "
           "1/rad (from the probe's data sheet or a wind tunnel)");
     }
-    return five_hole_probe(*k_alpha_, *k_beta_, parse_triple("--lever-arm", lever_arm_));
+    return five_hole_probe(
+        *k_alpha_, *k_beta_,
+        parse_triple("--lever-arm", lever_arm_, "0.35,0,-0.02 (forward, right, down in m)"));
   }
 
   Simulation simulate(const std::string& truth, const std::string& source,

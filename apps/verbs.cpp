@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 
+#include "flight/text_file.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/apply.hpp"
@@ -42,13 +41,6 @@ int exit_code(FitStatus status) {
   }
 }
 
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) throw Error(file + " can't be read");
-  return text.str();
-}
-
 }  // namespace
 
 Flight Verbs::read_flight() const {
@@ -59,7 +51,10 @@ Flight Verbs::read_flight() const {
 
 int Verbs::fit(CalibrationOptions options) const {
   std::optional<OutputFile> output;
-  if (!arguments_.output.empty()) output.emplace(arguments_.output);
+  if (!arguments_.output.empty()) {
+    check_not_input(arguments_.output, arguments_.flight);
+    output.emplace(arguments_.output);
+  }
   const Flight flight = read_flight();
   ProgressLine line;
   options.fit.progress = [&](std::string_view task, double fraction) { line.show(task, fraction); };
@@ -67,12 +62,12 @@ int Verbs::fit(CalibrationOptions options) const {
   line.clear();
   print_notes(calibration.notes);
   const std::string json = to_json(calibration);
-  if (output) output->write(json);
-  print(arguments_.json ? json : calibration_table(calibration));
   if (output) {
+    output->write(json);
     output->commit();
-    if (!arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
   }
+  print(arguments_.json ? json : calibration_table(calibration));
+  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
   return exit_code(calibration.fit.status);
 }
 
@@ -85,6 +80,7 @@ int Verbs::compare() const {
 }
 
 int Verbs::apply() const {
+  check_not_input(arguments_.output, arguments_.calibration);
   const Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
   ProgressLine line;
   const Applied applied =
@@ -98,18 +94,23 @@ int Verbs::apply() const {
 }
 
 int Verbs::simulate(const SimulationOptions& options) const {
+  if (!arguments_.truth.empty() && is_same_file(arguments_.output, arguments_.truth)) {
+    throw Error(fmt::format("-o {} and --truth {} are one file; name another for one of them",
+                            arguments_.output, arguments_.truth));
+  }
   OutputFile output(arguments_.output);
   const bool given = !arguments_.truth.empty() && std::filesystem::exists(arguments_.truth);
   std::optional<OutputFile> truth;
   if (!arguments_.truth.empty() && !given) truth.emplace(arguments_.truth);
-  const Simulation simulation =
-      instrument_.simulate(given ? read_text(arguments_.truth) : "", arguments_.truth, options);
+  const Simulation simulation = instrument_.simulate(
+      given ? read_text_file(arguments_.truth, "as a truth file") : "", arguments_.truth, options);
   write_csv(simulation.flight, output.stream());
-  output.commit();
+  output.flush();
   if (truth) {
     truth->write(simulation.truth);
     truth->commit();
   }
+  output.commit();
   if (arguments_.json) {
     print(simulation.truth);
   } else {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each verb does, once its arguments are read. Results go to standard output, for people or as
-// JSON; notes and progress to standard error.
+// What each verb does, once its arguments are read. Results go to their files first, then to
+// standard output, for people or as JSON; notes and progress to standard error.
 #pragma once
 
 #include <string>

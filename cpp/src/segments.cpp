@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "sepcal/error.hpp"
 #include "sepcal/quantity.hpp"
@@ -60,6 +61,15 @@ std::string list_labels(const std::vector<Segment>& segments) {
   return list.empty() ? "none" : list;
 }
 
+/// ", within 0.02 to 119.7"; nothing where no time is recorded.
+std::string describe_time(const Record& record) {
+  if (!record.has("time") || record.length() == 0) return {};
+  std::ostringstream text;
+  text.precision(10);
+  text << ", within " << record.column("time").front() << " to " << record.column("time").back();
+  return text.str();
+}
+
 /// The middle one of the intervals, or the mean of the middle two; there is at least one.
 double find_median_interval(std::span<const double> time) {
   std::vector<double> intervals(time.size() - 1);
@@ -97,9 +107,11 @@ Record Record::select(std::string_view selection) const {
       }
     }
     if (!matched) {
-      throw Error("no segment is '" + std::string(item) + "' in '" + std::string(selection) +
-                  "'; name a label or a span FROM:TO of time in s; the labels are: " +
-                  list_labels(segments_));
+      const std::string within =
+          item == trim(selection) ? "" : " in '" + std::string(selection) + "'";
+      throw Error("no segment is '" + std::string(item) + "'" + within +
+                  "; name a label or a span FROM:TO of time in s" + describe_time(*this) +
+                  "; the labels are: " + list_labels(segments_));
     }
   }
   std::vector<Segment> selected;

@@ -32,6 +32,7 @@ std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight&
 Applied apply_to_file(const Calibration& calibration, const std::string& file,
                       const std::string& output, const Progress& progress) {
   const Probe& probe = *calibration.probe;
+  check_not_input(output, file);
   OutputFile target(output);
   const Flight flight = read_csv(file, progress);
   const ProbeReadings readings = probe.read(flight, calibration.options.drop_invalid);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ranges>
 
+#include "option_spelling.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
 
@@ -20,9 +21,8 @@ void check_rows(const Probe& probe, const CalibrationOptions& options, const Fli
       probe.model().tables().parameters().size() - options.fit.fixed.size();
   if (rows >= parameters) return;
   throw Error(
-      fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or hold "
-                  "parameters with --fix NAME=VALUE",
-                  flight.name(), rows, parameters));
+      fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or {} some",
+                  flight.name(), rows, parameters, spell_option("fix")));
 }
 
 void check_freed(const Probe& probe, const CalibrationOptions& options) {
@@ -30,12 +30,24 @@ void check_freed(const Probe& probe, const CalibrationOptions& options) {
   for (const std::string& name : options.free) {
     if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) {
       throw Error(
-          fmt::format("--free {}: there is no such parameter; the model has: {}", name,
-                      fmt::join(parameters | std::views::transform(&Variable::name), ", ")));
+          fmt::format("{} {}: there is no such parameter; the model has: {}", spell_option("free"),
+                      name, fmt::join(parameters | std::views::transform(&Variable::name), ", ")));
     }
     if (options.fit.fixed.contains(name)) {
-      throw Error(fmt::format("--free {0} and --fix {0} contradict each other; keep one", name));
+      throw Error(fmt::format("{1} {0} and {2} {0} contradict each other; keep one", name,
+                              spell_option("free"), spell_option("fix")));
     }
+  }
+}
+
+/// Rows that a stage's segments select; messages say of which flight and option.
+std::size_t count_rows(const Record& record, const std::string& segments, const Flight& flight,
+                       std::string_view stage, std::string_view option) {
+  try {
+    return record.select(segments).rows();
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: the segments of {} ({}): {}", flight.name(), stage,
+                            spell_option(option), error.what()));
   }
 }
 
@@ -45,8 +57,10 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   check_freed(*probe, options);
   const ProbeRecord prepared = probe->prepare(flight, options.drop_invalid);
+  count_rows(prepared.record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
   check_rows(*probe, options, flight,
-             prepared.record.select(options.fit.stage_two_segments).rows());
+             count_rows(prepared.record, options.fit.stage_two_segments, flight, "stage two",
+                        "stage_two"));
   Calibration calibration;
   calibration.fit = fit(probe->model(), prepared.record, options.fit);
   calibration.probe = std::move(probe);

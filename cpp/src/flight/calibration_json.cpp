@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "json_values.hpp"
 #include "options_json.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "text_file.hpp"
 
 namespace sepcal {
 namespace {
@@ -89,7 +88,7 @@ Json write_combinations(const std::vector<Combination>& combinations) {
 
 std::vector<Combination> read_combinations(const Json& list) {
   std::vector<Combination> combinations;
-  for (const Json& entry : list) {
+  for (const Json& entry : elements_of(list)) {
     combinations.push_back({entry.at("parameters").get<std::vector<std::string>>(),
                             entry.at("combination").get<std::string>(),
                             number_or(entry.at("standard_error"), infinity)});
@@ -102,7 +101,8 @@ void read_correlation(const Json& correlation, Fit& fit) {
   const auto n = static_cast<Index>(fit.parameters.size());
   fit.correlation = Eigen::MatrixXd::Constant(n, n, undefined);
   const std::vector<Index> indices = estimated_indices(fit);
-  fit.correlation(indices, indices) = matrix_of(correlation.at("matrix"));
+  fit.correlation(indices, indices) =
+      matrix_of(correlation.at("matrix"), static_cast<Index>(indices.size()));
   VectorXd errors(n);
   for (Index k = 0; k < n; ++k) {
     errors[k] = fit.parameters[static_cast<std::size_t>(k)].standard_error_white;
@@ -132,13 +132,19 @@ StageOne read_stage_one(const Json& object, const Fit& fit) {
   StageOne stage_one;
   stage_one.best = point_of(names, object.at("best"));
   stage_one.best_trace_r = number_or(object.at("trace_r"), undefined);
-  for (const Json& minimum : object.at("minima")) {
+  for (const Json& minimum : elements_of(object.at("minima"))) {
     stage_one.minima.push_back(
         {point_of(names, minimum.at("xi2")), number_or(minimum.at("trace_r"), undefined)});
   }
   stage_one.unique_minimum = object.at("unique_minimum").get<bool>();
   stage_one.flat_directions = object.at("flat_directions").get<std::vector<std::string>>();
   return stage_one;
+}
+
+std::vector<std::string> output_names(const Probe& probe) {
+  std::vector<std::string> names;
+  for (const Variable& output : probe.model().tables().outputs) names.push_back(output.name);
+  return names;
 }
 
 FitStatus status_of(const std::string& name) {
@@ -151,12 +157,13 @@ FitStatus status_of(const std::string& name) {
 
 Calibration read(const Json& root) {
   Calibration calibration;
-  calibration.probe = read_probe(root.at("model").get<std::string>(), root.at("options"));
   calibration.options = read_options(root.at("options"));
+  calibration.probe = read_probe(root.at("model").get<std::string>(), root.at("options"));
   const Json& inputs = root.at("inputs");
-  calibration.flight = {
-      inputs.at("file").get<std::string>(), inputs.at("sha256").get<std::string>(),
-      inputs.at("rows").get<std::size_t>(), inputs.at("rows_used").get<std::size_t>()};
+  calibration.flight = {inputs.at("file").get<std::string>(),
+                        inputs.at("sha256").get<std::string>(),
+                        whole_number<std::size_t>(inputs.at("rows")),
+                        whole_number<std::size_t>(inputs.at("rows_used"))};
   Fit& fit = calibration.fit;
   fit.status = status_of(root.at("status").get<std::string>());
   fit.message = root.at("message").get<std::string>();
@@ -165,14 +172,28 @@ Calibration read(const Json& root) {
   fit.identifiability.unobservable = read_combinations(root.at("unobservable"));
   fit.identifiability.weak = read_combinations(root.at("weak"));
   fit.cost = number_or(root.at("cost"), undefined);
-  fit.rmse = values_by_name(root.at("rmse"));
-  fit.noise = values_by_name(root.at("noise"));
-  fit.iterations = root.at("iterations").get<int>();
+  const std::vector<std::string> outputs = output_names(*calibration.probe);
+  fit.rmse = values_by_name(outputs, root.at("rmse"));
+  fit.noise = values_by_name(outputs, root.at("noise"));
+  fit.iterations = whole_number<int>(root.at("iterations"));
   fit.rows = calibration.flight.rows_used;
   fit.stage_one = read_stage_one(root.at("stage_one"), fit);
   fit.method = second_stage_of(root.at("stage_two").at("method").get<std::string>());
-  fit.noise_iterations = root.at("stage_two").at("r_iterations").get<int>();
+  fit.noise_iterations = whole_number<int>(root.at("stage_two").at("r_iterations"));
   return calibration;
+}
+
+Calibration read_or_refuse(const Json& root, const std::string& source) {
+  const auto refuse = [&](std::string_view damage) -> Error {
+    return Error(fmt::format("{} is damaged: {}; fit the flight again", source, damage));
+  };
+  try {
+    return read(root);
+  } catch (const Json::exception&) {
+    throw refuse("a calibration's entries are missing or of another kind");
+  } catch (const Error& error) {
+    throw refuse(error.what());
+  }
 }
 
 }  // namespace
@@ -211,36 +232,26 @@ Calibration parse_calibration(std::string_view json, const std::string& source,
   const Json root = Json::parse(json, nullptr, false);
   if (root.is_discarded() || !root.is_object() || !root.contains("schema_version") ||
       !root.contains("model") || !root["model"].is_string()) {
-    throw Error(source + " is not a calibration; give the JSON that fit wrote with -o");
+    throw Error(fmt::format("{} is not a calibration; give the JSON that fit wrote with -o{}",
+                            source, json.empty() ? " (it is empty)" : ""));
   }
   if (root["schema_version"] != schema_version) {
     throw Error(
         fmt::format("{} has schema version {}, this sepcal reads version {}; fit the flight again",
                     source, root["schema_version"].dump(), schema_version));
   }
-  try {
-    Calibration calibration = read(root);
-    if (!app.empty() && calibration.probe->app() != app) {
-      throw Error(fmt::format("it calibrates a {}; use {}", calibration.probe->name(),
-                              calibration.probe->app()));
-    }
-    return calibration;
-  } catch (const Json::exception&) {
-    throw Error(source +
-                " is damaged: a calibration's entries are missing or of another kind; fit "
-                "the flight again");
-  } catch (const Error& error) {
-    throw Error(source + ": " + error.what());
+  Calibration calibration = read_or_refuse(root, source);
+  if (!app.empty() && calibration.probe->app() != app) {
+    throw Error(fmt::format("{}: its model is '{}'; use {} for it", source,
+                            calibration.probe->name(), calibration.probe->app()));
   }
+  return calibration;
 }
 
 Calibration read_calibration(const std::string& file, std::string_view app) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    throw Error(file + ": can't be read as a calibration; give the JSON that fit wrote with -o");
-  }
-  return parse_calibration(text.str(), file, app);
+  const std::string text =
+      read_text_file(file, "as a calibration; give the JSON that fit wrote with -o");
+  return parse_calibration(text, file, app);
 }
 
 }  // namespace sepcal

@@ -90,11 +90,11 @@ bool CsvReader::next() {
   line_ = lines_->line();
   split();
   if (cells_.size() != header_.size()) {
-    fail(line_,
-         fmt::format("{} cells, but the header has {} columns; {}", cells_.size(), header_.size(),
-                     cells_.size() < header_.size()
-                         ? "complete the row or delete it"
-                         : "quote a cell that holds a comma, and use a point in decimals"));
+    fail(line_, fmt::format("{} cells, but the header has {} column{}; {}", cells_.size(),
+                            header_.size(), header_.size() == 1 ? "" : "s",
+                            cells_.size() < header_.size()
+                                ? "complete the row or delete it"
+                                : "quote a cell that holds a comma, and use a point in decimals"));
   }
   return true;
 }
@@ -163,7 +163,10 @@ std::string CsvReader::sha256() const {
 }
 
 void CsvReader::fail(std::size_t line, const std::string& message) const {
-  throw Error(fmt::format("{} line {}: {}", file_, line, message));
+  throw Error(fmt::format("{} line {}: {}{}", file_, line, message,
+                          header_.size() == 1 && !header_.front().empty()
+                              ? " (its header has no comma; is this a CSV file?)"
+                              : ""));
 }
 
 }  // namespace sepcal

@@ -65,6 +65,10 @@ std::string Flight::locate(std::size_t row) const {
 }
 
 std::string Flight::list_columns() const {
+  if (from_file() && columns_.size() == 1 && maneuvers_.empty()) {
+    return fmt::format("the file has: {}, and no comma in its header; is this a CSV file?",
+                       columns_.front().header);
+  }
   std::string list = from_file() ? "the file has: " : "the flight has: ";
   const std::size_t prefix = list.size();
   const auto append = [&](std::string_view header) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "json_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,10 +23,10 @@ Json by_name(const std::vector<OutputValue>& values) {
   return object;
 }
 
-std::vector<OutputValue> values_by_name(const Json& object) {
+std::vector<OutputValue> values_by_name(const std::vector<std::string>& names, const Json& object) {
   std::vector<OutputValue> values;
-  for (const auto& [name, value] : object.items()) {
-    values.push_back({name, number_or(value, std::numeric_limits<double>::quiet_NaN())});
+  for (const std::string& name : names) {
+    values.push_back({name, number_or(object.at(name), std::numeric_limits<double>::quiet_NaN())});
   }
   return values;
 }
@@ -40,13 +41,18 @@ Json matrix(const MatrixXd& values) {
   return rows;
 }
 
-MatrixXd matrix_of(const Json& rows) {
-  const auto n = static_cast<Index>(rows.size());
+MatrixXd matrix_of(const Json& rows, Index n) {
+  const auto size = static_cast<std::size_t>(n);
+  const auto is_whole = [size](const Json& row) { return elements_of(row).size() == size; };
+  if (elements_of(rows).size() != size || !std::ranges::all_of(elements_of(rows), is_whole)) {
+    throw Error("the matrix of correlations is not " + std::to_string(n) + " by " +
+                std::to_string(n));
+  }
   MatrixXd values(n, n);
-  for (Index i = 0; i < n; ++i) {
-    for (Index k = 0; k < n; ++k) {
-      values(i, k) = number_or(rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(k)),
-                               std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t k = 0; k < size; ++k) {
+      values(static_cast<Index>(i), static_cast<Index>(k)) =
+          number_or(rows.at(i).at(k), std::numeric_limits<double>::quiet_NaN());
     }
   }
   return values;

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 
 namespace sepcal {
@@ -22,11 +26,33 @@ double number_or(const Json& value, double missing);
 
 /// {"vn": 0.15, ...}
 Json by_name(const std::vector<OutputValue>& values);
-std::vector<OutputValue> values_by_name(const Json& object);
+
+/// A value of every one of `names`. Throws Json::exception where one is missing.
+std::vector<OutputValue> values_by_name(const std::vector<std::string>& names, const Json& object);
+
+/// A whole number that T can hold. Throws Error for anything else.
+template <std::integral T>
+T whole_number(const Json& value) {
+  if (value.is_number_unsigned() && std::in_range<T>(value.get<std::uint64_t>())) {
+    return static_cast<T>(value.get<std::uint64_t>());
+  }
+  if (value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>())) {
+    return static_cast<T>(value.get<std::int64_t>());
+  }
+  throw Error(value.dump() + " stands where a whole number should");
+}
+
+/// The entries of an object, and the elements of a list. Throw Json::exception for anything else.
+inline const auto& entries_of(const Json& object) {
+  return object.get_ref<const Json::object_t&>();
+}
+inline const auto& elements_of(const Json& list) { return list.get_ref<const Json::array_t&>(); }
 
 /// [[...], ...], row by row.
 Json matrix(const Eigen::MatrixXd& values);
-Eigen::MatrixXd matrix_of(const Json& rows);
+
+/// Throws Error unless the rows are `n` of `n` numbers.
+Eigen::MatrixXd matrix_of(const Json& rows, Eigen::Index n);
 
 /// {"lambda_alpha": 0.1, ...}: a point with its names, in order.
 Json point(const std::vector<std::string>& names, const Eigen::VectorXd& values);

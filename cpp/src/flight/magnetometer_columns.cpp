@@ -3,9 +3,11 @@
 // where C_n^b is the transpose of the 3-2-1 Euler sequence from body to north-east-down.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "option_spelling.hpp"
 #include "record_builder.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
@@ -50,6 +52,15 @@ void compute_true_field(RecordBuilder& builder, const Field& field_at) {
   }
 }
 
+void check_field(const Vector& field) {
+  if (!std::ranges::all_of(field, [](double component) { return std::isfinite(component); })) {
+    throw Error("the field given is not three finite numbers: north, east, down in uT");
+  }
+  if (std::ranges::all_of(field, [](double component) { return component == 0; })) {
+    throw Error("the field given has no strength; give the Earth's: north, east, down in uT");
+  }
+}
+
 void use_given_field(RecordBuilder& builder, const Vector& field) {
   builder.need({"roll", "pitch", "yaw"});
   if (builder.has({"hx", "hy", "hz"})) builder.note("the field given replaces hx, hy and hz");
@@ -71,13 +82,7 @@ void use_logged_field(RecordBuilder& builder) {
 }  // namespace
 
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
-  if (options.field) {
-    for (const double component : *options.field) {
-      if (!std::isfinite(component)) {
-        throw Error("the field given is not three finite numbers: north, east, down in uT");
-      }
-    }
-  }
+  if (options.field) check_field(*options.field);
   RecordBuilder builder(flight, quantities, options.drop_invalid);
   builder.need({"time", "mx", "my", "mz"});
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
@@ -90,8 +95,8 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   } else {
     throw Error(
         fmt::format("{}: the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, "
-                    "pitch_rad, yaw_rad with bn_ut, be_ut, bd_ut or --field N,E,D; {}",
-                    flight.name(), flight.list_columns()));
+                    "pitch_rad, yaw_rad with bn_ut, be_ut, bd_ut or {} N,E,D; {}",
+                    flight.name(), spell_option("field"), flight.list_columns()));
   }
   builder.keep_valid();
   builder.check_time();

@@ -7,6 +7,20 @@
 #include "sepcal/error.hpp"
 
 namespace sepcal {
+namespace {
+
+constexpr const char* to_string(Sampling sampling) {
+  return sampling == Sampling::uniform ? "uniform" : "low_discrepancy";
+}
+
+Sampling sampling_of(const std::string& name) {
+  for (const Sampling sampling : {Sampling::uniform, Sampling::low_discrepancy}) {
+    if (to_string(sampling) == name) return sampling;
+  }
+  throw Error("sampling '" + name + "' is unknown");
+}
+
+}  // namespace
 
 Json write_options(const Calibration& calibration) {
   const FitOptions& fit = calibration.options.fit;
@@ -25,7 +39,7 @@ Json write_options(const Calibration& calibration) {
   options["free"] = calibration.options.free;
   options["noise"] = fit.noise;
   options["samples"] = fit.samples;
-  options["sampling"] = fit.sampling == Sampling::uniform ? "uniform" : "low_discrepancy";
+  options["sampling"] = to_string(fit.sampling);
   options["priors"] = Json::object();
   for (const auto& [name, prior] : fit.priors) {
     options["priors"][name] = {prior.mean, prior.standard_deviation};
@@ -54,25 +68,24 @@ CalibrationOptions read_options(const Json& options) {
   FitOptions& fit = result.fit;
   fit.stage_one_segments = options.at("stage_one").get<std::string>();
   fit.stage_two_segments = options.at("stage_two").get<std::string>();
-  for (const auto& [name, bounds] : options.at("bounds").items()) {
+  for (const auto& [name, bounds] : entries_of(options.at("bounds"))) {
     fit.bounds[name] = {number_or(bounds.at(0), -infinity), number_or(bounds.at(1), infinity)};
   }
   fit.fixed = options.at("fix").get<std::map<std::string, double>>();
   result.free = options.at("free").get<std::vector<std::string>>();
   fit.noise = options.at("noise").get<std::map<std::string, double>>();
-  fit.samples = options.at("samples").get<int>();
-  fit.sampling = options.at("sampling").get<std::string>() == "uniform" ? Sampling::uniform
-                                                                        : Sampling::low_discrepancy;
-  for (const auto& [name, prior] : options.at("priors").items()) {
+  fit.samples = whole_number<int>(options.at("samples"));
+  fit.sampling = sampling_of(options.at("sampling").get<std::string>());
+  for (const auto& [name, prior] : entries_of(options.at("priors"))) {
     fit.priors[name] = {prior.at(0).get<double>(), prior.at(1).get<double>()};
   }
-  fit.seed = options.at("seed").get<std::uint64_t>();
-  fit.descents = options.at("descents").get<int>();
+  fit.seed = whole_number<std::uint64_t>(options.at("seed"));
+  fit.descents = whole_number<int>(options.at("descents"));
   fit.second_stage = second_stage_of(options.at("second_stage").get<std::string>());
   fit.noise_tolerance = options.at("noise_tolerance").get<double>();
-  fit.noise_iterations = options.at("noise_iterations").get<int>();
-  fit.iterations = options.at("iterations").get<int>();
-  fit.threads = options.at("threads").get<int>();
+  fit.noise_iterations = whole_number<int>(options.at("noise_iterations"));
+  fit.iterations = whole_number<int>(options.at("iterations"));
+  fit.threads = whole_number<int>(options.at("threads"));
   result.drop_invalid = options.at("drop_invalid").get<bool>();
   return result;
 }

@@ -30,6 +30,22 @@ std::filesystem::path follow_links(std::filesystem::path path) {
   return path;
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// How the system names an open file that has no name of its own.
+std::string path_of(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
+
+/// A file on that folder's disc that no name leads to; negative where the disc has none such, or
+/// where it could not be given a name later.
+int open_nameless(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, before_umask);
+  if (descriptor < 0 || ::access(path_of(descriptor).c_str(), F_OK) == 0) return descriptor;
+  ::close(descriptor);
+  return -1;
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path target)
@@ -43,6 +59,7 @@ OutputFile::OutputFile(std::filesystem::path target)
   }
   if (S_ISDIR(old.st_mode)) fail("is a folder; name a file in it", 0);
   if (!S_ISREG(old.st_mode)) {
+    direct_ = true;
     descriptor_ = ::open(named_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) fail("can't be written", errno);
     return;
@@ -62,19 +79,30 @@ OutputFile::OutputFile(std::filesystem::path target)
 OutputFile::~OutputFile() { abandon(); }
 
 void OutputFile::open_beside_target() {
-  const auto folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  const auto folder = folder_of(target_);
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
     fail(fmt::format("folder '{}' isn't there; make it first", folder.string()), 0);
   }
-  for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    hidden_ = folder / fmt::format(".sepcal-{}-{}.part", ::getpid(), attempt);
-    descriptor_ = ::open(hidden_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, before_umask);
-    if (descriptor_ < 0 && errno != EEXIST) {
-      const int error = errno;
-      hidden_.clear();
-      fail("can't be written", error);
+  descriptor_ = open_nameless(folder);
+  if (descriptor_ >= 0) return;
+  const auto create = [this](const char* hidden) {
+    descriptor_ = ::open(hidden, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, before_umask);
+    return descriptor_ >= 0;
+  };
+  take_hidden_name(create, "can't be written");
+}
+
+/// Sets hidden_ to the first free name; `take` makes the file of that name or leaves errno.
+template <class Take>
+void OutputFile::take_hidden_name(const Take& take, const char* failure) {
+  for (int attempt = 0;; ++attempt) {
+    const auto name = folder_of(target_) / fmt::format(".sepcal-{}-{}.part", ::getpid(), attempt);
+    if (take(name.c_str())) {
+      hidden_ = name;
+      return;
     }
+    if (errno != EEXIST) fail(failure, errno);
   }
 }
 
@@ -85,14 +113,24 @@ void OutputFile::write(std::string_view text) {
   }
 }
 
-void OutputFile::commit() {
+void OutputFile::flush() {
   if (descriptor_ < 0) throw Error(named_.string() + ": was written already");
-  if (error_ != 0 || !flush()) fail("writing failed", error_);
-  // Where the hidden file reaches the disc only after the rename, a power cut leaves an empty one.
-  if (!hidden_.empty() && ::fsync(descriptor_) != 0) fail("writing failed", errno);
-  const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0) fail("writing failed", errno);
-  if (!hidden_.empty() && ::rename(hidden_.c_str(), target_.c_str()) != 0) {
+  if (error_ != 0 || !send_pending()) fail("writing failed", error_);
+  // Where the file reaches the disc only after the rename, a power cut leaves an empty one.
+  if (!direct_ && ::fsync(descriptor_) != 0) fail("writing failed", errno);
+}
+
+void OutputFile::commit() {
+  flush();
+  if (!direct_ && hidden_.empty()) {
+    const auto link = [this](const char* hidden) {
+      return ::linkat(AT_FDCWD, path_of(descriptor_).c_str(), AT_FDCWD, hidden,
+                      AT_SYMLINK_FOLLOW) == 0;
+    };
+    take_hidden_name(link, "can't be put in place");
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail("writing failed", errno);
+  if (!direct_ && ::rename(hidden_.c_str(), target_.c_str()) != 0) {
     fail("can't be put in place", errno);
   }
   hidden_.clear();
@@ -101,7 +139,7 @@ void OutputFile::commit() {
 std::streamsize OutputFile::xsputn(const char* text, std::streamsize count) {
   if (error_ != 0 || descriptor_ < 0) return 0;
   pending_.insert(pending_.end(), text, text + count);
-  return pending_.size() < buffer_size || flush() ? count : 0;
+  return pending_.size() < buffer_size || send_pending() ? count : 0;
 }
 
 OutputFile::int_type OutputFile::overflow(int_type c) {
@@ -110,7 +148,7 @@ OutputFile::int_type OutputFile::overflow(int_type c) {
 }
 
 /// Hands the pending bytes to the system; false, with error_ set, where it doesn't take them.
-bool OutputFile::flush() {
+bool OutputFile::send_pending() {
   for (std::size_t sent = 0; sent < pending_.size();) {
     const auto count = ::write(descriptor_, pending_.data() + sent, pending_.size() - sent);
     if (count < 0 && errno != EINTR) {
@@ -133,6 +171,20 @@ void OutputFile::fail(const std::string& what, int error) {
   abandon();
   throw Error(error == 0 ? fmt::format("{}: {}", named_.string(), what)
                          : fmt::format("{}: {}: {}", named_.string(), what, std::strerror(error)));
+}
+
+bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(one, other, ignored)) return true;
+  const auto first = std::filesystem::weakly_canonical(follow_links(one), ignored);
+  return !first.empty() && first == std::filesystem::weakly_canonical(follow_links(other), ignored);
+}
+
+void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(input, ignored) || !is_same_file(output, input)) return;
+  throw Error(fmt::format("{}: it is an input, and writing there would lose it; name another file",
+                          output.string()));
 }
 
 }  // namespace sepcal

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "option_spelling.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
@@ -31,13 +32,14 @@ class FiveHole final : public Probe {
  public:
   FiveHole(double k_alpha, double k_beta, const std::array<double, 3>& lever_arm)
       : setup_{k_alpha, k_beta, {lever_arm[0], lever_arm[1], lever_arm[2]}}, model_(setup_) {
-    for (const auto& [name, k] : {std::pair{"k-alpha", k_alpha}, std::pair{"k-beta", k_beta}}) {
+    for (const auto& [name, k] : {std::pair{"k_alpha", k_alpha}, std::pair{"k_beta", k_beta}}) {
       if (std::isfinite(k) && k > 0) continue;
-      throw Error(
-          fmt::format("--{} is {}; give the port's sensitivity in 1/rad, above zero", name, k));
+      throw Error(fmt::format("{} is {}; give the ports' sensitivity in 1/rad, above zero",
+                              spell_option(name), k));
     }
-    if (!setup_.lever_arm.allFinite())
-      throw Error("--lever-arm is not finite; give X,Y,Z in metres");
+    if (!setup_.lever_arm.allFinite()) {
+      throw Error(spell_option("lever_arm") + " is not finite; give X,Y,Z in metres");
+    }
   }
 
   std::string_view name() const override { return "five-hole"; }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "option_spelling.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -136,7 +137,7 @@ void RecordBuilder::keep_or_refuse(const RowTest& test, std::string_view reason,
   const Loss loss = keep(test, reason);
   if (loss.rows == 0 || drop_invalid_) return;
   throw Error(fmt::format("{}: {}; {} drops such rows", flight_.locate(loss.first),
-                          complaint(loss.first), flight_.drop_invalid_option()));
+                          complaint(loss.first), spell_option("drop_invalid")));
 }
 
 void RecordBuilder::compute(std::string name, RowValue value) {

@@ -188,7 +188,7 @@ Pressures read_probe(const FiveHoleTruth& truth, const Vector3d& velocity, const
   const double airspeed = met.norm();
   const double indicated = (airspeed - parameter("b_va")) / (1.0 + parameter("lambda_va"));
   if (!(indicated > 0.0)) {
-    throw Error("truth: b_va = " + format_number(parameter("b_va")) +
+    throw Error(truth.source + ": b_va = " + format_number(parameter("b_va")) +
                 " m/s leaves the probe nothing to read at " + format_number(airspeed) +
                 " m/s of airspeed; choose it smaller");
   }
@@ -202,13 +202,14 @@ Pressures read_probe(const FiveHoleTruth& truth, const Vector3d& velocity, const
 }
 
 void check(const FiveHoleTruth& truth) {
-  check_parameters(truth.parameters, FiveHoleTruth{}.parameters);
-  check_values("lever arm", truth.lever_arm);
-  check_values("velocity noise", truth.noise, 0.0);
-  for (const double k : {truth.k_alpha, truth.k_beta}) {
-    if (!(k > 0.0 && std::isfinite(k))) {
-      throw Error("truth: sensitivity " + format_number(k) + " 1/rad must be finite and above 0");
-    }
+  check_parameters(truth.source, truth.parameters, FiveHoleTruth{}.parameters);
+  check_values(truth.source, "lever arm", truth.lever_arm);
+  check_values(truth.source, "velocity noise", truth.noise, 0.0);
+  for (const auto& [name, k] :
+       {std::pair("k_alpha", truth.k_alpha), std::pair("k_beta", truth.k_beta)}) {
+    if (k > 0.0 && std::isfinite(k)) continue;
+    throw Error(truth.source + ": sensitivity " + format_number(k) + " 1/rad of " + name +
+                " must be finite and above 0");
   }
 }
 

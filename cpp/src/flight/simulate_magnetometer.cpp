@@ -52,9 +52,9 @@ Matrix3d distortion(const std::map<std::string, double>& truth) {
 }
 
 void check(const MagnetometerTruth& truth) {
-  check_parameters(truth.parameters, MagnetometerTruth{}.parameters);
-  check_values("field", truth.field);
-  check_values("magnetometer noise", truth.noise, 0.0);
+  check_parameters(truth.source, truth.parameters, MagnetometerTruth{}.parameters);
+  check_values(truth.source, "field", truth.field);
+  check_values(truth.source, "magnetometer noise", truth.noise, 0.0);
 }
 
 }  // namespace

@@ -127,31 +127,32 @@ std::vector<double> sample_times(double begin, double end, const SimulationOptio
   return times;
 }
 
-void check_parameters(const std::map<std::string, double>& parameters,
+void check_parameters(const std::string& source, const std::map<std::string, double>& parameters,
                       const std::map<std::string, double>& defaults) {
   std::string known;
   for (const auto& [name, value] : defaults) known += (known.empty() ? "" : ", ") + name;
   for (const auto& [name, value] : parameters) {
     if (!defaults.contains(name)) {
-      throw Error("truth: parameter '" + name + "' is unknown; the parameters are: " + known);
+      throw Error(source + ": parameter '" + name + "' is unknown; the parameters are: " + known);
     }
-    if (!std::isfinite(value)) throw Error("truth: parameter '" + name + "' must be finite");
+    if (!std::isfinite(value)) throw Error(source + ": parameter '" + name + "' must be finite");
     if (name.starts_with("lambda_") && value <= -1.0) {
-      throw Error("truth: scale error " + name + " = " + format_number(value) +
+      throw Error(source + ": scale error " + name + " = " + format_number(value) +
                   " leaves no signal; choose it above -1");
     }
   }
   for (const auto& [name, value] : defaults) {
     if (!parameters.contains(name)) {
-      throw Error("truth: parameter '" + name + "' is missing; the parameters are: " + known);
+      throw Error(source + ": parameter '" + name + "' is missing; the parameters are: " + known);
     }
   }
 }
 
-void check_values(std::string_view what, const std::array<double, 3>& values, double lowest) {
+void check_values(const std::string& source, std::string_view what,
+                  const std::array<double, 3>& values, double lowest) {
   for (const double value : values) {
     if (std::isfinite(value) && value >= lowest) continue;
-    throw Error("truth: " + std::string(what) + " " + format_number(value) + " must be finite" +
+    throw Error(source + ": " + std::string(what) + " " + format_number(value) + " must be finite" +
                 (std::isfinite(lowest) ? " and at least " + format_number(lowest) : ""));
   }
 }

@@ -107,13 +107,15 @@ class Noise {
 /// begin, end excluded. All in s. Throws Error for a rate or a number of rows out of range.
 std::vector<double> sample_times(double begin, double end, const SimulationOptions& options);
 
-/// Throws Error unless `parameters` holds exactly the names of `defaults`, every value is finite
-/// and every scale error (lambda_*) above -1.
-void check_parameters(const std::map<std::string, double>& parameters,
+/// Throws Error, opened by `source`, unless `parameters` holds exactly the names of `defaults`,
+/// every value is finite and every scale error (lambda_*) above -1.
+void check_parameters(const std::string& source, const std::map<std::string, double>& parameters,
                       const std::map<std::string, double>& defaults);
 
-/// Throws Error naming `what` unless every value is finite and at least `lowest`.
-void check_values(std::string_view what, const std::array<double, 3>& values,
+/// Throws Error, opened by `source` and naming `what`, unless every value is finite and at least
+/// `lowest`.
+void check_values(const std::string& source, std::string_view what,
+                  const std::array<double, 3>& values,
                   double lowest = -std::numeric_limits<double>::infinity());
 
 /// An empty flight with these columns.

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <functional>
+#include <algorithm>
+#include <ranges>
+#include <span>
+#include <vector>
 
 #include "json_values.hpp"
 #include "sepcal/error.hpp"
@@ -12,61 +15,97 @@ namespace sepcal {
 namespace {
 
 using Noise = std::array<double, 3>;
+using Outputs = std::array<const char*, 3>;
 
-Json write_noise(const std::array<const char*, 3>& outputs, const Noise& noise) {
+constexpr Outputs velocities{"vn", "ve", "vd"};
+constexpr Outputs axes{"mx", "my", "mz"};
+
+/// An entry of `options`: one number, or as many as `values` has in a list.
+struct Setting {
+  std::string_view name;
+  std::span<double> values;
+};
+
+Json write_noise(const Outputs& outputs, const Noise& noise) {
   Json object = Json::object();
   for (std::size_t j = 0; j < 3; ++j) object[outputs[j]] = noise[j];
   return object;
 }
 
-void read_noise(const std::array<const char*, 3>& outputs, const Json& object, Noise& noise) {
-  for (const auto& [name, value] : object.items()) {
-    const auto at =
-        std::ranges::find_if(outputs, [&](const char* output) { return name == output; });
-    if (at == outputs.end()) throw Error("there is no output '" + name + "'");
+void read_noise(const Json& object, const Outputs& outputs, Noise& noise) {
+  for (const auto& [name, value] : entries_of(object)) {
+    const auto at = std::ranges::find(outputs, name);
+    if (at == outputs.end()) {
+      throw Error(fmt::format("there is no output '{}'; the model has: {}", name,
+                              fmt::join(outputs, ", ")));
+    }
     noise[static_cast<std::size_t>(at - outputs.begin())] = value.get<double>();
   }
 }
 
 void read_parameters(const Json& object, std::map<std::string, double>& parameters) {
-  for (const auto& [name, value] : object.items()) {
+  for (const auto& [name, value] : entries_of(object)) {
     if (!parameters.contains(name)) {
-      std::string known;
-      for (const auto& entry : parameters) known += (known.empty() ? "" : ", ") + entry.first;
-      throw Error("there is no parameter '" + name + "'; the model has: " + known);
+      throw Error(fmt::format("there is no parameter '{}'; the model has: {}", name,
+                              fmt::join(std::views::keys(parameters), ", ")));
     }
     parameters[name] = value.get<double>();
   }
 }
 
-/// Reads the entries that `read_entry` knows; messages open with `source`.
-void read_object(std::string_view json, const std::string& source, std::string_view model,
-                 const std::function<bool(const std::string&, const Json&)>& read_entry) {
+void read_settings(const Json& object, const std::vector<Setting>& settings) {
+  for (const auto& [name, value] : entries_of(object)) {
+    const auto at = std::ranges::find(settings, name, &Setting::name);
+    if (at == settings.end()) {
+      throw Error(fmt::format("there is no option '{}'; known: {}", name,
+                              fmt::join(settings | std::views::transform(&Setting::name), ", ")));
+    }
+    if (at->values.size() == 1) {
+      at->values[0] = value.get<double>();
+      continue;
+    }
+    const auto numbers = value.get<std::vector<double>>();
+    if (numbers.size() != at->values.size()) {
+      throw Error(
+          fmt::format("{} needs {} numbers; see `simulate --truth` of a file that isn't "
+                      "there for an example",
+                      name, at->values.size()));
+    }
+    std::ranges::copy(numbers, at->values.begin());
+  }
+}
+
+/// Reads what the object names into `truth`; the rest keeps its default.
+template <class Truth>
+void read_truth(std::string_view json, std::string_view model, const Outputs& outputs,
+                const std::vector<Setting>& settings, Truth& truth) {
   const Json root = Json::parse(json, nullptr, false);
   if (root.is_discarded() || !root.is_object()) {
-    throw Error(source +
+    throw Error(truth.source +
                 " is not a truth file; give a JSON object {\"parameters\": {name: value}}");
   }
   try {
     for (const auto& [key, value] : root.items()) {
-      if (key == "model") {
-        if (value != model)
-          throw Error("it is for the model " + value.dump() + "; use the other app");
-      } else if (!read_entry(key, value)) {
-        throw Error("'" + key + "' is unknown; known: model, parameters, options, noise");
+      if (key == "parameters") {
+        read_parameters(value, truth.parameters);
+      } else if (key == "options") {
+        read_settings(value, settings);
+      } else if (key == "noise") {
+        read_noise(value, outputs, truth.noise);
+      } else if (key != "model") {
+        throw Error(fmt::format("'{}' is unknown; known: model, parameters, options, noise", key));
+      } else if (value != model) {
+        throw Error(fmt::format("it is for the model {}; use the other app", value.dump()));
       }
     }
   } catch (const Json::exception&) {
-    throw Error(source +
+    throw Error(truth.source +
                 ": a value is not of the kind that it should be; see `simulate --truth` of "
                 "a file that isn't there for an example");
   } catch (const Error& error) {
-    throw Error(source + ": " + error.what());
+    throw Error(truth.source + ": " + error.what());
   }
 }
-
-constexpr std::array velocities{"vn", "ve", "vd"};
-constexpr std::array axes{"mx", "my", "mz"};
 
 }  // namespace
 
@@ -90,38 +129,18 @@ std::string to_json(const MagnetometerTruth& truth) {
 }
 
 FiveHoleTruth parse_five_hole_truth(std::string_view json, const std::string& source) {
-  FiveHoleTruth truth;
-  read_object(json, source, "five-hole", [&](const std::string& key, const Json& value) {
-    if (key == "parameters") {
-      read_parameters(value, truth.parameters);
-    } else if (key == "options") {
-      truth.k_alpha = value.value("k_alpha", truth.k_alpha);
-      truth.k_beta = value.value("k_beta", truth.k_beta);
-      truth.lever_arm = value.value("lever_arm", truth.lever_arm);
-    } else if (key == "noise") {
-      read_noise(velocities, value, truth.noise);
-    } else {
-      return false;
-    }
-    return true;
-  });
+  FiveHoleTruth truth{.source = source};
+  read_truth(json, "five-hole", velocities,
+             {{"k_alpha", {&truth.k_alpha, 1}},
+              {"k_beta", {&truth.k_beta, 1}},
+              {"lever_arm", truth.lever_arm}},
+             truth);
   return truth;
 }
 
 MagnetometerTruth parse_magnetometer_truth(std::string_view json, const std::string& source) {
-  MagnetometerTruth truth;
-  read_object(json, source, "magnetometer", [&](const std::string& key, const Json& value) {
-    if (key == "parameters") {
-      read_parameters(value, truth.parameters);
-    } else if (key == "options") {
-      truth.field = value.value("field", truth.field);
-    } else if (key == "noise") {
-      read_noise(axes, value, truth.noise);
-    } else {
-      return false;
-    }
-    return true;
-  });
+  MagnetometerTruth truth{.source = source};
+  read_truth(json, "magnetometer", axes, {{"field", truth.field}}, truth);
   return truth;
 }
 

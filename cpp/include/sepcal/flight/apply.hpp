@@ -22,8 +22,8 @@ std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight&
 
 /// Copies every column and row of `file` to `output` as they stand and adds the corrected columns;
 /// a row without a correction gets empty cells. `output` appears whole or not at all. Throws Error
-/// for bad input, for columns of those names that are there already, and where `output` can't be
-/// written.
+/// for bad input, for columns of those names that are there already, and where `output` is `file`
+/// or can't be written.
 Applied apply_to_file(const Calibration& calibration, const std::string& file,
                       const std::string& output, const Progress& progress = {});
 

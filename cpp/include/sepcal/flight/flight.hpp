@@ -66,11 +66,6 @@ class Flight {
   /// How a message lists the columns: "the file has: time_s, vn_mps".
   std::string list_columns() const;
 
-  /// Which way out a message offers for rows with invalid cells: the option's name, as typed.
-  std::string_view drop_invalid_option() const {
-    return from_file() ? "--drop-invalid" : "drop_invalid";
-  }
-
  private:
   friend Flight read_csv(const std::string& file, const Progress& progress);
 

@@ -43,6 +43,7 @@ struct FiveHoleTruth {
   std::array<double, 3> lever_arm{0.35, 0.0, -0.02};  // velocity's reference to probe, body [m]
   std::array<double, 3> noise{0.15, 0.15, 0.15};      // standard deviation of vn, ve, vd [m/s]
   double altitude = 300.0;                            // at the first row, geopotential [m]
+  std::string source = "truth";                       // opens messages: the file it stood in
 };
 
 /// A magnetometer on a vehicle that turns through the whole sphere. The reading is
@@ -56,6 +57,7 @@ struct MagnetometerTruth {
   };
   std::array<double, 3> field{19.7, -1.4, 49.4};  // the Earth's, north, east, down [uT]
   std::array<double, 3> noise{0.3, 0.3, 0.3};     // standard deviation of mx, my, mz [uT]
+  std::string source = "truth";                   // opens messages: the file it stood in
 };
 
 /// A column of a CSV: its header, `<quantity>_<unit>`, and one value a row.

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fit_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include "option_values.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::app {
+namespace {
+
+constexpr int most_threads = 1024;
+
+void add_repeated(CLI::App& fit, const std::string& name, std::vector<std::string>& texts,
+                  const std::string& form, const std::string& description) {
+  fit.add_option(name, texts, description + "; may be repeated")
+      ->type_name(form)
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+Interval parse_interval(const std::string& name, const std::string& text) {
+  const std::vector<std::string> ends = split(text, ',');
+  if (ends.size() != 2) {
+    throw Error(fmt::format("--bounds {}={}: write it as NAME=LO,HI", name, text));
+  }
+  const std::string option = "--bounds " + name;
+  return {parse_value(option, ends[0]), parse_value(option, ends[1])};
+}
+
+template <class Choice>
+Choice choose(const std::string& option, const std::string& text,
+              const std::vector<std::pair<std::string, Choice>>& choices) {
+  std::string known;
+  for (const auto& [name, choice] : choices) {
+    if (name == text) return choice;
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  throw Error(fmt::format("{} {} is unknown; known: {}", option, text, known));
+}
+
+}  // namespace
+
+void FitArguments::add_to(CLI::App& fit) {
+  FitOptions& engine = options_.fit;
+  add_repeated(fit, "--effect", effects_, "E", "adds a physical effect to the model");
+  fit.add_option("--stage-one", engine.stage_one_segments,
+                 "maneuvers or times that stage one uses, e.g. wind_circle_1,510.9:530")
+      ->type_name("SEGMENTS");
+  fit.add_option("--stage-two", engine.stage_two_segments, "the same for stage two")
+      ->type_name("SEGMENTS");
+  add_repeated(fit, "--bounds", bounds_, "NAME=LO,HI", "bounds in the parameter's unit");
+  add_repeated(fit, "--fix", fixed_, "NAME=VALUE", "holds a parameter at a value");
+  add_repeated(fit, "--free", options_.free, "NAME", "frees a parameter that is held by default");
+  add_repeated(fit, "--noise", noise_, "OUTPUT=SD",
+               "holds an output's noise at a standard deviation");
+  add_whole_number(fit, "--samples", engine.samples, "samples of stage one");
+  fit.add_option("--sampling", sampling_, "uniform or low_discrepancy")
+      ->type_name("HOW")
+      ->capture_default_str();
+  add_whole_number(fit, "--seed", engine.seed, "seed of the samples");
+  fit.add_option("--second-stage", second_stage_, "joint, projected or auto")
+      ->type_name("HOW")
+      ->capture_default_str();
+  fit.add_option("--noise-tolerance", engine.noise_tolerance,
+                 "relative change of R at which R and the parameters have settled")
+      ->type_name("T")
+      ->capture_default_str();
+  add_whole_number(fit, "--threads", engine.threads, "threads; 0: one a core", most_threads);
+  fit.add_flag("--drop-invalid", options_.drop_invalid,
+               "drops rows with a cell that is no number instead of refusing the file");
+}
+
+CalibrationOptions FitArguments::resolve() const {
+  CalibrationOptions options = options_;
+  FitOptions& engine = options.fit;
+  if (!effects_.empty()) {
+    throw Error(fmt::format("--effect {}: effects can't be fitted yet; `effects` lists them",
+                            effects_.front()));
+  }
+  for (const std::string& text : bounds_) {
+    const auto [name, interval] = parse_assignment("--bounds", text, "NAME=LO,HI");
+    engine.bounds[name] = parse_interval(name, interval);
+  }
+  for (const std::string& text : fixed_) {
+    const auto [name, value] = parse_assignment("--fix", text, "NAME=VALUE");
+    engine.fixed[name] = parse_value("--fix " + name, value);
+    if (engine.bounds.contains(name)) {
+      throw Error(fmt::format("--fix {0} and --bounds {0} contradict each other; keep one", name));
+    }
+  }
+  for (const std::string& text : noise_) {
+    const auto [name, value] = parse_assignment("--noise", text, "OUTPUT=SD");
+    engine.noise[name] = parse_value("--noise " + name, value);
+  }
+  engine.second_stage = choose<SecondStage>("--second-stage", second_stage_,
+                                            {{"auto", SecondStage::automatic},
+                                             {"joint", SecondStage::joint},
+                                             {"projected", SecondStage::projected}});
+  engine.sampling = choose<Sampling>(
+      "--sampling", sampling_,
+      {{"uniform", Sampling::uniform}, {"low_discrepancy", Sampling::low_discrepancy}});
+  return options;
+}
+
+}  // namespace sepcal::app

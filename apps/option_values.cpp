@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "option_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "sepcal/error.hpp"
+#include "sepcal/flight/csv.hpp"
+
+namespace sepcal::app {
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+double parse_value(const std::string& option, const std::string& text) {
+  if (const auto value = parse_number(text)) return *value;
+  throw Error(fmt::format("{}: '{}' is not a number", option, text));
+}
+
+std::pair<std::string, std::string> parse_assignment(const std::string& option,
+                                                     const std::string& text,
+                                                     const std::string& form) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos || at == 0) {
+    throw Error(fmt::format("{} {}: write it as {}", option, text, form));
+  }
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+std::array<double, 3> parse_triple(const std::string& option, const std::string& text,
+                                   const std::string& example) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) {
+    throw Error(fmt::format("{} {}: give three numbers, e.g. {}", option, text, example));
+  }
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < 3; ++i) values[i] = parse_value(option, parts[i]);
+  return values;
+}
+
+std::uint64_t parse_whole_number(const std::string& option, const std::string& text,
+                                 std::uint64_t highest) {
+  const bool negative = text.starts_with('-');
+  const std::string_view digits = std::string_view(text).substr(negative ? 1 : 0);
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (digits.empty() || !std::ranges::all_of(digits, is_digit)) {
+    throw CLI::ValidationError(fmt::format("{}: '{}' is not a whole number", option, text));
+  }
+  if (negative) {
+    throw CLI::ValidationError(fmt::format("{} must not be negative, and {} is", option, text));
+  }
+  std::uint64_t value = 0;
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (read.ec != std::errc{} || value > highest) {
+    throw CLI::ValidationError(
+        fmt::format("{} {} is too large; take at most {}", option, text, highest));
+  }
+  return value;
+}
+
+CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file,
+                      const std::string& description) {
+  const auto refuse_empty = [](const std::string& text) -> std::string {
+    return text.empty() ? "the name is empty; name a file" : "";
+  };
+  return verb.add_option(name, file, description)->check(refuse_empty);
+}
+
+}  // namespace sepcal::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What stands behind an option, from its text to a value. All throw with the option's name and the
+// form that it should have.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace sepcal::app {
+
+std::vector<std::string> split(std::string_view text, char separator);
+
+/// The whole of `text` as a finite number; `option` opens the message. Throws Error.
+double parse_value(const std::string& option, const std::string& text);
+
+/// "NAME=VALUE" to its two halves. Throws Error with the form.
+std::pair<std::string, std::string> parse_assignment(const std::string& option,
+                                                     const std::string& text,
+                                                     const std::string& form);
+
+/// "X,Y,Z": exactly three finite numbers. Throws Error with the example.
+std::array<double, 3> parse_triple(const std::string& option, const std::string& text,
+                                   const std::string& example);
+
+/// Digits alone, at most `highest`. Throws CLI::ValidationError.
+std::uint64_t parse_whole_number(const std::string& option, const std::string& text,
+                                 std::uint64_t highest);
+
+/// An option that takes a whole number from 0 to `highest`; CLI11's own would wrap "-1" round.
+template <std::integral T>
+CLI::Option* add_whole_number(CLI::App& verb, const std::string& name, T& value,
+                              const std::string& description,
+                              T highest = std::numeric_limits<T>::max()) {
+  const auto read = [&value, name, highest](const std::string& text) {
+    value = static_cast<T>(parse_whole_number(name, text, static_cast<std::uint64_t>(highest)));
+  };
+  return verb.add_option_function<std::string>(name, read, description)
+      ->type_name("N")
+      ->default_str(std::to_string(value));
+}
+
+/// An option or argument that names a file; an empty name (an unset variable of the shell) is
+/// refused.
+CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file,
+                      const std::string& description);
+
+}  // namespace sepcal::app
