@@ -129,7 +129,11 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
   for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
-  const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
+  VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
+  for (Index k = 0; k < n; ++k) {
+    // Nothing but the bound stopped it: two standard errors, not one, must fit into half the width.
+    if (two.at_bound[static_cast<std::size_t>(k)]) scale[k] *= 0.5;
+  }
   result.identifiability = identify(factor.matrix().topLeftCorner(n, n), names, scale,
                                     std::isnan(inflation) ? 1.0 : std::sqrt(inflation));
 

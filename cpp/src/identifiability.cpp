@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double share_to_take_part = 0.1;         // of the largest, in units of the scale
+constexpr double share_to_take_part = 0.05;        // of the largest, in units of the scale
 constexpr double share_to_be_weak_together = 0.3;  // of the largest, in columns of unit length
 constexpr double share_to_be_written = 0.01;       // of the largest, in the combination's own
 constexpr double singular_floor = 1e-12;           // of the largest singular value: as good as zero
