@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal._core: the engine and its flights for the Python front, which documents it.
 #include "bindings.hpp"
-#include "sepcal/fit.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/fit.hpp"
 
 namespace sepcal::bindings {
 namespace {
