@@ -3,11 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::app {
 namespace {
+
+template <class Value>
+void refuse_repeated(const std::string& option, const std::map<std::string, Value>& given,
+                     const std::string& name) {
+  if (given.contains(name))
+    throw Error(fmt::format("{} {} is given twice; keep one", option, name));
+}
 
 constexpr int most_threads = 1024;
 
@@ -80,10 +89,12 @@ CalibrationOptions FitArguments::resolve() const {
   }
   for (const std::string& text : bounds_) {
     const auto [name, interval] = parse_assignment("--bounds", text, "NAME=LO,HI");
+    refuse_repeated("--bounds", engine.bounds, name);
     engine.bounds[name] = parse_interval(name, interval);
   }
   for (const std::string& text : fixed_) {
     const auto [name, value] = parse_assignment("--fix", text, "NAME=VALUE");
+    refuse_repeated("--fix", engine.fixed, name);
     engine.fixed[name] = parse_value("--fix " + name, value);
     if (engine.bounds.contains(name)) {
       throw Error(fmt::format("--fix {0} and --bounds {0} contradict each other; keep one", name));
@@ -91,6 +102,7 @@ CalibrationOptions FitArguments::resolve() const {
   }
   for (const std::string& text : noise_) {
     const auto [name, value] = parse_assignment("--noise", text, "OUTPUT=SD");
+    refuse_repeated("--noise", engine.noise, name);
     engine.noise[name] = parse_value("--noise " + name, value);
   }
   engine.second_stage = choose<SecondStage>("--second-stage", second_stage_,

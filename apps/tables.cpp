@@ -38,8 +38,9 @@ std::string stage_line(const Fit& fit, int samples) {
   std::string text = fmt::format("stage one: {} samples, {} local minim{}", samples,
                                  one.minima.size(), one.minima.size() == 1 ? "um" : "a");
   for (const std::string& flat : one.flat_directions) text += ", flat along " + flat;
-  return text + fmt::format("; stage two: {}, {} iterations, R settled in {}\n",
-                            to_string(fit.method), fit.iterations, fit.noise_iterations);
+  return text + fmt::format("; stage two: {}, {} iteration{}, R settled in {}\n",
+                            to_string(fit.method), fit.iterations, fit.iterations == 1 ? "" : "s",
+                            fit.noise_iterations);
 }
 
 }  // namespace

@@ -129,13 +129,22 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
   for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
+  const MatrixXd tangent = factor.matrix().topLeftCorner(n, n);
+  const double noise_factor = std::isnan(inflation) ? 1.0 : std::sqrt(inflation);
   VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
+  result.identifiability = identify(tangent, names, scale, noise_factor);
+
+  // Nothing but its bound stopped a parameter there. Where it is exchanged for others, they are as
+  // open as it is unless two of its standard errors, not one, fit into half the width.
   for (Index k = 0; k < n; ++k) {
-    // Nothing but the bound stopped it: two standard errors, not one, must fit into half the width.
     if (two.at_bound[static_cast<std::size_t>(k)]) scale[k] *= 0.5;
   }
-  result.identifiability = identify(factor.matrix().topLeftCorner(n, n), names, scale,
-                                    std::isnan(inflation) ? 1.0 : std::sqrt(inflation));
+  Identifiability strict = identify(tangent, names, scale, noise_factor);
+  if (std::ranges::any_of(strict.unobservable, [](const Combination& combination) {
+        return combination.parameters.size() > 1;
+      })) {
+    result.identifiability = std::move(strict);
+  }
 
   VectorXd rmse(two.noise.size());
   for (Index j = 0; j < rmse.size(); ++j) {

@@ -3,6 +3,7 @@
 // "wind_circle_1,510.9:530" takes.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -38,7 +39,7 @@ std::optional<Span> parse_span(std::string_view text) {
   if (colon == std::string_view::npos) return std::nullopt;
   const auto from = parse_time(trim(text.substr(0, colon)));
   const auto to = parse_time(trim(text.substr(colon + 1)));
-  if (!from || !to) return std::nullopt;
+  if (!from || !to || std::isnan(*from) || std::isnan(*to)) return std::nullopt;
   return Span{*from, *to};
 }
 

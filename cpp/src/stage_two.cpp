@@ -86,6 +86,14 @@ class Alternation {
     result_.at_bound = refinement.at_bound;
     result_.factors = objective.factors();
     result_.iterations += refinement.iterations;
+    // R moves the minimum, so that a bound of a linear parameter may come in the way only now.
+    if (result_.method == SecondStage::projected) {
+      for (Index k = 0; k < sweep_.tables().n_1(); ++k) {
+        if (!result_.at_bound[static_cast<std::size_t>(k)]) continue;
+        fall_back_to_joint(k);
+        break;
+      }
+    }
     return refinement.converged;
   }
 
@@ -130,11 +138,18 @@ class Alternation {
     if (result_.x == x) return true;
     for (Index k = 0; k < x.size(); ++k) {
       if (result_.x[k] == x[k]) continue;
-      result_.message += "projected fell back to joint, because the bound of " +
-                         problem_.parameters()[static_cast<std::size_t>(k)].name + " is active; ";
+      fall_back_to_joint(k);
       break;
     }
     return false;
+  }
+
+  /// The inner problem of a projected fit does not know the bounds of linear parameters.
+  void fall_back_to_joint(Index bounded) {
+    result_.method = SecondStage::joint;
+    result_.message += "projected fell back to joint, because the bound of " +
+                       problem_.parameters()[static_cast<std::size_t>(bounded)].name +
+                       " is active; ";
   }
 
   const Problem& problem_;

@@ -44,6 +44,11 @@ def fit(model: Model, data: Flight | Columns, **options: Unpack[FitOptions]) -> 
         Error: Bad input or misuse: one line that names the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
     """
+    if not isinstance(model, Model):
+        raise _core.Error(
+            f"{type(model).__name__} is no sepcal model; models written in Python are not there yet: "
+            "write it in C++, or use FiveHoleProbe, Magnetometer, ScalarExample1, ScalarExample2"
+        )
     core_options = to_core(options)
     if isinstance(data, Flight):
         return Calibration._of(_core.calibrate(model._core, data._core, core_options), data)

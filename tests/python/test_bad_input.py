@@ -225,3 +225,8 @@ def test_simulations_of_nothing() -> None:
     refuse(lambda: sepcal.simulate("five-hole", parameters={"w_n": np.nan}), "'w_n'", "nan")
     refuse(lambda: sepcal.simulate("five-hole", noise={"mx": 1.0}), "'mx'")
     refuse(lambda: sepcal.simulate("five-hole", rows=-1), "rows=-1")
+
+
+def test_a_model_that_is_not_sepcals():
+    with pytest.raises(sepcal.Error, match="models written in Python are not there yet"):
+        sepcal.fit(object(), {"z": np.zeros(3)})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The narrow waist: a model as everything below sees it. It is asked for whole blocks of samples
-// and answers with the rows [A | D | b]; whether it was compiled in, composed at run time or
-// written in Python makes no difference from here on.
+// and answers with the rows [A | D | b]; how it came to be makes no difference from
+// here on.
 #pragma once
 
 #include <Eigen/Core>

@@ -75,7 +75,10 @@ std::string Flight::list_columns() const {
     if (list.size() > prefix) list += ", ";
     list += header;
   };
-  for (const Column& column : columns_) append(column.header);
+  constexpr std::size_t most_columns = 40;
+  const std::size_t listed = std::min(columns_.size(), most_columns);
+  for (std::size_t i = 0; i < listed; ++i) append(columns_[i].header);
+  if (listed < columns_.size()) append(fmt::format("{} more", columns_.size() - listed));
   if (!maneuvers_.empty()) append(maneuver);
   if (list.size() == prefix) list += "none";
   return list;

@@ -12,6 +12,8 @@
 
 namespace sepcal {
 
+constexpr std::size_t most_notes = 10;  // of one kind; more of them nobody reads
+
 RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
                              bool drop_invalid)
     : flight_(flight), quantities_(quantities), drop_invalid_(drop_invalid), rows_(flight.rows()) {
@@ -19,8 +21,8 @@ RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity
   for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
 }
 
-/// An unknown unit counts only where the quantity isn't there in a known one: beside time_s, a
-/// column time_utc is a column like any other.
+/// An unknown unit is refused only where the quantity isn't there in a known one: beside time_s, a
+/// column time_utc is a column like any other, with a note.
 void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
   LoggedQuantity found;
   const Flight::Column* unknown = nullptr;
@@ -41,6 +43,10 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
   }
   if (found.column != nullptr) {
     logged_.emplace(quantity.name, found);
+    if (unknown != nullptr) {
+      note(fmt::format("column '{}' is not read as {}, which '{}' logs: its unit is unknown",
+                       unknown->header, quantity.name, found.column->header));
+    }
   } else if (unknown != nullptr) {
     std::string known;
     for (const Unit& unit : known_units(quantity.kind)) {
@@ -229,19 +235,25 @@ void RecordBuilder::take_drivers() {
       return !quantity.is_driver && found != logged_.end() && found->second.column == &column;
     });
   };
+  std::vector<std::string> refused;
   for (const Flight::Column& column : flight_.columns()) {
     if (is_quantity(column)) continue;
     if (const std::size_t* row = find_invalid_row(column)) {
-      note(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
-                       flight_.locate(*row), describe_cell(column, *row)));
+      refused.push_back(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
+                                    flight_.locate(*row), describe_cell(column, *row)));
     } else if (record_.has(column.header)) {
-      note(
-          fmt::format("column '{}' can't drive an effect: it is named like a quantity of the "
-                      "probe; rename it",
+      refused.push_back(
+          fmt::format("column '{}' can't drive an effect: it is named like a quantity "
+                      "of the probe; rename it",
                       column.header));
     } else {
       take(column.header, column, nullptr);
     }
+  }
+  const std::size_t told = std::min(refused.size(), most_notes);
+  for (std::size_t i = 0; i < told; ++i) note(refused[i]);
+  if (told < refused.size()) {
+    note(fmt::format("{} more columns can't drive an effect", refused.size() - told));
   }
 }
 
