@@ -46,8 +46,8 @@ def fit(model: Model, data: Flight | Columns, **options: Unpack[FitOptions]) -> 
     """
     if not isinstance(model, Model):
         raise _core.Error(
-            f"{type(model).__name__} is no sepcal model; models written in Python are not there yet: "
-            "write it in C++, or use FiveHoleProbe, Magnetometer, ScalarExample1, ScalarExample2"
+            f"{type(model).__name__} is no sepcal model; models written in Python are not there "
+            "yet: write it in C++, or use one of sepcal's own"
         )
     core_options = to_core(options)
     if isinstance(data, Flight):
