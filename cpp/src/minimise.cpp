@@ -66,7 +66,6 @@ Descent minimise(Objective& objective, const VectorXd& start, const Box& box,
   if (objective.parameters() == 0) {
     descent.square = objective.square(descent.x);
     descent.converged = std::isfinite(descent.square);
-    descent.message = "nothing nonlinear to minimise over";
     return descent;
   }
 
@@ -91,7 +90,6 @@ Descent minimise(Objective& objective, const VectorXd& start, const Box& box,
 
   descent.square = 2.0 * summary.final_cost;
   descent.converged = summary.termination_type == ceres::CONVERGENCE;
-  descent.message = summary.message;
   descent.iterations = static_cast<int>(summary.iterations.size());
   return descent;
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 
 #include "objective.hpp"
 
@@ -20,7 +19,6 @@ struct Descent {
   Eigen::VectorXd x;
   double square = 0.0;  // sum of whitened squares at x
   bool converged = false;
-  std::string message;
   int iterations = 0;
 };
 

@@ -75,7 +75,6 @@ class Alternation {
         minimise(objective, result_.x, box_, {.iterations = problem_.options().iterations});
     result_.iterations += descent.iterations;
     result_.x = descent.x;
-    solver_message_ = descent.message;
   }
 
   /// Takes x to the last digit at the present R; false, with x as it was, where no minimum is near.
@@ -118,8 +117,6 @@ class Alternation {
     return std::max(1e-12 * std::sqrt(square), std::sqrt(std::numeric_limits<double>::min()));
   }
 
-  const std::string& solver_message() const { return solver_message_; }
-
  private:
   VectorXd xi1() const { return result_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return result_.x.tail(sweep_.tables().n_2()); }
@@ -131,7 +128,6 @@ class Alternation {
     const Descent descent = minimise(objective, xi2(), problem_.nonlinear_box(),
                                      {.iterations = problem_.options().iterations});
     result_.iterations += descent.iterations;
-    solver_message_ = descent.message;
     VectorXd x(result_.x.size());
     x << objective.linear_estimate(descent.x), descent.x;
     result_.x = box_.clip(x);
@@ -158,7 +154,6 @@ class Alternation {
   VectorXd scale_;  // plausible length of each parameter
   StageTwo& result_;
   std::optional<Prior> prior_;
-  std::string solver_message_;
 };
 
 struct Outcome {
@@ -225,8 +220,9 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
   }
   result.converged = outcome.refined && outcome.settled;
   if (!outcome.refined) {
-    result.message += "the minimisation did not converge (the solver's last words: " +
-                      alternation.solver_message() + "); ";
+    result.message +=
+        "the minimisation did not converge: no minimum was found near where it ended; "
+        "look for a wrong unit or sign, or bounds that are too wide; ";
   } else if (!outcome.settled) {
     result.message +=
         "R did not settle within " + std::to_string(options.noise_iterations) + " iterations; ";
