@@ -96,6 +96,25 @@ TEST_CASE("an active bound on a linear parameter makes projected fall back to jo
   }
 }
 
+TEST_CASE("a bound that comes in the way only as R settles makes projected fall back as well") {
+  // w_d at the first R, which a wide tolerance stops at, and at the last; the bound lies between.
+  const Simulated flight = sepcal::test::simulate_five_hole(300, 20.0);
+  FitOptions options = with_bounds({}, SecondStage::projected);
+  options.noise_tolerance = 1e9;
+  const double first = sepcal::fit(*flight.model, flight.record, options)["w_d"].value;
+  options.noise_tolerance = 1e-10;
+  const double last = sepcal::fit(*flight.model, flight.record, options)["w_d"].value;
+  REQUIRE(first != last);
+  const double bound = 0.5 * (first + last);
+  options.bounds["w_d"] = first > last ? sepcal::Interval{bound, 50} : sepcal::Interval{-50, bound};
+  const Fit result = sepcal::fit(*flight.model, flight.record, options);
+  CHECK(result["w_d"].at_bound);
+  CHECK(result["w_d"].value == bound);
+  CHECK(result.method == SecondStage::joint);
+  CHECK(result.message.find("fell back to joint, because the bound of w_d") != std::string::npos);
+  check_optimal(flight, result);
+}
+
 TEST_CASE("two bounds at once, one linear and one nonlinear") {
   for (const Simulated& simulated :
        {sepcal::test::simulate_five_hole(300), sepcal::test::simulate_magnetometer(300)}) {
