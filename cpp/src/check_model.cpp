@@ -120,6 +120,7 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
   if (!tangent.allFinite()) return;
   VectorXd contrast(n_1 + 1);
   contrast.setOnes();
+  const double smallest_scale = 1e-6 * trial.values(xi2).cwiseAbs().maxCoeff();
   for (Index k = 0; k < tables.n_2(); ++k) {
     const Variable& parameter = tables.nonlinear[static_cast<std::size_t>(k)];
     const double width = 0.5 * (parameter.upper - parameter.lower);
@@ -133,8 +134,8 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
         (trial.values(above) - trial.values(below)) * contrast / (above[k] - below[k]);
     const VectorXd given = tangent.col(n_1 + k);
     if (!numeric.allFinite()) continue;
-    const double scale = std::max({numeric.cwiseAbs().maxCoeff(), given.cwiseAbs().maxCoeff(),
-                                   1e-6 * trial.values(xi2).cwiseAbs().maxCoeff()});
+    const double scale =
+        std::max({numeric.cwiseAbs().maxCoeff(), given.cwiseAbs().maxCoeff(), smallest_scale});
     Index row = 0;
     const double difference = (numeric - given).cwiseAbs().maxCoeff(&row);
     if (difference <= derivative_tolerance * scale) continue;

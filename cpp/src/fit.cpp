@@ -112,6 +112,24 @@ void fill_parameters(Fit& result, const BlockModel& model, const Problem& proble
   }
 }
 
+/// What the record leaves open. Nothing but its bound stopped a parameter that lies on one: where
+/// it is exchanged for others, they are as open as it is unless two of its standard errors, not
+/// one, fit into half the width.
+Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& names,
+                      const VectorXd& scale, const std::vector<bool>& at_bound,
+                      double noise_factor) {
+  Identifiability plain = identify(tangent, names, scale, noise_factor);
+  if (std::ranges::find(at_bound, true) == at_bound.end()) return plain;
+  VectorXd halved = scale;
+  for (Index k = 0; k < halved.size(); ++k) {
+    if (at_bound[static_cast<std::size_t>(k)]) halved[k] *= 0.5;
+  }
+  Identifiability strict = identify(tangent, names, halved, noise_factor);
+  const bool exchanged = std::ranges::any_of(
+      strict.unobservable, [](const Combination& open) { return open.parameters.size() > 1; });
+  return exchanged ? strict : plain;
+}
+
 void describe(Fit& result, const BlockModel& model, const Problem& problem,
               const Measurements& measurements, const StageTwo& two) {
   const auto n = static_cast<Index>(problem.parameters().size());
@@ -131,20 +149,8 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
   const MatrixXd tangent = factor.matrix().topLeftCorner(n, n);
   const double noise_factor = std::isnan(inflation) ? 1.0 : std::sqrt(inflation);
-  VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
-  result.identifiability = identify(tangent, names, scale, noise_factor);
-
-  // Nothing but its bound stopped a parameter there. Where it is exchanged for others, they are as
-  // open as it is unless two of its standard errors, not one, fit into half the width.
-  for (Index k = 0; k < n; ++k) {
-    if (two.at_bound[static_cast<std::size_t>(k)]) scale[k] *= 0.5;
-  }
-  Identifiability strict = identify(tangent, names, scale, noise_factor);
-  if (std::ranges::any_of(strict.unobservable, [](const Combination& combination) {
-        return combination.parameters.size() > 1;
-      })) {
-    result.identifiability = std::move(strict);
-  }
+  const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
+  result.identifiability = judge(tangent, names, scale, two.at_bound, noise_factor);
 
   VectorXd rmse(two.noise.size());
   for (Index j = 0; j < rmse.size(); ++j) {
