@@ -14,6 +14,7 @@
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
+#include "simulation_arguments.hpp"
 #include "verbs.hpp"
 
 namespace sepcal::app {
@@ -61,7 +62,7 @@ int run(Instrument& instrument, int argc, char** argv) {
 
   Arguments arguments;
   FitArguments fit_arguments;
-  SimulationOptions simulation;
+  SimulationArguments simulation;
   const auto add_flight = [&](CLI::App& verb) {
     add_file(verb, "FLIGHT", arguments.flight, "the log, a CSV file")->required();
   };
@@ -70,6 +71,10 @@ int run(Instrument& instrument, int argc, char** argv) {
   };
   const auto add_json = [&](CLI::App& verb) {
     verb.add_flag("--json", arguments.json, "prints the result as JSON on standard output");
+  };
+  const auto add_drop_invalid = [&](CLI::App& verb) {
+    verb.add_flag("--drop-invalid", arguments.drop_invalid,
+                  "drops rows with a cell that is no number, whatever the calibration's fit did");
   };
 
   CLI::App& fit = *cli.add_subcommand("fit", "fits the model to a flight");
@@ -83,7 +88,19 @@ int run(Instrument& instrument, int argc, char** argv) {
   CLI::App& compare = *cli.add_subcommand("compare", "shows where the model fails");
   add_flight(compare);
   add_calibration(compare);
+  add_drop_invalid(compare);
   add_json(compare);
+
+  CLI::App& add = *cli.add_subcommand("add", "adds a physical effect and fits again");
+  add_flight(add);
+  add_calibration(add);
+  add.add_option("E", arguments.effect,
+                 "the effect, by name or alias; E1+E2 adds both (see effects)")
+      ->required();
+  add_file(add, "-o,--output", arguments.output, "writes the next calibration there")
+      ->type_name("NEXT.json");
+  add_drop_invalid(add);
+  add_json(add);
 
   CLI::App& apply = *cli.add_subcommand("apply", "adds the calibrated readings to a log");
   add_flight(apply);
@@ -91,6 +108,7 @@ int run(Instrument& instrument, int argc, char** argv) {
   add_file(apply, "-o,--output", arguments.output, "writes the corrected log there")
       ->type_name("CORRECTED.csv")
       ->required();
+  add_drop_invalid(apply);
   add_json(apply);
 
   CLI::App& simulate = *cli.add_subcommand("simulate", "makes a flight whose truth is known");
@@ -100,20 +118,14 @@ int run(Instrument& instrument, int argc, char** argv) {
   add_file(simulate, "--truth", arguments.truth,
            "the true parameters: read where the file is there, else written with the defaults")
       ->type_name("T.json");
-  add_whole_number(simulate, "--seed", simulation.seed, "seed of the noise");
-  simulate.add_option("--rate", simulation.rate, "sampling rate [Hz]")
-      ->type_name("HZ")
-      ->capture_default_str();
-  add_whole_number(simulate, "--rows", simulation.rows,
-                   "a short flight of N rows with every maneuver; 0: the full flight");
+  instrument.add_simulation_options(simulate);
+  simulation.add_to(simulate);
   add_json(simulate);
 
   CLI::App& effects = *cli.add_subcommand("effects", "lists the physical effects a model may lack");
   add_json(effects);
 
-  for (const char* name : {"diagnose", "add"}) {
-    cli.add_subcommand(name, "not there yet")->allow_extras();
-  }
+  cli.add_subcommand("diagnose", "not there yet")->allow_extras();
 
   try {
     cli.parse(argc, argv);
@@ -127,8 +139,9 @@ int run(Instrument& instrument, int argc, char** argv) {
     const Verbs verbs(instrument, arguments);
     if (fit.parsed()) return verbs.fit(fit_arguments.resolve());
     if (compare.parsed()) return verbs.compare();
+    if (add.parsed()) return verbs.add();
     if (apply.parsed()) return verbs.apply();
-    if (simulate.parsed()) return verbs.simulate(simulation);
+    if (simulate.parsed()) return verbs.simulate(simulation.resolve());
     if (effects.parsed()) return verbs.effects();
     const std::string verb = cli.get_subcommands().front()->get_name();
     throw Error(verb + " is not there yet; compare shows where the model fails");

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "option_values.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::app {
@@ -83,9 +84,8 @@ void FitArguments::add_to(CLI::App& fit) {
 CalibrationOptions FitArguments::resolve() const {
   CalibrationOptions options = options_;
   FitOptions& engine = options.fit;
-  if (!effects_.empty()) {
-    throw Error(fmt::format("--effect {}: effects can't be fitted yet; `effects` lists them",
-                            effects_.front()));
+  for (const std::string& text : effects_) {
+    for (const std::string& name : split_effects(text)) options.effects.push_back({.name = name});
   }
   for (const std::string& text : bounds_) {
     const auto [name, interval] = parse_assignment("--bounds", text, "NAME=LO,HI");

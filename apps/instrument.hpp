@@ -11,14 +11,33 @@
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/flight/simulate.hpp"
+#include "sepcal/flight/truth.hpp"
 
 namespace sepcal::app {
+
+/// What to simulate.
+struct SimulationOrder {
+  std::string truth;                 // JSON, or empty for the defaults
+  std::string source;                // opens messages about the truth
+  std::vector<HiddenEffect> hidden;  // beside those of the truth
+  SimulationOptions options;
+};
 
 /// A simulated flight and the truth behind it, as JSON.
 struct Simulation {
   SimulatedFlight flight;
   std::string truth;
 };
+
+/// Flies `truth` with the order's hidden effects.
+template <class Truth>
+Simulation fly(Truth truth, SimulatedFlight (*simulate)(const Truth&, const SimulationOptions&),
+               const SimulationOrder& order) {
+  truth.effects.insert(truth.effects.end(), order.hidden.begin(), order.hidden.end());
+  SimulatedFlight flight = simulate(truth, order.options);
+  std::string json = to_json(as_flown(std::move(truth), flight));
+  return {std::move(flight), std::move(json)};
+}
 
 class Instrument {
  public:
@@ -38,9 +57,10 @@ class Instrument {
   /// missing or makes no sense.
   virtual std::shared_ptr<const Probe> probe(const Flight& flight) const = 0;
 
-  /// `truth`: JSON, or empty for the defaults; `source` opens messages about it.
-  virtual Simulation simulate(const std::string& truth, const std::string& source,
-                              const SimulationOptions& options) const = 0;
+  /// Adds the probe's options to `simulate`; they fill members of the instrument.
+  virtual void add_simulation_options(CLI::App& simulate) = 0;
+
+  virtual Simulation simulate(const SimulationOrder& order) const = 0;
 };
 
 /// Runs the app: parses the command line, carries out the verb, maps every error to one line on

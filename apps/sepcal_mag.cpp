@@ -12,33 +12,37 @@ class Magnetometer final : public Instrument {
  public:
   std::string app() const override { return "sepcal-mag"; }
   std::string summary() const override {
-    return "Calibrates a three-axis magnetometer against a known field.";
+    return "Calibrates a three-axis magnetometer against a known field, or against its strength.";
   }
-  std::vector<std::string> models() const override { return {"magnetometer"}; }
+  std::vector<std::string> models() const override { return {"magnetometer", "magnetometer-norm"}; }
 
   void add_probe_options(CLI::App& fit) override {
     fit.add_option("--field", field_, "the Earth's field, north, east, down [uT]")
         ->type_name("N,E,D");
-    fit.add_option("--field-strength", strength_, "the field's strength alone [uT]; not there yet")
+    fit.add_option("--field-strength", strength_,
+                   "its strength alone [uT]: no attitude is needed, and no rotation is seen")
         ->type_name("F");
   }
 
   std::shared_ptr<const Probe> probe(const Flight& /*flight*/) const override {
     if (!strength_.empty()) {
-      throw Error(
-          "--field-strength is not there yet: this version needs the attitude and "
-          "--field N,E,D, or the logged field hx_ut, hy_ut, hz_ut");
+      if (!field_.empty()) {
+        throw Error(
+            "--field and --field-strength contradict each other; keep --field where the attitude "
+            "is logged");
+      }
+      return attitude_independent_probe(parse_value("--field-strength", strength_));
     }
     if (field_.empty()) return magnetometer_probe(std::nullopt);
     return magnetometer_probe(
         parse_triple("--field", field_, "19.7,-1.4,49.4 (north, east, down in uT)"));
   }
 
-  Simulation simulate(const std::string& truth, const std::string& source,
-                      const SimulationOptions& options) const override {
-    const MagnetometerTruth magnetometer =
-        truth.empty() ? MagnetometerTruth{} : parse_magnetometer_truth(truth, source);
-    return {simulate_magnetometer(magnetometer, options), to_json(magnetometer)};
+  void add_simulation_options(CLI::App& /*simulate*/) override {}
+
+  Simulation simulate(const SimulationOrder& order) const override {
+    const std::string truth = order.truth.empty() ? "{}" : order.truth;
+    return fly(parse_magnetometer_truth(truth, order.source), simulate_magnetometer, order);
   }
 
  private:

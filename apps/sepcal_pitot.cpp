@@ -16,12 +16,12 @@ class Pitot final : public Instrument {
  public:
   std::string app() const override { return "sepcal-pitot"; }
   std::string summary() const override {
-    return "Calibrates a five-hole Pitot probe in flight against the inertial velocity.";
+    return "Calibrates a five-hole probe or a Pitot-static tube in flight against the velocity.";
   }
-  std::vector<std::string> models() const override { return {"five-hole"}; }
+  std::vector<std::string> models() const override { return {"five-hole", "pitot-static"}; }
 
   void add_probe_options(CLI::App& fit) override {
-    fit.add_option("--probe", probe_, "five-hole (default where dpa_* is logged)")
+    fit.add_option("--probe", probe_, "five-hole (default where dpa_* is logged) or pitot-static")
         ->type_name("NAME");
     fit.add_option("--k-alpha", k_alpha_, "sensitivity of the angle-of-attack ports [1/rad]")
         ->type_name("K");
@@ -33,48 +33,61 @@ class Pitot final : public Instrument {
   }
 
   std::shared_ptr<const Probe> probe(const Flight& flight) const override {
-    check_probe(flight);
+    if (!is_five_hole(flight)) {
+      refuse_five_hole_options(flight);
+      return pitot_static_probe();
+    }
     if (!k_alpha_ || !k_beta_) {
       throw Error(
           "a five-hole probe needs --k-alpha K and --k-beta K, the ports' sensitivities in "
           "1/rad (from the probe's data sheet or a wind tunnel)");
     }
-    return five_hole_probe(
-        *k_alpha_, *k_beta_,
-        parse_triple("--lever-arm", lever_arm_, "0.35,0,-0.02 (forward, right, down in m)"));
+    return five_hole_probe(*k_alpha_, *k_beta_,
+                           parse_triple("--lever-arm", lever_arm_.empty() ? "0,0,0" : lever_arm_,
+                                        "0.35,0,-0.02 (forward, right, down in m)"));
   }
 
-  Simulation simulate(const std::string& truth, const std::string& source,
-                      const SimulationOptions& options) const override {
-    const FiveHoleTruth five_hole =
-        truth.empty() ? FiveHoleTruth{} : parse_five_hole_truth(truth, source);
-    return {simulate_five_hole(five_hole, options), to_json(five_hole)};
+  void add_simulation_options(CLI::App& simulate) override {
+    simulate.add_option("--probe", probe_, "five-hole (the default) or pitot-static")
+        ->type_name("NAME");
+  }
+
+  Simulation simulate(const SimulationOrder& order) const override {
+    const std::string truth = order.truth.empty() ? "{}" : order.truth;
+    if (probe_ == "pitot-static") {
+      return fly(parse_pitot_static_truth(truth, order.source), simulate_pitot_static, order);
+    }
+    if (probe_.empty() || probe_ == "five-hole") {
+      return fly(parse_five_hole_truth(truth, order.source), simulate_five_hole, order);
+    }
+    throw Error(fmt::format("--probe {} is unknown; known: five-hole, pitot-static", probe_));
   }
 
  private:
-  void check_probe(const Flight& flight) const {
-    if (probe_ == "five-hole") return;
-    if (!probe_.empty() && probe_ != "pitot-static") {
-      throw Error(fmt::format("--probe {} is unknown; known: five-hole", probe_));
+  bool is_five_hole(const Flight& flight) const {
+    if (probe_ == "five-hole") return true;
+    if (probe_ == "pitot-static") return false;
+    if (!probe_.empty()) {
+      throw Error(fmt::format("--probe {} is unknown; known: five-hole, pitot-static", probe_));
     }
-    if (probe_.empty() && std::ranges::any_of(flight.columns(), [](const Flight::Column& column) {
-          return column.header.starts_with("dpa_");
-        })) {
-      return;
-    }
-    throw Error(
-        fmt::format("{}: {}; this version calibrates five-hole probes, which need pt_pa, ps_pa, "
-                    "dpa_pa and dpb_pa ({})",
-                    flight.name(),
-                    probe_.empty() ? "there is no column dpa_*, so this is no five-hole probe"
-                                   : "--probe pitot-static is not there yet",
-                    flight.list_columns()));
+    return std::ranges::any_of(flight.columns(), [](const Flight::Column& column) {
+      return column.header.starts_with("dpa_");
+    });
+  }
+
+  void refuse_five_hole_options(const Flight& flight) const {
+    if (!k_alpha_ && !k_beta_ && lever_arm_.empty()) return;
+    throw Error(fmt::format(
+        "{}: {}, so this is a Pitot-static tube: --k-alpha, --k-beta and --lever-arm are for a "
+        "five-hole probe; leave them out, or log dpa_pa and dpb_pa ({})",
+        flight.name(), probe_.empty() ? "there is no column dpa_*" : "--probe is pitot-static",
+        flight.list_columns()));
   }
 
   std::string probe_;
   std::optional<double> k_alpha_;
   std::optional<double> k_beta_;
-  std::string lever_arm_ = "0,0,0";
+  std::string lever_arm_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -12,7 +13,11 @@ namespace sepcal::app {
 
 std::string calibration_table(const Calibration& calibration);
 
-std::string comparison_table(const Comparison& comparison);
+/// `calibration` is the one compared, whose status the table repeats.
+/// The chain of added effects, each with the error before and after; empty where none was added.
+std::string history_table(const Calibration& calibration);
+
+std::string comparison_table(const Comparison& comparison, const Calibration& calibration);
 
 std::string applied_text(const Applied& applied, const Calibration& calibration,
                          const std::string& output);
@@ -20,6 +25,6 @@ std::string applied_json(const Applied& applied, const Calibration& calibration,
                          const std::string& output);
 
 std::string effects_table(const std::string& model);
-std::string effects_json(const std::string& model);
+std::string effects_json(const std::vector<std::string>& models);
 
 }  // namespace sepcal::app

@@ -10,6 +10,7 @@
 #include "flight/text_file.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
@@ -49,6 +50,12 @@ Flight Verbs::read_flight() const {
                   [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
 }
 
+Calibration Verbs::read_base() const {
+  Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
+  if (arguments_.drop_invalid) calibration.options.drop_invalid = true;
+  return calibration;
+}
+
 int Verbs::fit(CalibrationOptions options) const {
   std::optional<OutputFile> output;
   if (!arguments_.output.empty()) {
@@ -72,16 +79,40 @@ int Verbs::fit(CalibrationOptions options) const {
 }
 
 int Verbs::compare() const {
-  const Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
+  const Calibration calibration = read_base();
   const Comparison comparison = sepcal::compare(calibration, read_flight());
   print_notes(comparison.notes);
-  print(arguments_.json ? to_json(comparison) : comparison_table(comparison));
+  print(arguments_.json ? to_json(comparison) : comparison_table(comparison, calibration));
   return 0;
+}
+
+int Verbs::add() const {
+  std::optional<OutputFile> output;
+  if (!arguments_.output.empty()) {
+    check_not_input(arguments_.output, arguments_.flight);
+    output.emplace(arguments_.output);
+  }
+  const Calibration base = read_base();
+  const Flight flight = read_flight();
+  ProgressLine line;
+  const Calibration next =
+      sepcal::add(base, flight, arguments_.effect, {},
+                  [&](std::string_view task, double fraction) { line.show(task, fraction); });
+  line.clear();
+  print_notes(next.notes);
+  const std::string json = to_json(next);
+  if (output) {
+    output->write(json);
+    output->commit();
+  }
+  print(arguments_.json ? json : calibration_table(next) + history_table(next));
+  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  return exit_code(next.fit.status);
 }
 
 int Verbs::apply() const {
   check_not_input(arguments_.output, arguments_.calibration);
-  const Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
+  const Calibration calibration = read_base();
   ProgressLine line;
   const Applied applied =
       apply_to_file(calibration, arguments_.flight, arguments_.output,
@@ -93,7 +124,7 @@ int Verbs::apply() const {
   return 0;
 }
 
-int Verbs::simulate(const SimulationOptions& options) const {
+int Verbs::simulate(SimulationOrder order) const {
   if (!arguments_.truth.empty() && is_same_file(arguments_.output, arguments_.truth)) {
     throw Error(fmt::format("-o {} and --truth {} are one file; name another for one of them",
                             arguments_.output, arguments_.truth));
@@ -102,8 +133,9 @@ int Verbs::simulate(const SimulationOptions& options) const {
   const bool given = !arguments_.truth.empty() && std::filesystem::exists(arguments_.truth);
   std::optional<OutputFile> truth;
   if (!arguments_.truth.empty() && !given) truth.emplace(arguments_.truth);
-  const Simulation simulation = instrument_.simulate(
-      given ? read_text_file(arguments_.truth, "as a truth file") : "", arguments_.truth, options);
+  order.source = given ? arguments_.truth : "simulate";
+  if (given) order.truth = read_text_file(arguments_.truth, "as a truth file");
+  const Simulation simulation = instrument_.simulate(order);
   write_csv(simulation.flight, output.stream());
   output.flush();
   if (truth) {
@@ -124,9 +156,11 @@ int Verbs::simulate(const SimulationOptions& options) const {
 }
 
 int Verbs::effects() const {
-  for (const std::string& model : instrument_.models()) {
-    print(arguments_.json ? effects_json(model) : effects_table(model));
+  if (arguments_.json) {
+    print(effects_json(instrument_.models()));
+    return 0;
   }
+  for (const std::string& model : instrument_.models()) print(effects_table(model));
   return 0;
 }
 

@@ -15,7 +15,9 @@ struct Arguments {
   std::string calibration;
   std::string output;
   std::string truth;
+  std::string effect;
   bool json = false;
+  bool drop_invalid = false;  // of a later verb: whatever the calibration says
 };
 
 /// Each returns the exit code: 0, or what the fit's status says (4 not identifiable, 5 not
@@ -27,13 +29,17 @@ class Verbs {
 
   int fit(CalibrationOptions options) const;
   int compare() const;
+  int add() const;
   int apply() const;
-  int simulate(const SimulationOptions& options) const;
+  int simulate(SimulationOrder order) const;
   int effects() const;
 
  private:
   /// Reads FLIGHT with its progress shown.
   Flight read_flight() const;
+
+  /// Reads CALIBRATION; --drop-invalid overrides what it says.
+  Calibration read_base() const;
 
   const Instrument& instrument_;
   const Arguments& arguments_;

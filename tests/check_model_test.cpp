@@ -82,8 +82,9 @@ struct DerivativeCastAway : Sound {
 struct NotFiniteBelowZero : Sound {
   template <class U, class X>
   sepcal::Affine<X, 2, 2> at(const sepcal::Vec<U, 1>& u, const sepcal::Vec<X, 1>& xi2) const {
+    using std::sqrt;
     auto z = Sound::at(u, xi2);
-    z.b[0] += std::sqrt(u[0]);
+    z.b[0] += sqrt(u[0]);
     return z;
   }
 };

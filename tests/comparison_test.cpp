@@ -2,10 +2,11 @@
 // Residuals made by hand, put on top of an exact flight: every number follows on paper.
 #include "sepcal/flight/comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calibrated_flights.hpp"
+#include "flights_with_effects.hpp"
 
 using namespace sepcal;
 using namespace sepcal::test;
@@ -144,4 +145,45 @@ TEST_CASE("status and message of the calibration are repeated, bad flights refus
   flight.columns[0].values[7] = 6.0;
   check_refused([&] { compare(calibration, make_flight(flight)); },
                 {"flight row 7", "repeats", "must increase"});
+}
+
+TEST_CASE("an effect means the same on another flight: its centre, knots and span stay") {
+  // The other flight is 200 m higher. The simulator takes the altitude about that flight's own
+  // mean, so that the rise goes into the wind.
+  constexpr double noise = 1e-3;
+  const HiddenEffect shear{"wind[altitude_m]", {0.02, -0.03}};
+  const SimulatedFlight first = fly("five-hole", {shear}, {.noise = 1e-6, .seed = 1});
+  const Calibration calibration = calibrate_with("five-hole", first, {"wind[altitude_m]"});
+  const double centre = values(first, "altitude_m").mean();
+  CHECK(calibration.options.effects[0].centre.value() == doctest::Approx(centre).epsilon(1e-12));
+
+  FiveHoleTruth higher =
+      truth_of<FiveHoleTruth>({shear}, {.noise = noise, .seed = 1, .altitude = 500.0});
+  const SimulatedFlight other = simulate_five_hole(higher, condensed(400, 9));
+  const double rise = values(other, "altitude_m").mean() - centre;
+  REQUIRE(rise > 150.0);
+  higher.parameters["w_n"] += 0.02 * rise;
+  higher.parameters["w_e"] -= 0.03 * rise;
+  const Flight flight = make_flight(simulate_five_hole(higher, condensed(400, 9)));
+  for (const Misfit& misfit : compare(calibration, flight).overall) {
+    CHECK(std::abs(misfit.rmse / noise - 1.0) < 0.2);
+  }
+  Calibration forgetful = calibration;
+  forgetful.options.effects = {{.name = "wind[altitude_m]"}};
+  CHECK(compare(forgetful, flight).overall[0].rmse > 100.0 * noise);
+}
+
+TEST_CASE("a flight without an effect's channel is refused, one in which it is constant is not") {
+  const HiddenEffect bias{"airspeed_bias[flap]", {0.7}};
+  SimulatedFlight flight = fly("five-hole", {bias});
+  const Calibration calibration = calibrate_with("five-hole", flight, {bias.name});
+  SimulatedFlight level = fly("five-hole", {});
+  const auto flap = std::ranges::find(level.columns, "flap", &SimulatedColumn::name);
+  std::ranges::fill(flap->values, 0.0);
+  for (const Misfit& misfit : compare(calibration, make_flight(level)).overall) {
+    CHECK(misfit.rmse < 1e-6);
+  }
+  level.columns.erase(flap);
+  check_refused([&] { compare(calibration, make_flight(level)); },
+                {"flight: effect airspeed_bias[flap]: there is no channel 'flap'"});
 }

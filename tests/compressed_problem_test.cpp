@@ -19,7 +19,7 @@ constexpr std::size_t rows = 120;
 const Vector3d noise(0.1, 0.2, 0.3);
 
 struct SampleResidual {
-  sepcal::Vec<double, 11> u;
+  sepcal::Vec<double, 14> u = sepcal::Vec<double, 14>::Zero();  // the ports stay at zero
   Vector3d z;
 
   template <class T>

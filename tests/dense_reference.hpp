@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "block_inputs.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/record.hpp"
 
@@ -19,15 +20,12 @@ inline Eigen::MatrixXd dense_values(const BlockModel& model, const Record& recor
   Eigen::MatrixXd all(n_z * total, model.tables().n_1() + 1);
   Eigen::Index offset = 0;
   for (const Segment& segment : record.segments()) {
-    std::vector<const double*> inputs;
-    for (const Variable& input : model.tables().inputs) {
-      inputs.push_back(record.column(input.name).data() + segment.first);
-    }
+    const BlockInputs inputs = block_inputs(model, record, segment.first);
     const auto rows = static_cast<Eigen::Index>(segment.rows());
     Eigen::MatrixXd part(n_z * rows, all.cols());
     const auto carry = model.new_carry();
-    model.evaluate({inputs, segment.rows(), segment.first, true}, xi2.data(), nullptr, carry.get(),
-                   part);
+    model.evaluate({inputs.pointers, segment.rows(), segment.first, true}, xi2.data(), nullptr,
+                   carry.get(), part);
     for (Eigen::Index j = 0; j < n_z; ++j) {
       all.middleRows(j * total + offset, rows) = part.middleRows(j * rows, rows);
     }
@@ -78,6 +76,45 @@ inline Eigen::MatrixXd dense_rows(const BlockModel& model, const Record& record,
   }
   rows.col(n_1 + n_2) = dense_outputs(model, record) - values.leftCols(n_1) * xi1 - values.col(n_1);
   return rows;
+}
+
+/// d(A xi1 + b)/du of the chosen inputs (n_z * N x inputs): as the model gives it, and by
+/// Richardson's extrapolation of central differences.
+struct InputTangents {
+  Eigen::MatrixXd given;
+  Eigen::MatrixXd numeric;
+};
+inline InputTangents input_tangents(const BlockModel& model, const Record& record,
+                                    const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                                    const std::vector<int>& inputs) {
+  const std::size_t rows = record.length();
+  BlockInputs columns = block_inputs(model, record);
+  const auto predict = [&] {
+    Eigen::MatrixXd values(model.tables().n_z() * static_cast<Eigen::Index>(rows), xi1.size() + 1);
+    model.evaluate({columns.pointers, rows, 0, true}, values_of(xi2), nullptr, nullptr, values);
+    return Eigen::VectorXd(values.leftCols(xi1.size()) * xi1 + values.rightCols<1>());
+  };
+  const auto count = static_cast<Eigen::Index>(inputs.size());
+  InputTangents result{predict().replicate(1, count), predict().replicate(1, count)};
+  model.input_tangent({columns.pointers, rows, 0, true}, values_of(xi2), values_of(xi1), inputs,
+                      result.given);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double*& pointer =
+        columns.pointers[static_cast<std::size_t>(inputs[static_cast<std::size_t>(k)])];
+    const Eigen::Map<const Eigen::VectorXd> logged(pointer, static_cast<Eigen::Index>(rows));
+    const double step = 3e-6 * (1.0 + logged.cwiseAbs().minCoeff());
+    const auto slope = [&](double by) -> Eigen::VectorXd {
+      const Eigen::VectorXd above = logged.array() + by;
+      pointer = above.data();
+      const Eigen::VectorXd predicted = predict();
+      const Eigen::VectorXd below = logged.array() - by;
+      pointer = below.data();
+      return (predicted - predict()) / (2.0 * by);
+    };
+    result.numeric.col(k) = (4.0 * slope(0.5 * step) - slope(step)) / 3.0;
+    pointer = logged.data();
+  }
+  return result;
 }
 
 /// Every row divided by its output's noise standard deviation.

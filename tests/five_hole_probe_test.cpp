@@ -68,8 +68,8 @@ TEST_CASE("A xi1 + b is the wind triangle of Eqs. 36-41 at any reading and any p
         draws.uniform(-2, 2),        draws.uniform(-2, 2),        draws.uniform(-2, 2),
         draws.uniform(9.6e4, 9.7e4), draws.uniform(9.4e4, 9.5e4), draws.uniform(-900, 900),
         draws.uniform(-900, 900),    draws.uniform(0.8, 1.3)};
-    Vec<double, 11> u;
-    u << s.phi, s.theta, s.psi, s.p, s.q, s.r, s.pt, s.ps, s.dpa, s.dpb, s.rho;
+    Vec<double, 14> u;
+    u << s.phi, s.theta, s.psi, s.p, s.q, s.r, s.pt, s.ps, s.dpa, s.dpb, s.rho, 0, 0, 0;
     const Vec<double, 5> xi1 = draws.normal_matrix(5, 1);
     const Vec<double, 5> xi2 = 0.2 * draws.normal_matrix(5, 1);
     const auto z = probe.at(u, xi2);
@@ -83,7 +83,7 @@ TEST_CASE("A xi1 + b is the wind triangle of Eqs. 36-41 at any reading and any p
 
 TEST_CASE("a level probe without flow angles reads its airspeed northward") {
   const FiveHoleProbe probe{4.5, 4.5};
-  Vec<double, 11> u = Vec<double, 11>::Zero();
+  Vec<double, 14> u = Vec<double, 14>::Zero();
   u[6] = 95'000 + 0.5 * 1.25 * 400;  // 20 m/s
   u[7] = 95'000;
   u[10] = 1.25;
@@ -96,7 +96,7 @@ TEST_CASE("a level probe without flow angles reads its airspeed northward") {
 
 TEST_CASE("alpha is positive nose up, beta with the air along the right wing") {
   const FiveHoleProbe probe{4.5, 4.5};
-  Vec<double, 11> u = Vec<double, 11>::Zero();
+  Vec<double, 14> u = Vec<double, 14>::Zero();
   u[6] = 95'250;
   u[7] = 95'000;
   u[10] = 1.25;
@@ -106,4 +106,30 @@ TEST_CASE("alpha is positive nose up, beta with the air along the right wing") {
   u[8] = 0;
   u[9] = 4.5 * 250 * 0.1;  // beta = 0.1
   CHECK(probe.at(u, none).b[1] == doctest::Approx(20 * std::sin(0.1)));
+}
+
+TEST_CASE("the ports join the pressure that the airspeed is read from, and the angles as read") {
+  sepcal::test::Draws draws(12);
+  const FiveHoleProbe probe{4.5, 3.8, {0.35, -0.2, 0.1}};
+  for (int i = 0; i < 20; ++i) {
+    const double pressure = draws.uniform(200, 900);
+    const double alpha = draws.uniform(-0.2, 0.2);
+    const double beta = draws.uniform(-0.2, 0.2);
+    const double offset = draws.uniform(-100, 100);
+    const double more_alpha = draws.uniform(-0.1, 0.1);
+    const double more_beta = draws.uniform(-0.1, 0.1);
+    // The rates, the attitude and the density are the same on both sides.
+    Vec<double, 14> with_ports;
+    with_ports << 0.3, -0.2, 1.0, 0.1, -0.2, 0.3, 95'000 + pressure, 95'000, 4.5 * pressure * alpha,
+        3.8 * pressure * beta, 1.1, offset, more_alpha, more_beta;
+    const double moved = pressure + offset;
+    Vec<double, 14> instead;
+    instead << 0.3, -0.2, 1.0, 0.1, -0.2, 0.3, 95'000 + moved, 95'000,
+        4.5 * moved * (alpha + more_alpha), 3.8 * moved * (beta + more_beta), 1.1, 0, 0, 0;
+    const Vec<double, 5> xi2 = 0.2 * draws.normal_matrix(5, 1);
+    const auto a = probe.at(with_ports, xi2);
+    const auto b = probe.at(instead, xi2);
+    CHECK((a.A - b.A).norm() < 1e-12 * b.A.norm());
+    CHECK((a.b - b.b).norm() < 1e-12 * b.b.norm());
+  }
 }

@@ -17,13 +17,11 @@ namespace {
 const auto flight = sepcal::test::simulate_five_hole(30);
 
 MatrixXd evaluate(const sepcal::BlockModel& model, const VectorXd& xi2, const VectorXd* xi1) {
-  std::vector<const double*> inputs;
-  for (const auto& input : model.tables().inputs) {
-    inputs.push_back(flight.record.column(input.name).data());
-  }
+  const auto inputs = sepcal::test::block_inputs(model, flight.record);
   const auto& tables = model.tables();
   MatrixXd rows(90, tables.n_1() + (xi1 ? tables.n_2() : 0) + 1);
-  model.evaluate({inputs, 30, 0, true}, xi2.data(), xi1 ? xi1->data() : nullptr, nullptr, rows);
+  model.evaluate({inputs.pointers, 30, 0, true}, xi2.data(), xi1 ? xi1->data() : nullptr, nullptr,
+                 rows);
   return rows;
 }
 
@@ -75,4 +73,20 @@ TEST_CASE("with every linear parameter held only b and D are left") {
   const MatrixXd part = evaluate(model, flight.xi2, &some);
   REQUIRE(part.cols() == 6);
   CHECK(part.leftCols<5>() == whole.middleCols<5>(5));
+}
+
+TEST_CASE("the derivatives by the inputs are the whole model's at the held values") {
+  const FixedModel model(*flight.model, {{"b_va", 0.4}, {"b_alpha", -0.05}});
+  VectorXd all_1 = flight.xi1;
+  VectorXd all_2 = flight.xi2;
+  all_1[1] = 0.4;
+  all_2[1] = -0.05;
+  const VectorXd xi1 = all_1(std::vector<int>{0, 2, 3, 4});
+  const VectorXd xi2 = all_2(std::vector<int>{0, 2, 3, 4});
+  const std::vector<int> inputs{8, 2, 12};
+  const auto part = sepcal::test::input_tangents(model, flight.record, xi1, xi2, inputs);
+  const auto whole =
+      sepcal::test::input_tangents(*flight.model, flight.record, all_1, all_2, inputs);
+  CHECK(part.given == whole.given);
+  CHECK((part.given - part.numeric).norm() < 1e-8 * part.numeric.norm());
 }

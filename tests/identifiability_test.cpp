@@ -63,19 +63,21 @@ TEST_CASE("two parameters that can't be told apart are named with what is determ
   CHECK(std::isinf(result.unobservable[0].standard_error));
 }
 
-TEST_CASE("a parameter that nothing sees is named alone; two of them are two sentences") {
+TEST_CASE("parameters that nothing sees are named, each for itself") {
   MatrixXd rows = clear_columns(4);
   rows.col(2).setZero();
   CHECK(identify(triangle(rows), {"a", "b", "c", "d"}, ones(4), 1.0).message() ==
         "c can't be determined from this record");
   rows.col(0).setZero();
   const auto result = identify(triangle(rows), {"a", "b", "c", "d"}, ones(4), 1.0);
-  REQUIRE(result.sentences.size() == 2);
+  REQUIRE(result.unobservable.size() == 2);
   CHECK(result.rank == 2);
   const bool a_first = result.unobservable[0].parameters == Names{"a"};
   CHECK(result.unobservable[a_first ? 0 : 1].parameters == Names{"a"});
   CHECK(result.unobservable[a_first ? 1 : 0].parameters == Names{"c"});
   CHECK(result.unobservable[0].text == (a_first ? "a" : "c"));
+  CHECK(result.message() == (a_first ? "a and c can't be determined from this record"
+                                     : "c and a can't be determined from this record"));
 }
 
 TEST_CASE("three parameters in one dependency are one combination that is not determined") {
@@ -87,6 +89,44 @@ TEST_CASE("three parameters in one dependency are one combination that is not de
   CHECK(result.unobservable[0].text == "0.577 a + 0.577 b + 0.577 c");
   CHECK(result.message().ends_with(
       "can't be told apart: 0.577 a + 0.577 b + 0.577 c is not determined"));
+}
+
+TEST_CASE("a message lists the first few of many and counts the others") {
+  Names names;
+  for (Index k = 0; k < 14; ++k) names.push_back("x_" + std::to_string(k));
+  // Six pairs of equal columns, then four.
+  MatrixXd rows = clear_columns(14);
+  for (Index k = 0; k < 12; k += 2) rows.col(k + 1) = rows.col(k);
+  const auto six = identify(triangle(rows), names, ones(14), 1.0);
+  CHECK(six.unobservable.size() == 6);
+  REQUIRE(six.sentences.size() == 6);
+  CHECK(six.message() == six.sentences[0] + "; " + six.sentences[1] + "; " + six.sentences[2] +
+                             "; and 3 more (see unobservable and weak)");
+  const auto four = identify(triangle(rows.rightCols(10)), names, ones(10), 1.0);
+  CHECK(four.sentences.size() == 4);
+  CHECK(four.message().find(" more ") == std::string::npos);
+
+  // One column twelve times: one group of eleven combinations.
+  rows = clear_columns(14);
+  for (Index k = 1; k < 12; ++k) rows.col(k) = rows.col(0);
+  const auto group = identify(triangle(rows), names, ones(14), 1.0);
+  CHECK(group.unobservable.size() == 11);
+  REQUIRE(group.sentences.size() == 1);
+  CHECK(group.message().find(" and 4 more can't be told apart: ") != std::string::npos);
+  CHECK(group.message().ends_with(" and 8 more (see unobservable) are not determined"));
+}
+
+TEST_CASE("the weakest combination comes first") {
+  // Pairs of columns at a small angle t, and at half of it.
+  MatrixXd rows = clear_columns(4);
+  const double t = 0.01;
+  rows.col(1) = std::cos(t) * rows.col(0) + std::sin(t) * rows.col(1);
+  rows.col(3) = std::cos(t / 2) * rows.col(2) + std::sin(t / 2) * rows.col(3);
+  const auto result = identify(triangle(rows), {"a", "b", "c", "d"}, 1e3 * ones(4), 1.0);
+  REQUIRE(result.weak.size() == 2);
+  CHECK(result.weak[0].text == "0.707 c - 0.707 d");
+  CHECK(result.weak[1].text == "0.707 a - 0.707 b");
+  CHECK(result.message().starts_with("c and d are hard to tell apart"));
 }
 
 TEST_CASE("an uncertainty beyond the scale is unobservable though nothing is singular") {

@@ -114,6 +114,24 @@ TEST_CASE("a magnetometer's flight that lacks something") {
                        Contains("column 'mx_ut' is missing"), Error);
 }
 
+TEST_CASE("the field's strength alone needs neither attitude nor field") {
+  Log log = make_magnetometer_log();
+  for (const char* header : {"roll_rad", "pitch_rad", "yaw_rad"}) log.erase(header);
+  log.rename("mx_ut", "mx_nt");
+  log["temp_degc"].assign(5, 20);
+  const auto prepared = sepcal::prepare_attitude_independent(log.build());
+  CHECK(prepared.record.names() ==
+        std::vector<std::string>{"time", "mx", "my", "mz", "field", "temp_degc"});
+  CHECK(column(prepared, "mx")[1] == 0.002);
+  CHECK(column(prepared, "field") == std::vector<double>(5));
+  log["my_ut"][2] = not_a_number;
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()), Contains("log row 2"),
+                       Error);
+  CHECK(sepcal::prepare_attitude_independent(log.build(), true).rows_used() == 4);
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.erase("time_s").build()),
+                       Contains("column 'time_s' is missing"), Error);
+}
+
 TEST_CASE("applying a magnetometer calibration needs its readings only") {
   Log log = make_magnetometer_log();
   for (const char* header : {"time_s", "roll_rad", "pitch_rad", "yaw_rad"}) log.erase(header);

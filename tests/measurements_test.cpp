@@ -32,7 +32,51 @@ Record count_rows(std::size_t rows) {
   return record;
 }
 
+/// z = s u (1 + gain) + offset, with two inputs that a record may lack.
+struct LineWithPorts {
+  static constexpr std::array inputs{
+      sepcal::Quantity{"gain", "1", -sepcal::infinity, sepcal::infinity, 0.5},
+      sepcal::Quantity{"u", "1"}, sepcal::port("offset", "1")};
+  static constexpr std::array outputs{sepcal::Quantity{"z", "1"}};
+  static constexpr std::array linear{sepcal::Quantity{"s", "1"}};
+  static constexpr std::array<sepcal::Quantity, 0> nonlinear{};
+  template <class U, class X>
+  sepcal::Affine<X, 1, 1> at(const sepcal::Vec<U, 3>& u, const sepcal::Vec<X, 0>&) const {
+    sepcal::Affine<X, 1, 1> z;
+    z.A << u[1] * (1.0 + u[0]);
+    z.b << u[2];
+    return z;
+  }
+};
+
 }  // namespace
+
+TEST_CASE("an input that the record lacks takes its absent value in every row of every block") {
+  const auto model = sepcal::block_model(LineWithPorts{});
+  Record record = count_rows(600);
+  const Measurements measurements(*model, record);
+  std::vector<const double*> pointers;
+  for (const auto& range : measurements.chunks().front()) {
+    const sepcal::Block block = measurements.block(range, pointers);
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      CHECK(block.inputs[0][row] == 0.5);
+      CHECK(block.inputs[1][row] == static_cast<double>(range.first + row));
+      CHECK(block.inputs[2][row] == 0.0);
+    }
+  }
+  record.add("offset", std::vector<double>(600, -3.0));  // now it is there, and is read
+  const Measurements logged(*model, record);
+  const auto& last = logged.chunks().front().back();
+  CHECK(logged.block(last, pointers).inputs[2] == record.column("offset").data() + last.first);
+}
+
+TEST_CASE("an absent value mends no column that is there and not finite") {
+  Record record;
+  record.add("u", {1, 2}).add("z", {1, 2});
+  record.add("offset", {0, std::numeric_limits<double>::quiet_NaN()});
+  CHECK_THROWS_WITH_AS(Measurements(*sepcal::block_model(LineWithPorts{}), record),
+                       Contains("column 'offset' is not a finite number in row 1"), Error);
+}
 
 TEST_CASE("blocks cover every selected row once, in order, and never cross a segment's edge") {
   Record record = count_rows(10'000);

@@ -41,6 +41,7 @@ TEST_CASE("the defaults are those of the documentation") {
   CHECK(options.second_stage == sepcal::SecondStage::automatic);
   CHECK(options.noise_tolerance < 0.05);  // much tighter than the paper's
   CHECK(options.bounds.empty());
+  CHECK(options.start.empty());
 }
 
 TEST_CASE("an unknown name is refused with the names that there are") {
@@ -54,6 +55,10 @@ TEST_CASE("an unknown name is refused with the names that there are") {
                 "'w_x'; the model has: lambda_alpha");
   check_refused([](FitOptions& o) { o.priors = {{"w_n", {}}}; },
                 "nonlinear parameter (only these are sampled) 'w_n'");
+  check_refused([](FitOptions& o) { o.start = {{"w_x", 0}}; },
+                "'w_x'; the model has: lambda_alpha");
+  check_refused([](FitOptions& o) { o.start = {{"w_n", 0}}; },
+                "nonlinear parameter (only these have a start) 'w_n'");
   check_refused([](FitOptions& o) { o.stage_one_segments = "loop"; }, "'loop'");
   check_refused([](FitOptions& o) { o.stage_two_segments = "loop"; }, "'loop'");
 }
@@ -110,6 +115,28 @@ TEST_CASE("a parameter without finite bounds can't be sampled without a prior") 
   FitOptions options;
   with_prior(0, 0.1)(options);
   CHECK_NOTHROW(fit_with(options));
+}
+
+TEST_CASE("a start that is not finite is refused, any other is a good start for the same fit") {
+  for (const double bad : {not_a_number, sepcal::infinity}) {
+    check_refused([bad](FitOptions& o) { o.start = {{"b_alpha", bad}}; },
+                  "the start of 'b_alpha' is not a finite number");
+  }
+  const auto flight = sepcal::test::simulate_five_hole(200);
+  FitOptions options;
+  options.samples = 100;
+  const auto sampled = sepcal::fit(*flight.model, flight.record, options);
+  options.start = {{"eps_phi", -0.2}, {"lambda_alpha", 0.4}};
+  const auto started = sepcal::fit(*flight.model, flight.record, options);
+  CHECK(started.status == sepcal::FitStatus::converged);
+  CHECK((started.xi2() - sampled.xi2()).cwiseAbs().maxCoeff() < 1e-7);
+  CHECK((started.xi1() - sampled.xi1()).cwiseAbs().maxCoeff() < 1e-6);
+}
+
+TEST_CASE("only a nonlinear parameter can be left out of the sampling") {
+  check_refused([](FitOptions& o) { o.unsampled = {{"w_n", 0.0}}; },
+                "no nonlinear parameter (only these are sampled) 'w_n'");
+  check_refused([](FitOptions& o) { o.unsampled = {{"b_gamma", 0.0}}; }, "'b_gamma'");
 }
 
 TEST_CASE("fewer measurements than parameters is misuse, just as many is not") {

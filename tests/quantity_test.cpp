@@ -20,6 +20,17 @@ TEST_CASE("a quantity is unbounded unless it says otherwise") {
   CHECK(plain.upper == sepcal::infinity);
 }
 
+TEST_CASE("an input has no value where it is absent, a port is zero there") {
+  constexpr Quantity plain{"pt", "Pa"};
+  CHECK(std::isnan(plain.absent));
+  constexpr Quantity driven = sepcal::port("pressure_offset", "Pa");
+  CHECK(driven.absent == 0.0);
+  CHECK(driven.unit == "Pa");
+  CHECK(driven.upper == sepcal::infinity);
+  CHECK(Variable(driven).absent == 0.0);
+  CHECK(std::isnan(Variable("pt", "Pa").absent));
+}
+
 TEST_CASE("a variable keeps its quantity's name, unit and bounds") {
   const Variable variable(Quantity{"b_alpha", "rad", -0.25, 0.5});
   CHECK(variable.name == "b_alpha");

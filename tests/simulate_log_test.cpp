@@ -143,7 +143,7 @@ TEST_CASE("the CSV has the columns of the interface and loses no bit") {
   std::getline(lines, line);
   CHECK(line ==
         "time_s,roll_rad,pitch_rad,yaw_rad,p_radps,q_radps,r_radps,vn_mps,ve_mps,vd_mps,pt_pa,"
-        "ps_pa,dpa_pa,dpb_pa,temp_k,rho_kgpm3,altitude_m,throttle,current_a,maneuver");
+        "ps_pa,dpa_pa,dpb_pa,temp_k,rho_kgpm3,altitude_m,throttle,current_a,flap,maneuver");
   std::size_t row = 0;
   for (; std::getline(lines, line); ++row) {
     std::istringstream cells(line);
@@ -160,7 +160,11 @@ TEST_CASE("the CSV has the columns of the interface and loses no bit") {
   const std::string magnetometer = text_of(simulate_magnetometer({}, condensed(2)));
   CHECK(magnetometer.substr(0, magnetometer.find('\n')) ==
         "time_s,mx_ut,my_ut,mz_ut,roll_rad,pitch_rad,yaw_rad,p_radps,q_radps,r_radps,bn_ut,be_ut,"
-        "bd_ut,temp_degc,current_a,maneuver");
+        "bd_ut,temp_degc,current_a,throttle,voltage_v,panel_current_a,maneuver");
+  const std::string tube = text_of(simulate_pitot_static({}, condensed(2)));
+  CHECK(tube.substr(0, tube.find('\n')) ==
+        "time_s,roll_rad,pitch_rad,yaw_rad,p_radps,q_radps,r_radps,vn_mps,ve_mps,vd_mps,dp_pa,"
+        "ps_pa,temp_k,rho_kgpm3,airspeed_mps,altitude_m,throttle,current_a,flap,maneuver");
 }
 
 TEST_CASE("a failing stream is left failed") {

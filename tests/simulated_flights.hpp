@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "sepcal/flight/simulate.hpp"
 
@@ -51,8 +53,39 @@ inline SimulationOptions condensed(std::size_t rows, std::uint64_t seed = 0) {
 /// The same truth without noise.
 template <class Truth>
 Truth quiet(Truth truth) {
-  truth.noise = {0, 0, 0};
+  truth.noise.fill(0);
   return truth;
+}
+
+/// The truth with these effects at work.
+template <class Truth>
+Truth hiding(Truth truth, std::vector<HiddenEffect> effects) {
+  truth.effects = std::move(effects);
+  return truth;
+}
+
+inline Eigen::ArrayXd values(const SimulatedFlight& flight, const char* name) {
+  const std::vector<double>& column = flight.column(name);
+  return Eigen::Map<const Eigen::ArrayXd>(column.data(), static_cast<Eigen::Index>(column.size()));
+}
+
+/// tau dy/dt + y at every row but two at each end, by central differences over five evenly spaced
+/// rows: their error is h^4/30 times the fifth derivative.
+inline Eigen::ArrayXd undo_lag(const SimulatedFlight& flight, const char* name, double tau) {
+  const Eigen::ArrayXd y = values(flight, name), t = values(flight, "time_s");
+  const Eigen::Index n = y.size() - 4;
+  const double h = (t[t.size() - 1] - t[0]) / static_cast<double>(t.size() - 1);
+  const Eigen::ArrayXd slope =
+      (y.segment(0, n) - 8 * y.segment(1, n) + 8 * y.segment(3, n) - y.segment(4, n)) / (12 * h);
+  return tau * slope + y.segment(2, n);
+}
+
+/// The largest difference of a column from another flight's, `later` rows on.
+inline double worst_difference(const SimulatedFlight& flight, const SimulatedFlight& other,
+                               const char* name, Eigen::Index later = 0) {
+  const Eigen::ArrayXd a = values(flight, name), b = values(other, name);
+  const Eigen::Index n = a.size() - later;
+  return (a.tail(n) - b.head(n)).abs().maxCoeff();
 }
 
 }  // namespace sepcal::test

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "block_inputs.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
@@ -55,26 +56,25 @@ struct Simulated {
   Record record;
 };
 
-/// Adds the model's outputs to `record`, output j with noise of standard deviation noise[j].
+/// Adds the model's outputs to `record`, output j with noise of standard deviation noise[j]; zeros
+/// outside its segments.
 inline void add_outputs(Record& record, const BlockModel& model, const Eigen::VectorXd& xi1,
                         const Eigen::VectorXd& xi2, const Eigen::VectorXd& noise, Draws& draws) {
   const auto n_z = static_cast<Eigen::Index>(model.tables().outputs.size());
   const auto carry = model.new_carry();
-  std::vector<std::vector<double>> outputs(static_cast<std::size_t>(n_z));
+  std::vector<std::vector<double>> outputs(static_cast<std::size_t>(n_z),
+                                           std::vector<double>(record.length(), 0.0));
   for (const Segment& segment : record.segments()) {
-    std::vector<const double*> inputs;
-    for (const Variable& input : model.tables().inputs) {
-      inputs.push_back(record.column(input.name).data() + segment.first);
-    }
-    const Block block{inputs, segment.rows(), segment.first, true};
+    const BlockInputs inputs = block_inputs(model, record, segment.first);
+    const Block block{inputs.pointers, segment.rows(), segment.first, true};
     const auto rows = static_cast<Eigen::Index>(segment.rows());
     Eigen::MatrixXd values(n_z * rows, xi1.size() + 1);
     model.evaluate(block, xi2.data(), nullptr, carry.get(), values);
     const Eigen::VectorXd z = values.leftCols(xi1.size()) * xi1 + values.rightCols<1>();
     for (Eigen::Index j = 0; j < n_z; ++j) {
       for (Eigen::Index row = 0; row < rows; ++row) {
-        outputs[static_cast<std::size_t>(j)].push_back(z[j * rows + row] +
-                                                       noise[j] * draws.normal());
+        outputs[static_cast<std::size_t>(j)][segment.first + static_cast<std::size_t>(row)] =
+            z[j * rows + row] + noise[j] * draws.normal();
       }
     }
   }

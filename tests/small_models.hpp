@@ -34,8 +34,8 @@ struct Line {
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 1>& u, const Vec<X, 0>&) const {
     Affine<X, 1, 2> z;
-    z.A << u[0], 1.0;
-    z.b << 0.0;
+    z.A << u[0], X(1.0);
+    z.b << X(0.0);
     return z;
   }
 };
@@ -51,7 +51,7 @@ struct Root {
     using std::sqrt;
     Affine<X, 1, 1> z;
     z.A << sqrt(u[0]);
-    z.b << 0.0;
+    z.b << X(0.0);
     return z;
   }
 };

@@ -10,6 +10,7 @@
 
 #include "dense_reference.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
@@ -126,6 +127,7 @@ TEST_CASE("a direction along which Tr[R] is flat is named, and there is no uniqu
   sepcal::Record record;
   const std::vector<double> zeros(200, 0.0);
   for (const auto& input : flight.model->tables().inputs) {
+    if (!flight.record.has(input.name)) continue;
     record.view(input.name, input.name == "dpa" ? std::span<const double>(zeros)
                                                 : flight.record.column(input.name));
   }
@@ -158,6 +160,53 @@ TEST_CASE("without samples stage two starts from the middle of the bounds, and n
   CHECK(result.xi2 == Eigen::Vector2d(0.0, 0.4));
   CHECK(result.samples.size() == 0);
   CHECK_FALSE(result.unique_minimum);
+}
+
+TEST_CASE("with a start stage one samples nothing and stage two begins there, within the bounds") {
+  const Simulated wave = sepcal::test::simulate_scalar_2(100);
+  FitOptions options = samples(50);
+  options.start = {{"c", -0.3}};
+  const StageOne result = stage_one(*wave.model, wave.record, options);
+  CHECK(result.xi2 == Eigen::Vector2d(0.0, -0.3));  // b: the middle of its bounds
+  CHECK(result.samples.size() == 0);
+  CHECK_FALSE(result.unique_minimum);
+  options.start = {{"b", 7.0}, {"c", -7.0}};
+  CHECK(stage_one(*wave.model, wave.record, options).xi2 == Eigen::Vector2d(0.5, -1.0));
+}
+
+TEST_CASE("what is not sampled is held at its value, and the rest is as if it were fixed there") {
+  const Simulated wave = sepcal::test::simulate_scalar_2(100);
+  FitOptions fixed = samples(60);
+  fixed.fixed = {{"c", 0.3}};
+  const StageOne expected = stage_one(*wave.model, wave.record, fixed);
+  FitOptions options = samples(60);
+  options.unsampled = {{"c", 0.3}};
+  const StageOne result = stage_one(*wave.model, wave.record, options);
+  CHECK(result.samples.row(0) == expected.samples.row(0));
+  CHECK(result.samples.row(1) == MatrixXd::Constant(1, 60, 0.3));
+  CHECK(result.trace_r == expected.trace_r);
+  CHECK(result.xi2 == Eigen::Vector2d(expected.xi2[0], 0.3));
+  CHECK(result.best == Eigen::Vector2d(expected.best[0], 0.3));
+  REQUIRE(result.minima.size() == expected.minima.size());
+  CHECK(result.minima[0].xi2 == Eigen::Vector2d(expected.minima[0].xi2[0], 0.3));
+  CHECK(result.unique_minimum == expected.unique_minimum);
+  CHECK(result.xi1 == expected.xi1);
+  CHECK(result.noise == expected.noise);
+
+  options.unsampled = {{"c", 7.0}};  // beyond the bounds: at them
+  CHECK(stage_one(*wave.model, wave.record, options).xi2[1] == 1.0);
+  options.unsampled = {{"b", 0.1}, {"c", 0.3}};
+  CHECK(stage_one(*wave.model, wave.record, options).xi2 == Eigen::Vector2d(0.1, 0.3));
+}
+
+TEST_CASE("stage two frees what was not sampled") {
+  const Simulated wave = sepcal::test::simulate_scalar_2(200);
+  FitOptions options = samples(100);
+  const sepcal::Fit sampled = sepcal::fit(*wave.model, wave.record, options);
+  options.unsampled = {{"c", 0.0}};
+  const sepcal::Fit unsampled = sepcal::fit(*wave.model, wave.record, options);
+  CHECK(unsampled.stage_one.xi2[1] == 0.0);
+  CHECK((unsampled.xi2() - sampled.xi2()).cwiseAbs().maxCoeff() < 1e-8);
 }
 
 TEST_CASE("a single sample is enough, and a prior alone will do instead of bounds") {

@@ -7,31 +7,44 @@
 #include <cmath>
 
 #include "dense_reference.hpp"
+#include "sepcal/error.hpp"
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using sepcal::test::BlockInputs;
 using sepcal::test::Growth;
 using sepcal::test::Line;
 using sepcal::test::Simulated;
 
 namespace {
 
-std::vector<const double*> inputs_of(const Simulated& simulated) {
-  std::vector<const double*> inputs;
-  for (const auto& input : simulated.model->tables().inputs) {
-    inputs.push_back(simulated.record.column(input.name).data());
-  }
-  return inputs;
+BlockInputs inputs_of(const Simulated& simulated) {
+  return sepcal::test::block_inputs(*simulated.model, simulated.record);
 }
+
+/// z = s exp(u) in doubles alone.
+struct DoublesOnly {
+  static constexpr std::array inputs{sepcal::Quantity{"u", "1"}};
+  static constexpr std::array outputs{sepcal::Quantity{"z", "1"}};
+  static constexpr std::array linear{sepcal::Quantity{"s", "1"}};
+  static constexpr std::array<sepcal::Quantity, 0> nonlinear{};
+  sepcal::Affine<double, 1, 1> at(const sepcal::Vec<double, 1>& u,
+                                  const sepcal::Vec<double, 0>&) const {
+    sepcal::Affine<double, 1, 1> z;
+    z.A << std::exp(u[0]);
+    z.b << 0.0;
+    return z;
+  }
+};
 
 }  // namespace
 
 TEST_CASE("the tables are the struct's, bounds and all") {
   const sepcal::Tables tables = sepcal::tables_of<sepcal::FiveHoleProbe>();
-  CHECK(tables.n_u() == 11);
+  CHECK(tables.n_u() == 14);
   CHECK(tables.n_z() == 3);
   CHECK(tables.n_1() == 5);
   CHECK(tables.n_2() == 5);
@@ -46,10 +59,10 @@ TEST_CASE("output j takes the rows from j times the block's length on, with at()
   const sepcal::FiveHoleProbe probe{4.5, 4.0, {0.35, -0.1, -0.02}};
   const auto inputs = inputs_of(flight);
   MatrixXd rows(21, 6);
-  flight.model->evaluate({inputs, 7, 0, true}, flight.xi2.data(), nullptr, nullptr, rows);
+  flight.model->evaluate({inputs.pointers, 7, 0, true}, flight.xi2.data(), nullptr, nullptr, rows);
   for (Index k = 0; k < 7; ++k) {
-    sepcal::Vec<double, 11> u;
-    for (Index i = 0; i < 11; ++i) u[i] = inputs[static_cast<std::size_t>(i)][k];
+    sepcal::Vec<double, 14> u;
+    for (Index i = 0; i < 14; ++i) u[i] = inputs.pointers[static_cast<std::size_t>(i)][k];
     const sepcal::Vec<double, 5> xi2 = flight.xi2;
     const auto z = probe.at(u, xi2);
     for (Index j = 0; j < 3; ++j) {
@@ -65,8 +78,8 @@ TEST_CASE("D is the derivative of A xi1 + b, for all four models") {
     const auto& tables = simulated.model->tables();
     const auto inputs = inputs_of(simulated);
     MatrixXd rows(40 * tables.n_z(), tables.n_1() + tables.n_2() + 1);
-    simulated.model->evaluate({inputs, 40, 0, true}, simulated.xi2.data(), simulated.xi1.data(),
-                              nullptr, rows);
+    simulated.model->evaluate({inputs.pointers, 40, 0, true}, simulated.xi2.data(),
+                              simulated.xi1.data(), nullptr, rows);
     const MatrixXd expected =
         sepcal::test::dense_rows(*simulated.model, simulated.record, simulated.xi1, simulated.xi2);
     const MatrixXd D = rows.middleCols(tables.n_1(), tables.n_2());
@@ -96,4 +109,43 @@ TEST_CASE("a model with nothing linear gives [D | b], one with nothing nonlinear
   MatrixXd line(2, 3);
   line << 0.5, 1, 0, -2, 1, 0;
   CHECK(linear == line);
+}
+
+TEST_CASE("the derivatives by the inputs are those of A xi1 + b, for all four models") {
+  for (const Simulated& simulated : sepcal::test::simulate_all(20)) {
+    CAPTURE(simulated.name);
+    for (int i = 0; i < simulated.model->tables().n_u(); ++i) {
+      CAPTURE(i);
+      const sepcal::test::InputTangents both = sepcal::test::input_tangents(
+          *simulated.model, simulated.record, simulated.xi1, simulated.xi2, {i});
+      CHECK((both.given - both.numeric).norm() < 1e-8 * (1.0 + both.numeric.norm()));
+    }
+  }
+}
+
+TEST_CASE("the derivatives come in the order asked for, an input twice where it is asked twice") {
+  const Simulated flight = sepcal::test::simulate_magnetometer(5);
+  const auto of = [&](const std::vector<int>& inputs) {
+    return sepcal::test::input_tangents(*flight.model, flight.record, flight.xi1, flight.xi2,
+                                        inputs)
+        .given;
+  };
+  const MatrixXd all = of({0, 1, 2});
+  CHECK(of({2, 0, 2}) == all(Eigen::all, {2, 0, 2}));
+  CHECK(of({}).cols() == 0);
+}
+
+TEST_CASE("a model in doubles alone is an error that names the input and the way out") {
+  const auto model = sepcal::block_model(DoublesOnly{});
+  const double u = 0.5;
+  const double* const inputs[] = {&u};
+  const double xi1 = 1;
+  const int wanted[] = {0};
+  MatrixXd columns(1, 1);
+  CHECK_THROWS_WITH_AS(model->input_tangent({inputs, 1, 0, true}, &xi1, &xi1, wanted, columns),
+                       doctest::Contains("its input 'u', so that no effect can correct it; make "
+                                         "at(u, xi2) a template in u's number type"),
+                       sepcal::Error);
+  MatrixXd none(1, 0);
+  CHECK_NOTHROW(model->input_tangent({inputs, 1, 0, true}, &xi1, &xi1, {}, none));
 }

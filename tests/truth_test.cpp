@@ -44,6 +44,81 @@ TEST_CASE("the JSON has the keys of the interface") {
   CHECK(magnetometer["noise"].size() == 3);
 }
 
+TEST_CASE("a tube's truth reads back as it was") {
+  PitotStaticTruth tube;
+  tube.parameters["s_va"] = 1.0 / 3.0;
+  tube.noise = {0.7};
+  const PitotStaticTruth again = parse_pitot_static_truth(to_json(tube), "truth.json");
+  CHECK(again.parameters == tube.parameters);
+  CHECK(again.noise == tube.noise);
+  const auto json = nlohmann::ordered_json::parse(to_json(PitotStaticTruth{}));
+  CHECK(json["model"] == "pitot-static");
+  CHECK(json["noise"]["airspeed"] == 0.3);
+  CHECK_FALSE(json.contains("effects"));
+  check_refused([] { parse_pitot_static_truth(R"({"model": "five-hole"})", "t.json"); },
+                {"t.json", "five-hole", "--probe"});
+  check_refused([] { parse_pitot_static_truth(R"({"noise": {"vn": 1}})", "t.json"); },
+                {"'vn'", "airspeed"});
+  check_refused([] { parse_pitot_static_truth(R"({"options": {"k_alpha": 1}})", "t.json"); },
+                {"'k_alpha'"});
+}
+
+TEST_CASE("a truth with hidden effects flies the same flight again") {
+  const auto check = [](auto truth, auto simulate, auto parse,
+                        const std::vector<HiddenEffect>& effects) {
+    const SimulatedFlight flight = simulate(hiding(truth, effects), condensed(60, 3));
+    const std::string json = to_json(as_flown(truth, flight));
+    const auto written = nlohmann::ordered_json::parse(json);
+    CHECK(written["effects"].size() == effects.size());
+    const SimulatedFlight again = simulate(parse(json, "truth.json"), condensed(60, 3));
+    CHECK(again.truth == flight.truth);
+    CHECK(again.effects == flight.effects);
+    for (const SimulatedColumn& column : flight.columns) {
+      CHECK(again.column(column.name) == column.values);
+    }
+    CHECK(to_json(as_flown(truth, again)) == json);
+  };
+  check(FiveHoleTruth{}, simulate_five_hole, parse_five_hole_truth,
+        {{"wind_shear", {0.01, -0.02}}, {"icing_ramp", {-1e-4}}, {"wind[maneuver]", {0.5}}});
+  check(PitotStaticTruth{}, simulate_pitot_static, parse_pitot_static_truth,
+        {{"wind[spline(time,4)]", {1, 2, 3, 4, 5, 6}}, {"pneumatic_lag", {0.2}}});
+  check(MagnetometerTruth{}, simulate_magnetometer, parse_magnetometer_truth,
+        {{"bias[throttle^n]", {1, 2, 3, 1.5}}, {"warm_up", {4}}, {"eddy_currents", {0.01}}});
+}
+
+TEST_CASE("a hidden effect can be written by hand") {
+  const char* json = R"({"parameters": {"bias[time].x": 0.1, "bias[time].y": 0, "bias[time].z": 0,
+                         "bias_step.x": 1, "bias_step.y": 2, "bias_step.z": 3},
+                         "effects": ["bias_step"]})";
+  const SimulatedFlight flight =
+      simulate_magnetometer(parse_magnetometer_truth(json, "t.json"), condensed(30));
+  CHECK(flight.effects == std::vector<std::string>{"bias_step", "bias[time]"});
+  CHECK(flight.truth.at("bias[time].x") == 0.1);
+  CHECK(flight.truth.at("bias_step.t0") == doctest::Approx(80.0 / 3 * 29 / 30));
+  const auto refuse = [](const char* text, std::initializer_list<std::string_view> words) {
+    CAPTURE(std::string(text));
+    check_refused(
+        [&] { simulate_magnetometer(parse_magnetometer_truth(text, "t.json"), condensed(30)); },
+        words);
+  };
+  refuse(R"({"effects": ["bias[time]"]})", {"t.json: ", "'bias[time].x' is missing"});
+  refuse(R"({"effects": ["gusts"]})", {"t.json: ", "'gusts'", "bias[DRIVER]"});
+  refuse(R"({"parameters": {"gusts.x": 1}})", {"t.json: ", "'gusts'"});
+  refuse(R"({"parameters": {"bias_step.x": 1, "bias_step.y": 1, "bias_step.z": 1,
+          "bias_step.w": 1}})",
+         {"t.json: ", "'bias_step.w'"});
+  refuse(R"({"effects": "bias[time]"})", {"t.json: "});
+  refuse(R"({"effects": [3]})", {"t.json: "});
+}
+
+TEST_CASE("a field can be given by its strength") {
+  const MagnetometerTruth truth =
+      parse_magnetometer_truth(R"({"options": {"field_strength": 48}})", "t.json");
+  CHECK(Vector3d(truth.field.data()).norm() == doctest::Approx(48).epsilon(1e-14));
+  CHECK(Vector3d(truth.field.data()).normalized().dot(Vector3d(19.7, -1.4, 49.4).normalized()) ==
+        doctest::Approx(1).epsilon(1e-14));
+}
+
 TEST_CASE("what a file leaves out keeps its default") {
   CHECK(to_json(parse_five_hole_truth("{}", "t")) == to_json(FiveHoleTruth{}));
   CHECK(to_json(parse_magnetometer_truth("{}", "t")) == to_json(MagnetometerTruth{}));
@@ -76,7 +151,7 @@ TEST_CASE("what is no truth is refused, opened by its source") {
     check(text, {"truth.json is not a truth file", "{\"parameters\": {name: value}}"});
   }
   check(R"({"model": "magnetometer"})", {"magnetometer", "other app"});
-  check(R"({"params": {}})", {"'params' is unknown", "parameters, options, noise"});
+  check(R"({"params": {}})", {"'params' is unknown", "parameters, options, noise, effects"});
   check(R"({"parameters": {"w_up": 1}})", {"'w_up'", "the model has: b_alpha, "});
   check(R"({"parameters": {"w_n": "strong"}})", {"simulate --truth"});
   check(R"({"parameters": {"w_n": null}})", {"simulate --truth"});

@@ -62,4 +62,11 @@ void FixedModel::evaluate(const Block& block, const double* xi2, const double* x
   rows.col(column).noalias() = whole.rightCols<1>() + whole.leftCols(n_1) * xi1_;
 }
 
+void FixedModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
+                               std::span<const int> inputs, Eigen::Ref<MatrixXd> columns) const {
+  const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
+  const VectorXd whole_2 = fill_in(xi2_, free_2_, xi2);
+  model_.input_tangent(block, values_of(whole_2), values_of(whole_1), inputs, columns);
+}
+
 }  // namespace sepcal

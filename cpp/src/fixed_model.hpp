@@ -19,6 +19,10 @@ class FixedModel final : public BlockModel {
   void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
                 Eigen::Ref<Eigen::MatrixXd> rows) const override;
 
+  void input_tangent(const Block& block, const double* xi2, const double* xi1,
+                     std::span<const int> inputs,
+                     Eigen::Ref<Eigen::MatrixXd> columns) const override;
+
   std::unique_ptr<Carry> new_carry() const override { return model_.new_carry(); }
 
  private:

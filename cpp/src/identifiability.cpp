@@ -19,9 +19,13 @@ using Eigen::VectorXd;
 
 constexpr double share_to_take_part = 0.05;        // of the largest, in units of the scale
 constexpr double share_to_be_weak_together = 0.3;  // of the largest, in columns of unit length
+constexpr double share_to_be_inflated = 0.1;       // the same where most of a variance comes of it
 constexpr double share_to_be_written = 0.01;       // of the largest, in the combination's own
 constexpr double singular_floor = 1e-12;           // of the largest singular value: as good as zero
 constexpr double weak_singular_value = 1.0 / 50.0;
+constexpr std::size_t most_names = 8;         // that a sentence lists
+constexpr std::size_t most_combinations = 3;  // that a sentence lists
+constexpr std::size_t most_sentences = 3;     // that a message holds
 
 /// Those with at least `share` of the largest, largest first.
 std::vector<Index> participants(const VectorXd& direction, double share) {
@@ -48,13 +52,20 @@ std::vector<std::string> names_of(const std::vector<Index>& indices,
   return result;
 }
 
-std::string spoken_list(const std::vector<std::string>& names) {
+/// How many of `size` entries to write out: all, unless two or more can be left out.
+std::size_t within(std::size_t most, std::size_t size) { return size > most + 1 ? most : size; }
+
+/// "a, b and c"; of more than `most` + 1 the first `most`, the others counted: "a, b and 7 more".
+std::string spoken_list(const std::vector<std::string>& names, std::size_t most,
+                        const std::string& where_to_look = "") {
+  const std::size_t spoken = within(most, names.size());
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < spoken; ++i) {
     if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
     text += names[i];
   }
-  return text;
+  if (spoken == names.size()) return text;
+  return text + " and " + std::to_string(names.size() - spoken) + " more" + where_to_look;
 }
 
 std::string number(double value) {
@@ -105,8 +116,7 @@ std::string sentence(const std::vector<Valley>& valleys, const std::vector<std::
     }
     open.push_back(valley.combination.text);
   }
-  if (involved.size() == 1) return involved.front() + " can't be determined from this record";
-  std::string text = spoken_list(involved) + " can't be told apart: ";
+  std::string text = spoken_list(involved, most_names) + " can't be told apart: ";
   if (valleys.size() == 1 && involved.size() == 2) {
     const Valley& valley = valleys.front();
     VectorXd determined = VectorXd::Zero(valley.direction.size());
@@ -114,7 +124,8 @@ std::string sentence(const std::vector<Valley>& valleys, const std::vector<std::
     determined[valley.parameters[1]] = -valley.direction[valley.parameters[0]];
     return text + "only " + combination_text(determined, names) + " is determined";
   }
-  return text + spoken_list(open) + (open.size() == 1 ? " is" : " are") + " not determined";
+  return text + spoken_list(open, most_combinations, " (see unobservable)") +
+         (open.size() == 1 ? " is" : " are") + " not determined";
 }
 
 }  // namespace
@@ -200,17 +211,26 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
     }
     valleys.push_back(std::move(valley));
   }
+  std::vector<std::string> unseen;  // by themselves, in exchange for nothing
   for (const auto& members : group(valleys)) {
-    result.sentences.push_back(sentence(members, names));
     for (const Valley& valley : members) result.unobservable.push_back(valley.combination);
+    if (members.size() == 1 && members.front().parameters.size() == 1) {
+      unseen.push_back(members.front().combination.parameters.front());
+    } else {
+      result.sentences.push_back(sentence(members, names));
+    }
+  }
+  if (!unseen.empty()) {
+    result.sentences.push_back(spoken_list(unseen, most_names, " (see unobservable)") +
+                               " can't be determined from this record");
   }
 
-  // Weak: in columns of unit length, what is left of them.
+  // Weak: in columns of unit length, what is left of them; the weakest first.
   VectorXd lengths = R.colwise().norm();
   for (double& length : lengths) length = length > 0 ? length : 1.0;
   const Eigen::JacobiSVD<MatrixXd> unit(R * lengths.cwiseInverse().asDiagonal(),
                                         Eigen::ComputeFullV);
-  for (Index i = 0; i < n; ++i) {
+  for (Index i = n - 1; i >= 0; --i) {
     const double value = unit.singularValues()[i];
     if (value > weak_singular_value * unit.singularValues()[0]) continue;
     if (!(value > singular_floor * unit.singularValues()[0])) continue;
@@ -218,12 +238,19 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
     const VectorXd shift = v.cwiseQuotient(lengths) * (noise_factor / value);
     if (shift.cwiseQuotient(s).norm() > 1.0) continue;  // listed as unobservable already
     // The main parts of c = sum v_k |column_k| xi_k; se(c) = |R^-T c|.
-    const std::vector<Index> involved = participants(v, share_to_be_weak_together);
+    std::vector<Index> involved = participants(v, share_to_be_inflated);
+    std::erase_if(involved, [&](Index k) {
+      if (std::abs(v[k]) >= share_to_be_weak_together * v.cwiseAbs().maxCoeff()) return false;
+      // Belsley's share of the parameter's variance that this direction makes.
+      const VectorXd parts =
+          unit.matrixV().row(k).transpose().cwiseQuotient(unit.singularValues()).cwiseAbs2();
+      return parts[i] < 0.5 * parts.sum();
+    });
     const VectorXd functional = only(v.cwiseProduct(lengths), involved).normalized();
     const VectorXd deviation = R.triangularView<Eigen::Upper>().transpose().solve(functional);
     Combination weak{names_of(involved, names), combination_text(functional, names),
                      noise_factor * deviation.norm()};
-    result.sentences.push_back(spoken_list(weak.parameters) +
+    result.sentences.push_back(spoken_list(weak.parameters, most_names) +
                                " are hard to tell apart: " + weak.text +
                                " has a standard error of " + number(weak.standard_error));
     result.weak.push_back(std::move(weak));
@@ -239,8 +266,11 @@ bool leaves_open(const MatrixXd& R, const VectorXd& scale) {
 
 std::string Identifiability::message() const {
   std::string text;
-  for (const std::string& part : sentences) text += (text.empty() ? "" : "; ") + part;
-  return text;
+  const std::size_t spoken = within(most_sentences, sentences.size());
+  for (std::size_t i = 0; i < spoken; ++i) text += (i == 0 ? "" : "; ") + sentences[i];
+  if (spoken == sentences.size()) return text;
+  return text + "; and " + std::to_string(sentences.size() - spoken) +
+         " more (see unobservable and weak)";
 }
 
 }  // namespace sepcal

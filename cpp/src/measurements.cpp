@@ -22,16 +22,20 @@ void check_finite(const std::string& name, std::span<const double> values, const
 }  // namespace
 
 Measurements::Measurements(const BlockModel& model, const Record& record) : rows_(record.rows()) {
-  const auto find = [&](const std::vector<Variable>& table) {
-    std::vector<std::span<const double>> columns;
-    for (const Variable& variable : table) {
-      columns.push_back(record.column(variable.name));
-      check_finite(variable.name, columns.back(), record);
-    }
-    return columns;
+  const auto find = [&](const Variable& variable) {
+    const std::span<const double> column = record.column(variable.name);
+    check_finite(variable.name, column, record);
+    return column;
   };
-  inputs_ = find(model.tables().inputs);
-  outputs_ = find(model.tables().outputs);
+  for (const Variable& input : model.tables().inputs) {
+    if (!record.has(input.name) && std::isfinite(input.absent)) {
+      constants_.emplace_back(block_rows, input.absent);
+      inputs_.push_back({constants_.back().data(), true});
+    } else {
+      inputs_.push_back({find(input).data(), false});
+    }
+  }
+  for (const Variable& output : model.tables().outputs) outputs_.push_back(find(output));
 
   const bool in_order = model.new_carry() != nullptr;
   std::size_t in_chunk = chunk_rows;
@@ -49,26 +53,25 @@ Measurements::Measurements(const BlockModel& model, const Record& record) : rows
       in_chunk += range.rows;
     }
   }
+  for (const std::span<const double> z : outputs_) {
+    double sum = 0.0;
+    for (const Segment& segment : record.segments()) {
+      for (const double value : z.subspan(segment.first, segment.rows())) sum += value * value;
+    }
+    output_squares_.push_back(sum);
+  }
 }
 
 Block Measurements::block(const Range& range, std::vector<const double*>& pointers) const {
   pointers.clear();
-  for (const auto& column : inputs_) pointers.push_back(column.data() + range.first);
+  for (const Input& input : inputs_) {
+    pointers.push_back(input.constant ? input.values : input.values + range.first);
+  }
   return {pointers, range.rows, range.first, range.starts_segment};
 }
 
 std::span<const double> Measurements::output(int j, const Range& range) const {
   return outputs_[static_cast<std::size_t>(j)].subspan(range.first, range.rows);
-}
-
-double Measurements::output_square(int j) const {
-  double sum = 0.0;
-  for (const auto& chunk : chunks_) {
-    for (const Range& range : chunk) {
-      for (const double z : output(j, range)) sum += z * z;
-    }
-  }
-  return sum;
 }
 
 }  // namespace sepcal

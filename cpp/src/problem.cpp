@@ -62,6 +62,15 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
     std::vector<Variable> nonlinear = model.tables().nonlinear;
     find(nonlinear, name, "nonlinear parameter (only these are sampled)");
   }
+  for (const auto& [name, value] : options.start) {
+    std::vector<Variable> nonlinear = model.tables().nonlinear;
+    find(nonlinear, name, "nonlinear parameter (only these have a start)");
+    if (!std::isfinite(value)) throw Error("the start of '" + name + "' is not a finite number");
+  }
+  for (const auto& [name, value] : options.unsampled) {
+    std::vector<Variable> nonlinear = model.tables().nonlinear;
+    find(nonlinear, name, "nonlinear parameter (only these are sampled)");
+  }
   for (const auto& [name, value] : options.fixed) {
     const Variable& parameter = find(all, name, "parameter");
     if (!std::isfinite(value) || value < parameter.lower || value > parameter.upper) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refine.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "bounded_least_squares.hpp"
@@ -28,6 +30,75 @@ std::vector<bool> held_by_bounds(const VectorXd& x, const VectorXd& pull, const 
   return held;
 }
 
+/// A step's verdict: how long it is, in standard errors and in plausible lengths.
+struct Length {
+  double size = 0.0;
+  double relative = 0.0;
+  double residual = 0.0;
+
+  Length(const MatrixXd& jacobian, const VectorXd& step, const VectorXd& scale, const VectorXd& r)
+      : size((jacobian * step).stableNorm()),
+        relative(step.cwiseQuotient(scale).cwiseAbs().maxCoeff()),
+        residual(r.stableNorm()) {}
+
+  bool is_last_digit() const {
+    return size <= smallest_step * (1.0 + residual) || relative <= smallest_relative_step;
+  }
+  bool is_passable() const { return size <= passable_step || relative <= passable_relative_step; }
+};
+
+/// The Hessian of half the sum of squares: differences of its exact gradient, over steps of a
+/// hundredth of what the record can tell apart. Empty where the model is not finite.
+MatrixXd hessian(Objective& objective, const VectorXd& x, const VectorXd& gradient,
+                 const MatrixXd& jacobian, const VectorXd& scale) {
+  constexpr double step = 1e-2;  // standard errors, of a parameter by itself
+  VectorXd residual;
+  MatrixXd tangent;
+  MatrixXd H(x.size(), x.size());
+  for (Index k = 0; k < x.size(); ++k) {
+    const double length = jacobian.col(k).stableNorm();
+    VectorXd moved = x;
+    moved[k] += std::min(length > 0 ? step / length : infinity, 1e-4 * scale[k]);
+    if (moved[k] == x[k] || !objective.linearise(moved, residual, tangent)) return {};
+    H.col(k) = (tangent.transpose() * residual - gradient) / (moved[k] - x[k]);
+  }
+  return 0.5 * (H + H.transpose());
+}
+
+/// Newton's steps, for a minimum so curved that Gauss-Newton's don't contract there. The parameters
+/// that bounds hold stay where they are.
+bool refine_by_curvature(Objective& objective, Refinement& result, const Box& box,
+                         const VectorXd& scale) {
+  constexpr int most_newton_steps = 15;
+  VectorXd residual;
+  MatrixXd jacobian;
+  if (!objective.linearise(result.x, residual, jacobian)) return false;
+  double before = infinity;
+  for (int i = 0; i < most_newton_steps; ++i, ++result.iterations) {
+    const VectorXd gradient = jacobian.transpose() * residual;
+    result.at_bound = held_by_bounds(result.x, -gradient, box);
+    std::vector<Index> free;
+    for (Index k = 0; k < result.x.size(); ++k) {
+      if (!result.at_bound[static_cast<std::size_t>(k)]) free.push_back(k);
+    }
+    const MatrixXd H = hessian(objective, result.x, gradient, jacobian, scale);
+    if (H.size() == 0) return false;
+    const Eigen::LLT<MatrixXd> factor(H(free, free));
+    if (factor.info() != Eigen::Success) return false;
+    VectorXd step = VectorXd::Zero(result.x.size());
+    const VectorXd inner = factor.solve(VectorXd(-gradient(free)));
+    step(free) = inner;
+    const VectorXd next = box.clip(result.x + step);
+    const Length length(jacobian, step, scale, residual);
+    if (length.is_last_digit() || (length.is_passable() && length.size >= before)) return true;
+    if (!(length.size < before)) return false;
+    before = length.size;
+    result.x = next;
+    if (!objective.linearise(result.x, residual, jacobian)) return false;
+  }
+  return false;
+}
+
 }  // namespace
 
 Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
@@ -40,12 +111,8 @@ Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
     if (!objective.linearise(result.x, residual, jacobian)) break;
     const BoundedSolution step =
         solve_bounded(-jacobian, residual, {box.lower - result.x, box.upper - result.x});
-    const double size = (jacobian * step.x).stableNorm();
-    const double relative = step.x.cwiseQuotient(scale).cwiseAbs().maxCoeff();
-    const bool last_digit =
-        size <= smallest_step * (1.0 + residual.stableNorm()) || relative <= smallest_relative_step;
-    const bool passable = size <= passable_step || relative <= passable_relative_step;
-    if (last_digit || (passable && size >= before)) {
+    const Length length(jacobian, step.x, scale, residual);
+    if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
       for (Index k = 0; k < start.size(); ++k) {
         if (step.active[static_cast<std::size_t>(k)]) result.x[k] += step.x[k];  // onto its bound
@@ -54,9 +121,15 @@ Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
       result.converged = true;
       return result;
     }
-    if (!(size < before)) break;
-    before = size;
+    if (!(length.size < before)) break;
+    before = length.size;
     result.x = box.clip(result.x + step.x);
+  }
+  result.x = box.clip(start);
+  if (refine_by_curvature(objective, result, box, scale) &&
+      objective.linearise(result.x, residual, jacobian)) {
+    result.converged = true;
+    return result;
   }
   result.x = box.clip(start);
   if (objective.linearise(result.x, residual, jacobian)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last digits of a minimum: Gauss-Newton steps within the bounds. A comparison of costs, which
-// is all that a descent has, can't place a minimum better than the square root of the rounding
-// unit.
+// The last digits of a minimum: Gauss-Newton steps within the bounds, or Newton's where those don't
+// contract. A comparison of costs, which is all that a descent has, can't place a minimum better
+// than the square root of the rounding unit.
 #pragma once
 
 #include <Eigen/Core>

@@ -129,7 +129,10 @@ VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions
   for (Index k = 0; k < point.size(); ++k) {
     const Variable& parameter = parameters[static_cast<std::size_t>(k)];
     const auto prior = options.priors.find(parameter.name);
-    if (prior != options.priors.end()) {
+    const auto start = options.start.find(parameter.name);
+    if (start != options.start.end()) {
+      point[k] = std::clamp(start->second, parameter.lower, parameter.upper);
+    } else if (prior != options.priors.end()) {
       point[k] = std::clamp(prior->second.mean, parameter.lower, parameter.upper);
     } else if (std::isfinite(parameter.lower) && std::isfinite(parameter.upper)) {
       point[k] = 0.5 * (parameter.lower + parameter.upper);

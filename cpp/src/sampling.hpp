@@ -20,8 +20,9 @@ Eigen::MatrixXd draw_samples(const std::vector<Variable>& parameters, const FitO
 /// Phi^-1(p), p in (0, 1), |error| < 1e-14 max(1, |Phi^-1(p)|): Newton steps on erfc.
 double normal_quantile(double p);
 
-/// The point that stage two starts from where nothing was sampled (n_2): the middle of the bounds,
-/// or the prior's mean, or the bound or zero that is nearest where one is infinite.
+/// The point that stage two starts from where nothing was sampled (n_2): options.start, else the
+/// prior's mean, else the middle of the bounds, or the bound or zero that is nearest where one is
+/// infinite.
 Eigen::VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions& options);
 
 }  // namespace sepcal

@@ -108,10 +108,68 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
   return minima;
 }
 
+/// The problem's own question with the unsampled parameters held.
+FitOptions hold_unsampled(const Problem& problem) {
+  FitOptions options = problem.options();
+  options.fixed.clear();
+  options.bounds.clear();
+  std::map<std::string, double> held;
+  std::map<std::string, Normal> priors;
+  for (const Variable& parameter : problem.parameters()) {
+    options.bounds[parameter.name] = {parameter.lower, parameter.upper};
+    const auto value = options.unsampled.find(parameter.name);
+    if (value != options.unsampled.end()) {
+      options.fixed[parameter.name] = std::clamp(value->second, parameter.lower, parameter.upper);
+    } else if (const auto prior = options.priors.find(parameter.name);
+               prior != options.priors.end()) {
+      priors.insert(*prior);
+    }
+  }
+  options.priors = std::move(priors);
+  options.unsampled.clear();
+  return options;
+}
+
+/// Points (n_2 x S) with the held parameters among the sampled ones.
+MatrixXd insert_held(const Problem& problem, const std::map<std::string, double>& held,
+                     const MatrixXd& sampled) {
+  const std::vector<Variable> nonlinear = problem.nonlinear();
+  MatrixXd points(static_cast<Index>(nonlinear.size()), sampled.cols());
+  Index next = 0;
+  for (Index k = 0; k < points.rows(); ++k) {
+    const auto value = held.find(nonlinear[static_cast<std::size_t>(k)].name);
+    if (value == held.end()) {
+      points.row(k) = sampled.row(next++);
+    } else {
+      points.row(k).setConstant(value->second);
+    }
+  }
+  return points;
+}
+
+StageOne run_without_unsampled(const Problem& problem, const Record& record, ThreadPool& pool) {
+  const FitOptions reduced = hold_unsampled(problem);
+  StageOne result = run_stage_one(Problem(problem.model(), reduced), record, pool);
+  const auto insert = [&](const auto& points) {
+    return insert_held(problem, reduced.fixed, points);
+  };
+  if (result.samples.cols() > 0) result.samples = insert(result.samples);
+  result.best = insert(result.best);
+  result.xi2 = insert(result.xi2);
+  for (LocalMinimum& minimum : result.minima) minimum.xi2 = insert(minimum.xi2);
+  return result;
+}
+
 }  // namespace
 
 StageOne run_stage_one(const Problem& problem, const Record& record, ThreadPool& pool) {
   const FitOptions& options = problem.options();
+  const auto is_unsampled = [&](const Variable& parameter) {
+    return options.unsampled.contains(parameter.name);
+  };
+  if (options.start.empty() && std::ranges::any_of(problem.nonlinear(), is_unsampled)) {
+    return run_without_unsampled(problem, record, pool);
+  }
   const Record selected = record.select(options.stage_one_segments);
   const Measurements measurements(problem.model(), selected);
   problem.check_measurements(measurements.rows());
@@ -119,7 +177,7 @@ StageOne run_stage_one(const Problem& problem, const Record& record, ThreadPool&
   const auto rows = static_cast<double>(measurements.rows());
   const auto n_z = static_cast<Index>(problem.model().tables().n_z());
   const std::vector<Variable> nonlinear = problem.nonlinear();
-  const bool sampled = options.samples > 0 && !nonlinear.empty();
+  const bool sampled = options.samples > 0 && options.start.empty() && !nonlinear.empty();
 
   StageOne result;
   result.xi2 = nominal_point(nonlinear, options);

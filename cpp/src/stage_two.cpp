@@ -199,7 +199,9 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
   StageTwo result;
   result.method = options.second_stage;
   if (result.method == SecondStage::automatic) {
-    result.method = start.unique_minimum ? SecondStage::projected : SecondStage::joint;
+    const bool begun_elsewhere = !options.start.empty() && start.xi1.size() > 0;
+    result.method =
+        start.unique_minimum || begun_elsewhere ? SecondStage::projected : SecondStage::joint;
   }
   result.x.resize(start.xi1.size() + start.xi2.size());
   result.x << start.xi1, start.xi2;

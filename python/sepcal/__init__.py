@@ -13,35 +13,54 @@ north-east-down.
 """
 
 from sepcal._core import Error, __version__
-from sepcal.calibration import Applied, Calibration, load
+from sepcal.calibration import Applied, Calibration, Derived, HistoryEntry, load
+from sepcal.catalogue import CataloguedEffect, effects
 from sepcal.comparison import Comparison, Misfit
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
-from sepcal.models import FiveHoleProbe, Magnetometer, Model, ScalarExample1, ScalarExample2
+from sepcal.models import (
+    FiveHoleProbe,
+    Magnetometer,
+    Model,
+    PitotStatic,
+    ScalarExample1,
+    ScalarExample2,
+)
 from sepcal.options import FitOptions
-from sepcal.results import Combination, Fit, LocalMinimum, Parameter, StageOne
+from sepcal.own_effect import Effect
+from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.results import Combination, EffectSetting, Fit, LocalMinimum, Parameter, StageOne
 from sepcal.simulation import SimulatedFlight, simulate
 
 __all__ = [
     "Applied",
     "Calibration",
+    "CataloguedEffect",
     "Combination",
     "Comparison",
+    "Derived",
+    "Effect",
+    "EffectSetting",
     "Error",
     "Fit",
     "FitOptions",
     "FiveHoleProbe",
     "Flight",
+    "HistoryEntry",
     "LocalMinimum",
     "Magnetometer",
     "Misfit",
     "Model",
+    "OwnModel",
     "Parameter",
+    "PitotStatic",
     "ScalarExample1",
     "ScalarExample2",
+    "SeparableModel",
     "SimulatedFlight",
     "StageOne",
     "__version__",
+    "effects",
     "fit",
     "load",
     "read_csv",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The C++ side as the Python front calls it. Arrays are float64; columns are C-contiguous, (N,).
-from typing import TypedDict
+from collections.abc import Callable, Sequence
+from typing import TypeAlias, TypedDict
 
 from sepcal.columns import Array
 
@@ -37,6 +38,20 @@ class StageOneDescription(TypedDict):
     unique_minimum: bool
     flat_directions: list[str]
 
+class EffectSettingDescription(TypedDict):
+    name: str
+    centre: float | None
+    knots: tuple[float, ...]
+    labels: tuple[str, ...]
+    span: tuple[float, float] | None
+    t0: float | None
+
+class CataloguedEffectDescription(TypedDict):
+    name: str
+    equation: str
+    drivers: str
+    unit: str
+
 class FitDescription(TypedDict):
     status: str
     message: str
@@ -53,6 +68,22 @@ class FitDescription(TypedDict):
     method: str
     iterations: int
     noise_iterations: int
+    effects: list[EffectSettingDescription]
+
+class HistoryDescription(TypedDict):
+    effect: str
+    rmse_before: float | None
+    rmse_after: float | None
+    held_out_before: float | None
+    held_out_after: float | None
+    predicted_drop: float | None
+
+class DerivedDescription(TypedDict):
+    name: str
+    value: float
+    standard_error: float
+    standard_error_white: float
+    unit: str
 
 class MisfitDescription(TypedDict):
     segment: str
@@ -79,19 +110,30 @@ class AppliedDescription(TypedDict):
     headers: list[str]
     notes: list[str]
 
+# Name, port, unit, and the function of the columns (N,) and n_z.
+OwnEffect: TypeAlias = tuple[
+    str, str | None, str, Callable[[dict[str, Array], int], Array | list[tuple[str, Array]]]
+]
+
 class Options:
     def __setattr__(self, name: str, value: object, /) -> None: ...
 
 class Model:
     @property
-    def inputs(self) -> list[tuple[str, str, float, float]]: ...
+    def inputs(self) -> list[tuple[str, str, float, float, float]]: ...
     @property
-    def outputs(self) -> list[tuple[str, str, float, float]]: ...
+    def outputs(self) -> list[tuple[str, str, float, float, float]]: ...
     @property
-    def linear(self) -> list[tuple[str, str, float, float]]: ...
+    def linear(self) -> list[tuple[str, str, float, float, float]]: ...
     @property
-    def nonlinear(self) -> list[tuple[str, str, float, float]]: ...
+    def nonlinear(self) -> list[tuple[str, str, float, float, float]]: ...
     def evaluate(self, columns: dict[str, Array], xi2: Array, xi1: Array | None, /) -> Array: ...
+    def input_tangent(
+        self, columns: dict[str, Array], xi2: Array, xi1: Array, inputs: list[int], /
+    ) -> Array: ...
+
+class PythonFunctions:
+    def __init__(self, gather: object, at: object, try_at: object, derivatives: object) -> None: ...
 
 class Flight:
     def __init__(self, name: str, /) -> None: ...
@@ -114,10 +156,15 @@ class Calibration:
     @property
     def fit(self) -> FitDescription: ...
     @property
+    def derived(self) -> dict[str, DerivedDescription]: ...
+    @property
+    def history(self) -> list[HistoryDescription]: ...
+    @property
     def notes(self) -> list[str]: ...
     @property
     def file(self) -> str: ...
     def compare(self, flight: Flight, /) -> ComparisonDescription: ...
+    def add(self, flight: Flight, effect: str, own: Sequence[OwnEffect], /) -> Calibration: ...
     def apply(self, flight: Flight, /) -> dict[str, Array]: ...
     def apply_to_file(self, file: str, output: str, /) -> AppliedDescription: ...
     def to_json(self) -> str: ...
@@ -128,14 +175,37 @@ def scalar_example_2() -> Model: ...
 def five_hole_probe(
     k_alpha: float, k_beta: float, lever_arm: tuple[float, float, float], /
 ) -> Model: ...
+def pitot_static() -> Model: ...
+def attitude_independent_magnetometer(field_strength: float, /) -> Model: ...
 def magnetometer(field: tuple[float, float, float] | None, /) -> Model: ...
+def python_model(
+    name: str, tables: list[list[tuple[str, str, float, float]]], functions: PythonFunctions, /
+) -> Model: ...
 def fit(
-    model: Model, columns: dict[str, Array], labels: list[str], options: Options, /
+    model: Model,
+    columns: dict[str, Array],
+    labels: list[str],
+    options: Options,
+    own: Sequence[OwnEffect],
+    /,
 ) -> FitDescription: ...
-def calibrate(model: Model, flight: Flight, options: Options, /) -> Calibration: ...
-def parse_calibration(json: str, source: str, /) -> Calibration: ...
-def read_calibration(file: str, /) -> Calibration: ...
+def calibrate(
+    model: Model, flight: Flight, options: Options, own: Sequence[OwnEffect], /
+) -> Calibration: ...
+def parse_calibration(json: str, source: str, own: Sequence[OwnEffect], /) -> Calibration: ...
+def read_calibration(file: str, own: Sequence[OwnEffect], /) -> Calibration: ...
+def effects(probe: str, /) -> list[CataloguedEffectDescription]: ...
+def channels(effects: list[str], /) -> list[str]: ...
 def read_csv(file: str, /) -> Flight: ...
 def simulate(
-    probe: str, truth: str, rate: float, rows: int, seed: int, /
-) -> tuple[Flight, dict[str, float]]: ...
+    probe: str,
+    truth: str,
+    hidden: list[tuple[str, list[float]]],
+    excitation: str,
+    noise: str,
+    decoys: int,
+    rate: float,
+    rows: int,
+    seed: int,
+    /,
+) -> tuple[Flight, dict[str, float], list[str]]: ...

@@ -3,6 +3,7 @@
 
 import json
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
@@ -10,6 +11,7 @@ from sepcal import _core
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.flight import Flight
+from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit, to_fields
 
 Path = str | os.PathLike[str]
@@ -25,20 +27,58 @@ class Applied:
     notes: list[str]  # one line each, for people
 
 
+@dataclass(frozen=True)
+class Derived:
+    """A quantity that follows from the estimates, in `unit`; errors by the delta method."""
+
+    name: str
+    value: float
+    standard_error: float  # NaN where that of a parameter it depends on is
+    standard_error_white: float  # the same as long as residuals are taken as white
+    unit: str
+
+
+@dataclass(frozen=True)
+class HistoryEntry:
+    """One step of a chain of added effects; None where a number is undefined."""
+
+    effect: str  # several that were added together: "E1+E2"
+    rmse_before: float | None  # over all outputs together, on the rows of the new fit
+    rmse_after: float | None
+    held_out_before: float | None
+    held_out_after: float | None
+    predicted_drop: float | None  # of the RMSE, 1 - after / before
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Calibration(Fit):
     """A Fit of a probe, with all that later verbs need: probe, options, and the flight fitted.
 
-    It pickles as its JSON, without the flight and without stage one's samples.
+    It pickles as its JSON and its own effects, without the flight and stage one's samples.
     """
 
+    derived: dict[
+        str, Derived
+    ]  # of a Pitot-static tube: lambda_va, b_va, which correct the reading
+    history: list[HistoryEntry]  # an entry for every add()
+    own_effects: list[Effect]  # of the caller's making, among `effects`
     notes: list[str]  # what was dropped or ignored, one line each, for people
     core: _core.Calibration
     flight: Flight | None  # that was fitted; None where the calibration was loaded
 
     @classmethod
-    def _of(cls, core: _core.Calibration, flight: Flight | None = None) -> Self:
-        return cls(**to_fields(core.fit), notes=core.notes, core=core, flight=flight)
+    def _of(
+        cls, core: _core.Calibration, flight: Flight | None = None, own: Sequence[Effect] = ()
+    ) -> Self:
+        return cls(
+            **to_fields(core.fit),
+            derived={name: Derived(**entry) for name, entry in core.derived.items()},
+            history=[HistoryEntry(**entry) for entry in core.history],
+            own_effects=list(own),
+            notes=core.notes,
+            core=core,
+            flight=flight,
+        )
 
     @property
     def fit(self) -> Fit:
@@ -51,19 +91,44 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
+        return Comparison._of(self.core.compare(self._or_fitted(flight, "compare(")._core))
+
+    def add(self, effect: str | Effect, flight: Flight | None = None) -> "Calibration":
+        """The calibration with one more effect, refitted from these estimates.
+
+        Args:
+            effect: A name, an alias, several joined as "E1+E2", or one of your own.
+            flight: To fit; by default the one that was fitted.
+
+        Returns:
+            Another Calibration, whose `history` is longer by an entry.
+
+        Raises:
+            Error: Bad input, as in fit(); an effect that it has already; no flight given where the
+                calibration was loaded.
+        """
+        flight = self._or_fitted(flight, "add(..., ")
+        name = effect.name if isinstance(effect, Effect) else effect
+        own = [effect] if isinstance(effect, Effect) else []
+        core = self.core.add(flight._core, name, to_core_effects(own))
+        return type(self)._of(core, flight, [*self.own_effects, *own])
+
+    def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
+        """A flight. Raises Error, which shows how to call again, where there is none."""
         flight = flight if flight is not None else self.flight
         if flight is None:
             raise _core.Error(
                 "a loaded calibration has no flight; give one: "
-                f"compare(sepcal.read_csv({self.core.file!r}))"
+                f"{call}sepcal.read_csv({self.core.file!r}))"
             )
-        return Comparison._of(self.core.compare(flight._core))
+        return flight
 
     def apply(self, flight: Flight) -> dict[str, Array]:
         """The corrected readings of a flight by header, each of shape (rows,).
 
-        Five-hole: airspeed_cal_mps, alpha_cal_rad, beta_cal_rad. Magnetometer: mx_cal_ut,
-        my_cal_ut, mz_cal_ut, the field in body axes. NaN in a row that can't be calibrated.
+        Five-hole: airspeed_cal_mps, alpha_cal_rad, beta_cal_rad. Pitot-static: airspeed_cal_mps.
+        Magnetometer: mx_cal_ut, my_cal_ut, mz_cal_ut, the field in body axes; up to a rotation
+        where only its strength is known. NaN in a row that can't be calibrated.
 
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
@@ -93,17 +158,25 @@ class Calibration(Fit):
         return read
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _parse, (self.to_json(),)
+        return _parse, (self.to_json(), self.own_effects)
 
 
-def load(file: Path) -> Calibration:
+def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration:
     """Reads what Calibration.save() or an app's fit wrote.
 
+    Args:
+        file: The JSON.
+        effects: The effects of your own that the calibration was fitted with, which a file can't
+            hold. Without them its numbers can be read and nothing be done with it.
+
     Raises:
-        Error: The file can't be read, is no calibration, or is of another schema version.
+        Error: The file can't be read, is no calibration, or is of another schema version; an effect
+            that it doesn't have.
     """
-    return Calibration._of(_core.read_calibration(os.fspath(file)))
+    core = _core.read_calibration(os.fspath(file), to_core_effects(effects))
+    return Calibration._of(core, own=effects)
 
 
-def _parse(text: str) -> Calibration:
-    return Calibration._of(_core.parse_calibration(text, "pickle"))
+def _parse(text: str, effects: Sequence[Effect]) -> Calibration:
+    core = _core.parse_calibration(text, "pickle", to_core_effects(effects))
+    return Calibration._of(core, own=effects)

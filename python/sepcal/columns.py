@@ -4,7 +4,7 @@
 A C-contiguous float64 array passes as it is, uncopied; everything else is converted once.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from sepcal import _core
 
 Array: TypeAlias = NDArray[np.float64]
+
+NUMBERS = "fiub"  # kinds of dtype
 
 
 class Columns(Protocol):
@@ -39,7 +41,7 @@ def to_column(owner: str, name: str, values: ArrayLike) -> Array:
         raise _core.Error(
             f"{owner}: column '{name}' has the shape {array.shape}; give one value a row, (N,)"
         )
-    if array.dtype.kind not in "fiub":
+    if array.dtype.kind not in NUMBERS:
         raise _core.Error(
             f"{owner}: column '{name}' holds {array.dtype}, not numbers; convert it or leave it out"
         )
@@ -59,6 +61,23 @@ def take_columns(owner: str, columns: Columns, names: Iterable[str]) -> dict[str
             )
         taken[name] = to_column(owner, name, columns[name])
     return taken
+
+
+def take_drivers(
+    owner: str, columns: Columns, taken: Collection[str], named: Collection[str]
+) -> dict[str, Array]:
+    """The columns beside `taken` that may drive an effect: those of numbers.
+
+    Raises Error for one in `named` that holds something else.
+    """
+    drivers = {}
+    for name in columns:
+        if name in taken or name == "maneuver":
+            continue
+        values = np.asarray(columns[name])
+        if name in named or (values.ndim == 1 and values.dtype.kind in NUMBERS):
+            drivers[name] = to_column(owner, name, columns[name])
+    return drivers
 
 
 def to_labels(labels: Iterable[object]) -> list[str]:

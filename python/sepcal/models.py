@@ -16,7 +16,8 @@ class Model:
     """A separable model (Sun & Gebre-Egziabher, Eq. 4); use one of the subclasses.
 
     Attributes:
-        inputs: Names of u.
+        inputs: Names of u that data must have.
+        optional_inputs: Those that data may lack, by name, and the value that they then take.
         outputs: Names of z, n_z of them.
         linear: Names of xi1, n_1.
         nonlinear: Names of xi2, n_2.
@@ -27,12 +28,17 @@ class Model:
     def __init__(self, core: _core.Model) -> None:
         self._core = core
         tables = (core.inputs, core.outputs, core.linear, core.nonlinear)
-        self.inputs, self.outputs, self.linear, self.nonlinear = (
+        inputs, self.outputs, self.linear, self.nonlinear = (
             tuple(name for name, *_ in table) for table in tables
         )
+        self.optional_inputs = {
+            name: absent for name, *_, absent in core.inputs if np.isfinite(absent)
+        }
+        self.inputs = tuple(name for name in inputs if name not in self.optional_inputs)
+        self._constant = {name for name, *_, absent in core.outputs if np.isfinite(absent)}
         self.units = {name: unit for table in tables for name, unit, *_ in table}
         self.bounds = {
-            name: (lower, upper) for table in tables[2:] for name, _, lower, upper in table
+            name: (lower, upper) for table in tables[2:] for name, _, lower, upper, _ in table
         }
 
     @property
@@ -56,12 +62,13 @@ class Model:
 
         Returns:
             A (N, n_z, n_1) and b (N, n_z), or A, b and D (N, n_z, n_2): views of one buffer. D is
-            exact, by automatic differentiation.
+            exact, by automatic differentiation; of a model in Python, what its derivatives() give,
+            or differences of fourth order.
 
         Raises:
             Error: An input is missing or of another length, a parameter is missing or unknown.
         """
-        columns = take_columns(type(self).__name__, record, self.inputs)
+        columns = take_columns(self._owner, record, self._columns_in(record))
         at = _to_point("xi2", xi2, self.nonlinear)
         along = None if xi1 is None else _to_point("xi1", xi1, self.linear)
         rows = self._core.evaluate(columns, at, along)
@@ -70,6 +77,21 @@ class Model:
         if along is None:
             return rows[:, :, :n_1], rows[:, :, -1]
         return rows[:, :, :n_1], rows[:, :, -1], rows[:, :, n_1:-1]
+
+    @property
+    def _owner(self) -> str:
+        """The model's name in messages."""
+        return type(self).__name__
+
+    def _columns_in(self, data: Columns) -> list[str]:
+        """The inputs to take from data: those that it must have, and the optional ones there."""
+        there = set(data)
+        return [*self.inputs, *(name for name in self.optional_inputs if name in there)]
+
+    def _measured_in(self, data: Columns) -> list[str]:
+        """The outputs to take from data: all but one that is a constant and not there."""
+        there = set(data)
+        return [name for name in self.outputs if name in there or name not in self._constant]
 
     def __repr__(self) -> str:
         settings = ", ".join(f"{name}={value!r}" for name, value in self._settings().items())
@@ -122,23 +144,50 @@ class FiveHoleProbe(Model):
         return {"k_alpha": self.k_alpha, "k_beta": self.k_beta, "lever_arm": self.lever_arm}
 
 
+class PitotStatic(Model):
+    """A plain Pitot-static tube against the ground velocity: z = s_va |v_ground - W| + c_va.
+
+    The wind W is nonlinear; its component w_d is held at zero unless fit(..., free=["w_d"]) frees
+    it. A Calibration's `derived` has lambda_va and b_va, which correct the reading as in the
+    five-hole probe. A flight logs airspeed_mps, or dp_pa and the density.
+    """
+
+    name = "pitot-static"
+
+    def __init__(self) -> None:
+        super().__init__(_core.pitot_static())
+
+
 class Magnetometer(Model):
-    """A three-axis magnetometer against a known field (Eqs. B1-B3).
+    """A three-axis magnetometer against a known field (Eqs. B1-B3), or against its strength.
 
     m = C_alpha C_eta C_lambda h + n: soft iron, misalignment and scale of the true field h in body
     axes, and hard iron n [uT].
 
     Args:
         field: The Earth's field, north, east, down [uT]; None where the flight logs it.
+        field_strength: Only |h| [uT] is known: no attitude is needed, and a rotation, C_eta, can't
+            be seen. Every parameter is nonlinear; the output `field` is zero in every row.
+
+    Raises:
+        Error: Both are given, or the strength is not positive.
     """
 
-    name = "magnetometer"
-
-    def __init__(self, field: Vector | None = None) -> None:
+    def __init__(self, field: Vector | None = None, *, field_strength: float | None = None) -> None:
+        if field is not None and field_strength is not None:
+            raise _core.Error("field and field_strength contradict each other; give one")
         self.field = None if field is None else _to_vector("field", field)
-        super().__init__(_core.magnetometer(self.field))
+        self.field_strength = None if field_strength is None else float(field_strength)
+        self.name = "magnetometer" if self.field_strength is None else "magnetometer-norm"
+        super().__init__(
+            _core.magnetometer(self.field)
+            if self.field_strength is None
+            else _core.attitude_independent_magnetometer(self.field_strength)
+        )
 
     def _settings(self) -> dict[str, float | tuple[float, ...]]:
+        if self.field_strength is not None:
+            return {"field_strength": self.field_strength}
         return {} if self.field is None else {"field": self.field}
 
 

@@ -5,12 +5,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 from sepcal import _core
+from sepcal.own_effect import Effect
 
 
 class FitOptions(TypedDict, total=False):
     """Every choice of a fit; None, like leaving it out, means the default, given in brackets.
 
     Attributes:
+        effects: Physical effects that join the model, by name: `port[driver]`, those that
+            sepcal.effects() lists, and Effects of your own [none]. Of a model that is no probe,
+            each linear parameter and each input is a port, and its component is called s:
+            "k[temp_degc]" adds the parameter k[temp_degc].s.
         bounds: (lower, upper) of parameters by name, in their units, None for an open side, instead
             of the model's [the model's].
         fixed: Parameters held at a value and not estimated [none].
@@ -34,6 +39,7 @@ class FitOptions(TypedDict, total=False):
         drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
     """
 
+    effects: Sequence[str | Effect] | None
     bounds: Mapping[str, tuple[float | None, float | None]] | None
     fixed: Mapping[str, float] | None
     noise: Mapping[str, float] | None

@@ -74,6 +74,18 @@ class StageOne:
     flat_directions: list[str]  # in words: a valley of Tr[R] and no point (Fig. 6)
 
 
+@dataclass(frozen=True)
+class EffectSetting:
+    """An effect of a fit, with what it took from the record; None or empty where it takes none."""
+
+    name: str  # whole, aliases resolved: "wind[altitude_m]"
+    centre: float | None  # of a power's driver, in the driver's unit
+    knots: tuple[float, ...]  # of a spline
+    labels: tuple[str, ...]  # of the driver `maneuver`; the first has no coefficient
+    span: tuple[float, float] | None  # the record's first and last time [s]
+    t0: float | None  # [s] of a step
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
     """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter."""
@@ -93,6 +105,7 @@ class Fit:
     method: str  # "joint" or "projected": what stage two used in the end
     iterations: int  # of stage two's minimisations
     noise_iterations: int  # of R against the parameters
+    effects: list[EffectSetting]  # that joined the model, in order
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -110,17 +123,32 @@ class Fit:
             raise KeyError(f"there is no parameter '{name}'; the fit has: {', '.join(self.names)}")
         return self.parameters[name]
 
+    @property
+    def at_bound(self) -> list[str]:
+        """Names of the parameters that a bound stopped."""
+        return [name for name, parameter in self.parameters.items() if parameter.at_bound]
+
     def __str__(self) -> str:
         width = max(map(len, self.names))
         lines = [f"{'parameter':<{width}}{'value':>14}{'std. error':>12}  unit"]
         for parameter in self.parameters.values():
             error = f"{parameter.standard_error:.2g}" if parameter.standard_error >= 0 else "-"
             line = f"{parameter.name:<{width}}{parameter.value:>14.6g}{error:>12}"
-            lines.append(f"{line}  {parameter.unit:<6}{parameter.remark}".rstrip())
+            remark = parameter.remark
+            if parameter.at_bound:
+                remark += f", [{parameter.lower:.4g}, {parameter.upper:.4g}]"
+            lines.append(f"{line}  {parameter.unit:<6}{remark}".rstrip())
         rmse = ", ".join(f"{name} {value:.4g}" for name, value in self.rmse.items())
         lines += [f"rmse: {rmse}; {self.rows} rows", f"{self.status}, {self.method}"]
+        if stopped := self.at_bound:
+            bounds = (
+                "1 parameter at its bound"
+                if len(stopped) == 1
+                else f"{len(stopped)} parameters at their bounds"
+            )
+            lines[-1] += f", {bounds}: {', '.join(stopped)}"
         if self.message:
-            lines[-1] += f": {self.message}"
+            lines[-1] += f"{';' if stopped else ':'} {self.message}"
         return "\n".join(lines)
 
     def __repr__(self) -> str:
@@ -134,6 +162,7 @@ def to_fields(described: _core.FitDescription) -> dict[str, Any]:
         "parameters": {entry["name"]: Parameter(**entry) for entry in described["parameters"]},
         "unobservable": [Combination(**entry) for entry in described["unobservable"]],
         "weak": [Combination(**entry) for entry in described["weak"]],
+        "effects": [EffectSetting(**entry) for entry in described["effects"]],
         "stage_one": StageOne(
             **{**stage_one, "minima": [LocalMinimum(**at) for at in stage_one["minima"]]}
         ),

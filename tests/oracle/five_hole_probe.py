@@ -74,11 +74,11 @@ class FiveHoleProbe(Model):
         alpha = (1 + lambda_alpha) * reading.alpha + b_alpha
         beta = (1 + lambda_beta) * reading.beta + b_beta
 
-        at_probe = speed * _direction(alpha, beta)
+        at_probe = speed * direction(alpha, beta)
         body_rates = np.stack([record[name] for name in "pqr"])
         swing = np.cross(body_rates, self.lever_arm, axisa=0).T
-        in_body = _misalign(eps) @ at_probe - swing
-        return _turn(rotate_to_navigation(record), in_body) + xi[2:5, np.newaxis]
+        in_body = misalign(eps) @ at_probe - swing
+        return turn(rotate_to_navigation(record), in_body) + xi[2:5, np.newaxis]
 
     def jacobian(self, record: Record, xi: Array) -> Array:
         """Their derivative, shape (3, N, 10)."""
@@ -93,37 +93,37 @@ class FiveHoleProbe(Model):
         by_beta = np.stack(
             [-np.cos(alpha) * np.sin(beta), np.cos(beta), -np.sin(alpha) * np.sin(beta)]
         )
-        direction = _direction(alpha, beta)
+        along = direction(alpha, beta)
         to_navigation = rotate_to_navigation(record)
-        misalign = _misalign(eps)
+        misaligned = misalign(eps)
         by_eps = np.array(
             [[0, 0, 0], [0, -np.sin(eps), np.cos(eps)], [0, -np.cos(eps), -np.sin(eps)]]
         )
         wind = np.broadcast_to(np.eye(3)[:, np.newaxis], (3, alpha.size, 3))
         columns = [
-            _turn(to_navigation, misalign @ direction * reading.speed),
-            _turn(to_navigation, misalign @ direction),
+            turn(to_navigation, misaligned @ along * reading.speed),
+            turn(to_navigation, misaligned @ along),
             *np.moveaxis(wind, -1, 0),
-            _turn(to_navigation, misalign @ by_alpha * speed * reading.alpha),
-            _turn(to_navigation, misalign @ by_alpha * speed),
-            _turn(to_navigation, misalign @ by_beta * speed * reading.beta),
-            _turn(to_navigation, misalign @ by_beta * speed),
-            _turn(to_navigation, by_eps @ direction * speed),
+            turn(to_navigation, misaligned @ by_alpha * speed * reading.alpha),
+            turn(to_navigation, misaligned @ by_alpha * speed),
+            turn(to_navigation, misaligned @ by_beta * speed * reading.beta),
+            turn(to_navigation, misaligned @ by_beta * speed),
+            turn(to_navigation, by_eps @ along * speed),
         ]
         return np.stack(columns, axis=-1)
 
 
-def _direction(alpha: Array, beta: Array) -> Array:
+def direction(alpha: Array, beta: Array) -> Array:
     """Where the air comes from in probe axes, Eq. 41, shape (3, N)."""
     return np.stack([np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)])
 
 
-def _misalign(eps: float) -> Array:
+def misalign(eps: float) -> Array:
     """C(eps_phi) of Eq. 38, shape (3, 3)."""
     sin, cos = np.sin(eps), np.cos(eps)
     return np.array([[1, 0, 0], [0, cos, sin], [0, -sin, cos]])
 
 
-def _turn(matrices: Array, vectors: Array) -> Array:
+def turn(matrices: Array, vectors: Array) -> Array:
     """Each (N, 3, 3) matrix times its own column of (3, N)."""
     return np.einsum("kij,jk->ik", matrices, vectors)

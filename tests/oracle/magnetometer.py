@@ -33,15 +33,15 @@ class Magnetometer(Model):
 
 def compose(xi: Array) -> Array:
     """C = C_alpha C_eta C_lambda, shape (3, 3)."""
-    return _soft_iron(xi[9:]) @ _misalignment(xi[6:9]) @ np.diag(1 + xi[:3])
+    return soft_iron(xi[9:]) @ _misalignment(xi[6:9]) @ np.diag(1 + xi[:3])
 
 
 def compose_derivative(xi: Array) -> Array:
     """The slopes of C: by lambda_x..z, eta_x..z, alpha_xy, alpha_xz, alpha_yz; shape (9, 3, 3)."""
-    soft_iron, misalignment, scale = _soft_iron(xi[9:]), _misalignment(xi[6:9]), np.diag(1 + xi[:3])
+    soft, misalignment, scale = soft_iron(xi[9:]), _misalignment(xi[6:9]), np.diag(1 + xi[:3])
     identity = np.eye(3)
-    by_scale = [soft_iron @ misalignment @ np.outer(axis, axis) for axis in identity]
-    by_misalignment = [soft_iron @ _skew(axis) @ scale for axis in identity]
+    by_scale = [soft @ misalignment @ np.outer(axis, axis) for axis in identity]
+    by_misalignment = [soft @ _skew(axis) @ scale for axis in identity]
     by_soft_iron = [
         (np.outer(identity[i], identity[j]) + np.outer(identity[j], identity[i]))
         @ misalignment
@@ -56,7 +56,8 @@ def _field(record: Record) -> Array:
     return np.stack([record[name] for name in ("hx", "hy", "hz")])
 
 
-def _soft_iron(alpha: Array) -> Array:
+def soft_iron(alpha: Array) -> Array:
+    """C_alpha of (alpha_xy, alpha_xz, alpha_yz), shape (3, 3)."""
     xy, xz, yz = alpha
     return np.array([[1, xy, xz], [xy, 1, yz], [xz, yz, 1]])
 

@@ -48,7 +48,7 @@ def fit_at_fixed_noise(
     """Minimises Eq. 6 over xi with R = diag(noise^2); noise (n_z,), start (n,).
 
     Raises RuntimeError where SciPy gives up, or where the Gauss-Newton steps do not settle below
-    1e-12 standard errors (plus the rounding of the values).
+    1e-11 standard errors (plus the rounding of the values).
     """
     deviation = np.asarray(noise, dtype=float)[:, np.newaxis]
     measured = model.measured(record)
@@ -72,7 +72,7 @@ def fit_at_fixed_noise(
         step = solve_triangular(r, -q.T @ residual(xi))
         xi = xi + step
         covariance = _invert_gram(r)
-        if np.all(np.abs(step) < 1e-12 * np.sqrt(np.diag(covariance)) + 1e-15 * np.abs(xi)):
+        if np.all(np.abs(step) < 1e-11 * np.sqrt(np.diag(covariance)) + 1e-15 * np.abs(xi)):
             break
     else:
         raise RuntimeError(f"Gauss-Newton steps did not settle; the last one is {step}")

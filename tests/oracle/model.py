@@ -45,3 +45,40 @@ class Model(ABC):
     def measured(self, record: Record) -> Array:
         """The outputs z as measured, shape (n_z, N)."""
         return np.stack([record[name] for name in self.outputs])
+
+
+class Held(Model):
+    """A model with some of its parameters held at a value; the others keep their order."""
+
+    def __init__(self, model: Model, values: Mapping[str, float]) -> None:
+        """`values` by name."""
+        self.model = model
+        self._free = np.array([name not in values for name in model.parameters])
+        self._held = np.array([values.get(name, 0.0) for name in model.parameters])
+
+    @property
+    def outputs(self) -> tuple[str, ...]:  # type: ignore[override]
+        """Those of the model."""
+        return self.model.outputs
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Those that are not held."""
+        return tuple(np.array(self.model.parameters)[self._free])
+
+    def predict(self, record: Record, xi: Array) -> Array:
+        """As the model's."""
+        return self.model.predict(record, self._whole(xi))
+
+    def jacobian(self, record: Record, xi: Array) -> Array:
+        """As the model's, without the columns of what is held."""
+        return self.model.jacobian(record, self._whole(xi))[..., self._free]
+
+    def measured(self, record: Record) -> Array:
+        """As the model's."""
+        return self.model.measured(record)
+
+    def _whole(self, xi: Array) -> Array:
+        whole = self._held.astype(xi.dtype)
+        whole[self._free] = xi
+        return whole

@@ -31,23 +31,27 @@ def simulate_scalar(
 ) -> Columns:
     """The paper's record: eta from 1 to 10 rad in equal steps, noise of 0.3."""
     rng = np.random.default_rng(seed)
-    return _measure(rng, model, {"eta": np.linspace(1.0, 10.0, rows)}, truth, SCALAR_NOISE)
+    return measure(rng, model, {"eta": np.linspace(1.0, 10.0, rows)}, truth, SCALAR_NOISE)
 
 
 def simulate_five_hole(
-    model: FiveHoleProbe, seed: int, rows: int = 200, truth: Array = FIVE_HOLE_TRUTH
+    model: FiveHoleProbe,
+    seed: int,
+    rows: int = 200,
+    truth: Array = FIVE_HOLE_TRUTH,
+    airspeed: float = 15.0,
 ) -> Columns:
-    """A circle in the wind with doublets in every axis, 10 to 20 m/s, at 10 Hz."""
+    """A circle in the wind with doublets in every axis, at 10 Hz; the airspeed [m/s] varies."""
     rng = np.random.default_rng(seed)
     time = 0.1 * np.arange(rows)
-    roll, roll_rate = _draw_smooth(rng, time, 0.5)
-    pitch, pitch_rate = _draw_smooth(rng, time, 0.25)
-    wander, wander_rate = _draw_smooth(rng, time, 0.4)
+    roll, roll_rate = draw_smooth(rng, time, 0.5)
+    pitch, pitch_rate = draw_smooth(rng, time, 0.25)
+    wander, wander_rate = draw_smooth(rng, time, 0.4)
     turns = 1.5 * 2 * np.pi / (0.1 * rows)
     yaw, yaw_rate = turns * time + wander, turns + wander_rate
-    speed = 15.0 + _draw_smooth(rng, time, 3.0)[0]
-    alpha = 0.08 + _draw_smooth(rng, time, 0.08)[0]
-    beta = _draw_smooth(rng, time, 0.08)[0]
+    speed = airspeed + draw_smooth(rng, time, 0.2 * airspeed)[0]
+    alpha = 0.08 + draw_smooth(rng, time, 0.08)[0]
+    beta = draw_smooth(rng, time, 0.08)[0]
 
     rho = np.full(rows, 1.15)
     ps = np.full(rows, 95_000.0)
@@ -65,22 +69,26 @@ def simulate_five_hole(
         "dpb": model.k_beta * dynamic * beta,
         "rho": rho,
     }
-    return _measure(rng, model, inputs, truth, FIVE_HOLE_NOISE)
+    return measure(rng, model, inputs, truth, FIVE_HOLE_NOISE)
 
 
 def simulate_magnetometer(
-    model: Magnetometer, seed: int, rows: int = 200, truth: Array = MAGNETOMETER_TRUTH
+    model: Magnetometer,
+    seed: int,
+    rows: int = 200,
+    truth: Array = MAGNETOMETER_TRUTH,
+    pace: float = 1.0,
 ) -> Columns:
-    """A field of 53 uT whose direction in body axes wanders over the whole sphere."""
+    """A field of 53 uT whose direction in body axes wanders over the whole sphere, at that pace."""
     rng = np.random.default_rng(seed)
     time = 0.1 * np.arange(rows)
-    wander = np.stack([_draw_smooth(rng, time, 1.0)[0] for _ in range(3)])
+    wander = np.stack([draw_smooth(rng, pace * time, 1.0)[0] for _ in range(3)])
     field = 53.0 * wander / np.linalg.norm(wander, axis=0)
     inputs = dict(zip(("hx", "hy", "hz"), field, strict=True))
-    return _measure(rng, model, inputs, truth, MAGNETOMETER_NOISE)
+    return measure(rng, model, inputs, truth, MAGNETOMETER_NOISE)
 
 
-def _draw_smooth(rng: Generator, time: Array, deviation: float) -> tuple[Array, Array]:
+def draw_smooth(rng: Generator, time: Array, deviation: float) -> tuple[Array, Array]:
     """A sum of five sinusoids of random phase, of the given rms, and its rate, each (N,)."""
     frequency = 2 * np.pi * rng.uniform(0.05, 0.8, size=5)  # [rad/s]
     phase = np.multiply.outer(time, frequency) + rng.uniform(0, 2 * np.pi, size=5)
@@ -88,7 +96,7 @@ def _draw_smooth(rng: Generator, time: Array, deviation: float) -> tuple[Array, 
     return amplitude * np.sin(phase).sum(axis=1), amplitude * (np.cos(phase) @ frequency)
 
 
-def _measure(rng: Generator, model: Model, inputs: Columns, truth: Array, noise: Array) -> Columns:
+def measure(rng: Generator, model: Model, inputs: Columns, truth: Array, noise: Array) -> Columns:
     """The inputs with the model's outputs beside them, white noise added."""
     exact = model.predict(inputs, truth)
     noisy = exact + noise[:, np.newaxis] * rng.standard_normal(exact.shape)

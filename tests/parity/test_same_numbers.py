@@ -5,7 +5,6 @@ A JSON's numbers are the shortest that read back as the same doubles, so equal t
 """
 
 import json
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,8 +12,8 @@ import numpy as np
 import pytest
 
 import sepcal
+from parity.programs import BUILD, run, write_flight
 
-BUILD = Path(sepcal._core.__file__).parents[2]
 ROWS, SEED = 600, 3
 
 
@@ -42,20 +41,6 @@ SETUPS = [
         sepcal.Magnetometer(field=(19.7, -1.4, 49.4)),
     ),
 ]
-
-
-def run(*command: str | Path) -> str:
-    """Standard output of a program that must succeed."""
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def write_flight(flight: sepcal.Flight, file: Path) -> None:
-    """A CSV whose cells read back as the same doubles."""
-    columns = [*([repr(float(x)) for x in flight[name]] for name in flight), flight.maneuvers]
-    rows = [",".join(cells) for cells in zip(*columns, strict=True)]
-    file.write_text("\n".join([",".join([*flight, "maneuver"]), *rows]) + "\n")
 
 
 @pytest.fixture(scope="module", params=SETUPS, ids=lambda setup: setup.app)

@@ -29,6 +29,7 @@ def base(flight: sepcal.SimulatedFlight) -> sepcal.Calibration:
 def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> None:
     """All at once, none at its default; `fixed` is the app's --fix."""
     options = {
+        "effects": ["airspeed_scale[beta^2]", "heading_bias"],
         "bounds": {"b_va": (-5.0, 5.0)},
         "fixed": {"w_d": 0.3},
         "noise": {"vn": 0.1, "ve": 0.2, "vd": 0.3},
@@ -50,6 +51,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     assert set(options) == set(sepcal.FitOptions.__annotations__)
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
     stored["fixed"] = stored.pop("fix")
+    stored["effects"] = [effect["name"] for effect in stored["effects"]]
     for name, value in options.items():
         assert stored[name] == json.loads(json.dumps(value)), name
 
@@ -117,7 +119,8 @@ def test_compare_measures_the_residuals(
         assert misfit.rmse == pytest.approx(np.sqrt(np.mean(at**2)), rel=1e-9)
         assert misfit.mean == pytest.approx(np.mean(at), abs=1e-12)
     assert comparison.to_dict() == json.loads(comparison.to_json())
-    assert len(str(comparison).splitlines()) == 1 + len(comparison.where) + 3 + 1
+    outputs = len(PROBE.outputs)  # a row and a verdict each
+    assert len(str(comparison).splitlines()) == 1 + len(comparison.where) + 2 * outputs + 1
     assert "popu" in str(comparison)
 
     base.save(tmp_path / "base.json")

@@ -60,6 +60,7 @@ def test_parameters(bench: Bench):
     for name, entry in parameters.items():
         assert list(entry) == [
             "value", "standard_error", "standard_error_white", "unit", "lower", "upper", "at_bound",
+            "kind",
         ]  # fmt: skip
         unit = "m/s" if name == "b_va" else "rad" if name[:2] == "b_" else None
         assert entry["unit"] == (unit or UNITS[name.split("_")[0]])
@@ -115,8 +116,8 @@ def test_defaults_are_carried(bench: Bench):
     options = bench.base["options"]
     probe = {"k_alpha": 4.5, "k_beta": 4.5, "lever_arm": [0.35, 0, -0.02]}
     assert options == (probe if bench.app == "sepcal-pitot" else {}) | {
-        "effects": [], "stage_one": "", "stage_two": "", "bounds": {}, "fix": {}, "free": [],
-        "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0, "descents": 8,
+        "effects": [], "stage_one": "", "stage_two": "", "bounds": {}, "start": {}, "fix": {},
+        "free": [], "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0, "descents": 8,
         "second_stage": "auto", "noise_tolerance": 1e-10, "noise_iterations": 100,
         "iterations": 200, "threads": 0, "drop_invalid": False,
     }  # fmt: skip

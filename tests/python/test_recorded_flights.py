@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recorded flights, from $SEPCAL_FIXTURES, by default ../shared/data beside the checkout.
+"""Recorded flights of magnetometers (recorded.py says where they are), and other files.
 
 A magnetometer's C and n are a linear regression of m on [h, 1]: an answer that needs no sepcal.
 """
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,18 +16,10 @@ from oracle.closed_form import FieldMap, fit_field_map
 from oracle.five_hole_probe import rotate_to_navigation
 from oracle.magnetometer import compose
 from oracle.model import Array
+from recorded import FIXTURES, find_fixture
 
-CHECKOUT = Path(__file__).parents[2]
-FIXTURES = Path(os.environ.get("SEPCAL_FIXTURES", CHECKOUT.parent / "shared" / "data"))
 FIELD = np.array([19.72, -1.41, 49.44])  # north, east, down [uT]
 GIVEN_FIELD = ("--field", "19.72,-1.41,49.44")
-
-
-def find_fixture(name: str) -> Path:
-    file = FIXTURES / name
-    if not file.is_file():
-        pytest.skip(f"no recorded flight {file}; set SEPCAL_FIXTURES to its folder")
-    return file.resolve()
 
 
 @dataclass(frozen=True)
@@ -138,9 +129,11 @@ def test_later_verbs(tmp_path: Path, mount: str):
     ("app", "name", "words"),
     [
         ("sepcal-pitot", "uav_pitot_static_2022_05_07_11.csv",
-         ("no column dpa_*", "five-hole probes, which need pt_pa", "the file has: time_s, ")),
+         ("no column dpa_*", "for a five-hole probe", "the file has: time_s, ")),
         ("sepcal-pitot", "airliner_mode_s.csv", ("no column dpa_*", "the file has: ")),
         ("sepcal-pitot", "octocopter_internal_mag.csv", ("no column dpa_*", "the file has: ")),
+        ("sepcal-pitot --probe pitot-static", "octocopter_internal_mag.csv",
+         ("column 'vn_mps' is missing", "the file has: ")),
         ("sepcal-mag", "uav_pitot_static_2022_05_07_11.csv",
          ("column 'mx_ut' is missing", "the file has: time_s, ")),
         ("sepcal-mag", "octocopter_internal_mag.csv",
@@ -156,7 +149,8 @@ def test_other_files_say_what_they_lack(
 ):
     if not (FIXTURES / name).exists():
         find_fixture(name)
-    options = FIVE_HOLE_OPTIONS if app == "sepcal-pitot" else ()
+    app, *probe = app.split()
+    options = probe or (FIVE_HOLE_OPTIONS if app == "sepcal-pitot" else ())
     refused = run(app, "fit", FIXTURES / name, *options, "-o", "base.json", folder=tmp_path)
     assert (refused.code, refused.out) == (2, "")
     assert refused.err.startswith(f"{app}: ")

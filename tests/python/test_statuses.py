@@ -47,7 +47,9 @@ def assert_written_and_printed(bench: Bench, fitted: Outcome, code: int, status:
     for verb in (("compare", flight, "next.json"), ("apply", flight, "next.json", "-o", "out.csv")):
         later = bench.run(*verb)
         assert (later.code, later.err) == (0, "")
-        assert f"status: {status}: {fitted.result['message']}" in later.out
+        (line,) = [line for line in later.out.splitlines() if line.startswith("status: ")]
+        assert line.startswith(f"status: {status}")
+        assert line.endswith(fitted.result["message"])
         assert bench.run(*verb, "--json").result["status"] == status
 
 
@@ -60,7 +62,9 @@ def test_straight_and_level_at_one_speed(pitot: Bench):
     assert {"lambda_va", "b_va", "w_n", "lambda_beta"} <= named
     for entry in fitted.result["unobservable"]:
         assert list(entry) == ["combination", "parameters", "standard_error"]
-        assert all(name in fitted.result["message"] for name in entry["parameters"])
+        if entry["combination"] in fitted.result["message"]:  # the first few are
+            assert all(name in fitted.result["message"] for name in entry["parameters"])
+    assert "lambda_va, w_n and b_va can't be told apart" in fitted.result["message"]
     assert "can't be told apart" in fitted.result["message"]
     assert fitted.result["parameters"]["lambda_va"]["standard_error"] is None
 

@@ -58,6 +58,13 @@ class BlockModel {
   virtual void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
                         Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
+  /// Fills `columns`, (n_z * block.rows) x inputs.size(), with d(A xi1 + b)/du_i of the chosen
+  /// inputs, by their index in tables().inputs: what an effect that corrects an input needs. Throws
+  /// Error where the model can't be differentiated by its inputs.
+  virtual void input_tangent(const Block& block, const double* xi2, const double* xi1,
+                             std::span<const int> inputs,
+                             Eigen::Ref<Eigen::MatrixXd> columns) const;
+
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.
   virtual std::unique_ptr<Carry> new_carry() const { return nullptr; }

@@ -18,11 +18,12 @@ struct Combination {
 
 struct Identifiability {
   std::vector<Combination> unobservable;  // singular, or uncertain beyond the scale of plausibility
-  std::vector<Combination> weak;          // singular value below a fiftieth of the largest
-  std::vector<std::string> sentences;     // one a combination, unobservable ones first
+  std::vector<Combination> weak;          // singular value below 1/50 of the largest, weakest first
+  std::vector<std::string> sentences;     // unobservable ones by groups, then a weak one each
   int rank = 0;
 
-  /// The sentences in one line; empty where everything is well determined.
+  /// The first few sentences in one line, the others counted; empty where everything is well
+  /// determined.
   std::string message() const;
 };
 
@@ -46,7 +47,7 @@ std::string combination_text(const Eigen::VectorXd& coefficients,
                              const std::vector<std::string>& names);
 
 /// An orthonormal basis (n x k) turned, within its span, towards few nonzero entries a vector, so
-/// that two parameters that nothing sees are two sentences and not two mixtures.
+/// that two parameters that nothing sees are named by themselves and not as two mixtures.
 Eigen::MatrixXd sparsify(const Eigen::MatrixXd& basis);
 
 }  // namespace sepcal

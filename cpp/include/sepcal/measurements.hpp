@@ -23,8 +23,9 @@ class Measurements {
     bool starts_segment = true;
   };
 
-  /// Finds the model's inputs and outputs by name; the record's memory must outlive this. Throws
-  /// Error for a column that is missing or holds a value that is not finite in a selected row.
+  /// Finds the model's inputs and outputs by name; the record's memory must outlive this. An input
+  /// that the record doesn't have takes its `absent` value in every row. Throws Error for another
+  /// column that is missing and for a value that is not finite in a selected row.
   Measurements(const BlockModel& model, const Record& record);
 
   /// Rows in the record's segments, N.
@@ -41,14 +42,22 @@ class Measurements {
   std::span<const double> output(int j, const Range& range) const;
 
   /// Sum of z^2 of output j.
-  double output_square(int j) const;
+  double output_square(int j) const { return output_squares_[static_cast<std::size_t>(j)]; }
 
   static constexpr std::size_t block_rows = 256;   // one output's [A D r] stays in the first cache
   static constexpr std::size_t chunk_rows = 4096;  // enough work to be worth a thread's while
 
  private:
-  std::vector<std::span<const double>> inputs_;
+  /// Where an input's values are: a column, or one block of a constant.
+  struct Input {
+    const double* values = nullptr;
+    bool constant = false;
+  };
+
+  std::vector<Input> inputs_;
+  std::vector<std::vector<double>> constants_;
   std::vector<std::span<const double>> outputs_;
+  std::vector<double> output_squares_;
   std::vector<std::vector<Range>> chunks_;
   std::size_t rows_ = 0;
 };

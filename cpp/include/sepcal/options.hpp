@@ -30,7 +30,8 @@ enum class Sampling {
 };
 
 enum class SecondStage {
-  automatic,  // the paper's Step 5: projected where stage one saw a unique minimum, else joint
+  automatic,  // the paper's Step 5: projected where stage one saw a unique minimum or a start was
+              // given, else joint
   joint,      // over (xi1, xi2)
   projected,  // over xi2, xi1 solved inside (variable projection)
 };
@@ -57,6 +58,12 @@ struct FitOptions {
   Sampling sampling = Sampling::uniform;
   std::map<std::string, Normal> priors = {};
   std::uint64_t seed = 0;
+  /// Where stage two starts, by nonlinear parameter: then stage one samples nothing. Those not
+  /// named start from the middle of their bounds.
+  std::map<std::string, double> start = {};
+  /// Nonlinear parameters that stage one does not sample but holds at these values, where stage two
+  /// starts with them: corrections that begin at zero.
+  std::map<std::string, double> unsampled = {};
   /// Stage one descends into at most this many of its samples' basins to tell minima apart.
   int descents = 8;
 

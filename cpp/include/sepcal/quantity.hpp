@@ -11,6 +11,7 @@
 namespace sepcal {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Name and unit of an input, an output or a parameter, as a model declares it at compile time.
 /// Parameters may carry the bounds that apply when the caller gives none, in the same unit.
@@ -19,7 +20,13 @@ struct Quantity {
   std::string_view unit;
   double lower = -infinity;
   double upper = infinity;
+  double absent = not_a_number;  // of an input: its value where a record has no such column
 };
+
+/// An input that is zero unless an effect drives it: a place where a model can be corrected.
+constexpr Quantity port(std::string_view name, std::string_view unit) {
+  return {name, unit, -infinity, infinity, 0.0};
+}
 
 /// The same at run time, when names may be composed ("wind[altitude_m].n").
 struct Variable {
@@ -27,13 +34,18 @@ struct Variable {
   std::string unit;
   double lower = -infinity;
   double upper = infinity;
+  double absent = not_a_number;
 
   Variable(std::string name_, std::string unit_, double lower_ = -infinity,
-           double upper_ = infinity)
-      : name(std::move(name_)), unit(std::move(unit_)), lower(lower_), upper(upper_) {}
+           double upper_ = infinity, double absent_ = not_a_number)
+      : name(std::move(name_)),
+        unit(std::move(unit_)),
+        lower(lower_),
+        upper(upper_),
+        absent(absent_) {}
   explicit Variable(const Quantity& quantity)
       : Variable(std::string(quantity.name), std::string(quantity.unit), quantity.lower,
-                 quantity.upper) {}
+                 quantity.upper, quantity.absent) {}
 };
 
 /// The four tables of a model: z = A(u, xi2) xi1 + b(u, xi2) + v.

@@ -14,9 +14,22 @@
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist
 #include "sepcal/measurements.hpp"       // a record as a model sees it
+#include "sepcal/natural_spline.hpp"     // smooth functions
+#include "sepcal/driver.hpp"             // what drives an effect
+#include "sepcal/effect.hpp"             // a physical term that a model lacks
+#include "sepcal/static_effect.hpp"      // an effect written as a struct
+#include "sepcal/compose.hpp"            // model + effects, while compiling
+#include "sepcal/composition.hpp"        // the same at run time
+#include "sepcal/effect_name.hpp"        // port[driver]
+#include "sepcal/named_effects.hpp"      // effects by name
+#include "sepcal/fit_with_effects.hpp"   // a fit of any model with them
+#include "sepcal/effects/air_data.hpp"
+#include "sepcal/effects/magnetic.hpp"
 #include "sepcal/triangular_factor.hpp"  // everything quadratic about a record
 #include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/magnetometer.hpp"
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/rotation.hpp"
 #include "sepcal/error.hpp"

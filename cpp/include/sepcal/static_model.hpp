@@ -6,6 +6,7 @@
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -34,6 +35,19 @@ concept DifferentiableModel =
       } -> std::same_as<typename Sizes<M>::template Result<ceres::Jet<double, Sizes<M>::n_2>>>;
     };
 
+/// Inputs that are differentiated at a time: an effect corrects few of a model's many.
+inline constexpr int inputs_at_a_time = 4;
+
+/// The same of u: then effects can correct the model's inputs.
+template <class M>
+concept InputDifferentiableModel =
+    requires(const M& model, const Vec<ceres::Jet<double, inputs_at_a_time>, Sizes<M>::n_u>& u,
+             const Vec<ceres::Jet<double, inputs_at_a_time>, Sizes<M>::n_2>& xi2) {
+      {
+        model.at(u, xi2)
+      } -> std::same_as<typename Sizes<M>::template Result<ceres::Jet<double, inputs_at_a_time>>>;
+    };
+
 template <SeparableModel M>
 class StaticModel final : public BlockModel {
   static_assert(Sizes<M>::n_2 == 0 || DifferentiableModel<M>,
@@ -48,6 +62,21 @@ class StaticModel final : public BlockModel {
       if (xi1 != nullptr) return fill_tangent(block, xi2, xi1, rows);
     }
     fill_values(block, xi2, rows);
+  }
+
+  void input_tangent(const Block& block, const double* xi2, const double* xi1,
+                     std::span<const int> inputs,
+                     Eigen::Ref<Eigen::MatrixXd> columns) const override {
+    if constexpr (n_u > 0 && InputDifferentiableModel<M>) {
+      for (std::size_t first = 0; first < inputs.size(); first += inputs_at_a_time) {
+        const std::size_t count = std::min<std::size_t>(inputs_at_a_time, inputs.size() - first);
+        fill_input_tangent(
+            block, xi2, xi1, inputs.subspan(first, count),
+            columns.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)));
+      }
+    } else {
+      BlockModel::input_tangent(block, xi2, xi1, inputs, columns);
+    }
   }
 
  private:
@@ -90,6 +119,28 @@ class StaticModel final : public BlockModel {
         }
         for (int i = 0; i < n_2; ++i) rows(at, n_1 + i) = tangent[i];
         rows(at, n_1 + n_2) = b[j].a;
+      }
+    }
+  }
+
+  void fill_input_tangent(const Block& block, const double* xi2, const double* xi1,
+                          std::span<const int> inputs, Eigen::Ref<Eigen::MatrixXd> columns) const {
+    using Dual = ceres::Jet<double, inputs_at_a_time>;
+    Vec<Dual, n_2> x;
+    for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[i]);
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      Vec<Dual, n_u> u = sample(block, row).template cast<Dual>();
+      for (std::size_t i = 0; i < inputs.size(); ++i) {
+        u[inputs[i]].v[static_cast<Eigen::Index>(i)] = 1.0;
+      }
+      const auto [A, b] = model_.at(u, x);
+      for (int j = 0; j < n_z; ++j) {
+        const auto at = static_cast<Eigen::Index>(static_cast<std::size_t>(j) * block.rows + row);
+        auto tangent = b[j].v;
+        for (int k = 0; k < n_1; ++k) tangent += xi1[k] * A(j, k).v;
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+          columns(at, static_cast<Eigen::Index>(i)) = tangent[static_cast<Eigen::Index>(i)];
+        }
       }
     }
   }

@@ -6,10 +6,12 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <vector>
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
+#include "sepcal/named_effects.hpp"
 
 namespace sepcal::bindings {
 
@@ -26,9 +28,10 @@ struct Model {
 };
 
 /// Keys as the fields of sepcal.Fit; its parts are dictionaries in turn.
-py::dict describe(const Fit& fit);
+py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects);
 
 void define_options(py::module_& module);
+void define_effects(py::module_& module);
 void define_engine(py::module_& module);
 void define_flight(py::module_& module);
 void define_simulation(py::module_& module);

@@ -4,25 +4,72 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
+#include <list>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "python_effect.hpp"
+#include "python_model.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 
 namespace sepcal::bindings {
 namespace {
 
-/// [(name, unit, lower, upper), ...]
+using namespace py::literals;
+
+/// [(name, unit, lower, upper, absent), ...]; `absent` is NaN but for an input that data may lack.
 template <auto Table>
 py::list describe_table(const Model& model) {
   py::list list;
   for (const Variable& variable : model.block->tables().*Table) {
-    list.append(py::make_tuple(variable.name, variable.unit, variable.lower, variable.upper));
+    list.append(py::make_tuple(variable.name, variable.unit, variable.lower, variable.upper,
+                               variable.absent));
   }
   return list;
 }
+
+using Row = std::tuple<std::string, std::string, double, double>;  // name, unit, lower, upper
+
+std::vector<Variable> to_table(const std::vector<Row>& rows) {
+  std::vector<Variable> table;
+  for (const auto& [name, unit, lower, upper] : rows) table.emplace_back(name, unit, lower, upper);
+  return table;
+}
+
+Model python_model(const std::string& name, const std::array<std::vector<Row>, 4>& tables,
+                   const PythonFunctions& functions) {
+  return Model(std::make_shared<const PythonModel>(
+      name,
+      Tables{to_table(tables[0]), to_table(tables[1]), to_table(tables[2]), to_table(tables[3])},
+      functions));
+}
+
+/// A record as one block; inputs that it lacks are constant.
+class WholeRecord {
+ public:
+  WholeRecord(const Tables& tables, const Record& record) : rows_(record.length()) {
+    for (const Variable& input : tables.inputs) {
+      const bool absent = !record.has(input.name) && std::isfinite(input.absent);
+      if (absent) constants_.emplace_back(rows_, input.absent);
+      inputs_.push_back(absent ? constants_.back().data() : record.column(input.name).data());
+    }
+  }
+
+  Block block() const { return {.inputs = inputs_, .rows = rows_}; }
+
+ private:
+  std::size_t rows_;
+  std::vector<const double*> inputs_;
+  std::list<std::vector<double>> constants_;
+};
 
 /// [A | b], or [A | D | b] where xi1 is given: (n_z * N) x columns, an output after the other.
 Eigen::MatrixXd evaluate(const Model& model, const py::dict& columns, const Eigen::VectorXd& xi2,
@@ -30,24 +77,50 @@ Eigen::MatrixXd evaluate(const Model& model, const py::dict& columns, const Eige
   const Record record = record_of(columns, {});
   const py::gil_scoped_release release;
   const Tables& tables = model.block->tables();
-  std::vector<const double*> inputs;
-  for (const Variable& input : tables.inputs) inputs.push_back(record.column(input.name).data());
+  const WholeRecord whole(tables, record);
   const auto measurements = static_cast<Eigen::Index>(record.length()) * tables.n_z();
   Eigen::MatrixXd rows(measurements, tables.n_1() + (xi1 ? tables.n_2() : 0) + 1);
   const auto carry = model.block->new_carry();
-  model.block->evaluate({.inputs = inputs, .rows = record.length()}, xi2.data(),
-                        xi1 ? values_of(*xi1) : nullptr, carry.get(), rows);
+  model.block->evaluate(whole.block(), values_of(xi2), xi1 ? values_of(*xi1) : nullptr, carry.get(),
+                        rows);
   return rows;
 }
 
+/// d(A xi1 + b)/du of the inputs chosen by their place: (n_z * N) x inputs.
+Eigen::MatrixXd input_tangent(const Model& model, const py::dict& columns,
+                              const Eigen::VectorXd& xi2, const Eigen::VectorXd& xi1,
+                              const std::vector<int>& inputs) {
+  const Record record = record_of(columns, {});
+  const py::gil_scoped_release release;
+  const Tables& tables = model.block->tables();
+  const WholeRecord whole(tables, record);
+  Eigen::MatrixXd tangent(static_cast<Eigen::Index>(record.length()) * tables.n_z(),
+                          static_cast<Eigen::Index>(inputs.size()));
+  model.block->input_tangent(whole.block(), values_of(xi2), values_of(xi1), inputs, tangent);
+  return tangent;
+}
+
 py::dict fit_columns(const Model& model, const py::dict& columns,
-                     const std::vector<std::string>& labels, const CalibrationOptions& options) {
-  const Record record = record_of(columns, labels);
+                     const std::vector<std::string>& labels, CalibrationOptions options,
+                     const std::vector<PythonEffect>& own) {
+  Record record = record_of(columns, labels);
+  EffectKit kit = model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables());
+  options.own_effects = own_effects(own, kit);
   const auto run = [&] {
     const py::gil_scoped_release release;
-    return fit(*model.block, record, options.fit);
+    if (model.probe != nullptr) {
+      Calibration calibration = calibrate(model.probe, record, options);
+      options.effects = std::move(calibration.options.effects);
+      return std::move(calibration.fit);
+    }
+    if (!options.free.empty()) {
+      throw Error("free is for sepcal's own probes: this model holds no parameter by default");
+    }
+    for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
+    return fit_with_effects(model.block, kit, options.effects, std::move(record), options.fit);
   };
-  return describe(run());
+  const Fit fitted = run();
+  return describe(fitted, options.effects);
 }
 
 }  // namespace
@@ -58,7 +131,8 @@ void define_engine(py::module_& module) {
       .def_property_readonly("outputs", &describe_table<&Tables::outputs>)
       .def_property_readonly("linear", &describe_table<&Tables::linear>)
       .def_property_readonly("nonlinear", &describe_table<&Tables::nonlinear>)
-      .def("evaluate", &evaluate);
+      .def("evaluate", &evaluate)
+      .def("input_tangent", &input_tangent);
 
   using Vector = std::array<double, 3>;
   module.def("scalar_example_1", [] { return Model(block_model(ScalarExample1{})); });
@@ -66,9 +140,18 @@ void define_engine(py::module_& module) {
   module.def("five_hole_probe", [](double k_alpha, double k_beta, const Vector& lever_arm) {
     return Model(std::shared_ptr<const Probe>(five_hole_probe(k_alpha, k_beta, lever_arm)));
   });
+  module.def("pitot_static",
+             [] { return Model(std::shared_ptr<const Probe>(pitot_static_probe())); });
+  module.def("attitude_independent_magnetometer", [](double field_strength) {
+    return Model(std::shared_ptr<const Probe>(attitude_independent_probe(field_strength)));
+  });
   module.def("magnetometer", [](const std::optional<Vector>& field) {
     return Model(std::shared_ptr<const Probe>(magnetometer_probe(field)));
   });
+  py::class_<PythonFunctions>(module, "PythonFunctions")
+      .def(py::init<py::object, py::object, py::object, py::object>(), "gather"_a, "at"_a,
+           "try_at"_a, "derivatives"_a);
+  module.def("python_model", &python_model);
   module.def("fit", &fit_columns);
 }
 

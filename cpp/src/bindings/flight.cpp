@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flights, and what is done with a probe on one: calibrate, compare, apply, save and load.
+// Flights, and what is done with a probe on one: calibrate, compare, add, apply, save and load.
 #include "sepcal/flight/flight.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "python_effect.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::bindings {
 namespace {
@@ -75,9 +80,22 @@ py::dict describe(Comparison comparison) {
                   "time"_a = adopt(std::move(comparison.time)));
 }
 
+/// {name: keys as the fields of sepcal.Derived}
+py::dict describe(const std::vector<Derived>& derived) {
+  py::dict by_name;
+  for (const Derived& quantity : derived) {
+    by_name[py::str(quantity.name)] = py::dict(
+        "name"_a = quantity.name, "value"_a = quantity.value,
+        "standard_error"_a = quantity.standard_error,
+        "standard_error_white"_a = quantity.standard_error_white, "unit"_a = quantity.unit);
+  }
+  return by_name;
+}
+
 py::dict compare_with(const Calibration& calibration, const Flight& flight) {
   const auto run = [&] {
     const py::gil_scoped_release release;
+    need_own_effects(calibration);
     return compare(calibration, flight);
   };
   return describe(run());
@@ -87,6 +105,7 @@ py::dict compare_with(const Calibration& calibration, const Flight& flight) {
 py::dict apply_to(const Calibration& calibration, const Flight& flight) {
   const auto run = [&] {
     const py::gil_scoped_release release;
+    need_own_effects(calibration);
     return apply(calibration, flight);
   };
   py::dict corrected;
@@ -106,17 +125,49 @@ py::dict apply_file(const Calibration& calibration, const std::string& file,
                     const std::string& output) {
   const auto run = [&] {
     const py::gil_scoped_release release;
+    need_own_effects(calibration);
     return apply_to_file(calibration, file, output);
   };
   return describe(run());
 }
 
-Calibration calibrate_probe(const Model& model, const Flight& flight,
-                            const CalibrationOptions& options) {
+Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
+                            const std::vector<PythonEffect>& own) {
   if (model.probe == nullptr) {
     throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
   }
+  options.own_effects = own_effects(own, effect_kit(model.probe->name()));
+  const py::gil_scoped_release release;
   return calibrate(model.probe, flight, options);
+}
+
+Calibration add_to(const Calibration& base, const Flight& flight, const std::string& effect,
+                   const std::vector<PythonEffect>& own) {
+  const OwnEffects makers = own_effects(own, effect_kit(base.probe->name()));
+  const py::gil_scoped_release release;
+  need_own_effects(base);
+  return add(base, flight, effect, makers);
+}
+
+/// Keys as the fields of sepcal.HistoryEntry; None where a number is undefined.
+py::list describe(const std::vector<HistoryEntry>& history) {
+  const auto number = [](double value) -> py::object {
+    return std::isnan(value) ? py::object(py::none()) : py::object(py::float_(value));
+  };
+  py::list list;
+  for (const HistoryEntry& entry : history) {
+    list.append(py::dict("effect"_a = entry.effect, "rmse_before"_a = number(entry.rmse_before),
+                         "rmse_after"_a = number(entry.rmse_after),
+                         "held_out_before"_a = number(entry.held_out_before),
+                         "held_out_after"_a = number(entry.held_out_after),
+                         "predicted_drop"_a = number(entry.predicted_drop)));
+  }
+  return list;
+}
+
+Calibration with_own_effects(Calibration calibration, const std::vector<PythonEffect>& own) {
+  give_own_effects(calibration, own);
+  return calibration;
 }
 
 }  // namespace
@@ -125,19 +176,30 @@ void define_flight(py::module_& module) {
   define_flights(module);
   py::class_<Calibration>(module, "Calibration")
       .def_property_readonly("fit",
-                             [](const Calibration& self) { return bindings::describe(self.fit); })
+                             [](const Calibration& self) {
+                               return bindings::describe(self.fit, self.options.effects);
+                             })
+      .def_property_readonly("derived",
+                             [](const Calibration& self) { return describe(self.derived); })
+      .def_property_readonly("history",
+                             [](const Calibration& self) { return describe(self.history); })
       .def_readonly("notes", &Calibration::notes)
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
       .def("compare", &compare_with)
+      .def("add", &add_to)
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)
       .def("to_json", [](const Calibration& self) { return to_json(self); })
       .def("save", &write_calibration, WithoutGil());
-  module.def("calibrate", &calibrate_probe, WithoutGil());
-  module.def("parse_calibration", [](const std::string& json, const std::string& source) {
-    return parse_calibration(json, source);
+  module.def("calibrate", &calibrate_probe);
+  using Own = std::vector<PythonEffect>;
+  module.def("parse_calibration",
+             [](const std::string& json, const std::string& source, const Own& own) {
+               return with_own_effects(parse_calibration(json, source), own);
+             });
+  module.def("read_calibration", [](const std::string& file, const Own& own) {
+    return with_own_effects(read_calibration(file), own);
   });
-  module.def("read_calibration", [](const std::string& file) { return read_calibration(file); });
 }
 
 }  // namespace sepcal::bindings

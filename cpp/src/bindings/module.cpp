@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = SEPCAL_VERSION;
   define_error(module);
   define_options(module);
+  define_effects(module);
   define_engine(module);
   define_flight(module);
   define_simulation(module);

@@ -56,6 +56,14 @@ void set_priors(Options& options, const std::map<std::string, std::pair<double, 
   }
 }
 
+/// Names, aliases, and several joined by '+'.
+void set_effects(Options& options, const std::vector<std::string>& texts) {
+  options.effects.clear();
+  for (const std::string& text : texts) {
+    for (const std::string& name : split_effects(text)) options.effects.push_back({.name = name});
+  }
+}
+
 /// A keyword that is a member of FitOptions as it stands.
 template <auto Member, class Class>
 void define_choice(Class& options, const char* name) {
@@ -70,6 +78,7 @@ void define_choice(Class& options, const char* name) {
 void define_options(py::module_& module) {
   py::class_<Options> options(module, "Options");
   options.def(py::init<>());
+  options.def_property("effects", nullptr, &set_effects);
   options.def_property("bounds", nullptr, &set_bounds);
   options.def_property("priors", nullptr, &set_priors);
   options.def_property("sampling", nullptr, [](Options& self, const std::string& name) {

@@ -65,9 +65,21 @@ py::dict describe_stage_one(const Fit& fit) {
                   "flat_directions"_a = stage_one.flat_directions);
 }
 
+/// Keys as the fields of sepcal.EffectSetting.
+py::list describe(const std::vector<EffectSetting>& effects) {
+  py::list list;
+  for (const EffectSetting& effect : effects) {
+    list.append(py::dict("name"_a = effect.name, "centre"_a = effect.centre,
+                         "knots"_a = py::tuple(py::cast(effect.knots)),
+                         "labels"_a = py::tuple(py::cast(effect.labels)), "span"_a = effect.span,
+                         "t0"_a = effect.t0));
+  }
+  return list;
+}
+
 }  // namespace
 
-py::dict describe(const Fit& fit) {
+py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects) {
   return py::dict("status"_a = to_string(fit.status), "message"_a = fit.message,
                   "parameters"_a = describe(fit.parameters), "covariance"_a = fit.covariance,
                   "correlation"_a = fit.correlation, "noise"_a = describe(fit.noise),
@@ -75,7 +87,8 @@ py::dict describe(const Fit& fit) {
                   "unobservable"_a = describe(fit.identifiability.unobservable),
                   "weak"_a = describe(fit.identifiability.weak),
                   "stage_one"_a = describe_stage_one(fit), "method"_a = to_string(fit.method),
-                  "iterations"_a = fit.iterations, "noise_iterations"_a = fit.noise_iterations);
+                  "iterations"_a = fit.iterations, "noise_iterations"_a = fit.noise_iterations,
+                  "effects"_a = describe(effects));
 }
 
 }  // namespace sepcal::bindings

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "effect_readings.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
 
@@ -24,9 +25,8 @@ void append_number(std::string& line, double value) {
 }  // namespace
 
 std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight& flight) {
-  const Probe& probe = *calibration.probe;
-  return probe.correct(probe.read(flight, calibration.options.drop_invalid),
-                       calibration.fit.values());
+  ProbeReadings readings = calibration.probe->read(flight, calibration.options.drop_invalid);
+  return correct_with_effects(calibration, flight, readings);
 }
 
 Applied apply_to_file(const Calibration& calibration, const std::string& file,
@@ -35,8 +35,8 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   check_not_input(output, file);
   OutputFile target(output);
   const Flight flight = read_csv(file, progress);
-  const ProbeReadings readings = probe.read(flight, calibration.options.drop_invalid);
-  const auto columns = probe.correct(readings, calibration.fit.values());
+  ProbeReadings readings = probe.read(flight, calibration.options.drop_invalid);
+  const auto columns = correct_with_effects(calibration, flight, readings);
 
   Applied applied{
       .rows = flight.rows(), .headers = probe.corrected_headers(), .notes = readings.notes};

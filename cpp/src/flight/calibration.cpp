@@ -4,21 +4,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
 #include <ranges>
 
 #include "option_spelling.hpp"
+#include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
+#include "sepcal/flight/probe_effects.hpp"
+#include "step_times.hpp"
 
 namespace sepcal {
 namespace {
 
 /// A fit with more parameters than rows is refused, even where three outputs a row would make it
 /// solvable: it would calibrate a flight of a few samples.
-void check_rows(const Probe& probe, const CalibrationOptions& options, const Flight& flight,
+void check_rows(const BlockModel& model, const CalibrationOptions& options, const Flight& flight,
                 std::size_t rows) {
-  const std::size_t parameters =
-      probe.model().tables().parameters().size() - options.fit.fixed.size();
+  const std::size_t parameters = model.tables().parameters().size() - options.fit.fixed.size();
   if (rows >= parameters) return;
   throw Error(
       fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or {} some",
@@ -40,6 +45,20 @@ void check_freed(const Probe& probe, const CalibrationOptions& options) {
   }
 }
 
+/// The options with what the probe holds unless it is freed. Throws Error for bounds of a parameter
+/// that is held.
+CalibrationOptions hold(const Probe& probe, CalibrationOptions options) {
+  for (const auto& [name, value] : probe.held()) {
+    if (std::ranges::find(options.free, name) != options.free.end()) continue;
+    if (options.fit.bounds.contains(name) && !options.fit.fixed.contains(name)) {
+      throw Error(fmt::format("{2} {0}: it is held at {1} unless {3} {0} frees it; add that", name,
+                              value, spell_option("bounds"), spell_option("free")));
+    }
+    options.fit.fixed.emplace(name, value);
+  }
+  return options;
+}
+
 /// Rows that a stage's segments select; messages say of which flight and option.
 std::size_t count_rows(const Record& record, const std::string& segments, const Flight& flight,
                        std::string_view stage, std::string_view option) {
@@ -51,23 +70,136 @@ std::size_t count_rows(const Record& record, const std::string& segments, const 
   }
 }
 
+/// The record with the outputs that need not be measured, as their value is always the same.
+Record with_constant_outputs(const Probe& probe, Record record) {
+  for (const Variable& output : probe.model().tables().outputs) {
+    if (record.has(output.name) || !std::isfinite(output.absent)) continue;
+    record.add(output.name, std::vector<double>(record.length(), output.absent));
+  }
+  return record;
+}
+
+/// The value of every nonlinear parameter by name.
+std::map<std::string, double> nonlinear_values(const Fit& fit) {
+  std::map<std::string, double> values;
+  for (auto k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
+    values[fit.parameters[k].name] = fit.parameters[k].value;
+  }
+  return values;
+}
+
+/// Fits the model with its effects and, where it depends on its own output's noise, tells it that
+/// of the fit and fits again, until the two agree.
+void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
+  constexpr double tolerance = 1e-9;  // |noise / noise before - 1|
+  constexpr int most_rounds = 20;
+  const Record& record = flight.prepared.record;
+  std::shared_ptr<const Probe>& probe = calibration.probe;
+  FitOptions options = probe->complete(calibration.options.fit, record);
+  options.unsampled = beginnings(flight.effects);
+  std::shared_ptr<const BlockModel> model = flight.model;
+  const auto tell = [&](double noise) {
+    std::shared_ptr<const Probe> told = probe->with_noise(noise);
+    if (!told) return false;
+    model = compose(model_of(*told), flight.effects, record);
+    probe = std::move(told);
+    return true;
+  };
+  double noise = 0.0;
+  if (options.noise.size() == 1) {
+    noise = options.noise.begin()->second;
+    tell(noise);
+  }
+  std::optional<StageOne> stage_one;  // of the first round: the others start where it ended
+  for (int round = 0; round < most_rounds; ++round) {
+    calibration.fit = fit_with_steps(*model, probe->model(), flight.effects,
+                                     calibration.options.effects, record, options);
+    if (!stage_one) stage_one = calibration.fit.stage_one;
+    const double next = calibration.fit.noise.front().value;
+    const bool settled = std::abs(next - noise) < tolerance * next;
+    const bool hopeless = calibration.fit.status != FitStatus::converged && round >= 4;
+    if (settled || hopeless) break;
+    if (round + 1 == most_rounds) {
+      calibration.fit.status = FitStatus::not_converged;
+      calibration.fit.message +=
+          fmt::format("{}the noise did not settle within {} fits",
+                      calibration.fit.message.empty() ? "" : "; ", most_rounds);
+      break;
+    }
+    if (!tell(next)) break;
+    noise = next;
+    options.start = nonlinear_values(calibration.fit);
+  }
+  calibration.fit.stage_one = std::move(*stage_one);
+  if (!options.start.empty()) calibration.options.fit.samples = 0;
+  probe->judge(calibration.fit);
+}
+
+/// Standard errors by the delta method. What a fixed parameter gives is certain.
+std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
+  std::vector<Derived> derived;
+  for (const DerivedQuantity& quantity : probe.derive(fit)) {
+    std::vector<Eigen::Index> from;
+    std::vector<double> slopes;
+    for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+      const auto slope = quantity.slopes.find(fit.parameters[k].name);
+      if (slope == quantity.slopes.end() || fit.parameters[k].fixed) continue;
+      from.push_back(static_cast<Eigen::Index>(k));
+      slopes.push_back(slope->second);
+    }
+    const auto n = static_cast<Eigen::Index>(slopes.size());
+    const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(slopes.data(), n);
+    const double error = n == 0 ? not_a_number : std::sqrt(g.dot(fit.covariance(from, from) * g));
+    derived.push_back({quantity.name, quantity.unit, quantity.value, error, error});
+  }
+  return derived;
+}
+
 }  // namespace
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   check_freed(*probe, options);
-  const ProbeRecord prepared = probe->prepare(flight, options.drop_invalid);
-  count_rows(prepared.record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
-  check_rows(*probe, options, flight,
-             count_rows(prepared.record, options.fit.stage_two_segments, flight, "stage two",
-                        "stage_two"));
   Calibration calibration;
-  calibration.fit = fit(probe->model(), prepared.record, options.fit);
+  calibration.options = hold(*probe, options);
+  const EffectiveFlight effective =
+      prepare_with_effects(*probe, flight, calibration.options.effects, options.own_effects,
+                           options.drop_invalid, options.fit.bounds);
+  const Record& record = effective.prepared.record;
+  count_rows(record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
+  check_rows(*effective.model, calibration.options, flight,
+             count_rows(record, options.fit.stage_two_segments, flight, "stage two", "stage_two"));
   calibration.probe = std::move(probe);
-  calibration.options = options;
+  fit_with_noise(calibration, effective);
   calibration.flight = {flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows};
-  calibration.notes = prepared.notes;
+  calibration.notes = effective.prepared.notes;
+  calibration.derived = derive(*calibration.probe, calibration.fit);
   return calibration;
+}
+
+Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
+                      const CalibrationOptions& options) {
+  check_freed(*probe, options);
+  Calibration calibration;
+  calibration.options = hold(*probe, options);
+  const EffectiveFlight effective =
+      with_effects(*probe, with_constant_outputs(*probe, record), calibration.options.effects,
+                   options.own_effects, options.fit.bounds);
+  calibration.probe = std::move(probe);
+  fit_with_noise(calibration, effective);
+  calibration.flight.rows = record.length();
+  calibration.flight.rows_used = calibration.fit.rows;
+  calibration.derived = derive(*calibration.probe, calibration.fit);
+  return calibration;
+}
+
+Eigen::VectorXd own_values(const Calibration& calibration) {
+  const std::vector<Variable> own = calibration.probe->model().tables().parameters();
+  Eigen::VectorXd values(static_cast<Eigen::Index>(own.size()));
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    values[static_cast<Eigen::Index>(k)] = calibration.fit[own[k].name].value;
+  }
+  return values;
 }
 
 void write_calibration(const Calibration& calibration, const std::string& file) {

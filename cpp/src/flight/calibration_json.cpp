@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "findings_json.hpp"
 #include "json_values.hpp"
 #include "options_json.hpp"
 #include "sepcal/error.hpp"
@@ -47,6 +48,7 @@ std::vector<Index> estimated_indices(const Fit& fit) {
 
 Json write_parameters(const Fit& fit) {
   Json parameters = Json::object();
+  int k = 0;
   for (const Parameter& parameter : fit.parameters) {
     parameters[parameter.name] = {{"value", number(parameter.value)},
                                   {"standard_error", number(parameter.standard_error)},
@@ -54,16 +56,25 @@ Json write_parameters(const Fit& fit) {
                                   {"unit", parameter.unit},
                                   {"lower", number(parameter.lower)},
                                   {"upper", number(parameter.upper)},
-                                  {"at_bound", parameter.at_bound}};
+                                  {"at_bound", parameter.at_bound},
+                                  {"kind", k < fit.n_1 ? "linear" : "nonlinear"}};
+    ++k;
   }
   return parameters;
 }
 
+/// Whether a parameter was held: by an option, or at the time that a step was found at.
+bool is_held(const CalibrationOptions& options, const std::string& name) {
+  if (options.fit.fixed.contains(name)) return true;
+  return std::ranges::any_of(options.effects, [&](const EffectSetting& setting) {
+    return setting.t0 && name == setting.name + ".t0";
+  });
+}
+
 void read_parameters(const Json& parameters, const Calibration& calibration, Fit& fit) {
-  for (const Variable& variable : calibration.probe->model().tables().parameters()) {
-    const Json& entry = parameters.at(variable.name);
+  for (const auto& [name, entry] : entries_of(parameters)) {
     fit.parameters.push_back(
-        {.name = variable.name,
+        {.name = name,
          .unit = entry.at("unit").get<std::string>(),
          .value = entry.at("value").get<double>(),
          .standard_error = number_or(entry.at("standard_error"), undefined),
@@ -71,29 +82,10 @@ void read_parameters(const Json& parameters, const Calibration& calibration, Fit
          .lower = number_or(entry.at("lower"), -infinity),
          .upper = number_or(entry.at("upper"), infinity),
          .at_bound = entry.at("at_bound").get<bool>(),
-         .fixed = calibration.options.fit.fixed.contains(variable.name)});
+         .fixed = is_held(calibration.options, name)});
+    if (entry.at("kind") == "linear") ++fit.n_1;
   }
-  fit.n_1 = calibration.probe->model().tables().n_1();
-}
-
-Json write_combinations(const std::vector<Combination>& combinations) {
-  Json list = Json::array();
-  for (const Combination& combination : combinations) {
-    list.push_back({{"combination", combination.text},
-                    {"parameters", combination.parameters},
-                    {"standard_error", number(combination.standard_error)}});
-  }
-  return list;
-}
-
-std::vector<Combination> read_combinations(const Json& list) {
-  std::vector<Combination> combinations;
-  for (const Json& entry : elements_of(list)) {
-    combinations.push_back({entry.at("parameters").get<std::vector<std::string>>(),
-                            entry.at("combination").get<std::string>(),
-                            number_or(entry.at("standard_error"), infinity)});
-  }
-  return combinations;
+  for (const Variable& own : calibration.probe->model().tables().parameters()) fit[own.name];
 }
 
 /// Correlation holds all that the covariance does beyond the standard errors.
@@ -168,6 +160,7 @@ Calibration read(const Json& root) {
   fit.status = status_of(root.at("status").get<std::string>());
   fit.message = root.at("message").get<std::string>();
   read_parameters(root.at("parameters"), calibration, fit);
+  calibration.derived = read_derived(root.at("derived"));
   read_correlation(root.at("correlation"), fit);
   fit.identifiability.unobservable = read_combinations(root.at("unobservable"));
   fit.identifiability.weak = read_combinations(root.at("weak"));
@@ -180,6 +173,7 @@ Calibration read(const Json& root) {
   fit.stage_one = read_stage_one(root.at("stage_one"), fit);
   fit.method = second_stage_of(root.at("stage_two").at("method").get<std::string>());
   fit.noise_iterations = whole_number<int>(root.at("stage_two").at("r_iterations"));
+  calibration.history = read_history(root.at("history"));
   return calibration;
 }
 
@@ -212,7 +206,7 @@ std::string to_json(const Calibration& calibration) {
   root["status"] = to_string(fit.status);
   root["message"] = fit.message;
   root["parameters"] = write_parameters(fit);
-  root["derived"] = Json::object();
+  root["derived"] = write_derived(calibration.derived);
   root["correlation"] = {{"names", estimated_names(fit)},
                          {"matrix", matrix(fit.correlation(estimated, estimated))}};
   root["unobservable"] = write_combinations(fit.identifiability.unobservable);
@@ -223,7 +217,7 @@ std::string to_json(const Calibration& calibration) {
   root["iterations"] = fit.iterations;
   root["stage_one"] = write_stage_one(calibration);
   root["stage_two"] = {{"method", to_string(fit.method)}, {"r_iterations", fit.noise_iterations}};
-  root["history"] = Json::array();
+  root["history"] = write_history(calibration.history);
   return text_of(root);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calibrated_flight.hpp"
 #include "json_values.hpp"
 #include "sepcal/measurements.hpp"
 #include "sweep.hpp"
@@ -106,18 +107,18 @@ Misfit measure(const Part& part, const MatrixXd& residuals, Index output,
 
 Comparison compare(const Calibration& calibration, const Flight& flight) {
   const Probe& probe = *calibration.probe;
-  const ProbeRecord prepared = probe.prepare(flight, calibration.options.drop_invalid);
-  const Record& record = prepared.record;
-  const Measurements measurements(probe.model(), record);
+  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const Record& record = effective.prepared.record;
+  const Measurements measurements(*effective.model, record);
   ThreadPool pool(calibration.options.fit.threads);
-  const Sweep sweep(probe.model(), measurements, pool);
+  const Sweep sweep(*effective.model, measurements, pool);
 
   Comparison result;
   result.model = probe.name();
   result.flight = {flight.name(), flight.sha256(), flight.rows(), measurements.rows()};
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
-  result.notes = prepared.notes;
+  result.notes = effective.prepared.notes;
   result.residuals = sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());
   const auto time = record.column("time");
   for (const Segment& segment : record.segments()) {

@@ -108,6 +108,16 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   return builder.finish();
 }
 
+ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid) {
+  RecordBuilder builder(flight, quantities, drop_invalid);
+  builder.need({"time", "mx", "my", "mz"});
+  builder.keep_valid();
+  builder.check_time();
+  builder.compute("field", [](std::size_t) { return 0.0; });
+  builder.offer({"p", "q", "r"});
+  return builder.finish();
+}
+
 ProbeReadings read_magnetometer(const Flight& flight, bool drop_invalid) {
   RecordBuilder builder(flight, quantities, drop_invalid);
   builder.need({"mx", "my", "mz"});

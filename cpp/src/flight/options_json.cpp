@@ -20,6 +20,31 @@ Sampling sampling_of(const std::string& name) {
   throw Error("sampling '" + name + "' is unknown");
 }
 
+Json write_effect(const EffectSetting& setting) {
+  Json effect = {{"name", setting.name}};
+  if (setting.centre) effect["centre"] = *setting.centre;
+  if (!setting.knots.empty()) effect["knots"] = setting.knots;
+  if (!setting.labels.empty()) effect["labels"] = setting.labels;
+  if (setting.span) effect["span"] = {setting.span->first, setting.span->second};
+  if (setting.t0) effect["t0"] = *setting.t0;
+  return effect;
+}
+
+EffectSetting read_effect(const Json& object) {
+  EffectSetting setting{.name = object.at("name").get<std::string>()};
+  if (object.contains("centre")) setting.centre = object.at("centre").get<double>();
+  if (object.contains("knots")) setting.knots = object.at("knots").get<std::vector<double>>();
+  if (object.contains("labels")) {
+    setting.labels = object.at("labels").get<std::vector<std::string>>();
+  }
+  if (object.contains("span")) {
+    setting.span = {object.at("span").at(0).get<double>(), object.at("span").at(1).get<double>()};
+  }
+  if (object.contains("t0")) setting.t0 = object.at("t0").get<double>();
+  setting.known = true;
+  return setting;
+}
+
 }  // namespace
 
 Json write_options(const Calibration& calibration) {
@@ -29,12 +54,16 @@ Json write_options(const Calibration& calibration) {
     options[name] = values.size() == 1 ? Json(values.front()) : Json(values);
   }
   options["effects"] = Json::array();
+  for (const EffectSetting& setting : calibration.options.effects) {
+    options["effects"].push_back(write_effect(setting));
+  }
   options["stage_one"] = fit.stage_one_segments;
   options["stage_two"] = fit.stage_two_segments;
   options["bounds"] = Json::object();
   for (const auto& [name, bounds] : fit.bounds) {
     options["bounds"][name] = {number(bounds.lower), number(bounds.upper)};
   }
+  options["start"] = fit.start;
   options["fix"] = fit.fixed;
   options["free"] = calibration.options.free;
   options["noise"] = fit.noise;
@@ -71,6 +100,10 @@ CalibrationOptions read_options(const Json& options) {
   for (const auto& [name, bounds] : entries_of(options.at("bounds"))) {
     fit.bounds[name] = {number_or(bounds.at(0), -infinity), number_or(bounds.at(1), infinity)};
   }
+  for (const Json& effect : elements_of(options.at("effects"))) {
+    result.effects.push_back(read_effect(effect));
+  }
+  fit.start = options.at("start").get<std::map<std::string, double>>();
   fit.fixed = options.at("fix").get<std::map<std::string, double>>();
   result.free = options.at("free").get<std::vector<std::string>>();
   fit.noise = options.at("noise").get<std::map<std::string, double>>();
@@ -92,7 +125,8 @@ CalibrationOptions read_options(const Json& options) {
 
 std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options) {
   std::map<std::string, std::vector<double>> settings;
-  for (const char* name : {"k_alpha", "k_beta", "lever_arm", "field"}) {
+  for (const char* name :
+       {"k_alpha", "k_beta", "lever_arm", "field", "field_strength", "field_noise"}) {
     if (!options.contains(name)) continue;
     const Json& value = options.at(name);
     settings[name] = value.is_array() ? value.get<std::vector<double>>()

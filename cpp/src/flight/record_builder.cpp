@@ -2,12 +2,15 @@
 #include "record_builder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "headers.hpp"
 #include "option_spelling.hpp"
+#include "plausible_readings.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -48,12 +51,9 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
                        unknown->header, quantity.name, found.column->header));
     }
   } else if (unknown != nullptr) {
-    std::string known;
-    for (const Unit& unit : known_units(quantity.kind)) {
-      known += fmt::format("{}{}_{}", known.empty() ? "" : ", ", quantity.name, unit.suffix);
-    }
     throw Error(fmt::format("{}: column '{}' has no known unit; {} may be logged as: {}",
-                            flight_.name(), unknown->header, quantity.name, known));
+                            flight_.name(), unknown->header, quantity.name,
+                            fmt::join(accepted_headers(quantity.name, quantity.kind), ", ")));
   }
 }
 
@@ -69,8 +69,12 @@ const LoggedQuantity& RecordBuilder::logged(std::string_view name) const {
 
 void RecordBuilder::fail_missing(std::string_view name) const {
   const auto* quantity = std::ranges::find(quantities_, name, &ProbeQuantity::name).base();
-  throw Error(fmt::format("{}: column '{}_{}' is missing; {}", flight_.name(), name,
-                          known_units(quantity->kind).front().suffix, flight_.list_columns()));
+  std::vector<std::string> others;
+  for (const Flight::Column& column : flight_.columns()) {
+    if (!is_quantity(column)) others.push_back(column.header);
+  }
+  throw Error(fmt::format("{}: {}; {}", flight_.name(),
+                          describe_missing(name, quantity->kind, others), flight_.list_columns()));
 }
 
 void RecordBuilder::need(Names names) {
@@ -154,11 +158,36 @@ void RecordBuilder::note(std::string_view text) {
   notes_.push_back(fmt::format("{}: {}", flight_.name(), text));
 }
 
+/// A quantity in use, in the kept rows.
+std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const {
+  Reading reading{std::string(name), std::nullopt, std::vector<double>(rows_.size())};
+  const auto computed = std::ranges::find(
+      computed_, name, [](const auto& entry) { return std::string_view(entry.first); });
+  if (computed != computed_.end()) {
+    std::ranges::transform(rows_, reading.values.begin(), computed->second);
+    return reading;
+  }
+  const bool is_taken = std::ranges::find(taken_, name) != taken_.end();
+  if (!is_taken && std::ranges::find(checked_, name) == checked_.end()) return std::nullopt;
+  const LoggedQuantity& quantity = logged(name);
+  reading.header = quantity.column->header;
+  if (quantity.unit->is_inside()) reading.relabel = quantity.unit->kind;
+  std::ranges::transform(rows_, reading.values.begin(),
+                         [&](std::size_t row) { return quantity.at(row); });
+  return reading;
+}
+
+void RecordBuilder::note_implausible() {
+  const auto find = [this](std::string_view name) { return find_reading(name); };
+  for (const std::string& sentence : describe_implausible(find)) note(sentence);
+}
+
 ProbeRecord RecordBuilder::finish() {
   if (rows_.empty()) {
     throw Error(fmt::format("{}: no row is left of {}: {}", flight_.name(), flight_.rows(),
                             dropped_.empty() ? "there was none" : dropped_.back().reason));
   }
+  note_implausible();
   take_quantities();
   take_drivers();
   std::vector<std::string> labels;
@@ -173,6 +202,7 @@ ProbeRecord RecordBuilder::finish() {
 }
 
 ProbeReadings RecordBuilder::finish_readings() {
+  note_implausible();
   std::vector<bool> valid(flight_.rows(), false);
   for (const std::size_t row : rows_) valid[row] = true;
   rows_.resize(flight_.rows());
@@ -228,13 +258,15 @@ void RecordBuilder::take_quantities() {
   }
 }
 
+/// Whether one of the probe's quantities is read from the column, and no driver.
+bool RecordBuilder::is_quantity(const Flight::Column& column) const {
+  return std::ranges::any_of(quantities_, [&](const ProbeQuantity& quantity) {
+    const auto found = logged_.find(quantity.name);
+    return !quantity.is_driver && found != logged_.end() && found->second.column == &column;
+  });
+}
+
 void RecordBuilder::take_drivers() {
-  const auto is_quantity = [&](const Flight::Column& column) {
-    return std::ranges::any_of(quantities_, [&](const ProbeQuantity& quantity) {
-      const auto found = logged_.find(quantity.name);
-      return !quantity.is_driver && found != logged_.end() && found->second.column == &column;
-    });
-  };
   std::vector<std::string> refused;
   for (const Flight::Column& column : flight_.columns()) {
     if (is_quantity(column)) continue;

@@ -6,11 +6,13 @@
 #include <functional>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "plausible_readings.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/flight/units.hpp"
 
@@ -83,15 +85,19 @@ class RecordBuilder {
   /// A line for people; the flight's name is put before it.
   void note(std::string_view text);
 
-  /// The kept rows, with candidate drivers and segments. Throws Error where no row is left.
+  /// The kept rows, with candidate drivers and segments; readings that no flight has are noted.
+  /// Throws Error where no row is left.
   ProbeRecord finish();
 
-  /// All rows, those kept marked as valid; no drivers, one segment.
+  /// All rows, those kept marked as valid; no drivers, one segment. Notes as finish() does.
   ProbeReadings finish_readings();
 
  private:
   void find_quantity(const ProbeQuantity& quantity);
   [[noreturn]] void fail_missing(std::string_view name) const;
+  bool is_quantity(const Flight::Column& column) const;
+  std::optional<Reading> find_reading(std::string_view name) const;
+  void note_implausible();
   const std::size_t* find_invalid_row(const Flight::Column& column) const;
   std::string describe_cell(const Flight::Column& column, std::size_t row) const;
   void take(std::string name, const Flight::Column& column, const Unit* unit);

@@ -13,6 +13,33 @@
 
 namespace sepcal {
 
+namespace {
+
+template <class Choice>
+Choice find_choice(std::string_view what, std::string_view name,
+                   std::initializer_list<std::pair<std::string_view, Choice>> choices) {
+  std::string known;
+  for (const auto& [text, choice] : choices) {
+    if (text == name) return choice;
+    known += (known.empty() ? "" : ", ") + std::string(text);
+  }
+  throw Error(std::string(what) + " '" + std::string(name) + "' is unknown; known: " + known);
+}
+
+}  // namespace
+
+Excitation find_excitation(std::string_view name) {
+  using enum Excitation;
+  return find_choice<Excitation>("excitation", name,
+                                 {{"rich", rich}, {"poor", poor}, {"third", third}});
+}
+
+NoiseKind find_noise_kind(std::string_view name) {
+  using enum NoiseKind;
+  return find_choice<NoiseKind>("noise", name,
+                                {{"white", white}, {"ar", ar}, {"pink", pink}, {"bursty", bursty}});
+}
+
 const std::vector<double>& SimulatedFlight::column(std::string_view name) const {
   const auto found = std::find_if(columns.begin(), columns.end(),
                                   [&](const SimulatedColumn& c) { return c.name == name; });
@@ -83,26 +110,6 @@ Air standard_air(double altitude) {
   return {pressure, temperature, pressure / (gas_constant * temperature)};
 }
 
-double Noise::draw_uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-
-double Noise::draw() {
-  if (has_spare_) {
-    has_spare_ = false;
-    return spare_;
-  }
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - draw_uniform()));  // 1 - u: never log 0
-  const double angle = 2.0 * pi * draw_uniform();
-  spare_ = radius * std::sin(angle);
-  has_spare_ = true;
-  return radius * std::cos(angle);
-}
-
-Eigen::Vector3d Noise::draw(const std::array<double, 3>& sigma) {
-  Eigen::Vector3d noise;
-  for (int axis = 0; axis < 3; ++axis) noise[axis] = sigma[static_cast<std::size_t>(axis)] * draw();
-  return noise;
-}
-
 std::vector<double> sample_times(double begin, double end, const SimulationOptions& options) {
   constexpr double highest_rate = 10'000.0;      // [Hz]
   constexpr std::size_t most_rows = 10'000'000;  // 2 GB of columns
@@ -148,8 +155,8 @@ void check_parameters(const std::string& source, const std::map<std::string, dou
   }
 }
 
-void check_values(const std::string& source, std::string_view what,
-                  const std::array<double, 3>& values, double lowest) {
+void check_values(const std::string& source, std::string_view what, std::span<const double> values,
+                  double lowest) {
   for (const double value : values) {
     if (std::isfinite(value) && value >= lowest) continue;
     throw Error(source + ": " + std::string(what) + " " + format_number(value) + " must be finite" +
@@ -172,6 +179,14 @@ void append_row(SimulatedFlight& flight, std::string_view maneuver,
   auto column = flight.columns.begin();
   for (const double value : values) (column++)->values.push_back(value);
   flight.maneuver.emplace_back(maneuver);
+}
+
+double wander(double time, int course) {
+  const double pace = 1.0 + 0.19 * course;
+  return (std::sin(2.0 * pi * pace * time / 25.0 + 1.7 * course) +
+          std::sin(2.0 * pi * pace * time / 11.9 + 0.6 * course * course) +
+          std::sin(2.0 * pi * pace * time / 7.3 + 2.9 * course)) /
+         3.0;
 }
 
 std::string format_number(double value) {

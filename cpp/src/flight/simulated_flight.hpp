@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the simulators share: quantities that move, attitude, smooth onsets, the standard
-// atmosphere, seeded noise, and the table that a flight is written into. Private to the simulators.
+// atmosphere, and the table that a flight is written into. Private to the simulators.
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <random>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +20,8 @@ namespace sepcal::simulation {
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double standard_gravity = 9.80665;  // [m/s^2]
+inline constexpr double longest_shift = 10.0;        // of any reading or driver in time [s]
+inline constexpr double longest_lag = 2.0;           // time constant [s]
 
 /// A quantity and its time derivative: body rates follow from it exactly.
 struct Moving {
@@ -83,26 +83,6 @@ struct Air {
 /// Throws Error outside its lowest layer, -2,000 m to 11,000 m.
 Air standard_air(double altitude);
 
-/// White noise from a Mersenne twister: our own uniform and Box-Muller, for the standard library's
-/// distributions differ from one implementation to the next.
-class Noise {
- public:
-  explicit Noise(std::uint64_t seed) : engine_(seed) {}
-
-  /// One draw of the standard normal distribution.
-  double draw();
-
-  /// Three independent draws with the standard deviations `sigma`.
-  Eigen::Vector3d draw(const std::array<double, 3>& sigma);
-
- private:
-  double draw_uniform();  // in [0, 1), 53 bits
-
-  std::mt19937_64 engine_;
-  double spare_ = 0.0;
-  bool has_spare_ = false;
-};
-
 /// Full flight: begin, begin + 1/rate, ... up to end. Condensed: `options.rows` times evenly from
 /// begin, end excluded. All in s. Throws Error for a rate or a number of rows out of range.
 std::vector<double> sample_times(double begin, double end, const SimulationOptions& options);
@@ -114,8 +94,7 @@ void check_parameters(const std::string& source, const std::map<std::string, dou
 
 /// Throws Error, opened by `source` and naming `what`, unless every value is finite and at least
 /// `lowest`.
-void check_values(const std::string& source, std::string_view what,
-                  const std::array<double, 3>& values,
+void check_values(const std::string& source, std::string_view what, std::span<const double> values,
                   double lowest = -std::numeric_limits<double>::infinity());
 
 /// An empty flight with these columns.
@@ -124,6 +103,10 @@ SimulatedFlight open_flight(std::initializer_list<std::string_view> names, std::
 /// Appends one row; `values` are in the order of the columns.
 void append_row(SimulatedFlight& flight, std::string_view maneuver,
                 std::initializer_list<double> values);
+
+/// A sum of three sines of unlike periods, 7 s to 25 s, within +-1: a smooth course that has
+/// nothing to do with the motion. Another `course`, another one.
+double wander(double time, int course);
 
 /// The shortest decimal that reads back to the same double.
 std::string format_number(double value);

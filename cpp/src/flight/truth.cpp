@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <ranges>
 #include <span>
 #include <vector>
@@ -14,11 +16,11 @@
 namespace sepcal {
 namespace {
 
-using Noise = std::array<double, 3>;
-using Outputs = std::array<const char*, 3>;
+using Outputs = std::span<const char* const>;
 
-constexpr Outputs velocities{"vn", "ve", "vd"};
-constexpr Outputs axes{"mx", "my", "mz"};
+constexpr std::array velocities{"vn", "ve", "vd"};
+constexpr std::array airspeed{"airspeed"};
+constexpr std::array axes{"mx", "my", "mz"};
 
 /// An entry of `options`: one number, or as many as `values` has in a list.
 struct Setting {
@@ -26,13 +28,13 @@ struct Setting {
   std::span<double> values;
 };
 
-Json write_noise(const Outputs& outputs, const Noise& noise) {
+Json write_noise(Outputs outputs, std::span<const double> noise) {
   Json object = Json::object();
-  for (std::size_t j = 0; j < 3; ++j) object[outputs[j]] = noise[j];
+  for (std::size_t j = 0; j < outputs.size(); ++j) object[outputs[j]] = noise[j];
   return object;
 }
 
-void read_noise(const Json& object, const Outputs& outputs, Noise& noise) {
+void read_noise(const Json& object, Outputs outputs, std::span<double> noise) {
   for (const auto& [name, value] : entries_of(object)) {
     const auto at = std::ranges::find(outputs, name);
     if (at == outputs.end()) {
@@ -45,11 +47,17 @@ void read_noise(const Json& object, const Outputs& outputs, Noise& noise) {
 
 void read_parameters(const Json& object, std::map<std::string, double>& parameters) {
   for (const auto& [name, value] : entries_of(object)) {
-    if (!parameters.contains(name)) {
+    if (!parameters.contains(name) && name.find('.') == std::string::npos) {
       throw Error(fmt::format("there is no parameter '{}'; the model has: {}", name,
                               fmt::join(std::views::keys(parameters), ", ")));
     }
     parameters[name] = value.get<double>();
+  }
+}
+
+void read_effects(const Json& list, std::vector<HiddenEffect>& effects) {
+  for (const Json& effect : elements_of(list)) {
+    effects.push_back({.name = effect.get<std::string>()});
   }
 }
 
@@ -77,7 +85,7 @@ void read_settings(const Json& object, const std::vector<Setting>& settings) {
 
 /// Reads what the object names into `truth`; the rest keeps its default.
 template <class Truth>
-void read_truth(std::string_view json, std::string_view model, const Outputs& outputs,
+void read_truth(std::string_view json, std::string_view model, Outputs outputs,
                 const std::vector<Setting>& settings, Truth& truth) {
   const Json root = Json::parse(json, nullptr, false);
   if (root.is_discarded() || !root.is_object()) {
@@ -92,10 +100,14 @@ void read_truth(std::string_view json, std::string_view model, const Outputs& ou
         read_settings(value, settings);
       } else if (key == "noise") {
         read_noise(value, outputs, truth.noise);
+      } else if (key == "effects") {
+        read_effects(value, truth.effects);
       } else if (key != "model") {
-        throw Error(fmt::format("'{}' is unknown; known: model, parameters, options, noise", key));
+        throw Error(
+            fmt::format("'{}' is unknown; known: model, parameters, options, noise, effects", key));
       } else if (value != model) {
-        throw Error(fmt::format("it is for the model {}; use the other app", value.dump()));
+        throw Error(fmt::format("it is for the model {}; use the other app, or another --probe",
+                                value.dump()));
       }
     }
   } catch (const Json::exception&) {
@@ -107,25 +119,32 @@ void read_truth(std::string_view json, std::string_view model, const Outputs& ou
   }
 }
 
-}  // namespace
-
-std::string to_json(const FiveHoleTruth& truth) {
+template <class Truth>
+std::string write_truth(std::string_view model, const Truth& truth, const Json& options,
+                        Outputs outputs) {
   Json root;
-  root["model"] = "five-hole";
+  root["model"] = model;
   root["parameters"] = truth.parameters;
-  root["options"] = {
-      {"k_alpha", truth.k_alpha}, {"k_beta", truth.k_beta}, {"lever_arm", truth.lever_arm}};
-  root["noise"] = write_noise(velocities, truth.noise);
+  root["options"] = options;
+  root["noise"] = write_noise(outputs, truth.noise);
+  for (const HiddenEffect& effect : truth.effects) root["effects"].push_back(effect.name);
   return text_of(root);
 }
 
+}  // namespace
+
+std::string to_json(const FiveHoleTruth& truth) {
+  const Json options{
+      {"k_alpha", truth.k_alpha}, {"k_beta", truth.k_beta}, {"lever_arm", truth.lever_arm}};
+  return write_truth("five-hole", truth, options, velocities);
+}
+
+std::string to_json(const PitotStaticTruth& truth) {
+  return write_truth("pitot-static", truth, Json::object(), airspeed);
+}
+
 std::string to_json(const MagnetometerTruth& truth) {
-  Json root;
-  root["model"] = "magnetometer";
-  root["parameters"] = truth.parameters;
-  root["options"] = {{"field", truth.field}};
-  root["noise"] = write_noise(axes, truth.noise);
-  return text_of(root);
+  return write_truth("magnetometer", truth, {{"field", truth.field}}, axes);
 }
 
 FiveHoleTruth parse_five_hole_truth(std::string_view json, const std::string& source) {
@@ -138,9 +157,21 @@ FiveHoleTruth parse_five_hole_truth(std::string_view json, const std::string& so
   return truth;
 }
 
+PitotStaticTruth parse_pitot_static_truth(std::string_view json, const std::string& source) {
+  PitotStaticTruth truth{.source = source};
+  read_truth(json, "pitot-static", airspeed, {}, truth);
+  return truth;
+}
+
 MagnetometerTruth parse_magnetometer_truth(std::string_view json, const std::string& source) {
   MagnetometerTruth truth{.source = source};
-  read_truth(json, "magnetometer", axes, {{"field", truth.field}}, truth);
+  double strength = 0.0;
+  read_truth(json, "magnetometer", axes,
+             {{"field", truth.field}, {"field_strength", {&strength, 1}}}, truth);
+  if (strength != 0.0) {
+    const double length = std::hypot(truth.field[0], truth.field[1], truth.field[2]);
+    for (double& component : truth.field) component *= strength / length;
+  }
   return truth;
 }
 

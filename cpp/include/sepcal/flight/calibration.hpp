@@ -11,6 +11,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
+#include "sepcal/named_effects.hpp"
 
 namespace sepcal {
 
@@ -19,6 +20,8 @@ struct CalibrationOptions {
   FitOptions fit;
   std::vector<std::string> free;  // parameters freed that the probe holds by default
   bool drop_invalid = false;
+  std::vector<EffectSetting> effects = {};  // that join the model, in this order
+  OwnEffects own_effects = {};              // of the caller's making, that may be among them
 };
 
 /// The flight that was fitted.
@@ -29,11 +32,33 @@ struct FittedFlight {
   std::size_t rows_used = 0;  // by stage two
 };
 
+/// A quantity that follows from the estimates, with its uncertainty by the delta method.
+struct Derived {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  double standard_error = 0.0;        // NaN where that of a parameter it depends on is
+  double standard_error_white = 0.0;  // the same as long as residuals are taken as white
+};
+
+/// One step of a chain of added effects. Undefined numbers are NaN; errors are RMSE over all
+/// outputs together, before and after on the same rows.
+struct HistoryEntry {
+  std::string effect;
+  double rmse_before = not_a_number;
+  double rmse_after = not_a_number;
+  double held_out_before = not_a_number;
+  double held_out_after = not_a_number;
+  double predicted_drop = not_a_number;
+};
+
 struct Calibration {
   std::shared_ptr<const Probe> probe;
   CalibrationOptions options;
   FittedFlight flight;
   Fit fit;
+  std::vector<Derived> derived;  // in the probe's order
+  std::vector<HistoryEntry> history;
   std::vector<std::string> notes;  // one line each, for people; not part of the JSON
 };
 
@@ -41,6 +66,13 @@ struct Calibration {
 /// rows than parameters, and misuse (fit()).
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options = {});
+
+/// The same with a record that has the columns of Probe::prepare() already.
+Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
+                      const CalibrationOptions& options = {});
+
+/// The values of the probe's own parameters, in the order of its tables.
+Eigen::VectorXd own_values(const Calibration& calibration);
 
 inline constexpr int schema_version = 1;
 

@@ -15,7 +15,7 @@ struct CataloguedEffect {
   std::string_view unit;      // of its coefficient, per unit of the driver where it has one
 };
 
-/// The catalogue of "five-hole" or "magnetometer"; empty for another name.
+/// The catalogue of a model by its Probe::name(); empty for another name.
 std::span<const CataloguedEffect> effect_catalogue(std::string_view model);
 
 }  // namespace sepcal

@@ -15,13 +15,40 @@
 #include "sepcal/block_model.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/options.hpp"
 
 namespace sepcal {
+
+struct Fit;
 
 /// Columns that applying a calibration adds: header and a value a row (NaN where there is none).
 struct CorrectedColumn {
   std::string header;
   std::vector<double> values;
+};
+
+/// A quantity that follows from the estimates.
+struct DerivedQuantity {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  std::map<std::string, double> slopes;  // its derivatives, by parameter; zero where not named
+};
+
+/// What a calibration's effects do to readings. Empty: nothing.
+struct ReadingEffects {
+  /// A term of the model, at its parameters' values.
+  struct Term {
+    std::shared_ptr<const BlockModel> model;
+    Eigen::VectorXd xi1;
+    Eigen::VectorXd xi2;
+  };
+
+  std::map<std::string, Eigen::VectorXd> totals;  // by "port.component", a value a row
+  std::vector<Term> terms;
+
+  /// The total there in a row; 0 where no effect acts there.
+  double at(const std::string& port_component, std::size_t row) const;
 };
 
 class Probe {
@@ -31,7 +58,7 @@ class Probe {
   Probe& operator=(const Probe&) = delete;
   virtual ~Probe() = default;
 
-  /// "five-hole", "magnetometer": the JSON's `model`.
+  /// "five-hole", "pitot-static", "magnetometer", "magnetometer-norm": the JSON's `model`.
   virtual std::string_view name() const = 0;
 
   /// The command that calibrates it: "sepcal-pitot", "sepcal-mag".
@@ -55,7 +82,28 @@ class Probe {
   /// The corrected readings; `values` are the model's parameters, linear then nonlinear. Throws
   /// Error where the calibration can't be inverted.
   virtual std::vector<CorrectedColumn> correct(const ProbeReadings& readings,
-                                               const Eigen::VectorXd& values) const = 0;
+                                               const Eigen::VectorXd& values,
+                                               const ReadingEffects& effects) const = 0;
+
+  /// Parameters that a fit holds at a value unless they are freed.
+  virtual std::map<std::string, double> held() const { return {}; }
+
+  /// The options with what a record says beforehand: bounds and a start. Throws Error where the
+  /// record can't be this probe's.
+  virtual FitOptions complete(const FitOptions& options, const Record& /*record*/) const {
+    return options;
+  }
+
+  /// Where the model depends on the standard deviation of its own output: the same probe with that
+  /// of a fit, which is then fitted again until both agree. Else nullptr.
+  virtual std::unique_ptr<const Probe> with_noise(double /*standard_deviation*/) const {
+    return nullptr;
+  }
+
+  /// Adds what only the probe knows to a fit's status, message and unobservable combinations.
+  virtual void judge(Fit& fit) const;
+
+  virtual std::vector<DerivedQuantity> derive(const Fit& fit) const;
 };
 
 /// K_alpha, K_beta [1/rad] and the lever arm from the velocity's reference point [m, body axes].
@@ -63,8 +111,16 @@ class Probe {
 std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
                                              const std::array<double, 3>& lever_arm);
 
+/// A plain tube; w_d is held at zero.
+std::unique_ptr<const Probe> pitot_static_probe();
+
 /// The Earth's field, north, east, down [uT], or nothing where the flight logs it.
 std::unique_ptr<const Probe> magnetometer_probe(const std::optional<std::array<double, 3>>& field);
+
+/// The field's strength [uT] alone, and the sensor's noise [uT] where it is known already. A fit
+/// begins with the ellipsoid of the readings. Throws Error where the strength is not positive or
+/// the noise is negative.
+std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, double noise = 0.0);
 
 /// The probe of that name with settings as Probe::settings() gives them. Throws Error for a name
 /// that is unknown, a setting that is missing or of the wrong length.

@@ -44,13 +44,17 @@ struct ProbeReadings {
 struct FiveHoleColumns {
   bool lever_arm = false;     // a lever arm is given, so the body rates are needed
   bool drop_invalid = false;  // drop rows with a bad cell in a needed column instead of refusing
+  double k_alpha = 0.0;       // sensitivity of the flow-angle ports [1/rad]; 0: not known
+  double k_beta = 0.0;
 };
 
 /// time [s]; roll, pitch, yaw [rad]; p, q, r [rad/s]; vn, ve, vd [m/s]; pt, ps, dpa, dpb [Pa]; rho
 /// [kg/m^3], from rho_kgpm3 or else ps / (287.05287 T). The rates are zeros where they are not
-/// needed and not logged. Rows with pt <= ps are dropped.
-/// Throws Error for a missing column, an unknown unit on one of these quantities or on temp, a
-/// quantity logged in two units, a cell of a needed column that is no finite number or a density
+/// needed and not logged. Rows with pt <= ps are dropped. For effects also alpha and beta [rad],
+/// the flow angles as read, where the sensitivities are known, and temperature [K] where temp is
+/// logged. Throws Error for a missing column, an unknown unit on one of these quantities or on
+/// temp, a quantity logged in two units, a cell of a needed column that is no finite number or a
+/// density
 /// <= 0 (unless drop_invalid), time that does not increase, pt <= ps in more than a fifth of the
 /// rows, and a flight of which no row is left.
 ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& options = {});
@@ -58,6 +62,17 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
 /// pt, ps, dpa, dpb [Pa] and rho [kg/m^3] of every row; pt <= ps makes a row not valid. Throws
 /// Error as prepare_five_hole() does, but for pt <= ps.
 ProbeReadings read_five_hole(const Flight& flight, bool drop_invalid = false);
+
+/// time [s]; vn, ve, vd [m/s]; airspeed [m/s] as read, from airspeed_mps or else sqrt(2 dp / rho),
+/// rho as above. For effects also rho, dp, ps, attitude, rates and temperature [K], where they are
+/// logged or can be computed in every row. Rows with a reading that is not above zero are dropped.
+/// Throws Error as prepare_five_hole() does, and where neither way to the airspeed is there.
+ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid = false);
+
+/// airspeed [m/s] and rho [kg/m^3] of every row, rho that of the sea level (1.225) where it can't
+/// be had in every row that counts; a row where it is not above zero is not valid. Throws Error as
+/// prepare_pitot_static() does for these columns.
+ProbeReadings read_pitot_static(const Flight& flight, bool drop_invalid = false);
 
 struct MagnetometerColumns {
   std::optional<std::array<double, 3>> field;  // north, east, down [uT]: instead of logged columns
@@ -70,6 +85,10 @@ struct MagnetometerColumns {
 /// as well. Throws Error as prepare_five_hole() does, and where none of these ways to the true
 /// field is there.
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options = {});
+
+/// time [s]; mx, my, mz [uT]; field [uT], zero in every row: what the attitude-independent model
+/// measures. The field and the attitude are not looked at, though they may be there.
+ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid = false);
 
 /// mx, my, mz [uT] of every row. Throws Error as prepare_magnetometer() does for these columns.
 ProbeReadings read_magnetometer(const Flight& flight, bool drop_invalid = false);

@@ -13,14 +13,18 @@
 
 namespace sepcal {
 
-/// k_alpha, k_beta: sensitivity of the flow-angle ports, dp/(pt - ps) per radian [1/rad].
-/// lever_arm: from the velocity's reference point to the probe, body axes [m].
+/// The last three inputs are ports, zero unless an effect drives them: pressure_offset joins pt -
+/// ps where the airspeed is read from it (not where the flow angles are), alpha_offset and
+/// beta_offset join the flow angles as read. k_alpha, k_beta: sensitivity of the flow-angle ports,
+/// dp/(pt - ps) per radian [1/rad]. lever_arm: from the velocity's reference point to the probe,
+/// body axes [m].
 struct FiveHoleProbe {
   static constexpr std::array inputs{
-      Quantity{"roll", "rad"}, Quantity{"pitch", "rad"}, Quantity{"yaw", "rad"},
-      Quantity{"p", "rad/s"},  Quantity{"q", "rad/s"},   Quantity{"r", "rad/s"},
-      Quantity{"pt", "Pa"},    Quantity{"ps", "Pa"},     Quantity{"dpa", "Pa"},
-      Quantity{"dpb", "Pa"},   Quantity{"rho", "kg/m^3"}};
+      Quantity{"roll", "rad"},     Quantity{"pitch", "rad"},  Quantity{"yaw", "rad"},
+      Quantity{"p", "rad/s"},      Quantity{"q", "rad/s"},    Quantity{"r", "rad/s"},
+      Quantity{"pt", "Pa"},        Quantity{"ps", "Pa"},      Quantity{"dpa", "Pa"},
+      Quantity{"dpb", "Pa"},       Quantity{"rho", "kg/m^3"}, port("pressure_offset", "Pa"),
+      port("alpha_offset", "rad"), port("beta_offset", "rad")};
   static constexpr std::array outputs{Quantity{"vn", "m/s"}, Quantity{"ve", "m/s"},
                                       Quantity{"vd", "m/s"}};
   static constexpr std::array linear{Quantity{"lambda_va", "1"}, Quantity{"b_va", "m/s"},
@@ -38,13 +42,13 @@ struct FiveHoleProbe {
   Eigen::Vector3d lever_arm = Eigen::Vector3d::Zero();
 
   template <class U, class X>
-  Affine<X, 3, 5> at(const Vec<U, 11>& u, const Vec<X, 5>& xi2) const {
+  Affine<X, 3, 5> at(const Vec<U, 14>& u, const Vec<X, 5>& xi2) const {
     using std::sqrt;
-    enum { roll, pitch, yaw, p, q, r, pt, ps, dpa, dpb, rho };
+    enum { roll, pitch, yaw, p, q, r, pt, ps, dpa, dpb, rho, d_pressure, d_alpha, d_beta };
     const U pressure = u[pt] - u[ps];
-    const U airspeed = sqrt(2.0 * pressure / u[rho]);                          // as read
-    const Vec<X, 2> angles = flow_angles<U, X>(u[dpa] / (k_alpha * pressure),  //
-                                               u[dpb] / (k_beta * pressure), xi2);
+    const U airspeed = sqrt(2.0 * (pressure + u[d_pressure]) / u[rho]);  // as read
+    const Vec<X, 2> angles = flow_angles<U, X>(u[dpa] / (k_alpha * pressure) + u[d_alpha],
+                                               u[dpb] / (k_beta * pressure) + u[d_beta], xi2);
     const Eigen::Matrix<U, 3, 3> C_bn = body_to_ned<U>(u[roll], u[pitch], u[yaw]);
     const Vec<U, 3> rates(u[p], u[q], u[r]);
     const Vec<U, 3> arm = lever_arm.template cast<U>();

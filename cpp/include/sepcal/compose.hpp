@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Model + effects at compile time, for flight software: the tables are joined while compiling and
+// at() is one inlined function. The rules are those of composition.hpp: inputs merge by name, input
+// corrections act first and in order, then the model and every term see the corrected inputs. Only
+// drivers differ: here they are inputs like any other, corrected where a correction names them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+
+#include "sepcal/static_effect.hpp"
+
+namespace sepcal {
+
+/// A term whose columns are the model's: factor(u, xi2) times those of the linear parameters that
+/// it names in `targets`, one for each of its own.
+template <class T>
+concept VaryingTerm =
+    QuantityTable<decltype(T::inputs)> && QuantityTable<decltype(T::linear)> &&
+    QuantityTable<decltype(T::nonlinear)> &&
+    requires(const T& effect, const Vec<double, static_cast<int>(T::inputs.size())>& u,
+             const Vec<double, static_cast<int>(T::nonlinear.size())>& xi2) {
+      T::targets.size();
+      effect.factor(u, xi2);
+    };
+
+template <class T>
+concept StaticEffect = Term<T> || InputCorrection<T> || VaryingTerm<T>;
+
+namespace composing {
+
+constexpr std::size_t find(const auto& table, std::string_view name) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].name == name) return i;
+  }
+  return table.size();
+}
+
+/// Quantities of `more` whose names `table` lacks.
+template <std::size_t N, std::size_t M>
+constexpr std::size_t count_new(const std::array<Quantity, N>& table,
+                                const std::array<Quantity, M>& more) {
+  std::size_t count = 0;
+  for (const Quantity& quantity : more) count += find(table, quantity.name) == N ? 1 : 0;
+  return count;
+}
+
+template <std::size_t N, std::size_t M>
+constexpr std::array<Quantity, N + M> join(const std::array<Quantity, N>& a,
+                                           const std::array<Quantity, M>& b) {
+  std::array<Quantity, N + M> joined{};
+  std::copy(a.begin(), a.end(), joined.begin());
+  std::copy(b.begin(), b.end(), joined.begin() + N);
+  return joined;
+}
+
+/// The inputs of both, each once.
+template <class A, class B>
+constexpr auto merge() {
+  constexpr std::size_t n = A::inputs.size();
+  std::array<Quantity, n + count_new(A::inputs, B::inputs)> merged{};
+  std::copy(A::inputs.begin(), A::inputs.end(), merged.begin());
+  std::size_t next = n;
+  for (const Quantity& input : B::inputs) {
+    if (find(A::inputs, input.name) == n) merged[next++] = input;
+  }
+  return merged;
+}
+
+/// The linear parameters of an effect; a correction has none.
+template <class E>
+constexpr auto linear_of() {
+  if constexpr (InputCorrection<E>) {
+    return std::array<Quantity, 0>{};
+  } else {
+    return E::linear;
+  }
+}
+
+/// Whether no parameter belongs to both; a failure's message shows the two owners.
+template <class A, class B>
+constexpr bool no_parameter_in_common() {
+  const auto a = join(linear_of<A>(), A::nonlinear);
+  const auto b = join(linear_of<B>(), B::nonlinear);
+  return std::none_of(b.begin(), b.end(), [&](const Quantity& parameter) {
+    return find(a, parameter.name) < a.size();
+  });
+}
+
+/// Whether inputs of one name are in one unit.
+template <class A, class B>
+constexpr bool same_units() {
+  return std::all_of(B::inputs.begin(), B::inputs.end(), [](const Quantity& input) {
+    const std::size_t at = find(A::inputs, input.name);
+    return at == A::inputs.size() || A::inputs[at].unit.empty() || input.unit.empty() ||
+           A::inputs[at].unit == input.unit;
+  });
+}
+
+/// Whether every linear parameter that an effect makes vary is the model's.
+template <class M, class E>
+constexpr bool targets_are_there() {
+  if constexpr (VaryingTerm<E>) {
+    return E::targets.size() == E::linear.size() &&
+           std::all_of(E::targets.begin(), E::targets.end(), [](std::string_view target) {
+             return find(M::linear, target) < M::linear.size();
+           });
+  }
+  return true;
+}
+
+/// Whether a term's columns are for as many outputs as the model has.
+template <class M, class E>
+constexpr bool same_outputs() {
+  if constexpr (Term<E>) {
+    return outputs_of_term<E> == static_cast<int>(M::outputs.size());
+  }
+  return true;
+}
+
+}  // namespace composing
+
+/// `model` with one effect; itself a model, so that effects add up.
+template <SeparableModel M, StaticEffect E>
+struct Composed {
+  static_assert(composing::no_parameter_in_common<M, E>(),
+                "a parameter's name belongs to the model and to the effect alike; rename one");
+  static_assert(composing::same_units<M, E>(),
+                "an input is in one unit for the model and in another for the effect");
+  static_assert(composing::targets_are_there<M, E>(),
+                "the effect varies a linear parameter that the model doesn't have");
+  static_assert(composing::same_outputs<M, E>(),
+                "the effect's columns are for another number of outputs than the model has");
+
+  static constexpr auto inputs = composing::merge<M, E>();
+  static constexpr auto outputs = M::outputs;
+  static constexpr auto linear = composing::join(M::linear, composing::linear_of<E>());
+  static constexpr auto nonlinear = composing::join(M::nonlinear, E::nonlinear);
+
+  M model;
+  E effect;
+
+  template <class U, class X>
+  Affine<X, Sizes<Composed>::n_z, Sizes<Composed>::n_1> at(
+      const Vec<U, static_cast<int>(inputs.size())>& u,
+      const Vec<X, static_cast<int>(nonlinear.size())>& xi2) const {
+    const Vec<X, n_2m> of_model = xi2.template head<n_2m>();
+    const Vec<X, n_2e> of_effect = xi2.template tail<n_2e>();
+    if constexpr (InputCorrection<E>) {
+      Vec<X, n_u> corrected = u.template cast<X>();
+      const Vec<X, E::corrected> values = effect.correct(select<E>(corrected), of_effect);
+      for (int c = 0; c < E::corrected; ++c) corrected[position<E>(c)] = values[c];
+      return model.at(select<M>(corrected), of_model);
+    } else {
+      const auto [A, b] = model.at(select<M>(u), of_model);
+      Affine<X, Sizes<Composed>::n_z, Sizes<Composed>::n_1> z;
+      z.A.template leftCols<Sizes<M>::n_1>() = A;
+      if constexpr (VaryingTerm<E>) {
+        for (int c = 0; c < Sizes<Composed>::n_1 - Sizes<M>::n_1; ++c) {
+          z.A.col(Sizes<M>::n_1 + c) = A.col(target(c)) * effect.factor(select<E>(u), of_effect);
+        }
+      } else {
+        z.A.template rightCols<Sizes<Composed>::n_1 - Sizes<M>::n_1>() =
+            effect.columns(select<E>(u), of_effect).template cast<X>();
+      }
+      z.b = b;
+      return z;
+    }
+  }
+
+ private:
+  static constexpr int n_u = static_cast<int>(inputs.size());
+  static constexpr int n_2m = static_cast<int>(M::nonlinear.size());
+  static constexpr int n_2e = static_cast<int>(E::nonlinear.size());
+
+  /// Where input i of a part stands among the merged ones.
+  template <class Part>
+  static constexpr int position(int i) {
+    return static_cast<int>(
+        composing::find(inputs, Part::inputs[static_cast<std::size_t>(i)].name));
+  }
+
+  template <class Part, class T>
+  static Vec<T, static_cast<int>(Part::inputs.size())> select(const Vec<T, n_u>& u) {
+    Vec<T, static_cast<int>(Part::inputs.size())> selected;
+    for (int i = 0; i < selected.size(); ++i) selected[i] = u[position<Part>(i)];
+    return selected;
+  }
+
+  static constexpr int target(int c) {
+    return static_cast<int>(composing::find(M::linear, E::targets[static_cast<std::size_t>(c)]));
+  }
+};
+
+/// model + effect + effect ...: a model with all of them.
+template <SeparableModel M, StaticEffect E>
+constexpr auto operator+(M model, E effect) {
+  return Composed<M, E>{std::move(model), std::move(effect)};
+}
+
+/// Corrections stay outermost, in the order in which they were added: whatever is added later sees
+/// corrected inputs.
+template <SeparableModel M, InputCorrection C, StaticEffect E>
+constexpr auto operator+(Composed<M, C> model, E effect) {
+  auto inner = std::move(model.model) + std::move(effect);
+  return Composed<decltype(inner), C>{std::move(inner), std::move(model.effect)};
+}
+
+}  // namespace sepcal

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A physical effect that a model lacks: where it enters and what drives it. Four ways in:
+//   varying     a linear parameter, or an input's share in an output, that follows a driver
+//   terms       columns of the effect's own, which join A
+//   corrections inputs replaced before the model sees them, by nonlinear parameters
+//   delays      the record's time axis shifted or smoothed, by interpolation within a segment
+// At zero an effect vanishes. Model + effects is again a model (composition.hpp at run time,
+// compose.hpp at compile time).
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/driver.hpp"
+
+namespace sepcal {
+
+/// A coefficient s for each component and function of the driver, named effect.component + suffix;
+/// the columns phi_j A_p or phi_j u_source e_output join A.
+struct Varying {
+  struct Share {
+    int output = 0;
+    Variable source;  // an input
+  };
+  struct Component {
+    std::string name;                // "n"
+    std::string target;              // the model's linear parameter p ("w_n"), or none ...
+    std::vector<Share> shares = {};  // ... but inputs' shares in outputs
+  };
+
+  DriverPointer driver;
+  std::vector<Component> components;
+  std::string unit;  // of a coefficient
+};
+
+/// Replaces some of a model's inputs: u'_c = f_c(u, xi2).
+class Correction {
+ public:
+  /// `inputs`: what it reads, those that it replaces first, `corrected` of them; `nonlinear`: its
+  /// parameters by their whole names.
+  Correction(std::vector<Variable> inputs, int corrected, std::vector<Variable> nonlinear)
+      : inputs_(std::move(inputs)), corrected_(corrected), nonlinear_(std::move(nonlinear)) {}
+  Correction(const Correction&) = delete;
+  Correction& operator=(const Correction&) = delete;
+  virtual ~Correction() = default;
+
+  const std::vector<Variable>& inputs() const { return inputs_; }
+  int corrected() const { return corrected_; }
+  const std::vector<Variable>& nonlinear() const { return nonlinear_; }
+
+  /// What of the inputs is a driver, read as it was logged whatever corrects it.
+  virtual bool is_driver(int /*input*/) const { return false; }
+
+  /// How far [s] it reaches from a row along the time axis.
+  virtual double reach() const { return 0.0; }
+
+  /// Fills `values` (rows x corrected). Where asked for (not null), `slopes` is rows x (corrected *
+  /// (n_u + n_2)): the derivatives of u'_c with respect to the inputs, then the parameters, stand
+  /// in the columns from c * (n_u + n_2) on.
+  virtual void evaluate(const Block& block, const double* xi2, Eigen::Ref<Eigen::MatrixXd> values,
+                        Eigen::MatrixXd* slopes) const = 0;
+
+ private:
+  std::vector<Variable> inputs_;
+  int corrected_;
+  std::vector<Variable> nonlinear_;
+};
+
+/// An effect on the time axis. The rows nearer than its reach to a segment's edge are not used.
+struct Delay {
+  enum class Kind {
+    inputs_late,     // u'(t) = u(t + tau): what was logged at t belongs to t - tau
+    inputs_lagging,  // u'(t) = u(t) + tau du/dt: undoes tau du/dt + u = u0
+    outputs_late,    // z(t) follows all inputs at t - tau
+    outputs_lagging  // tau dz/dt + z = z0: z0 averaged over the past with exp(-age / tau)
+  };
+
+  Kind kind = Kind::outputs_late;
+  Variable parameter;               // tau [s] by its whole name, with finite bounds
+  std::vector<std::string> inputs;  // of the kinds that act on inputs: which
+};
+
+struct Effect {
+  std::string name;
+  // Of an effect `port[driver]`: where it enters, and the coefficients' components.
+  std::string port = {};
+  DriverPointer driver = {};
+  std::vector<std::string> components = {};
+  // How it enters.
+  std::vector<Varying> varying = {};
+  std::vector<std::shared_ptr<const BlockModel>> terms = {};  // their outputs are the model's
+  std::vector<std::shared_ptr<const Correction>> corrections = {};
+  std::vector<Delay> delays = {};
+};
+
+/// The correction u_i' = u_i + sign_i sum_j s_ij phi_j(d), a coefficient for each target and
+/// function, named owner + "." + component + suffix, within `bounds` of either sign.
+struct DrivenInput {
+  std::string component;
+  Variable target;
+  double sign = 1.0;
+};
+std::shared_ptr<const Correction> driven_inputs(const std::string& owner, DriverPointer driver,
+                                                std::vector<DrivenInput> targets,
+                                                const std::string& unit, double bounds);
+
+}  // namespace sepcal

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The names of effects: `port[driver]`, or a name alone for an effect with a physics of its own.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sepcal {
+
+struct EffectName {
+  enum class Shape {
+    none,      // no driver: "heading_bias"
+    power,     // "x", "x^2"
+    exponent,  // "x^n"
+    spline,    // "spline(x,k)"
+    step,      // "step(time)"
+    ramp,      // "ramp(time)"
+    decay,     // "decay(time)"
+    delay      // "delay(x)"
+  };
+
+  std::string text;  // the whole name, without spaces
+  std::string port;  // "wind", or the whole name where there is no driver
+  std::string base;  // the channel: "altitude_m", "time"; empty where there is no driver
+  Shape shape = Shape::none;
+  int number = 1;  // the power, or how many knots
+};
+
+/// Throws Error for a text that is no name, saying what the forms are.
+EffectName parse_effect_name(std::string_view text);
+
+/// The names of a list joined by '+' ("E1+E2"); a '+' within brackets belongs to a name. Throws
+/// Error for an empty one.
+std::vector<std::string> split_effects(std::string_view text);
+
+}  // namespace sepcal

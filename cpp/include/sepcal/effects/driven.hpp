@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Effects `port[driver]` and `port[driver^k]` for composition at compile time: a coefficient s
+// times phi = (d - centre)^k of the column `driver`. At run time make_effect() builds the same by
+// name.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "sepcal/compose.hpp"
+
+namespace sepcal::effects {
+
+/// A text as a template's argument.
+template <std::size_t N>
+struct Text {
+  std::array<char, N> characters{};
+  consteval Text(const char (&text)[N]) { std::copy_n(text, N, characters.begin()); }  // NOLINT
+  constexpr std::string_view view() const { return {characters.data(), N - 1}; }
+};
+
+/// Texts one after the other.
+template <Text... parts>
+struct Joined {
+  static constexpr auto storage = [] {
+    std::array<char, (parts.view().size() + ... + 0)> all{};
+    std::size_t next = 0;
+    (void(std::ranges::for_each(parts.view(), [&](char c) { all[next++] = c; })), ...);
+    return all;
+  }();
+  static constexpr std::string_view view{storage.data(), storage.size()};
+};
+
+/// "wind[altitude_m]." or "airspeed_scale[alpha^2]." and the component.
+template <Text port, Text driver, int power, Text component>
+constexpr std::string_view parameter_name() {
+  static_assert(power >= 1 && power <= 9);
+  constexpr char digit[2] = {static_cast<char>('0' + power), '\0'};
+  if constexpr (power == 1) {
+    return Joined<port, "[", driver, "].", component>::view;
+  } else {
+    return Joined<port, "[", driver, "^", Text(digit), "].", component>::view;
+  }
+}
+
+/// (d - centre)^power
+template <int power, class T>
+T power_of(const T& d, double centre) {
+  T value = d - centre;
+  for (int i = 1; i < power; ++i) value = value * (d - centre);
+  return value;
+}
+
+/// One coefficient's name, and the model's linear parameter that it adds to.
+template <Text name_, Text target_>
+struct Component {
+  static constexpr auto name = name_;
+  static constexpr std::string_view target = target_.view();
+};
+
+/// Linear parameters that follow a driver: columns phi A_target.
+template <Text port, Text driver, int power, Text unit, class... Components>
+struct Follows {
+  static constexpr std::array inputs{Quantity{driver.view(), ""}};
+  static constexpr std::array linear{
+      Quantity{parameter_name<port, driver, power, Components::name>(), unit.view()}...};
+  static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr std::array targets{Components::target...};
+
+  double centre = 0.0;
+
+  template <class U, class X>
+  X factor(const Vec<U, 1>& u, const Vec<X, 0>& /*xi2*/) const {
+    return X(power_of<power>(u[0], centre));
+  }
+};
+
+/// An input that follows a driver: u + s phi.
+template <Text port, Text driver, int power, Text unit>
+struct Shifts {
+  static constexpr int corrected = 1;
+  static constexpr std::array inputs{sepcal::port(port.view(), unit.view()),
+                                     Quantity{driver.view(), ""}};
+  static constexpr std::array nonlinear{
+      Quantity{parameter_name<port, driver, power, "s">(), unit.view()}};
+
+  double centre = 0.0;
+
+  template <class T>
+  Vec<T, 1> correct(const Vec<T, 2>& u, const Vec<T, 1>& xi2) const {
+    return Vec<T, 1>(u[0] + xi2[0] * power_of<power>(u[1], centre));
+  }
+};
+
+}  // namespace sepcal::effects

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A three-axis magnetometer of which only the field's strength F is known: m = C h + n, |h| = F,
+// C = C_alpha C_lambda. With y = C^-1 (m - n), u = y/|y|, M = C^-1 C^-T and noise of standard
+// deviation sigma in m, 0 = (|y| - F - mu) / |C^-T u| + noise, mu = sigma^2 (tr M - u'M u) / 2F:
+// mu is what the noise adds to |y| on average, which would bias C and n.
+#pragma once
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+#include "sepcal/model.hpp"
+
+namespace sepcal {
+
+/// field_strength: F [uT]. noise: sigma [uT]; 0 leaves mu out. A rotation of the sensor is not seen
+/// in |y|, so C has no misalignment. n has no bounds of its own: they depend on the readings. The
+/// output `field` is zero in every row, and A has no columns.
+struct AttitudeIndependentMagnetometer {
+  static constexpr std::array inputs{Quantity{"mx", "uT"},      Quantity{"my", "uT"},
+                                     Quantity{"mz", "uT"},      port("scale", "1"),
+                                     port("axis_scale_x", "1"), port("axis_scale_y", "1"),
+                                     port("axis_scale_z", "1")};
+  static constexpr std::array outputs{Quantity{"field", "uT", -infinity, infinity, 0.0}};
+  static constexpr std::array<Quantity, 0> linear{};
+  static constexpr std::array nonlinear{Quantity{"lambda_x", "1", -0.5, 0.5},
+                                        Quantity{"lambda_y", "1", -0.5, 0.5},
+                                        Quantity{"lambda_z", "1", -0.5, 0.5},
+                                        Quantity{"alpha_xy", "1", -0.5, 0.5},
+                                        Quantity{"alpha_xz", "1", -0.5, 0.5},
+                                        Quantity{"alpha_yz", "1", -0.5, 0.5},
+                                        Quantity{"n_x", "uT"},
+                                        Quantity{"n_y", "uT"},
+                                        Quantity{"n_z", "uT"}};
+
+  double field_strength;
+  double noise = 0.0;
+
+  template <class U, class X>
+  Affine<X, 1, 0> at(const Vec<U, 7>& u, const Vec<X, 9>& xi2) const {
+    using std::sqrt;
+    enum { mx, my, mz, scale, axis_scale };
+    Eigen::Matrix<X, 3, 3> C = soft_iron_and_scale<X>(xi2);
+    for (int i = 0; i < 3; ++i) C(i, i) += X(u[scale] + u[axis_scale + i]);
+    const Eigen::Matrix<X, 3, 3> G = C.inverse();
+    const Vec<X, 3> reading(u[mx] - xi2[6], u[my] - xi2[7], u[mz] - xi2[8]);
+    const Vec<X, 3> y = G * reading;
+    const Vec<X, 3> slope = G.transpose() * y;  // |y| C^-T u
+
+    // A reading of n itself has no direction: the floor keeps its derivative finite.
+    const double floor = 1e-9 * field_strength;
+    const X square = y.squaredNorm() + floor * floor;
+    const X slope_square = slope.squaredNorm() + floor * floor;
+    const X length = sqrt(square);
+    const X mu = noise * noise / (2.0 * field_strength) * (G.squaredNorm() - slope_square / square);
+    Affine<X, 1, 0> z;
+    z.b[0] = -(length - field_strength - mu) * length / sqrt(slope_square);
+    return z;
+  }
+
+  /// C = C_alpha C_lambda (3 x 3): C_alpha symmetric with a unit diagonal, C_lambda = I +
+  /// diag(lambda).
+  template <class X>
+  static Eigen::Matrix<X, 3, 3> soft_iron_and_scale(const Vec<X, 9>& xi2) {
+    const X one(1.0);
+    Eigen::Matrix<X, 3, 3> C;
+    C << one, xi2[3], xi2[4],  //
+        xi2[3], one, xi2[5],   //
+        xi2[4], xi2[5], one;
+    for (int i = 0; i < 3; ++i) C.col(i) *= one + xi2[i];
+    return C;
+  }
+};
+
+}  // namespace sepcal

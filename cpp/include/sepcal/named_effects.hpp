@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Effects by their names, at run time: `port[driver]` on any model. A port is where an effect may
+// enter; what a driver takes from the record that it first met (its centre, its knots) is kept, so
+// that the same effect means the same on another record.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sepcal/composition.hpp"
+#include "sepcal/effect.hpp"
+#include "sepcal/effect_name.hpp"
+#include "sepcal/record.hpp"
+#include "sepcal/static_effect.hpp"
+
+namespace sepcal {
+
+/// An effect by its name, with what it took from the record that it was first made for.
+struct EffectSetting {
+  std::string name;                                    // whole, aliases resolved
+  std::optional<double> centre = {};                   // of a power's driver
+  std::vector<double> knots = {};                      // of a spline
+  std::vector<std::string> labels = {};                // of the driver `maneuver`
+  std::optional<std::pair<double, double>> span = {};  // the record's first and last time [s]
+  std::optional<double> t0 = {};                       // [s] of a step, once it was found
+  bool known = false;                                  // whether the rest was filled in already
+
+  friend bool operator==(const EffectSetting&, const EffectSetting&) = default;
+};
+
+/// Where an effect may enter. Each component gets coefficients of its own.
+struct Port {
+  struct Component {
+    std::string name;                         // "n"; a coefficient is called effect.n
+    std::string linear = {};                  // a linear parameter of the model, or
+    std::string input = {};                   // one of its inputs, with
+    double sign = 1.0;                        // this sign, or
+    std::vector<Varying::Share> shares = {};  // inputs' shares in outputs
+  };
+
+  std::string name;  // "wind"
+  std::string unit;
+  std::vector<Component> components;
+  double plausible = infinity;  // the most that an effect on an input may amount to
+};
+
+/// What a model's effects can be made of.
+struct EffectKit {
+  using Maker =
+      std::function<Effect(const BlockModel& model, EffectSetting& setting, Record& record)>;
+
+  std::vector<Port> ports;
+  std::map<std::string, Maker> own;  // effects with a physics of their own, by name
+  std::map<std::string, std::function<std::string(const Record&)>> aliases;  // to whole names
+};
+
+/// Effects of the caller's own, by name; they go before a kit's own.
+using OwnEffects = std::map<std::string, EffectKit::Maker>;
+
+/// A term or an input correction written as a struct (static_effect.hpp), for OwnEffects.
+template <class T>
+OwnEffects::value_type own_effect(const std::string& name, T made) {
+  return {name, [name, made](const BlockModel& /*model*/, EffectSetting& /*setting*/,
+                             Record& /*record*/) { return effect(name, made); }};
+}
+
+/// An effect whose columns are known for every row of the record: `columns` by component, each of
+/// shape (rows, n_z). Throws Error for another shape and for a value that is no number within the
+/// record's segments.
+Effect column_effect(const std::string& name, const std::string& unit,
+                     const std::vector<std::pair<std::string, Eigen::MatrixXd>>& columns,
+                     const BlockModel& model, const Record& record);
+
+/// The kit of any model: each linear parameter and each input is a port with the one component `s`.
+EffectKit plain_kit(const Tables& model);
+
+/// The effects called `settings`, whose gaps are filled in from `record`, which may get columns
+/// that an effect derives from others. Throws Error for a name that is unknown, listing those that
+/// there are, for a channel that the record doesn't have, and for one that doesn't vary.
+std::vector<Effect> make_effects(const EffectKit& kit, const BlockModel& model,
+                                 std::vector<EffectSetting>& settings, Record& record);
+
+/// The effect called `owner` on a port, with the driver that `means` names: what make_effects()
+/// does for `port[driver]`, for makers of a kit.
+Effect make_named(const std::string& owner, const EffectName& means, const Port& port,
+                  const BlockModel& model, EffectSetting& setting, Record& record);
+
+/// The same with a driver made already.
+Effect make_driven(const std::string& owner, const Port& port, const DriverPointer& driver,
+                   const std::string& unit, const BlockModel& model, const Record& record);
+
+/// What every effect on `port` adds to its component there, row by row over the whole record, at
+/// the values of the parameters; empty where none acts there. NaN in rows outside the segments and
+/// where a delay reaches beyond them. Throws Error for a parameter without a value.
+Eigen::VectorXd port_total(const std::vector<Effect>& effects, const std::string& port,
+                           const std::string& component,
+                           const std::map<std::string, double>& values, const Record& record);
+
+}  // namespace sepcal

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/adding.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrated_flight.hpp"
+#include "sepcal/effect_name.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/measurements.hpp"
+#include "sweep.hpp"
+#include "thread_pool.hpp"
+
+namespace sepcal {
+namespace {
+
+/// RMSE of a calibration over all outputs together, on the rows of `record`.
+double total_rmse(const Calibration& calibration, const EffectiveFlight& flight,
+                  const Record& record) {
+  const Measurements measurements(*flight.model, record);
+  ThreadPool pool(calibration.options.fit.threads);
+  const Sweep sweep(*flight.model, measurements, pool);
+  const double square = sweep.squared_residuals(calibration.fit.xi1(), calibration.fit.xi2()).sum();
+  const auto count =
+      static_cast<double>(measurements.rows()) * static_cast<double>(flight.model->tables().n_z());
+  return std::sqrt(square / count);
+}
+
+std::map<std::string, double> nonlinear_estimates(const Fit& fit) {
+  std::map<std::string, double> values;
+  for (auto k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
+    if (!fit.parameters[k].fixed) values[fit.parameters[k].name] = fit.parameters[k].value;
+  }
+  return values;
+}
+
+void refuse_twice(const CalibrationOptions& options) {
+  std::vector<std::string> names;
+  for (const EffectSetting& setting : options.effects) names.push_back(setting.name);
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice == names.end()) return;
+  throw Error(fmt::format("the calibration has the effect {} already", *twice));
+}
+
+}  // namespace
+
+Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
+                const OwnEffects& own, const FitProgress& progress) {
+  CalibrationOptions options = base.options;
+  options.fit.progress = progress;
+  for (const auto& [name, maker] : own) options.own_effects[name] = maker;
+  for (const std::string& name : split_effects(effect)) options.effects.push_back({.name = name});
+  options.fit.start = nonlinear_estimates(base.fit);
+  refuse_twice(options);
+  Calibration next = calibrate(base.probe, flight, options);
+  refuse_twice(next.options);  // now that aliases are resolved
+
+  const EffectiveFlight after = prepare_calibrated(next, flight);
+  const Record& record = after.prepared.record.select(options.fit.stage_two_segments);
+  EffectiveFlight before = prepare_calibrated(base, flight);
+  std::string added;
+  for (std::size_t i = base.options.effects.size(); i < next.options.effects.size(); ++i) {
+    added += (added.empty() ? "" : "+") + next.options.effects[i].name;
+  }
+  Record rows = before.prepared.record;
+  rows.cut(record.segments());
+  next.history = base.history;
+  next.history.push_back({.effect = added,
+                          .rmse_before = total_rmse(base, before, rows),
+                          .rmse_after = total_rmse(next, after, record)});
+  return next;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrated_flight.hpp"
+
+#include <algorithm>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+EffectiveFlight prepare_calibrated(const Calibration& calibration, const Flight& flight) {
+  const CalibrationOptions& options = calibration.options;
+  std::vector<EffectSetting> settings = options.effects;
+  EffectiveFlight prepared =
+      prepare_with_effects(*calibration.probe, flight, settings, options.own_effects,
+                           options.drop_invalid, options.fit.bounds);
+  if (!std::ranges::equal(calibration.fit.parameters, prepared.model->tables().parameters(), {},
+                          &Parameter::name, &Variable::name)) {
+    throw Error(
+        "the calibration's parameters are not those of its model with its effects; fit the "
+        "flight again");
+  }
+  return prepared;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/probe_effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "air_data_effects.hpp"
+#include "magnetic_effects.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+EffectKit effect_kit(std::string_view probe) {
+  if (probe == "five-hole") return five_hole_effects();
+  if (probe == "pitot-static") return pitot_static_effects();
+  if (probe == "magnetometer") return magnetometer_effects();
+  if (probe == "magnetometer-norm") return attitude_independent_effects();
+  throw Error(fmt::format("there is no model '{}'", probe));
+}
+
+std::shared_ptr<const BlockModel> model_of(const Probe& probe) {
+  return {std::shared_ptr<const BlockModel>(), &probe.model()};
+}
+
+EffectiveFlight with_effects(const Probe& probe, const Record& record,
+                             std::vector<EffectSetting>& settings, const OwnEffects& own,
+                             const std::map<std::string, Interval>& bounds) {
+  EffectiveFlight result;
+  Record& extended = result.prepared.record = record;
+  const auto model = model_of(probe);
+  EffectKit kit = effect_kit(probe.name());
+  for (const auto& [name, maker] : own) kit.own[name] = maker;
+  result.effects = make_effects(kit, *model, settings, extended);
+  result.model = compose(model, result.effects, extended);
+  extended = without_edges(std::move(extended), reach(result.effects, bounds));
+  return result;
+}
+
+EffectiveFlight prepare_with_effects(const Probe& probe, const Flight& flight,
+                                     std::vector<EffectSetting>& settings, const OwnEffects& own,
+                                     bool drop_invalid,
+                                     const std::map<std::string, Interval>& bounds) {
+  ProbeRecord prepared = probe.prepare(flight, drop_invalid);
+  try {
+    EffectiveFlight result = with_effects(probe, prepared.record, settings, own, bounds);
+    prepared.record = std::move(result.prepared.record);
+    result.prepared = std::move(prepared);
+    return result;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", flight.name(), error.what()));
+  }
+}
+
+}  // namespace sepcal

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Accepted headers, and a header that was nearly one.
+#include "flight/headers.hpp"
+
+#include <doctest/doctest.h>
+
+using sepcal::accepted_headers;
+using sepcal::describe_missing;
+using sepcal::UnitKind;
+using Headers = std::vector<std::string>;
+
+namespace {
+
+constexpr const char* roll_missing = "column 'roll_rad' is missing (roll_deg would do as well)";
+
+/// What a log with that one header is told of a missing roll.
+std::string miss_roll(const std::string& header) {
+  return describe_missing("roll", UnitKind::angle, Headers{header});
+}
+
+}  // namespace
+
+TEST_CASE("a quantity's headers, the unit used inside first") {
+  CHECK(accepted_headers("vn", UnitKind::speed) == Headers{"vn_mps", "vn_kt", "vn_kmh"});
+  CHECK(accepted_headers("rho", UnitKind::density) == Headers{"rho_kgpm3"});
+}
+
+TEST_CASE("a missing column is named with the other spellings, if there are any") {
+  CHECK(describe_missing("roll", UnitKind::angle, {}) == roll_missing);
+  CHECK(describe_missing("time", UnitKind::time, {}) ==
+        "column 'time_s' is missing (time_ms, time_us would do as well)");
+  CHECK(describe_missing("rho", UnitKind::density, {}) == "column 'rho_kgpm3' is missing");
+}
+
+TEST_CASE("case, punctuation and a slip or two are seen through") {
+  const std::string asked = std::string(roll_missing) + "; did you mean '";
+  for (const char* header :
+       {"ROLL_RAD", "Roll_rad", "roll[rad]", "rollrad", "roll_rads", "rol_rad", "roll rad"}) {
+    CHECK(miss_roll(header) == asked + header + "'? Rename it to roll_rad");
+  }
+  CHECK(miss_roll("Roll (deg)") == asked + "Roll (deg)'? Rename it to roll_deg");
+  CHECK(describe_missing("airspeed", UnitKind::speed, Headers{"airspd_mps"})
+            .ends_with("did you mean 'airspd_mps'? Rename it to airspeed_mps"));
+  for (const char* header : {"roll_rate", "bank_rad", "rpm", "altitude_m", "_"}) {
+    CHECK(miss_roll(header) == roll_missing);
+  }
+}
+
+TEST_CASE("of several near ones the nearest is asked about") {
+  CHECK(describe_missing("roll", UnitKind::angle, Headers{"roll_rd", "Roll_Deg", "rol_rad"})
+            .ends_with("did you mean 'Roll_Deg'? Rename it to roll_deg"));
+}
+
+TEST_CASE("a letter makes another quantity of a short name, and only its unit may slip") {
+  const auto miss_north = [](const std::string& header) {
+    return describe_missing("vn", UnitKind::speed, Headers{header});
+  };
+  CHECK(miss_north("VN_mps").ends_with("'VN_mps'? Rename it to vn_mps"));
+  CHECK(miss_north("vn_m/s").ends_with("'vn_m/s'? Rename it to vn_mps"));
+  CHECK(miss_north("vx_mps").ends_with("would do as well)"));
+  CHECK(describe_missing("hx", UnitKind::field, Headers{"mx_ut"}).ends_with("would do as well)"));
+}
