@@ -49,6 +49,18 @@ int refuse_usage(const Instrument& instrument, const CLI::App& cli, const CLI::P
   return bad_usage;
 }
 
+void add_simulate_options(CLI::App& simulate, Arguments& arguments, Instrument& instrument,
+                          SimulationArguments& simulation) {
+  add_file(simulate, "-o,--output", arguments.output, "writes the flight there")
+      ->type_name("FLIGHT.csv")
+      ->required();
+  add_file(simulate, "--truth", arguments.truth,
+           "the true parameters: read where the file is there, else written with the defaults")
+      ->type_name("T.json");
+  instrument.add_simulation_options(simulate);
+  simulation.add_to(simulate);
+}
+
 }  // namespace
 
 int run(Instrument& instrument, int argc, char** argv) {
@@ -112,14 +124,7 @@ int run(Instrument& instrument, int argc, char** argv) {
   add_json(apply);
 
   CLI::App& simulate = *cli.add_subcommand("simulate", "makes a flight whose truth is known");
-  add_file(simulate, "-o,--output", arguments.output, "writes the flight there")
-      ->type_name("FLIGHT.csv")
-      ->required();
-  add_file(simulate, "--truth", arguments.truth,
-           "the true parameters: read where the file is there, else written with the defaults")
-      ->type_name("T.json");
-  instrument.add_simulation_options(simulate);
-  simulation.add_to(simulate);
+  add_simulate_options(simulate, arguments, instrument, simulation);
   add_json(simulate);
 
   CLI::App& effects = *cli.add_subcommand("effects", "lists the physical effects a model may lack");

@@ -103,7 +103,7 @@ std::string calibration_table(const Calibration& calibration) {
         fmt::format("{:<{}} {:>13} {:>12}  {:<{}} {}", what, name, value, error, of, unit, remark);
     text += row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
   };
-  text += "\n";
+  text += '\n';
   add_row("parameter", "value", "std. error", "unit", "bounds");
   for (const Parameter& parameter : fit.parameters) {
     add_row(parameter.name, fmt::format("{:.6g}", parameter.value),
@@ -153,7 +153,7 @@ std::string comparison_table(const Comparison& comparison, const Calibration& ca
   };
   for (const Misfit& misfit : comparison.where) row(misfit.segment, misfit);
   for (const Misfit& misfit : comparison.overall) row("all", misfit);
-  text += "\n";
+  text += '\n';
   for (const Misfit& misfit : comparison.overall) {
     text += fmt::format("{}: {}\n", misfit.output, verdict_on_noise(misfit));
   }

@@ -95,6 +95,7 @@ VectorXd ComposedRows::step(int target) const {
   return stepped;
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): an output
 void ComposedRows::fill(Ref<MatrixXd> rows, Carry* carry) const {
   fill_own(rows, carry);
   for (std::size_t i = 0; i < parts_.varying.size(); ++i) {
@@ -186,6 +187,7 @@ void ComposedRows::add_chain(const MatrixXd& by_input, const std::vector<int>& i
   }
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): an output
 void ComposedRows::add_slopes(Ref<MatrixXd> slopes) const {
   const std::vector<int> moving = find_moving(parts_.model_inputs);
   if (!moving.empty()) {

@@ -33,8 +33,8 @@ ScanPoint point_of(const Fit& fit, const FitOptions& options, const Times& sough
   ScanPoint point{{}, options.fixed, options.threads};
   for (const Parameter& parameter : fit.parameters) point.values[parameter.name] = parameter.value;
   for (const auto& [name, setting] : sought) {
-    const auto [first, last] = *setting->span;
-    point.held.emplace(name, 0.5 * (first + last));
+    if (!setting->span) continue;
+    point.held.emplace(name, 0.5 * (setting->span->first + setting->span->second));
   }
   return point;
 }

@@ -117,8 +117,8 @@ def test_defaults_are_carried(bench: Bench):
     probe = {"k_alpha": 4.5, "k_beta": 4.5, "lever_arm": [0.35, 0, -0.02]}
     assert options == (probe if bench.app == "sepcal-pitot" else {}) | {
         "effects": [], "stage_one": "", "stage_two": "", "bounds": {}, "start": {}, "fix": {},
-        "free": [], "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0, "descents": 8,
-        "second_stage": "auto", "noise_tolerance": 1e-10, "noise_iterations": 100,
+        "free": [], "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0,
+        "descents": 8, "second_stage": "auto", "noise_tolerance": 1e-10, "noise_iterations": 100,
         "iterations": 200, "threads": 0, "drop_invalid": False,
     }  # fmt: skip
 

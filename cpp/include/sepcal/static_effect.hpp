@@ -105,7 +105,8 @@ class StaticCorrection final : public Correction {
       const Vec<Dual, T::corrected> corrected = effect_.correct(u, x);
       for (int c = 0; c < T::corrected; ++c) {
         values(at, c) = corrected[c].a;
-        slopes.row(at).segment(c * (n_u + n_2), n_u + n_2) = corrected[c].v.transpose();
+        slopes.row(at).segment(Eigen::Index{c} * (n_u + n_2), n_u + n_2) =
+            corrected[c].v.transpose();
       }
     }
   }

@@ -107,7 +107,7 @@ EffectKit::Maker compressibility(const Port& port) {
   };
 }
 
-EffectKit::Maker by_rate(std::string name, Port port, std::string rate) {
+EffectKit::Maker by_rate(const std::string& name, Port port, const std::string& rate) {
   port.components.front().name = std::string("k");
   port.plausible = largest_angle;
   return [=](const BlockModel& model, Setting& /*setting*/, Record& record) {

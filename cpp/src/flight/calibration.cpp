@@ -130,7 +130,7 @@ void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
     noise = next;
     options.start = nonlinear_values(calibration.fit);
   }
-  calibration.fit.stage_one = std::move(*stage_one);
+  if (stage_one) calibration.fit.stage_one = std::move(*stage_one);
   if (!options.start.empty()) calibration.options.fit.samples = 0;
   probe->judge(calibration.fit);
 }

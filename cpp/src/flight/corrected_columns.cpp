@@ -127,9 +127,9 @@ void add_term(const ReadingEffects::Term& term, const Record& record, const Matr
     const auto [is_rate, axis] = axis_of[k];
     if (is_rate && !w) continue;
     for (Index i = 0; i < rows; ++i) {
-      const Eigen::RowVector3d by_h =
-          is_rate ? Eigen::RowVector3d(turning(*w, static_cast<std::size_t>(i)).row(axis))
-                  : Eigen::RowVector3d(Eigen::RowVector3d::Unit(axis));
+      const auto row = static_cast<std::size_t>(i);
+      Eigen::RowVector3d by_h = Eigen::RowVector3d::Unit(axis);
+      if (is_rate && w) by_h = turning(*w, row).row(axis);
       for (Index output = 0; output < 3; ++output) {
         by_field.row(i).segment<3>(3 * output) +=
             slopes(output * rows + i, static_cast<Index>(k)) * by_h;

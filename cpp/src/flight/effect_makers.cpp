@@ -51,8 +51,8 @@ std::function<std::string(const Record&)> by_column(std::string alias, std::stri
   };
 }
 
-EffectKit::Maker in_time(std::string name, Delay::Kind kind, double bound,
-                         std::vector<std::string> inputs) {
+EffectKit::Maker in_time(const std::string& name, Delay::Kind kind, double bound,
+                         const std::vector<std::string>& inputs) {
   return [=](const BlockModel& /*model*/, EffectSetting& /*setting*/, Record& record) {
     for (const std::string& input : inputs) need_columns(name, record, {input.c_str()});
     Effect effect{.name = name};

@@ -28,7 +28,7 @@ std::function<std::string(const Record&)> by_column(std::string alias, std::stri
                                                     std::string prefix);
 
 /// An effect in time with the one parameter `name`.tau, within +-bound [s].
-EffectKit::Maker in_time(std::string name, Delay::Kind kind, double bound,
-                         std::vector<std::string> inputs = {});
+EffectKit::Maker in_time(const std::string& name, Delay::Kind kind, double bound,
+                         const std::vector<std::string>& inputs = {});
 
 }  // namespace sepcal
