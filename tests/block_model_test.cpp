@@ -160,3 +160,15 @@ TEST_CASE("a trajectory model with a parameter fixed still carries its state") {
   CHECK(held["gain"].value == Approx(free["gain"].value).epsilon(1e-10));
   CHECK(held.rmse[0].value == Approx(free.rmse[0].value).epsilon(1e-12));
 }
+
+TEST_CASE("a model that carries a state can't be differentiated by its inputs, and says so") {
+  const LaggedSensor model;
+  const double u = 0.5;
+  const double* const inputs[] = {&u};
+  const double xi1[] = {1, 0};
+  const int wanted[] = {0};
+  MatrixXd columns(1, 1);
+  CHECK_THROWS_WITH_AS(model.input_tangent({inputs, 1, 0, true}, &u, xi1, wanted, columns),
+                       doctest::Contains("carries a state can't be differentiated by its input"),
+                       sepcal::Error);
+}

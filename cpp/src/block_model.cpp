@@ -3,20 +3,35 @@
 
 #include <utility>
 
+#include "differences.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
 
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 BlockModel::BlockModel(Tables tables) : tables_(std::move(tables)) { tables_.check_names(); }
 
-void BlockModel::input_tangent(const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,
+void BlockModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                std::span<const int> inputs,
-                               // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
-                               Eigen::Ref<Eigen::MatrixXd> /*columns*/) const {
+                               Eigen::Ref<Eigen::MatrixXd> columns) const {
   if (inputs.empty()) return;
-  throw Error("the model can't be differentiated by its input '" +
-              tables_.inputs[static_cast<std::size_t>(inputs.front())].name +
-              "', so that no effect can correct it; make at(u, xi2) a template in u's number type");
+  if (new_carry() != nullptr) {
+    throw Error("a model that carries a state can't be differentiated by its input '" +
+                tables_.inputs[static_cast<std::size_t>(inputs.front())].name +
+                "'; no effect can correct it");
+  }
+  const Index n_1 = tables_.n_1();
+  const Map<const VectorXd> linear(xi1, n_1);
+  MatrixXd rows(static_cast<Index>(block.rows) * tables_.n_z(), n_1 + 1);
+  const auto predict = [&](const Block& moved) {
+    evaluate(moved, xi2, nullptr, nullptr, rows);
+    return VectorXd(rows.leftCols(n_1) * linear + rows.col(n_1));
+  };
+  differentiate_by_inputs(predict, block, inputs, columns);
 }
 
 }  // namespace sepcal

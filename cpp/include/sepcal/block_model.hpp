@@ -59,8 +59,9 @@ class BlockModel {
                         Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
   /// Fills `columns`, (n_z * block.rows) x inputs.size(), with d(A xi1 + b)/du_i of the chosen
-  /// inputs, by their index in tables().inputs: what an effect that corrects an input needs. Throws
-  /// Error where the model can't be differentiated by its inputs.
+  /// inputs, by their index in tables().inputs: what an effect that corrects an input needs. Unless
+  /// overridden by fourth-order differences. Throws Error where the model can't be differentiated
+  /// by its inputs, as one that carries a state.
   virtual void input_tangent(const Block& block, const double* xi2, const double* xi1,
                              std::span<const int> inputs,
                              Eigen::Ref<Eigen::MatrixXd> columns) const;

@@ -138,6 +138,8 @@ struct Composed {
   static constexpr auto outputs = M::outputs;
   static constexpr auto linear = composing::join(M::linear, composing::linear_of<E>());
   static constexpr auto nonlinear = composing::join(M::nonlinear, E::nonlinear);
+  static constexpr bool dual_inputs =
+      has_dual_inputs<M>() && (InputCorrection<E> || has_dual_inputs<E>());
 
   M model;
   E effect;

@@ -59,4 +59,14 @@ concept SeparableModel =
       { model.at(u, xi2) } -> std::same_as<typename Sizes<M>::template Result<double>>;
     };
 
+/// A model or effect whose at() takes dual numbers for the inputs, too, says
+/// `static constexpr bool dual_inputs = true`: then effects correct its inputs by exact
+/// derivatives; else by numeric differences, and at() only ever sees inputs in double (but for
+/// input corrections composed at compile time).
+template <class M>
+constexpr bool has_dual_inputs() {
+  if constexpr (requires { M::dual_inputs; }) return M::dual_inputs;
+  return false;
+}
+
 }  // namespace sepcal

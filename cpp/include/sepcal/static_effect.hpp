@@ -49,6 +49,7 @@ struct TermModel {
   static constexpr auto inputs = T::inputs;
   static constexpr auto linear = T::linear;
   static constexpr auto nonlinear = T::nonlinear;
+  static constexpr bool dual_inputs = has_dual_inputs<T>();
   static constexpr std::array<Quantity, static_cast<std::size_t>(n_z)> outputs = [] {
     constexpr std::array<std::string_view, 9> names{"1", "2", "3", "4", "5", "6", "7", "8", "9"};
     static_assert(n_z <= static_cast<int>(names.size()));

@@ -38,16 +38,6 @@ concept DifferentiableModel =
 /// Inputs that are differentiated at a time: an effect corrects few of a model's many.
 inline constexpr int inputs_at_a_time = 4;
 
-/// The same of u: then effects can correct the model's inputs.
-template <class M>
-concept InputDifferentiableModel =
-    requires(const M& model, const Vec<ceres::Jet<double, inputs_at_a_time>, Sizes<M>::n_u>& u,
-             const Vec<ceres::Jet<double, inputs_at_a_time>, Sizes<M>::n_2>& xi2) {
-      {
-        model.at(u, xi2)
-      } -> std::same_as<typename Sizes<M>::template Result<ceres::Jet<double, inputs_at_a_time>>>;
-    };
-
 template <SeparableModel M>
 class StaticModel final : public BlockModel {
   static_assert(Sizes<M>::n_2 == 0 || DifferentiableModel<M>,
@@ -67,7 +57,7 @@ class StaticModel final : public BlockModel {
   void input_tangent(const Block& block, const double* xi2, const double* xi1,
                      std::span<const int> inputs,
                      Eigen::Ref<Eigen::MatrixXd> columns) const override {
-    if constexpr (n_u > 0 && InputDifferentiableModel<M>) {
+    if constexpr (n_u > 0 && has_dual_inputs<M>()) {
       for (std::size_t first = 0; first < inputs.size(); first += inputs_at_a_time) {
         const std::size_t count = std::min<std::size_t>(inputs_at_a_time, inputs.size() - first);
         fill_input_tangent(

@@ -161,23 +161,8 @@ void PythonModel::evaluate(const Block& block, const double* xi2, const double* 
 void PythonModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                 std::span<const int> inputs, Rows columns) const {
   const py::gil_scoped_acquire gil;
-  std::vector<const double*> pointers(block.inputs.begin(), block.inputs.end());
-  const auto rows = static_cast<Index>(block.rows);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const double*& pointer = pointers[static_cast<std::size_t>(inputs[i])];
-    const double* const original = pointer;
-    const Map<const VectorXd> column(original, rows);
-    VectorXd moved(rows);
-    pointer = moved.data();
-    const auto along = [&](double step) {
-      moved.array() = column.array() + step;
-      return predict({pointers, block.rows, block.first, block.starts_segment}, xi2, xi1);
-    };
-    const double variance = (column.array() - column.mean()).square().mean();
-    const double scale = std::max(1.0, std::sqrt(variance));
-    columns.col(static_cast<Index>(i)) = differentiate(along, scale, -infinity, infinity);
-    pointer = original;
-  }
+  differentiate_by_inputs([&](const Block& moved) { return predict(moved, xi2, xi1); }, block,
+                          inputs, columns);
 }
 
 }  // namespace sepcal::bindings

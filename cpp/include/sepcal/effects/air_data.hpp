@@ -55,6 +55,7 @@ struct LeverArm {
   static constexpr std::array linear{Quantity{"lever_arm.x", "m"}, Quantity{"lever_arm.y", "m"},
                                      Quantity{"lever_arm.z", "m"}};
   static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr bool dual_inputs = true;
 
   template <class U, class X>
   Eigen::Matrix<U, 3, 3> columns(const Vec<U, 6>& u, const Vec<X, 0>& /*xi2*/) const {

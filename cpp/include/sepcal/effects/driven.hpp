@@ -67,6 +67,7 @@ struct Follows {
   static constexpr std::array linear{
       Quantity{parameter_name<port, driver, power, Components::name>(), unit.view()}...};
   static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr bool dual_inputs = true;
   static constexpr std::array targets{Components::target...};
 
   double centre = 0.0;

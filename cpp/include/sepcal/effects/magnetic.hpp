@@ -26,6 +26,7 @@ struct Scale {
       composing::join(true_field, std::array{Quantity{driver.view(), ""}});
   static constexpr std::array linear{Quantity{parameter_name<"scale", driver, power, "s">(), "1"}};
   static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr bool dual_inputs = true;
 
   double centre = 0.0;
 
@@ -45,6 +46,7 @@ struct AxisScale {
       Quantity{parameter_name<"axis_scale", driver, power, "y">(), "1"},
       Quantity{parameter_name<"axis_scale", driver, power, "z">(), "1"}};
   static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr bool dual_inputs = true;
 
   double centre = 0.0;
 
@@ -63,6 +65,7 @@ struct CubicNonlinearity {
       Quantity{"cubic_nonlinearity.d_z", "1/uT^2"}, Quantity{"cubic_nonlinearity.c_x", "1/uT"},
       Quantity{"cubic_nonlinearity.c_y", "1/uT"},   Quantity{"cubic_nonlinearity.c_z", "1/uT"}};
   static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr bool dual_inputs = true;
 
   template <class U, class X>
   Eigen::Matrix<U, 3, 6> columns(const Vec<U, 3>& h, const Vec<X, 0>& /*xi2*/) const {
@@ -86,6 +89,7 @@ struct EddyCurrents {
       Quantity{"eddy_currents.zx", "s"}, Quantity{"eddy_currents.zy", "s"},
       Quantity{"eddy_currents.zz", "s"}};
   static constexpr std::array<Quantity, 0> nonlinear{};
+  static constexpr bool dual_inputs = true;
 
   template <class U, class X>
   Eigen::Matrix<U, 3, 9> columns(const Vec<U, 3>& h_dot, const Vec<X, 0>& /*xi2*/) const {

@@ -32,6 +32,7 @@ struct AttitudeIndependentMagnetometer {
                                         Quantity{"n_x", "uT"},
                                         Quantity{"n_y", "uT"},
                                         Quantity{"n_z", "uT"}};
+  static constexpr bool dual_inputs = true;
 
   double field_strength;
   double noise = 0.0;

@@ -36,6 +36,7 @@ struct FiveHoleProbe {
                                         Quantity{"lambda_beta", "1", -0.5, 0.5},
                                         Quantity{"b_beta", "rad", -ten_degrees, ten_degrees},
                                         Quantity{"eps_phi", "rad", -0.2618, 0.2618}};
+  static constexpr bool dual_inputs = true;
 
   double k_alpha;
   double k_beta;

@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <span>
 
-namespace sepcal::bindings {
+#include "sepcal/block_model.hpp"
+
+namespace sepcal {
 
 /// g'(0) of g: R -> R^m, entry by entry, from g at a few multiples of a step:
 ///   central, g' = [8 (g(h) - g(-h)) - (g(2h) - g(-2h))] / 12h + O(h^4), where [-2h, 2h] lies in
@@ -17,4 +20,10 @@ namespace sepcal::bindings {
 Eigen::VectorXd differentiate(const std::function<Eigen::VectorXd(double)>& g, double scale,
                               double lower, double upper);
 
-}  // namespace sepcal::bindings
+/// Fills `columns`, m x inputs.size(), with the derivatives of `predict`: block -> R^m by the
+/// chosen inputs of a block, each moved by the same in every row.
+void differentiate_by_inputs(const std::function<Eigen::VectorXd(const Block&)>& predict,
+                             const Block& block, std::span<const int> inputs,
+                             Eigen::Ref<Eigen::MatrixXd> columns);
+
+}  // namespace sepcal

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
-namespace sepcal::bindings {
+namespace sepcal {
 namespace {
 
+using Eigen::Index;
 using Eigen::VectorXd;
 using Function = std::function<VectorXd(double)>;
 
@@ -71,4 +73,27 @@ VectorXd differentiate(const Function& g, double scale, double lower, double upp
   return derivative;
 }
 
-}  // namespace sepcal::bindings
+void differentiate_by_inputs(const std::function<VectorXd(const Block&)>& predict,
+                             const Block& block, std::span<const int> inputs,
+                             // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
+                             Eigen::Ref<Eigen::MatrixXd> columns) {
+  std::vector<const double*> pointers(block.inputs.begin(), block.inputs.end());
+  const auto rows = static_cast<Index>(block.rows);
+  VectorXd moved(rows);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const double*& pointer = pointers[static_cast<std::size_t>(inputs[i])];
+    const double* const original = pointer;
+    const Eigen::Map<const VectorXd> column(original, rows);
+    pointer = moved.data();
+    const auto along = [&](double step) {
+      moved.array() = column.array() + step;
+      return predict({pointers, block.rows, block.first, block.starts_segment});
+    };
+    const double variance = (column.array() - column.mean()).square().mean();
+    const double scale = std::max(1.0, std::sqrt(variance));
+    columns.col(static_cast<Index>(i)) = differentiate(along, scale, -infinity, infinity);
+    pointer = original;
+  }
+}
+
+}  // namespace sepcal
