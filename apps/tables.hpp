@@ -13,7 +13,6 @@ namespace sepcal::app {
 
 std::string calibration_table(const Calibration& calibration);
 
-/// `calibration` is the one compared, whose status the table repeats.
 /// The chain of added effects, each with the error before and after; empty where none was added.
 std::string history_table(const Calibration& calibration);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "parameter_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/named_effects.hpp"
 
@@ -85,21 +86,17 @@ Effect make_driven(const std::string& owner, const Port& port, const DriverPoint
 VectorXd port_total(const std::vector<Effect>& effects, const std::string& port,
                     const std::string& component, const std::map<std::string, double>& values,
                     const Record& record) {
-  const auto value_of = [&](const std::string& name) {
-    const auto at = values.find(name);
-    if (at == values.end()) throw Error("there is no value of the parameter '" + name + "'");
-    return at->second;
-  };
   VectorXd total;
   for (const Effect& effect : effects) {
     if (effect.port != port) continue;
     if (std::ranges::find(effect.components, component) == effect.components.end()) continue;
     const Driver& driver = *effect.driver;
-    const double shape = driver.shape() ? value_of(effect.name + "." + driver.shape()->name) : 0.0;
+    const double shape =
+        driver.shape() ? value_of(values, effect.name + "." + driver.shape()->name) : 0.0;
     VectorXd s(driver.functions());
     for (Index j = 0; j < s.size(); ++j) {
-      s[j] =
-          value_of(effect.name + "." + component + driver.suffixes()[static_cast<std::size_t>(j)]);
+      s[j] = value_of(
+          values, effect.name + "." + component + driver.suffixes()[static_cast<std::size_t>(j)]);
     }
     const VectorXd share = evaluate_over(driver, shape, record) * s;
     total = total.size() == 0 ? share : VectorXd(total + share);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "name_list.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -88,12 +89,6 @@ bool is_centred(const std::string& base) {
 }
 
 }  // namespace
-
-std::string list_names(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
 
 std::string coefficient_unit(const std::string& port_unit, const EffectName& name) {
   const std::string channel = unit_of_channel(name.base);

@@ -11,9 +11,6 @@
 
 namespace sepcal {
 
-/// "a, b, c", or "none".
-std::string list_names(const std::vector<std::string>& names);
-
 /// The driver, its gaps in `setting` filled in from `record`, which gets the column `maneuver` for
 /// labels. Throws Error for a channel that isn't there, holds no finite number somewhere or, in the
 /// record that the effect is first made for, doesn't vary.

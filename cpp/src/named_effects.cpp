@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "name_list.hpp"
 #include "named_driver.hpp"
 #include "sepcal/error.hpp"
 

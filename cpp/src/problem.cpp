@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fixed_model.hpp"
+#include "name_list.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -12,12 +13,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-std::string list_names(const std::vector<Variable>& variables) {
-  std::string text;
-  for (const Variable& variable : variables) text += (text.empty() ? "" : ", ") + variable.name;
-  return text;
-}
 
 /// The variable of that name, or an Error that lists those there are.
 Variable& find(std::vector<Variable>& variables, const std::string& name, const std::string& what) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calibrated_flight.hpp"
+#include "parameter_values.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/measurements.hpp"
@@ -26,14 +27,6 @@ double total_rmse(const Calibration& calibration, const EffectiveFlight& flight,
   const auto count =
       static_cast<double>(measurements.rows()) * static_cast<double>(flight.model->tables().n_z());
   return std::sqrt(square / count);
-}
-
-std::map<std::string, double> nonlinear_estimates(const Fit& fit) {
-  std::map<std::string, double> values;
-  for (auto k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
-    if (!fit.parameters[k].fixed) values[fit.parameters[k].name] = fit.parameters[k].value;
-  }
-  return values;
 }
 
 void refuse_twice(const CalibrationOptions& options) {

@@ -116,22 +116,10 @@ EffectKit::Maker by_rate(const std::string& name, Port port, const std::string& 
   };
 }
 
-EffectKit::Maker heading_bias() {
-  return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& /*record*/) {
-    return effect("heading_bias", effects::HeadingBias{});
-  };
-}
-
 EffectKit::Maker lever_arm() {
   return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& record) {
     need_columns("lever_arm", record, {"p", "q", "r"});
     return effect("lever_arm", effects::LeverArm{});
-  };
-}
-
-EffectKit::Maker mounting_error() {
-  return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& /*record*/) {
-    return effect("mounting_error", effects::MountingError{});
   };
 }
 
@@ -166,9 +154,9 @@ EffectKit five_hole_effects() {
   add_shared(kit, airspeed_scale);
   kit.own["density_error"] = density_error;
   kit.own["compressibility"] = compressibility(airspeed_scale);
-  kit.own["heading_bias"] = heading_bias();
+  kit.own.insert(own_effect("heading_bias", effects::HeadingBias{}));
   kit.own["lever_arm"] = lever_arm();
-  kit.own["mounting_error"] = mounting_error();
+  kit.own.insert(own_effect("mounting_error", effects::MountingError{}));
   kit.own["upwash"] = by_rate("upwash", alpha_offset, "q");
   kit.own["sidewash"] = by_rate("sidewash", beta_offset, "p");
   kit.own["time_offset"] = in_time("time_offset", Delay::Kind::inputs_late, longest_offset,

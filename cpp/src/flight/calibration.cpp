@@ -10,6 +10,7 @@
 #include <ranges>
 
 #include "option_spelling.hpp"
+#include "parameter_values.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
@@ -79,15 +80,6 @@ Record with_constant_outputs(const Probe& probe, Record record) {
   return record;
 }
 
-/// The value of every nonlinear parameter by name.
-std::map<std::string, double> nonlinear_values(const Fit& fit) {
-  std::map<std::string, double> values;
-  for (auto k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
-    values[fit.parameters[k].name] = fit.parameters[k].value;
-  }
-  return values;
-}
-
 /// Fits the model with its effects and, where it depends on its own output's noise, tells it that
 /// of the fit and fits again, until the two agree.
 void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
@@ -128,7 +120,7 @@ void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
     }
     if (!tell(next)) break;
     noise = next;
-    options.start = nonlinear_values(calibration.fit);
+    options.start = nonlinear_estimates(calibration.fit);
   }
   if (stage_one) calibration.fit.stage_one = std::move(*stage_one);
   if (!options.start.empty()) calibration.options.fit.samples = 0;
@@ -155,51 +147,50 @@ std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
   return derived;
 }
 
+/// The fit itself, once the flight has been brought to the model.
+Calibration calibrate_prepared(std::shared_ptr<const Probe> probe, CalibrationOptions options,
+                               FittedFlight fitted, const EffectiveFlight& flight) {
+  Calibration calibration;
+  calibration.options = std::move(options);
+  calibration.probe = std::move(probe);
+  fit_with_noise(calibration, flight);
+  calibration.flight = std::move(fitted);
+  calibration.flight.rows_used = calibration.fit.rows;
+  calibration.notes = flight.prepared.notes;
+  calibration.derived = derive(*calibration.probe, calibration.fit);
+  return calibration;
+}
+
 }  // namespace
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   check_freed(*probe, options);
-  Calibration calibration;
-  calibration.options = hold(*probe, options);
-  const EffectiveFlight effective =
-      prepare_with_effects(*probe, flight, calibration.options.effects, options.own_effects,
-                           options.drop_invalid, options.fit.bounds);
+  CalibrationOptions held = hold(*probe, options);
+  const EffectiveFlight effective = prepare_with_effects(
+      *probe, flight, held.effects, options.own_effects, options.drop_invalid, options.fit.bounds);
   const Record& record = effective.prepared.record;
   count_rows(record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
-  check_rows(*effective.model, calibration.options, flight,
+  check_rows(*effective.model, held, flight,
              count_rows(record, options.fit.stage_two_segments, flight, "stage two", "stage_two"));
-  calibration.probe = std::move(probe);
-  fit_with_noise(calibration, effective);
-  calibration.flight = {flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows};
-  calibration.notes = effective.prepared.notes;
-  calibration.derived = derive(*calibration.probe, calibration.fit);
-  return calibration;
+  return calibrate_prepared(std::move(probe), std::move(held),
+                            {flight.name(), flight.sha256(), flight.rows(), 0}, effective);
 }
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                       const CalibrationOptions& options) {
   check_freed(*probe, options);
-  Calibration calibration;
-  calibration.options = hold(*probe, options);
+  CalibrationOptions held = hold(*probe, options);
   const EffectiveFlight effective =
-      with_effects(*probe, with_constant_outputs(*probe, record), calibration.options.effects,
-                   options.own_effects, options.fit.bounds);
-  calibration.probe = std::move(probe);
-  fit_with_noise(calibration, effective);
-  calibration.flight.rows = record.length();
-  calibration.flight.rows_used = calibration.fit.rows;
-  calibration.derived = derive(*calibration.probe, calibration.fit);
-  return calibration;
+      with_effects(*probe, with_constant_outputs(*probe, record), held.effects, options.own_effects,
+                   options.fit.bounds);
+  return calibrate_prepared(std::move(probe), std::move(held), {{}, {}, record.length(), 0},
+                            effective);
 }
 
 Eigen::VectorXd own_values(const Calibration& calibration) {
-  const std::vector<Variable> own = calibration.probe->model().tables().parameters();
-  Eigen::VectorXd values(static_cast<Eigen::Index>(own.size()));
-  for (std::size_t k = 0; k < own.size(); ++k) {
-    values[static_cast<Eigen::Index>(k)] = calibration.fit[own[k].name].value;
-  }
-  return values;
+  return in_order(calibration.probe->model().tables().parameters(),
+                  values_by_name(calibration.fit));
 }
 
 void write_calibration(const Calibration& calibration, const std::string& file) {

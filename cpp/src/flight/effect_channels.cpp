@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "effect_makers.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/units.hpp"
 
@@ -145,6 +146,7 @@ std::vector<std::string> add_channels(Record& record, const Flight& flight, cons
   for (const char* rate : {"p", "q", "r"}) {
     if (!add_channel(rates, flight, probe, rate)) return channels;
   }
+  if (!is_logged(rates, "p") && !is_logged(rates, "q") && !is_logged(rates, "r")) return channels;
   for (const char* rate : {"p", "q", "r"}) {
     add_channel(record, flight, probe, rate);
     channels.emplace_back(rate);

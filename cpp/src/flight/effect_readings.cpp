@@ -10,6 +10,7 @@
 
 #include "effect_channels.hpp"
 #include "interpolated_column.hpp"
+#include "parameter_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
@@ -49,13 +50,6 @@ Compact keep_rows(const ProbeReadings& readings, const Flight& flight,
   }
   kept.record.cut(find_segments(kept.record.column("time"), labels));
   return kept;
-}
-
-double value_of(const std::map<std::string, double>& values, const std::string& name) {
-  const auto at = values.find(name);
-  if (at != values.end()) return at->second;
-  throw Error("the calibration has no parameter '" + name +
-              "', which its effects need; fit the flight again");
 }
 
 /// How far readings are shifted to undo delays: r'(t) = r(t + late) + lag dr/dt(t + late).
@@ -115,7 +109,7 @@ ProbeReadings put_right(const Record& record, const std::map<std::string, TimeSh
 
 /// What delays of a probe's inputs do to its readings, by reading.
 std::map<std::string, TimeShift> shifts_of_readings(const std::vector<Effect>& effects,
-                                                    const std::map<std::string, double>& values) {
+                                                    const ParameterValues& values) {
   std::map<std::string, TimeShift> shifts;
   for (const Effect& effect : effects) {
     for (const Delay& delay : effect.delays) {
@@ -130,8 +124,7 @@ std::map<std::string, TimeShift> shifts_of_readings(const std::vector<Effect>& e
 }
 
 /// What delays of all that a sensor measures do to it.
-TimeShift shift_of_outputs(const std::vector<Effect>& effects,
-                           const std::map<std::string, double>& values) {
+TimeShift shift_of_outputs(const std::vector<Effect>& effects, const ParameterValues& values) {
   TimeShift shift;
   for (const Effect& effect : effects) {
     for (const Delay& delay : effect.delays) {
@@ -156,24 +149,8 @@ void undo_delays(std::vector<CorrectedColumn>& columns, const Record& record,
   }
 }
 
-std::map<std::string, double> values_by_name(const Fit& fit) {
-  std::map<std::string, double> values;
-  for (const Parameter& parameter : fit.parameters) values[parameter.name] = parameter.value;
-  return values;
-}
-
-/// The parameters' values, in their order. Throws Error for one without a value.
-VectorXd in_order(const std::vector<Variable>& parameters,
-                  const std::map<std::string, double>& values) {
-  VectorXd ordered(static_cast<Index>(parameters.size()));
-  for (Index k = 0; k < ordered.size(); ++k) {
-    ordered[k] = value_of(values, parameters[static_cast<std::size_t>(k)].name);
-  }
-  return ordered;
-}
-
-ReadingEffects totals_of(const std::vector<Effect>& effects,
-                         const std::map<std::string, double>& values, const Record& record) {
+ReadingEffects totals_of(const std::vector<Effect>& effects, const ParameterValues& values,
+                         const Record& record) {
   ReadingEffects result;
   for (const Effect& effect : effects) {
     for (const std::string& component : effect.components) {
@@ -213,9 +190,9 @@ std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration
     }
   }
   Compact compact = keep_rows(readings, flight, needed);
-  EffectKit kit = effect_kit(probe.name());
-  for (const auto& [name, maker] : calibration.options.own_effects) kit.own[name] = maker;
-  const std::vector<Effect> effects = make_effects(kit, probe.model(), settings, compact.record);
+  const std::vector<Effect> effects =
+      make_effects(effect_kit(probe.name(), calibration.options.own_effects), probe.model(),
+                   settings, compact.record);
   const auto values = values_by_name(calibration.fit);
   const ReadingEffects totals = totals_of(effects, values, compact.record);
   const ProbeReadings kept = put_right(compact.record, shifts_of_readings(effects, values), totals);

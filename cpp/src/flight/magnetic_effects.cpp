@@ -56,12 +56,6 @@ void derive_field_rate(Record& record) {
   for (std::size_t i = 0; i < 3; ++i) record.add(field_rate[i], std::move(rate[i]));
 }
 
-EffectKit::Maker cubic_nonlinearity() {
-  return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& /*record*/) {
-    return effect("cubic_nonlinearity", effects::CubicNonlinearity{});
-  };
-}
-
 EffectKit::Maker eddy_currents() {
   return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& record) {
     derive_field_rate(record);
@@ -73,12 +67,6 @@ EffectKit::Maker field_declination() {
   return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& record) {
     need_columns("field_declination", record, {"roll", "pitch"});
     return effect("field_declination", effects::FieldDeclination{});
-  };
-}
-
-EffectKit::Maker attitude_bias() {
-  return [](const BlockModel& /*model*/, Setting& /*setting*/, Record& /*record*/) {
-    return effect("attitude_bias", effects::AttitudeBias{});
   };
 }
 
@@ -103,12 +91,12 @@ EffectKit magnetometer_effects() {
   EffectKit kit;
   kit.ports = {bias, scale, axis_scale};
   add_switched(kit, bias);
-  kit.own["cubic_nonlinearity"] = cubic_nonlinearity();
+  kit.own.insert(own_effect("cubic_nonlinearity", effects::CubicNonlinearity{}));
   kit.own["eddy_currents"] = eddy_currents();
   kit.own["time_offset"] = in_time("time_offset", Delay::Kind::outputs_late, longest_offset);
   kit.own["sensor_lag"] = in_time("sensor_lag", Delay::Kind::outputs_lagging, longest_lag);
   kit.own["field_declination"] = field_declination();
-  kit.own["attitude_bias"] = attitude_bias();
+  kit.own.insert(own_effect("attitude_bias", effects::AttitudeBias{}));
   return kit;
 }
 

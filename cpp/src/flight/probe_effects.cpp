@@ -12,12 +12,22 @@
 
 namespace sepcal {
 
-EffectKit effect_kit(std::string_view probe) {
+namespace {
+
+EffectKit catalogued(std::string_view probe) {
   if (probe == "five-hole") return five_hole_effects();
   if (probe == "pitot-static") return pitot_static_effects();
   if (probe == "magnetometer") return magnetometer_effects();
   if (probe == "magnetometer-norm") return attitude_independent_effects();
   throw Error(fmt::format("there is no model '{}'", probe));
+}
+
+}  // namespace
+
+EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
+  EffectKit kit = catalogued(probe);
+  for (const auto& [name, maker] : own) kit.own[name] = maker;
+  return kit;
 }
 
 std::shared_ptr<const BlockModel> model_of(const Probe& probe) {
@@ -30,9 +40,7 @@ EffectiveFlight with_effects(const Probe& probe, const Record& record,
   EffectiveFlight result;
   Record& extended = result.prepared.record = record;
   const auto model = model_of(probe);
-  EffectKit kit = effect_kit(probe.name());
-  for (const auto& [name, maker] : own) kit.own[name] = maker;
-  result.effects = make_effects(kit, *model, settings, extended);
+  result.effects = make_effects(effect_kit(probe.name(), own), *model, settings, extended);
   result.model = compose(model, result.effects, extended);
   extended = without_edges(std::move(extended), reach(result.effects, bounds));
   return result;

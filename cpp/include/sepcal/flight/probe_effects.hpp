@@ -13,8 +13,8 @@
 namespace sepcal {
 
 /// Ports, effects with a physics of their own and aliases of a probe by its Probe::name(): the
-/// catalogue that effect_catalogue.hpp describes.
-EffectKit effect_kit(std::string_view probe);
+/// catalogue that effect_catalogue.hpp describes; with `own`, which go before those.
+EffectKit effect_kit(std::string_view probe, const OwnEffects& own = {});
 
 /// A flight as the model with its effects takes it.
 struct EffectiveFlight {
