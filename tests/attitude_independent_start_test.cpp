@@ -133,7 +133,7 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
     fit.parameters.push_back({.name = std::string(parameter.name), .unit = "1"});
   }
   SUBCASE("nothing at a bound") {
-    judge_attitude_independent(fit);
+    judge_attitude_independent(fit, 48.0);
     CHECK(fit.status == FitStatus::converged);
     REQUIRE(fit.identifiability.unobservable.size() == 3);
     CHECK(fit.identifiability.unobservable[1].text == "eta_y");
@@ -142,7 +142,7 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
   SUBCASE("lambda_z at its bound") {
     fit.parameters[2].at_bound = true;
     fit.message = "something";
-    judge_attitude_independent(fit);
+    judge_attitude_independent(fit, 48.0);
     CHECK(fit.status == FitStatus::not_identifiable);
     REQUIRE(fit.identifiability.unobservable.size() == 4);
     CHECK(fit.identifiability.unobservable[0].text == "lambda_z");
@@ -151,7 +151,7 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
   SUBCASE("what did not converge stays so") {
     fit.parameters[2].at_bound = fit.parameters[3].at_bound = true;
     fit.status = FitStatus::not_converged;
-    judge_attitude_independent(fit);
+    judge_attitude_independent(fit, 48.0);
     CHECK(fit.status == FitStatus::not_converged);
     CHECK(fit.message.find("the bounds of lambda_z, alpha_xy kept") != std::string::npos);
   }

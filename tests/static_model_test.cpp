@@ -25,7 +25,7 @@ BlockInputs inputs_of(const Simulated& simulated) {
   return sepcal::test::block_inputs(*simulated.model, simulated.record);
 }
 
-/// z = s sqrt(1 + u^2), with inputs in double alone.
+/// z = s sqrt(u), with inputs in double alone.
 struct DoublesOnly {
   static constexpr std::array inputs{sepcal::Quantity{"u", "1"}};
   static constexpr std::array outputs{sepcal::Quantity{"z", "1"}};
@@ -34,7 +34,7 @@ struct DoublesOnly {
   sepcal::Affine<double, 1, 1> at(const sepcal::Vec<double, 1>& u,
                                   const sepcal::Vec<double, 0>&) const {
     sepcal::Affine<double, 1, 1> z;
-    z.A << std::sqrt(1 + u[0] * u[0]);
+    z.A << std::sqrt(u[0]);
     z.b << 0.0;
     return z;
   }
@@ -137,16 +137,21 @@ TEST_CASE("the derivatives come in the order asked for, an input twice where it 
 
 TEST_CASE("a model that takes inputs in double alone is differentiated by differences") {
   const auto model = sepcal::block_model(DoublesOnly{});
-  const double u[] = {0.5, -3.0, 40.0};
-  const double* const inputs[] = {u};
   const double xi1 = 2;
   const int wanted[] = {0};
-  MatrixXd columns(3, 1);
-  model->input_tangent({inputs, 3, 0, true}, &xi1, &xi1, wanted, columns);
-  for (int row = 0; row < 3; ++row) {
-    const double root = std::sqrt(1 + u[row] * u[row]);
-    CHECK(std::abs(columns(row, 0) - 2 * u[row] / root) < 1e-9);
+  for (const double size : {1.0, 1e6, 1e-9}) {  // a step must suit the input's own size
+    CAPTURE(size);
+    const double u[] = {0.5 * size, 3.0 * size, 2.0 * size};
+    const double* const inputs[] = {u};
+    MatrixXd columns(3, 1);
+    model->input_tangent({inputs, 3, 0, true}, &xi1, &xi1, wanted, columns);
+    for (int row = 0; row < 3; ++row) {
+      const double exact = 1 / std::sqrt(u[row]);
+      CHECK(std::abs(columns(row, 0) - exact) < 1e-8 * exact);
+    }
   }
-  MatrixXd none(3, 0);
-  CHECK_NOTHROW(model->input_tangent({inputs, 3, 0, true}, &xi1, &xi1, {}, none));
+  const double u = 1.0;
+  const double* const inputs[] = {&u};
+  MatrixXd none(1, 0);
+  CHECK_NOTHROW(model->input_tangent({inputs, 1, 0, true}, &xi1, &xi1, {}, none));
 }

@@ -24,6 +24,8 @@ double largest(const VectorXd& values) {
                             : values.array().isFinite().select(values, 0.0).cwiseAbs().maxCoeff();
 }
 
+Index count_finite(const VectorXd& values) { return values.array().isFinite().count(); }
+
 struct Central {
   VectorXd derivative;
   double gap = 0.0;       // of the differences over h and 2h
@@ -43,10 +45,14 @@ VectorXd refine_centrally(const Function& g, double h) {
   Central current = difference_centrally(g, h);
   Central best = current;
   for (int i = 0; i < most_shrinks; ++i) {
-    if (current.gap <= std::max(agreement * largest(current.derivative), current.rounding)) break;
+    const bool agrees =
+        current.gap <= std::max(agreement * largest(current.derivative), current.rounding);
+    if (agrees && current.derivative.allFinite()) break;
     h *= shrink;
     current = difference_centrally(g, h);
-    if (current.gap < best.gap) best = current;
+    const Index finite = count_finite(current.derivative);
+    const Index before = count_finite(best.derivative);
+    if (finite > before || (finite == before && current.gap < best.gap)) best = current;
   }
   return best.derivative;
 }
@@ -90,7 +96,8 @@ void differentiate_by_inputs(const std::function<VectorXd(const Block&)>& predic
       return predict({pointers, block.rows, block.first, block.starts_segment});
     };
     const double variance = (column.array() - column.mean()).square().mean();
-    const double scale = std::max(1.0, std::sqrt(variance));
+    const double size = column.cwiseAbs().maxCoeff();
+    const double scale = variance > 0 ? std::sqrt(variance) : size > 0 ? size : 1.0;
     columns.col(static_cast<Index>(i)) = differentiate(along, scale, -infinity, infinity);
     pointer = original;
   }

@@ -23,17 +23,18 @@ InterpolatedColumn::InterpolatedColumn(const Record& record, const std::string& 
   const std::span<const double> column = record.column(name);
   time_.assign(time.begin(), time.end());
   for (const Segment& segment : record.segments()) {
-    if (segment.rows() < 2) {
-      throw Error("the segment '" + segment.label + "' has a single row, so that '" + name +
-                  "' can't be interpolated in it; leave it out, or join it to its neighbour");
-    }
     const auto part = [&](std::span<const double> values) {
       const auto rows = values.subspan(segment.first, segment.rows());
       return std::vector<double>(rows.begin(), rows.end());
     };
+    std::vector<double> times = part(time);
     std::vector<double> values = part(column);
     if (angle) unwrap(values);
-    pieces_.push_back({segment, NaturalSpline(part(time), std::move(values))});
+    if (segment.rows() == 1) {  // a line of no slope through the lone row
+      times.push_back(times.front() + 1.0);
+      values.push_back(values.front());
+    }
+    pieces_.push_back({segment, NaturalSpline(std::move(times), std::move(values))});
   }
 }
 

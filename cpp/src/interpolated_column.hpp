@@ -16,7 +16,7 @@ namespace sepcal {
 class InterpolatedColumn {
  public:
   /// `angle`: jumps of a whole turn are taken out first. Rows outside the segments of `record` have
-  /// no value. Throws Error for a segment of a single row.
+  /// no value. A segment of a single row is constant.
   InterpolatedColumn(const Record& record, const std::string& name, bool angle = false);
 
   /// At `shift` seconds after the times of the rows first, first + 1, ... of one segment.

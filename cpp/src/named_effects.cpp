@@ -28,6 +28,11 @@ Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting&
   if (own != kit.own.end()) return own->second(model, setting, record);
   const auto port = std::ranges::find(kit.ports, name.port, &Port::name);
   if (port == kit.ports.end() || name.shape == EffectName::Shape::none) {
+    if (setting.known) {
+      throw Error("effect '" + name.text +
+                  "' is not in the catalogue; if it is one of your own, it can be used only where "
+                  "it is defined: load the calibration there");
+    }
     throw Error("there is no effect '" + name.text + "'; known: " + known_names(kit));
   }
   return make_named(name.text, name, *port, model, setting, record);
@@ -37,6 +42,11 @@ Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting&
 
 Effect make_named(const std::string& owner, const EffectName& means, const Port& port,
                   const BlockModel& model, EffectSetting& setting, Record& record) {
+  if (std::ranges::find(model.tables().outputs, means.base, &Variable::name) !=
+      model.tables().outputs.end()) {
+    throw Error("effect " + means.text + ": '" + means.base +
+                "' is what is measured; a driver must be another channel, or it explains itself");
+  }
   const DriverPointer driver = make_named_driver(means, setting, record);
   return make_driven(owner, port, driver, coefficient_unit(port.unit, means), model, record);
 }

@@ -189,3 +189,18 @@ def test_readings_in_a_unit_that_the_header_does_not_say(magnetometer: Bench) ->
     assert (refused.code, refused.out) == (2, "")
     assert "an ellipsoid of" in refused.err
     assert "check the unit in the headers" in refused.err
+
+
+def test_a_small_cap_in_noise_is_no_result() -> None:
+    """On one heading at 1 uT, intervals no longer hold: exit 4, whatever converged."""
+    for seed in range(1000, 1030):
+        flight = sepcal.simulate(
+            "magnetometer",
+            parameters={f"eta_{axis}": 0.0 for axis in "xyz"},
+            noise=dict.fromkeys(("mx", "my", "mz"), 1.0),
+            rows=1500,
+            seed=seed,
+            excitation="poor",
+        )
+        fit = sepcal.fit(sepcal.Magnetometer(field_strength=53.2), flight)
+        assert fit.status == "not_identifiable", seed

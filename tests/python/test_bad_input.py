@@ -83,6 +83,18 @@ def test_nan_in_another_column_only_makes_a_note(columns: dict[str, np.ndarray])
     assert any("altitude_m" in note for note in calibration.notes)
 
 
+def test_nan_in_a_column_that_an_effect_needs(columns: dict[str, np.ndarray]) -> None:
+    columns["throttle"][3] = np.nan
+    flight = sepcal.Flight(columns, name="log")
+    refuse(
+        lambda: sepcal.fit(PROBE, flight, effects=["pressure_offset[throttle]"]),
+        "log",
+        "pressure_offset[throttle]",
+        "'throttle' holds no number at",
+        "row 3",
+    )
+
+
 def test_time_that_runs_back(columns: dict[str, np.ndarray]) -> None:
     columns["time_s"][20] = columns["time_s"][18]
     refuse(lambda: sepcal.fit(PROBE, sepcal.Flight(columns)), "time", "row 20")

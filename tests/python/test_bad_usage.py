@@ -54,6 +54,7 @@ NONSENSE: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("--effect", "magic"), ("there is no effect 'magic'", "known: ")),
     (("--effect", "magic[time]"), ("there is no effect 'magic[time]'", "[driver]")),
     (("--effect", "{port}[flaps_deg]"), ("no channel 'flaps_deg'", "the record has: time, ")),
+    (("--effect", "{port}[{output}]"), ("'{output}' is what is measured", "another channel")),
     (("--effect", "{port}[time^0]"), ("the power '0'", "from 1 to 9")),
     (("--effect", "{port}[spline(time,2)]"), ("spline(x,k)", "3 to 1000")),
     (("--effect", "{port}[time"), ("write port[driver]",)),

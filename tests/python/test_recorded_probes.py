@@ -137,3 +137,13 @@ def test_a_strength_that_does_not_fit_the_readings(tmp_path: Path, strength: flo
         assert list(tmp_path.iterdir()) == []
     else:
         assert "only the bound of lambda_y" in refused.result["message"]
+
+
+def test_an_effect_in_time_leaves_out_the_rows_that_stand_alone(tmp_path: Path):
+    """The airliner's log has 247 gaps, and lone rows between some of them."""
+    flight = find_fixture("airliner_mode_s.csv")
+    fitted = run(
+        "sepcal-pitot", "fit", flight, "--effect", "time_offset", "--json", folder=tmp_path
+    )
+    assert fitted.code == 0, fitted.err
+    assert "time_offset.tau" in fitted.result["parameters"]

@@ -80,7 +80,7 @@ DriverPointer ramp_driver(Variable time, double first, double last);
 DriverPointer decay_driver(Variable time, double first, double last);
 
 /// phi = d(t - tau), tau within +-longest [s], interpolated within a segment of `record`, which
-/// holds "time" and is read here and no more. Throws Error for a segment of a single row.
+/// holds "time" and is read here and no more.
 DriverPointer delay_driver(Variable input, const Record& record, double longest);
 
 }  // namespace sepcal

@@ -58,11 +58,27 @@ struct TimeShift {
   double lag = 0.0;   // [s]
 };
 
+/// The slope about `at` of the straight line through the rows within half a width of it, by least
+/// squares: tau times the slope from one row to the next would multiply noise by tau over the
+/// interval. `fallback` where fewer than three rows are so near.
+double slope_about(std::span<const double> time, std::span<const double> values, double at,
+                   double half_width, double fallback) {
+  const auto first = std::ranges::lower_bound(time, at - half_width) - time.begin();
+  const auto last = std::ranges::upper_bound(time, at + half_width) - time.begin();
+  const auto rows = last - first;
+  if (rows < 3) return fallback;
+  const Eigen::Map<const Eigen::ArrayXd> t(time.data() + first, rows);
+  const Eigen::Map<const Eigen::ArrayXd> x(values.data() + first, rows);
+  const Eigen::ArrayXd centred = t - t.mean();
+  return (centred * x).sum() / centred.square().sum();
+}
+
 /// NaN where the shift reaches beyond a segment's ends.
 std::vector<double> put_in_time(const Record& record, const std::string& name,
                                 const TimeShift& shift) {
   const InterpolatedColumn column(record, name);
   const auto time = record.column("time");
+  const auto logged = record.column(name);
   std::vector<double> corrected(record.length(), not_a_number);
   for (const Segment& segment : record.segments()) {
     std::vector<NaturalSpline::Value> values(segment.rows());
@@ -70,7 +86,12 @@ std::vector<double> put_in_time(const Record& record, const std::string& name,
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double at = time[segment.first + i] + shift.late;
       if (at < time[segment.first] || at > time[segment.last - 1]) continue;
-      corrected[segment.first + i] = values[i].value + shift.lag * values[i].slope;
+      const double slope = shift.lag == 0.0
+                               ? 0.0
+                               : slope_about(time.subspan(segment.first, segment.rows()),
+                                             logged.subspan(segment.first, segment.rows()), at,
+                                             std::abs(shift.lag), values[i].slope);
+      corrected[segment.first + i] = values[i].value + shift.lag * slope;
     }
   }
   return corrected;

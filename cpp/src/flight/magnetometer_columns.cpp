@@ -95,8 +95,9 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   } else {
     throw Error(
         fmt::format("{}: the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, "
-                    "pitch_rad, yaw_rad with bn_ut, be_ut, bd_ut or {} N,E,D; {}",
-                    flight.name(), spell_option("field"), flight.list_columns()));
+                    "pitch_rad, yaw_rad with bn_ut, be_ut, bd_ut or {} N,E,D, or give {} alone; {}",
+                    flight.name(), spell_option("field"), spell_option("field_strength"),
+                    flight.list_columns()));
   }
   builder.keep_valid();
   builder.check_time();

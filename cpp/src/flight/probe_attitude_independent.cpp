@@ -70,7 +70,7 @@ class StrengthOnlyMagnetometer final : public Probe {
     return attitude_independent_probe(setup_.field_strength, standard_deviation);
   }
 
-  void judge(Fit& fit) const override { judge_attitude_independent(fit); }
+  void judge(Fit& fit) const override { judge_attitude_independent(fit, setup_.field_strength); }
 
  private:
   AttitudeIndependentMagnetometer setup_;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "air_data_effects.hpp"
 #include "magnetic_effects.hpp"
@@ -20,6 +20,20 @@ EffectKit catalogued(std::string_view probe) {
   if (probe == "magnetometer") return magnetometer_effects();
   if (probe == "magnetometer-norm") return attitude_independent_effects();
   throw Error(fmt::format("there is no model '{}'", probe));
+}
+
+/// Throws Error for a driver that the log has and the record does not, as a cell is no number.
+void check_driver(const EffectSetting& setting, const Flight& flight, const Record& record) {
+  const EffectName name = parse_effect_name(setting.name);
+  const Flight::Column* column = name.base.empty() ? nullptr : flight.find(name.base);
+  if (column == nullptr || record.has(name.base)) return;
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  const auto bad = std::ranges::find_if_not(column->values, is_number);
+  if (bad == column->values.end()) return;
+  const auto row = static_cast<std::size_t>(bad - column->values.begin());
+  throw Error(
+      fmt::format("effect {}: column '{}' holds no number at {}; fill it in or delete the row",
+                  setting.name, column->header, flight.locate(row)));
 }
 
 }  // namespace
@@ -52,6 +66,7 @@ EffectiveFlight prepare_with_effects(const Probe& probe, const Flight& flight,
                                      const std::map<std::string, Interval>& bounds) {
   ProbeRecord prepared = probe.prepare(flight, drop_invalid);
   try {
+    for (const EffectSetting& setting : settings) check_driver(setting, flight, prepared.record);
     EffectiveFlight result = with_effects(probe, prepared.record, settings, own, bounds);
     prepared.record = std::move(result.prepared.record);
     result.prepared = std::move(prepared);

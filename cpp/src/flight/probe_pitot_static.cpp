@@ -63,7 +63,7 @@ class PitotStaticTube final : public Probe {
     const double s = fit["s_va"].value;
     const double c = fit["c_va"].value;
     return {{"lambda_va", "1", 1.0 / s - 1.0, {{"s_va", -1.0 / (s * s)}}},
-            {"b_va", "m/s", -c / s, {{"s_va", c / (s * s)}, {"c_va", -1.0 / s}}}};
+            {"b_va", "m/s", 0.0 - c / s, {{"s_va", c / (s * s)}, {"c_va", -1.0 / s}}}};
   }
 
  private:
