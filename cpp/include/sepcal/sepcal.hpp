@@ -31,5 +31,6 @@
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/scalar_examples.hpp"
+#include "sepcal/noise_model.hpp"        // the noise of residuals
 #include "sepcal/rotation.hpp"
 #include "sepcal/error.hpp"
