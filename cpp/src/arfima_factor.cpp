@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "noise_autocovariance.hpp"
 
@@ -68,7 +69,11 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
     MatrixXd given = covariance.topLeftCorner(head, head);
     const auto on_later = regression_.leftCols(later);
     if (later > 0) given -= on_later * on_later.transpose();
-    const MatrixXd factor = given.llt().matrixL();
+    const Eigen::LLT<MatrixXd> cholesky(given);
+    MatrixXd factor = cholesky.matrixL();
+    if (cholesky.info() != Eigen::Success) {
+      factor.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
     heads_[length] = {factor, 2.0 * factor.diagonal().array().log().sum()};
   }
 }

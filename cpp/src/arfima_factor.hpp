@@ -17,7 +17,8 @@ namespace sepcal {
 /// those (their regression on later rows is cut after 1024). Const and thread-safe.
 class ArfimaFactor {
  public:
-  /// For blocks of the given numbers of rows (zeros are ignored); phi is stationary.
+  /// For blocks of the given numbers of rows (zeros are ignored); phi is stationary. Where phi is
+  /// so near its border that the first rows' covariance is lost in rounding, all results are NaN.
   ArfimaFactor(double delta, Eigen::VectorXd phi, const std::vector<Eigen::Index>& lengths);
 
   /// ln det Gamma of a block of one of these lengths.

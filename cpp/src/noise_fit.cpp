@@ -106,47 +106,46 @@ Minimum minimise(const Likelihood& likelihood, const VectorXd& start) {
   const auto n = static_cast<double>(likelihood.rows());
   Minimum best{likelihood.clip(start)};
   VectorXd y = likelihood.evaluate(best.theta);
-  best.square = y.squaredNorm();
   best.evaluations = 1;
+  // Nearly all predicted, the covariance of the first rows is lost in rounding: predict less.
+  for (; !y.allFinite(); ++best.evaluations) {
+    best.theta.tail(best.theta.size() - 1) *= 0.8;
+    y = likelihood.evaluate(best.theta);
+  }
+  best.square = y.squaredNorm();
   double damping = 1e-6;
   for (int k = 0; k < most_steps; ++k) {
     const MatrixXd slopes = differentiate(likelihood, best.theta, y);
     best.evaluations += static_cast<int>(best.theta.size());
     MatrixXd H = slopes.transpose() * slopes;
     VectorXd gradient = slopes.transpose() * y;
-    const bool held = (best.theta[0] <= 0.0 && gradient[0] > 0.0) ||
-                      (best.theta[0] >= likelihood.largest() && gradient[0] < 0.0);
-    if (held) {
-      H.row(0).setZero();
-      H.col(0).setZero();
-      gradient[0] = 0.0;
+    if (!gradient.allFinite()) return best;  // a difference reached what rounding loses
+    // At a bound and drawn beyond it: the others move alone.
+    const VectorXd inwards = likelihood.clip(best.theta - 1e-6 * gradient.cwiseSign());
+    for (Index i = 0; i < gradient.size(); ++i) {
+      if (gradient[i] == 0.0 || inwards[i] != best.theta[i]) continue;
+      H.row(i).setZero();
+      H.col(i).setZero();
+      gradient[i] = 0.0;
     }
     // Where y hardly depends on a partial autocorrelation, its step stays small.
     H.diagonal().array() += 1e-12 * best.square;
-    const VectorXd full = -H.ldlt().solve(gradient);
-    const double gain = -gradient.dot(full) / best.square;
-    if (n * gain < least_gain) {
-      best.converged = true;
-      return best;
-    }
+    best.converged = n * gradient.dot(H.ldlt().solve(gradient)) < least_gain * best.square;
+    if (best.converged) return best;
     bool fell = false;
-    for (; damping < 1e6 && !fell; damping *= fell ? 0.1 : 10.0) {
+    while (!fell && damping < 1e6) {
       MatrixXd damped = H;
       damped.diagonal() *= 1.0 + damping;
       const VectorXd theta = likelihood.clip(best.theta - damped.ldlt().solve(gradient));
       const VectorXd trial = likelihood.evaluate(theta);
       ++best.evaluations;
-      const double square = trial.squaredNorm();
-      if (!(square < best.square)) continue;
-      fell = true;
-      // Against a bound, or where the differences end, a step may gain next to nothing.
-      best.converged = n * std::log(best.square / square) < 0.1 * least_gain;
+      fell = trial.squaredNorm() < best.square;  // false where it isn't finite
+      damping = fell ? std::max(0.1 * damping, 1e-9) : 10.0 * damping;
+      if (!fell) continue;
       best.theta = theta;
-      best.square = square;
+      best.square = trial.squaredNorm();
       y = trial;
     }
-    damping = std::max(damping, 1e-9);
-    if (best.converged) return best;
     if (!fell) return best;
   }
   return best;

@@ -92,6 +92,11 @@ Whitener::Whitener(const NoiseModel& model, const std::vector<Segment>& segments
     informative_rows_ += block;
     log_determinant_ += factor_->log_determinant(block);
   }
+  if (!std::isfinite(log_determinant_)) {
+    throw Error(
+        "the noise model's phi is so near to not stationary that its covariance is lost in "
+        "rounding; choose a lower order");
+  }
   log_determinant_ += 2.0 * static_cast<double>(informative_rows_) * std::log(sigma_);
 }
 

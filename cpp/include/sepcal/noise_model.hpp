@@ -70,8 +70,8 @@ class ArfimaFactor;
 /// the lengths and the sequence of the segments count. Const and safe to share between threads.
 class Whitener {
  public:
-  /// Throws Error for d outside [0, 1), phi that is not stationary, a sigma that is not positive
-  /// (a residual of zeros has nothing to whiten) and an empty segment.
+  /// Throws Error for d outside [0, 1), phi that is not stationary or too near to it, a sigma that
+  /// is not positive (a residual of zeros has nothing to whiten) and an empty segment.
   Whitener(const NoiseModel& model, const std::vector<Segment>& segments);
 
   Eigen::Index rows() const { return rows_; }
