@@ -5,10 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 
 #include "noises.hpp"
 #include "sepcal/error.hpp"
@@ -104,7 +102,7 @@ void check_whitener(const NoiseModel& model, const std::vector<std::size_t>& len
 
 const std::vector<std::size_t> lengths{20, 1, 150, 2, 7};
 
-/// D of the differences within segments (rows of first rows are left out).
+/// Differences within segments; first rows have none.
 MatrixXd difference_matrix(const std::vector<std::size_t>& of) {
   Index rows = 0;
   for (const std::size_t length : of) rows += static_cast<Index>(length);
@@ -159,7 +157,6 @@ TEST_CASE("a free level: the differences are white, first rows are zero, a const
     CHECK(whitener.informative_rows() == 180 - 5);
     MatrixXd W = MatrixXd::Identity(180, 180);
     whitener.apply(W);
-    // W = V D: what W makes of any root S of the differences' covariance, D S S' D', is orthogonal.
     std::vector<std::size_t> blocks;
     for (const std::size_t length : lengths) blocks.push_back(length - 1);
     const MatrixXd Gamma = 2.25 * dense_covariance(blocks, fractional_autocovariance(d - 1.0, 150));
@@ -207,9 +204,8 @@ TEST_CASE(
     "an AR with a long tail of past and future agrees with its dense covariance at 1300 rows") {
   // The regression of first rows on later ones is cut after 1024: a thousandth of one row's
   // variance.
-  const std::vector<std::size_t> longer{1300};
-  const MatrixXd Sigma = dense_covariance(longer, ar1_of(0.6, 0.4, 1300));
-  check_whitener({0.4, vector({0.6}), 1.0}, longer, Sigma, 1e-3);
+  const MatrixXd Sigma = dense_covariance({1300}, ar1_of(0.6, 0.4, 1300));
+  check_whitener({0.4, vector({0.6}), 1.0}, {1300}, Sigma, 1e-3);
 }
 
 TEST_CASE("X' Sigma X is the dense product, for few and many rows") {

@@ -35,7 +35,8 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
   deviation_ = VectorXd::Ones(rows);
   log_variance_ = VectorXd::Zero(rows + 1);
   if (delta != 0.0 && rows > 0) {
-    double variance = std::exp(std::lgamma(1.0 - 2.0 * delta) - 2.0 * std::lgamma(1.0 - delta));
+    // Not lgamma: it writes a global sign.
+    double variance = std::tgamma(1.0 - 2.0 * delta) / std::pow(std::tgamma(1.0 - delta), 2);
     for (Index s = 0; s < rows; ++s) {
       const auto at = static_cast<double>(s);
       if (s > 0) {

@@ -19,7 +19,8 @@ NoiseMoments find_moments(double delta, const VectorXd& phi, Index lags) {
   const Index order = phi.size();
   const Index last = std::max(lags, order) + (order > 0 ? beyond + order : 0);
   VectorXd gamma(last + 1);
-  gamma[0] = std::exp(std::lgamma(1.0 - 2.0 * delta) - 2.0 * std::lgamma(1.0 - delta));
+  // Not lgamma: it writes a global sign.
+  gamma[0] = std::tgamma(1.0 - 2.0 * delta) / std::pow(std::tgamma(1.0 - delta), 2);
   for (Index k = 0; k < last; ++k) {
     const auto at = static_cast<double>(k);
     gamma[k + 1] = gamma[k] * (at + delta) / (at + 1.0 - delta);

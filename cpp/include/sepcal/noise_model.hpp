@@ -51,8 +51,8 @@ struct NoiseFit {
 };
 
 /// Maximum likelihood. `e` has one value for each row of the record; rows outside the segments are
-/// not read. The level is free where the differences are fitted best by d >= 0.45;
-/// d of a level that is not free stays below 0.49.
+/// not read. The level is free where the differences are fitted best by d >= 0.45; else its mean is
+/// taken for zero and d is at most 0.49: a mean far from zero is then read as slow noise.
 ///
 /// Where the segments leave no difference that is not zero (constant or zero e, a row a segment) or
 /// fewer than eight differences, the noise is white: d = 0, p = 0, sigma the root mean square of e,
