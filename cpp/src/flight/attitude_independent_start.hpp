@@ -20,8 +20,8 @@ FitOptions start_attitude_independent(const FitOptions& options, const Record& r
 
 /// Lists eta_x, eta_y, eta_z as unobservable. A parameter at its bound makes the fit not
 /// identifiable: with readings that leave the ellipsoid's size or place open, that is where the fit
-/// ends, and the standard errors of the others, as if the bound were the truth, would hide it. So do
-/// standard errors past 0.08 (n: of `field_strength` [uT]), where intervals no longer cover.
+/// ends, and the standard errors of the others, as if the bound were the truth, would hide it. So
+/// do standard errors past 0.08 (n: of `field_strength` [uT]), where intervals no longer cover.
 void judge_attitude_independent(Fit& fit, double field_strength);
 
 }  // namespace sepcal
