@@ -24,8 +24,6 @@ double largest(const VectorXd& values) {
                             : values.array().isFinite().select(values, 0.0).cwiseAbs().maxCoeff();
 }
 
-Index count_finite(const VectorXd& values) { return values.array().isFinite().count(); }
-
 struct Central {
   VectorXd derivative;
   double gap = 0.0;       // of the differences over h and 2h
@@ -45,14 +43,10 @@ VectorXd refine_centrally(const Function& g, double h) {
   Central current = difference_centrally(g, h);
   Central best = current;
   for (int i = 0; i < most_shrinks; ++i) {
-    const bool agrees =
-        current.gap <= std::max(agreement * largest(current.derivative), current.rounding);
-    if (agrees && current.derivative.allFinite()) break;
+    if (current.gap <= std::max(agreement * largest(current.derivative), current.rounding)) break;
     h *= shrink;
     current = difference_centrally(g, h);
-    const Index finite = count_finite(current.derivative);
-    const Index before = count_finite(best.derivative);
-    if (finite > before || (finite == before && current.gap < best.gap)) best = current;
+    if (current.gap < best.gap) best = current;
   }
   return best.derivative;
 }
@@ -95,9 +89,10 @@ void differentiate_by_inputs(const std::function<VectorXd(const Block&)>& predic
       moved.array() = column.array() + step;
       return predict({pointers, block.rows, block.first, block.starts_segment});
     };
-    const double variance = (column.array() - column.mean()).square().mean();
+    const double spread = std::sqrt((column.array() - column.mean()).square().mean());
     const double size = column.cwiseAbs().maxCoeff();
-    const double scale = variance > 0 ? std::sqrt(variance) : size > 0 ? size : 1.0;
+    const bool varies = spread > 1e-9 * size;  // what is less is rounding of the mean
+    const double scale = varies ? spread : size > 0 ? size : 1.0;
     columns.col(static_cast<Index>(i)) = differentiate(along, scale, -infinity, infinity);
     pointer = original;
   }
