@@ -17,6 +17,7 @@ BlockModel::BlockModel(Tables tables) : tables_(std::move(tables)) { tables_.che
 
 void BlockModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                std::span<const int> inputs,
+                               // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
                                Eigen::Ref<Eigen::MatrixXd> columns) const {
   if (inputs.empty()) return;
   if (new_carry() != nullptr) {
