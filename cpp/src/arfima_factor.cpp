@@ -35,8 +35,7 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
   deviation_ = VectorXd::Ones(rows);
   log_variance_ = VectorXd::Zero(rows + 1);
   if (delta != 0.0 && rows > 0) {
-    // Not lgamma: it writes a global sign.
-    double variance = std::tgamma(1.0 - 2.0 * delta) / std::pow(std::tgamma(1.0 - delta), 2);
+    double variance = fractional_variance(delta);
     for (Index s = 0; s < rows; ++s) {
       const auto at = static_cast<double>(s);
       if (s > 0) {
@@ -82,6 +81,20 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
 double ArfimaFactor::log_determinant(Index rows) const {
   if (phi_.size() == 0 || rows == 0) return log_variance_[rows];
   return heads_.at(rows).log_determinant + log_variance_[std::max<Index>(0, rows - phi_.size())];
+}
+
+double ArfimaFactor::log_determinant(const std::vector<Index>& blocks) const {
+  double sum = 0.0;
+  for (const Index block : blocks) sum += log_determinant(block);
+  return sum;
+}
+
+void ArfimaFactor::whiten(Ref<VectorXd> x, const std::vector<Index>& blocks) const {
+  Index first = 0;
+  for (const Index block : blocks) {
+    whiten(x.segment(first, block));
+    first += block;
+  }
 }
 
 void ArfimaFactor::whiten_fractional(Ref<VectorXd> u) const {

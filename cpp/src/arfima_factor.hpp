@@ -23,8 +23,11 @@ class ArfimaFactor {
 
   /// ln det Gamma of a block of one of these lengths.
   double log_determinant(Eigen::Index rows) const;
+  double log_determinant(const std::vector<Eigen::Index>& blocks) const;  // their sum
 
   void whiten(Eigen::Ref<Eigen::VectorXd> x) const;  // x becomes W x
+  /// The same of each block, one after another in x.
+  void whiten(Eigen::Ref<Eigen::VectorXd> x, const std::vector<Eigen::Index>& blocks) const;
   void colour(Eigen::Ref<Eigen::VectorXd> x) const;  // x becomes W^-1 x
 
  private:

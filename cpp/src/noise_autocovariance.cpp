@@ -14,13 +14,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+double fractional_variance(double delta) {
+  // Not lgamma: it writes a global sign.
+  return std::tgamma(1.0 - 2.0 * delta) / std::pow(std::tgamma(1.0 - delta), 2);
+}
+
 NoiseMoments find_moments(double delta, const VectorXd& phi, Index lags) {
   constexpr Index beyond = 2048;  // rows over which the recursion forgets where it began
   const Index order = phi.size();
   const Index last = std::max(lags, order) + (order > 0 ? beyond + order : 0);
   VectorXd gamma(last + 1);
-  // Not lgamma: it writes a global sign.
-  gamma[0] = std::tgamma(1.0 - 2.0 * delta) / std::pow(std::tgamma(1.0 - delta), 2);
+  gamma[0] = fractional_variance(delta);
   for (Index k = 0; k < last; ++k) {
     const auto at = static_cast<double>(k);
     gamma[k + 1] = gamma[k] * (at + delta) / (at + 1.0 - delta);

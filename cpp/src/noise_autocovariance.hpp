@@ -8,6 +8,9 @@
 
 namespace sepcal {
 
+/// gamma_0 of u.
+double fractional_variance(double delta);
+
 struct NoiseMoments {
   Eigen::VectorXd autocovariance;  // of x at lags 0, ..., lags
   Eigen::VectorXd cross;           // of x_t and u_{t+k}, k = 0, ..., lags

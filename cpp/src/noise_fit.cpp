@@ -46,11 +46,7 @@ class Likelihood {
   VectorXd evaluate(const VectorXd& theta) const {
     const ArfimaFactor factor = make_factor(theta);
     VectorXd y = rows_.values;
-    Index first = 0;
-    for (const Index block : rows_.blocks) {
-      factor.whiten(y.segment(first, block));
-      first += block;
-    }
+    factor.whiten(y, rows_.blocks);
     y *= std::exp(0.5 * mean_log_variance(factor));
     return y;
   }
@@ -72,9 +68,7 @@ class Likelihood {
 
   /// ln det / N.
   double mean_log_variance(const ArfimaFactor& factor) const {
-    double log_determinant = 0.0;
-    for (const Index block : rows_.blocks) log_determinant += factor.log_determinant(block);
-    return log_determinant / static_cast<double>(rows());
+    return factor.log_determinant(rows_.blocks) / static_cast<double>(rows());
   }
 
   NoiseRows rows_;

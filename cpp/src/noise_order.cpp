@@ -26,15 +26,9 @@ class Scan {
   void evaluate(double d) {
     const ArfimaFactor factor(rows_.free_level ? d - 1.0 : d, VectorXd(), rows_.blocks);
     VectorXd y = rows_.values;
-    double log_determinant = 0.0;
-    Index first = 0;
-    for (const Index block : rows_.blocks) {
-      factor.whiten(y.segment(first, block));
-      log_determinant += factor.log_determinant(block);
-      first += block;
-    }
+    factor.whiten(y, rows_.blocks);
     BurgFit fit = fit_burg(y, rows_.blocks, max_order_);
-    fit.criterion.array() += log_determinant;
+    fit.criterion.array() += factor.log_determinant(rows_.blocks);
     tried_.emplace(d, std::move(fit));
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "parameter_values.hpp"
 #include "scan.hpp"
 #include "sepcal/composition.hpp"
 
@@ -30,8 +31,7 @@ FitOptions without_sought(FitOptions options, const Times& sought) {
 
 /// A fit's estimates, with what is held; steps not found yet are in the middle of the record.
 ScanPoint point_of(const Fit& fit, const FitOptions& options, const Times& sought) {
-  ScanPoint point{{}, options.fixed, options.threads};
-  for (const Parameter& parameter : fit.parameters) point.values[parameter.name] = parameter.value;
+  ScanPoint point{values_by_name(fit), options.fixed, options.threads};
   for (const auto& [name, setting] : sought) {
     if (!setting->span) continue;
     point.held.emplace(name, 0.5 * (setting->span->first + setting->span->second));

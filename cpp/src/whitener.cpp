@@ -88,10 +88,8 @@ Whitener::Whitener(const NoiseModel& model, const std::vector<Segment>& segments
   factor_ =
       std::make_shared<const ArfimaFactor>(model.d - (free_level_ ? 1.0 : 0.0), model.phi, blocks);
   for (const Index length : lengths_) rows_ += length;
-  for (const Index block : blocks) {
-    informative_rows_ += block;
-    log_determinant_ += factor_->log_determinant(block);
-  }
+  for (const Index block : blocks) informative_rows_ += block;
+  log_determinant_ = factor_->log_determinant(blocks);
   if (!std::isfinite(log_determinant_)) {
     throw Error(
         "the noise model's phi is so near to not stationary that its covariance is lost in "
