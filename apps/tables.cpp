@@ -98,21 +98,23 @@ std::string calibration_table(const Calibration& calibration) {
     unit = std::max(unit, parameter.unit.size());
   }
   const auto add_row = [&](std::string_view what, const std::string& value, std::string_view error,
-                           std::string_view of, std::string_view remark) {
-    const std::string row =
-        fmt::format("{:<{}} {:>13} {:>12}  {:<{}} {}", what, name, value, error, of, unit, remark);
+                           std::string_view white, std::string_view of, std::string_view remark) {
+    const std::string row = fmt::format("{:<{}} {:>13} {:>12} {:>9}  {:<{}} {}", what, name, value,
+                                        error, white, of, unit, remark);
     text += row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
   };
   text += '\n';
-  add_row("parameter", "value", "std. error", "unit", "bounds");
+  add_row("parameter", "value", "std. error", "white", "unit", "bounds");
   for (const Parameter& parameter : fit.parameters) {
     add_row(parameter.name, fmt::format("{:.6g}", parameter.value),
-            defined(parameter.standard_error, "{:.2g}"), parameter.unit,
+            defined(parameter.standard_error, "{:.2g}"),
+            defined(parameter.standard_error_white, "{:.2g}"), parameter.unit,
             is_scanned(calibration, parameter) ? "by a scan" : limits(parameter));
   }
   for (const Derived& derived : calibration.derived) {
     add_row(derived.name, fmt::format("{:.6g}", derived.value),
-            defined(derived.standard_error, "{:.2g}"), derived.unit, "derived");
+            defined(derived.standard_error, "{:.2g}"),
+            defined(derived.standard_error_white, "{:.2g}"), derived.unit, "derived");
   }
   text += fmt::format("\n{:<14} {:>13} {:>12}\n", "output", "rmse", "noise");
   for (std::size_t j = 0; j < fit.rmse.size(); ++j) {

@@ -80,21 +80,25 @@ TEST_CASE("R-hat is the mean squared residual at the end, by output; rmse is its
   }
 }
 
-TEST_CASE("with R estimated the covariance is (J' R^-1 J)^-1 times M / (M - n)") {
+TEST_CASE("with R estimated the white covariance is (J' R^-1 J)^-1 times M / (M - n)") {
   for (const Simulated& simulated : sepcal::test::simulate_all(rows)) {
     CAPTURE(simulated.name);
     const Fit result = sepcal::fit(*simulated.model, simulated.record, quick());
     const MatrixXd inverse = inverse_square(dense_at(simulated, result, noise_of(result)));
     const double M = static_cast<double>(rows * result.noise.size());
     const auto n = static_cast<double>(inverse.cols());
-    CHECK(relative_error(result.covariance, inverse * (M / (M - n))) < 1e-6);
+    CHECK(relative_error(result.covariance_white, inverse * (M / (M - n))) < 1e-6);
+    const VectorXd white = result.covariance_white.diagonal().cwiseSqrt();
     const VectorXd sd = result.covariance.diagonal().cwiseSqrt();
     for (Index k = 0; k < sd.size(); ++k) {
-      CHECK(result.parameters[static_cast<std::size_t>(k)].standard_error == Approx(sd[k]));
+      const sepcal::Parameter& parameter = result.parameters[static_cast<std::size_t>(k)];
+      CHECK(parameter.standard_error_white == Approx(white[k]));
+      CHECK(parameter.standard_error == Approx(sd[k]));
       CHECK(result.correlation(k, k) == 1.0);
       CHECK(result.correlation(k, 0) == Approx(result.covariance(k, 0) / (sd[k] * sd[0])));
     }
     CHECK(result.covariance == result.covariance.transpose());
+    CHECK(result.covariance_white == result.covariance_white.transpose());
   }
 }
 
@@ -113,7 +117,7 @@ TEST_CASE("with R given nothing is scaled, R stays, and the cost is Eq. 6") {
     CHECK(result.noise_iterations == 0);
     CHECK(noise_of(result) == given);
     const MatrixXd whitened = dense_at(simulated, result, given);
-    CHECK(relative_error(result.covariance, inverse_square(whitened)) < 1e-6);
+    CHECK(relative_error(result.covariance_white, inverse_square(whitened)) < 1e-6);
     const double J = 0.5 * whitened.rightCols<1>().squaredNorm() +
                      static_cast<double>(rows) * given.array().log().sum();
     CHECK(result.cost == Approx(J).epsilon(1e-10));

@@ -85,7 +85,7 @@ TEST_CASE("the truth lies within a few standard errors, automatic takes projecte
       const auto& parameter = result.parameters[static_cast<std::size_t>(k)];
       CAPTURE(parameter.name);
       CHECK(std::abs(parameter.value - truth[k]) < 4.5 * parameter.standard_error);
-      CHECK(parameter.standard_error == parameter.standard_error_white);
+      CHECK(parameter.standard_error == Approx(parameter.standard_error_white).epsilon(0.1));
       CHECK_FALSE(parameter.at_bound);
     }
     CHECK(result.xi1().size() == simulated.xi1.size());
@@ -147,7 +147,7 @@ TEST_CASE("fixed parameters give the fit of the model that is left, and stand in
   const MatrixXd inverse = (J.transpose() * J).inverse();
   const VectorXd step = inverse * (J.transpose() * rows.rightCols<1>());
   CHECK((step.cwiseQuotient(inverse.diagonal().cwiseSqrt())).cwiseAbs().maxCoeff() < 1e-7);
-  CHECK(held["eps_phi"].standard_error ==
+  CHECK(held["eps_phi"].standard_error_white ==
         Approx(std::sqrt(inverse(7, 7) * 900.0 / (900.0 - 8.0))).epsilon(1e-6));
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("nothing linear, or nothing nonlinear, is fitted like anything else") 
     const MatrixXd rows = sepcal::test::dense_rows(*growth, record, VectorXd(0), result.xi2());
     const double D_square = rows.col(0).squaredNorm();
     CHECK(std::abs(rows.col(0).dot(rows.col(1))) < 1e-8 * std::sqrt(D_square));
-    CHECK(result["c"].standard_error ==
+    CHECK(result["c"].standard_error_white ==
           Approx(std::sqrt(rows.col(1).squaredNorm() / 99.0 / D_square)).epsilon(1e-6));
 
     sepcal::Record line;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "coloured_covariance.hpp"
 #include "plausibility.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/error.hpp"
@@ -65,21 +66,33 @@ double cost(const std::vector<TriangularFactor>& factors, const VectorXd& noise,
   return J;
 }
 
-/// Spreads the free parameters' estimate and covariance over all of the model's parameters.
+/// A covariance of some of n parameters among all of them, NaN for the others.
+MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {
+  MatrixXd all = MatrixXd::Constant(n, n, undefined);
+  all(places, places) = covariance;
+  return all;
+}
+
+/// Ones on the diagonal to the last bit, but NaN for what has no variance.
+MatrixXd correlation_of(const MatrixXd& covariance) {
+  const VectorXd errors = covariance.diagonal().cwiseSqrt();
+  MatrixXd correlation = covariance.cwiseQuotient(errors * errors.transpose());
+  for (Index k = 0; k < errors.size(); ++k) {
+    if (!std::isnan(errors[k])) correlation(k, k) = 1.0;
+  }
+  return correlation;
+}
+
+/// Spreads the free parameters' estimate and covariances over all of the model's parameters.
 void fill_parameters(Fit& result, const BlockModel& model, const Problem& problem,
-                     const StageTwo& two, const MatrixXd& covariance,
+                     const StageTwo& two, const MatrixXd& covariance, const MatrixXd& white,
                      const std::vector<Index>& inside) {
   const std::vector<Variable> all = model.tables().parameters();
   const auto n = static_cast<Index>(all.size());
   result.n_1 = model.tables().n_1();
-  result.covariance = MatrixXd::Constant(n, n, undefined);
-  result.correlation = result.covariance;
   std::vector<Index> place;  // of each free parameter among all
   for (const Variable& variable : all) {
-    Parameter parameter{.name = variable.name,
-                        .unit = variable.unit,
-                        .standard_error = undefined,
-                        .standard_error_white = undefined};
+    Parameter parameter{.name = variable.name, .unit = variable.unit};
     const auto fixed = problem.options().fixed.find(variable.name);
     if (fixed != problem.options().fixed.end()) {
       parameter.fixed = true;
@@ -94,21 +107,15 @@ void fill_parameters(Fit& result, const BlockModel& model, const Problem& proble
     }
     result.parameters.push_back(std::move(parameter));
   }
-  for (std::size_t a = 0; a < inside.size(); ++a) {
-    const Index row = place[static_cast<std::size_t>(inside[a])];
-    Parameter& parameter = result.parameters[static_cast<std::size_t>(row)];
-    parameter.standard_error_white =
-        std::sqrt(covariance(static_cast<Index>(a), static_cast<Index>(a)));
-    parameter.standard_error = parameter.standard_error_white;
-    for (std::size_t b = 0; b < inside.size(); ++b) {
-      const Index column = place[static_cast<std::size_t>(inside[b])];
-      const double value = covariance(static_cast<Index>(a), static_cast<Index>(b));
-      result.covariance(row, column) = value;
-      result.correlation(row, column) =
-          a == b ? (std::isnan(value) ? undefined : 1.0)
-                 : value / std::sqrt(covariance(static_cast<Index>(a), static_cast<Index>(a)) *
-                                     covariance(static_cast<Index>(b), static_cast<Index>(b)));
-    }
+  std::vector<Index> places;
+  for (const Index k : inside) places.push_back(place[static_cast<std::size_t>(k)]);
+  result.covariance = spread(covariance, places, n);
+  result.covariance_white = spread(white, places, n);
+  result.correlation = correlation_of(result.covariance);
+  for (Index k = 0; k < n; ++k) {
+    Parameter& parameter = result.parameters[static_cast<std::size_t>(k)];
+    parameter.standard_error = std::sqrt(result.covariance(k, k));
+    parameter.standard_error_white = std::sqrt(result.covariance_white(k, k));
   }
 }
 
@@ -131,7 +138,7 @@ Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& n
 }
 
 void describe(Fit& result, const BlockModel& model, const Problem& problem,
-              const Measurements& measurements, const StageTwo& two) {
+              const Measurements& measurements, const StageTwo& two, ThreadPool& pool) {
   const auto n = static_cast<Index>(problem.parameters().size());
   const auto rows = static_cast<double>(measurements.rows());
   const auto count = rows * static_cast<double>(model.tables().n_z());
@@ -142,7 +149,13 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   const MatrixXd R = select_columns(factor.matrix().leftCols(n), inside);
   const double freedom = count - static_cast<double>(n);
   const double inflation = noise_given ? 1.0 : freedom > 0 ? count / freedom : undefined;
-  fill_parameters(result, model, problem, two, inverse_of_square(R) * inflation, inside);
+  const MatrixXd white = inverse_of_square(R) * inflation;
+  const bool coloured = problem.options().coloured_errors;
+  const Sweep sweep(problem.model(), measurements, pool);
+  fill_parameters(
+      result, model, problem, two,
+      coloured ? find_coloured_covariance(sweep, two, inside, R, white, noise_given) : white, white,
+      inside);
 
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
@@ -221,7 +234,7 @@ Fit fit(const BlockModel& model, const Record& record, const FitOptions& options
   Fit result;
   result.stage_one = run_stage_one(problem, record, pool);
   const StageTwo two = run_stage_two(problem, measurements, result.stage_one, pool);
-  describe(result, model, problem, measurements, two);
+  describe(result, model, problem, measurements, two, pool);
   return result;
 }
 

@@ -124,6 +124,24 @@ MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
   return all;
 }
 
+std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
+  const int columns = tables().n_1() + tables().n_2();
+  const int n_z = tables().n_z();
+  std::vector<MatrixXd> all(static_cast<std::size_t>(n_z),
+                            MatrixXd(static_cast<Index>(measurements_.rows()), columns));
+  for_each_block(
+      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        const Index count = rows_of(range);
+        rows.resize(n_z * count, columns + 1);
+        model_.evaluate(block, values_of(xi2), values_of(xi1), carry, rows);
+        for (Index j = 0; j < n_z; ++j) {
+          all[static_cast<std::size_t>(j)].middleRows(static_cast<Index>(range.offset), count) =
+              rows.block(j * count, 0, count, columns);
+        }
+      });
+  return all;
+}
+
 std::vector<TriangularFactor> Sweep::sample_factors(
     const MatrixXd& samples, const std::function<void(double)>& on_progress) const {
   constexpr Index tile = 25;  // samples that share a block while it is in the cache

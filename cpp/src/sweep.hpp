@@ -38,6 +38,10 @@ class Sweep {
   /// r of every selected row, in the record's order: rows() x n_z.
   Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
 
+  /// [A | D] of every selected row, in the record's order: n_z matrices of rows() x (n_1 + n_2).
+  std::vector<Eigen::MatrixXd> tangent_rows(const Eigen::VectorXd& xi1,
+                                            const Eigen::VectorXd& xi2) const;
+
   /// One unweighted factor of [A | z - b] over all outputs for every column of `samples`
   /// (n_2 x S). A block of data stays in the cache while all samples pass over it.
   /// `on_progress` hears the fraction done, from any thread, one call at a time.

@@ -58,6 +58,7 @@ class FitDescription(TypedDict):
     parameters: list[ParameterDescription]
     covariance: Array
     correlation: Array
+    covariance_white: Array
     noise: dict[str, float]
     rmse: dict[str, float]
     cost: float

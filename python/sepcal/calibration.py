@@ -34,7 +34,7 @@ class Derived:
     name: str
     value: float
     standard_error: float  # NaN where that of a parameter it depends on is
-    standard_error_white: float  # the same as long as residuals are taken as white
+    standard_error_white: float  # what it would be if the residuals were white
     unit: str
 
 

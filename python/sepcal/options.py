@@ -34,6 +34,8 @@ class FitOptions(TypedDict, total=False):
         noise_iterations: At most so many alternations [100].
         iterations: Of one nonlinear minimisation [200].
         descents: Stage one descends from at most so many samples to tell minima apart [8].
+        coloured_errors: Standard errors allow for residuals that are not white; without, they equal
+            the white ones [True].
         threads: The caller's included; 0: one a core [0]. The result does not depend on it.
         free: For flights: parameters freed that the probe holds by default [none].
         drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
@@ -54,6 +56,7 @@ class FitOptions(TypedDict, total=False):
     noise_iterations: int | None
     iterations: int | None
     descents: int | None
+    coloured_errors: bool | None
     threads: int | None
     free: Sequence[str] | None
     drop_invalid: bool | None

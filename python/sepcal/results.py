@@ -23,7 +23,7 @@ class Parameter:
     name: str
     value: float
     standard_error: float  # NaN where undefined: fixed, at a bound, singular
-    standard_error_white: float  # the same as long as residuals are taken as white
+    standard_error_white: float  # what it would be if the residuals were white
     unit: str
     lower: float
     upper: float
@@ -95,6 +95,7 @@ class Fit:
     parameters: dict[str, Parameter]  # linear, then nonlinear, in the model's order
     covariance: Array  # (n, n), in that order; NaN where there is no standard error
     correlation: Array  # (n, n)
+    covariance_white: Array  # (n, n), of white residuals; of a loaded one only its diagonal
     noise: dict[str, float]  # by output: standard deviation, given or from R-hat = SSE / N
     rmse: dict[str, float]  # by output, unwhitened, in its unit
     cost: float  # J of Eq. 6
@@ -130,10 +131,15 @@ class Fit:
 
     def __str__(self) -> str:
         width = max(map(len, self.names))
-        lines = [f"{'parameter':<{width}}{'value':>14}{'std. error':>12}  unit"]
+        lines = [f"{'parameter':<{width}}{'value':>14}{'std. error':>12}{'white':>10}  unit"]
         for parameter in self.parameters.values():
-            error = f"{parameter.standard_error:.2g}" if parameter.standard_error >= 0 else "-"
-            line = f"{parameter.name:<{width}}{parameter.value:>14.6g}{error:>12}"
+            errors = [
+                f"{error:.2g}" if error >= 0 else "-"
+                for error in (parameter.standard_error, parameter.standard_error_white)
+            ]
+            line = (
+                f"{parameter.name:<{width}}{parameter.value:>14.6g}{errors[0]:>12}{errors[1]:>10}"
+            )
             remark = parameter.remark
             if parameter.at_bound:
                 remark += f", [{parameter.lower:.4g}, {parameter.upper:.4g}]"

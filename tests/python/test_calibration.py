@@ -75,12 +75,13 @@ def test_a_calibration_is_its_fit(base: sepcal.Calibration) -> None:
 
 def test_the_table_says_it_all(base: sepcal.Calibration) -> None:
     lines = str(base).splitlines()
-    assert lines[0].split() == ["parameter", "value", "std.", "error", "unit"]
+    assert lines[0].split() == ["parameter", "value", "std.", "error", "white", "unit"]
     for line, parameter in zip(lines[1:], base.parameters.values(), strict=False):
-        name, value, error, unit = line.split()
+        name, value, error, white, unit = line.split()
         assert (name, unit) == (parameter.name, parameter.unit)
         assert float(value) == pytest.approx(parameter.value, rel=1e-5)
         assert float(error) == pytest.approx(parameter.standard_error, rel=0.06)
+        assert float(white) == pytest.approx(parameter.standard_error_white, rel=0.06)
     assert lines[-2].endswith("400 rows")
     assert lines[-1] == f"converged, {base.method}"
     assert repr(base).startswith("<Calibration: converged\n")
@@ -94,6 +95,9 @@ def test_a_calibration_saves_and_loads(base: sepcal.Calibration, tmp_path: Path)
     assert loaded.parameters == base.parameters
     assert loaded.flight is None
     assert_allclose(loaded.covariance, base.covariance, rtol=1e-12)
+    white = np.diag(base.covariance_white)
+    assert_allclose(np.diag(loaded.covariance_white), white, rtol=1e-12)
+    assert np.isnan(loaded.covariance_white).sum() == len(white) * (len(white) - 1)
     assert pickle.loads(pickle.dumps(base)).to_json() == base.to_json()
 
 

@@ -175,7 +175,8 @@ def test_shell_example_finds_the_truth(tmp_path):
 def test_the_missing_effect_is_missed_and_found(ran):
     folder, _ = ran["11_missing_effect.sh"]
     scale = json.loads((folder / "base.json").read_text())["parameters"]["lambda_va"]
-    assert scale["value"] - 0.05 > 10 * scale["standard_error"]
+    assert scale["value"] - 0.05 > 10 * scale["standard_error_white"]
+    assert scale["standard_error"] > 5 * scale["standard_error_white"]
     check_truth(folder / "next.json", folder / "truth.json")
 
 

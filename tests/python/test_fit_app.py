@@ -65,7 +65,8 @@ def test_parameters(bench: Bench):
         unit = "m/s" if name == "b_va" else "rad" if name[:2] == "b_" else None
         assert entry["unit"] == (unit or UNITS[name.split("_")[0]])
         assert is_number(entry["value"])
-        assert entry["standard_error"] == entry["standard_error_white"] > 0
+        assert entry["standard_error_white"] > 0  # the simulated noise is white
+        assert entry["standard_error"] == pytest.approx(entry["standard_error_white"], rel=0.1)
         assert entry["at_bound"] is False
         if name in bounds:
             assert [entry["lower"], entry["upper"]] == pytest.approx([-bounds[name], bounds[name]])
@@ -119,7 +120,7 @@ def test_defaults_are_carried(bench: Bench):
         "effects": [], "stage_one": "", "stage_two": "", "bounds": {}, "start": {}, "fix": {},
         "free": [], "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0,
         "descents": 8, "second_stage": "auto", "noise_tolerance": 1e-10, "noise_iterations": 100,
-        "iterations": 200, "threads": 0, "drop_invalid": False,
+        "iterations": 200, "coloured_errors": True, "threads": 0, "drop_invalid": False,
     }  # fmt: skip
 
 

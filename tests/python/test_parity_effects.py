@@ -101,7 +101,7 @@ def assert_same_minimum(
     places = [fit.names.index(name) for name in model.parameters]
     product = np.outer(errors, errors)
     assert_allclose(
-        fit.covariance[np.ix_(places, places)] / product,
+        fit.covariance_white[np.ix_(places, places)] / product,
         expected.covariance / product,
         rtol=0,
         atol=1e-6 if exact else 1e-2,

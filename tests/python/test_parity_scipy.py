@@ -90,7 +90,7 @@ def test_standard_errors(fit: sepcal.Fit, expected: Estimate, case: Case) -> Non
 def test_covariance(fit: sepcal.Fit, expected: Estimate) -> None:
     """Every entry to 1e-6 of its two standard errors."""
     scale = np.outer(expected.standard_errors, expected.standard_errors)
-    assert_allclose(fit.covariance / scale, expected.covariance / scale, rtol=0, atol=1e-6)
+    assert_allclose(fit.covariance_white / scale, expected.covariance / scale, rtol=0, atol=1e-6)
 
 
 def test_cost_and_rmse(fit: sepcal.Fit, expected: Estimate, case: Case) -> None:
@@ -123,7 +123,7 @@ def test_scalar_example_1_against_its_closed_form(second_stage: str) -> None:
     """Amplitude and phase of a sinusoid by linear regression."""
     case = state_case("scalar_1")
     fit = fit_case(case, second_stage, case.noise_by_output)
-    standard_errors = np.sqrt(np.diag(fit.covariance))
+    standard_errors = np.sqrt(np.diag(fit.covariance_white))
     assert_values_agree(fit.values, fit_scalar_example_1(case.record), standard_errors)
 
 

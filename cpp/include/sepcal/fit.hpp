@@ -31,7 +31,7 @@ struct Parameter {
   std::string unit;
   double value = 0.0;
   double standard_error = 0.0;        // NaN where undefined: fixed, at a bound, singular
-  double standard_error_white = 0.0;  // the same as long as residuals are taken as white
+  double standard_error_white = 0.0;  // what it would be if the residuals were white
   double lower = -infinity;
   double upper = infinity;
   bool at_bound = false;
@@ -52,11 +52,15 @@ struct Fit {
   std::vector<Parameter> parameters;
   int n_1 = 0;  // how many of them are linear
 
-  /// Covariance of the estimates (n x n, parameters' order): (J' R^-1 J)^-1, times M / (M - n)
-  /// where R was estimated, M = rows x outputs. NaN in the rows of parameters without a standard
-  /// error.
+  /// Covariance of the estimates (n x n, parameters' order), behind standard_error and correlation:
+  /// as the noise model of each output's residual has it. Equal to the white one where no other
+  /// noise is better by AIC, under 30 rows, and by FitOptions::coloured_errors. NaN in the rows of
+  /// parameters without a standard error.
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd correlation;
+  /// The same for white residuals: (J' R^-1 J)^-1, times M / (M - n) where R was estimated, M =
+  /// rows x outputs. Of a calibration that was read from JSON: its diagonal, NaN elsewhere.
+  Eigen::MatrixXd covariance_white;
 
   std::vector<OutputValue> noise;  // standard deviation: given, or from R-hat = SSE / N
   std::vector<OutputValue> rmse;   // unwhitened, in the output's unit

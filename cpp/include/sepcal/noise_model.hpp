@@ -20,9 +20,9 @@ namespace sepcal {
 /// finite variance and the level is always free (from 1e-6 below on: the variance is lost in
 /// rounding there). The differences know no border at d = 0.5.
 struct NoiseModel {
-  double d = 0.0;       // in [0, 1)
-  Eigen::VectorXd phi;  // p coefficients of a stationary autoregression
-  double sigma = 1.0;   // standard deviation of the innovations, in the unit of e
+  double d = 0.0;            // in [0, 1)
+  Eigen::VectorXd phi = {};  // p coefficients of a stationary autoregression
+  double sigma = 1.0;        // standard deviation of the innovations, in the unit of e
   bool free_level = false;
 
   int order() const { return static_cast<int>(phi.size()); }

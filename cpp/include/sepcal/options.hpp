@@ -75,6 +75,10 @@ struct FitOptions {
   /// Iterations of one nonlinear minimisation.
   int iterations = 200;
 
+  /// Standard errors allow for residuals that are not white, by a noise model of each output's;
+  /// false: they equal the white ones, and the fit does without that pass.
+  bool coloured_errors = true;
+
   /// Threads, the caller's included; 0: one a core. The result does not depend on it.
   int threads = 0;
   FitProgress progress = {};

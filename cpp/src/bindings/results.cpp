@@ -80,15 +80,15 @@ py::list describe(const std::vector<EffectSetting>& effects) {
 }  // namespace
 
 py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects) {
-  return py::dict("status"_a = to_string(fit.status), "message"_a = fit.message,
-                  "parameters"_a = describe(fit.parameters), "covariance"_a = fit.covariance,
-                  "correlation"_a = fit.correlation, "noise"_a = describe(fit.noise),
-                  "rmse"_a = describe(fit.rmse), "cost"_a = fit.cost, "rows"_a = fit.rows,
-                  "unobservable"_a = describe(fit.identifiability.unobservable),
-                  "weak"_a = describe(fit.identifiability.weak),
-                  "stage_one"_a = describe_stage_one(fit), "method"_a = to_string(fit.method),
-                  "iterations"_a = fit.iterations, "noise_iterations"_a = fit.noise_iterations,
-                  "effects"_a = describe(effects));
+  return py::dict(
+      "status"_a = to_string(fit.status), "message"_a = fit.message,
+      "parameters"_a = describe(fit.parameters), "covariance"_a = fit.covariance,
+      "correlation"_a = fit.correlation, "covariance_white"_a = fit.covariance_white,
+      "noise"_a = describe(fit.noise), "rmse"_a = describe(fit.rmse), "cost"_a = fit.cost,
+      "rows"_a = fit.rows, "unobservable"_a = describe(fit.identifiability.unobservable),
+      "weak"_a = describe(fit.identifiability.weak), "stage_one"_a = describe_stage_one(fit),
+      "method"_a = to_string(fit.method), "iterations"_a = fit.iterations,
+      "noise_iterations"_a = fit.noise_iterations, "effects"_a = describe(effects));
 }
 
 }  // namespace sepcal::bindings

@@ -141,8 +141,11 @@ std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
     }
     const auto n = static_cast<Eigen::Index>(slopes.size());
     const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(slopes.data(), n);
-    const double error = n == 0 ? not_a_number : std::sqrt(g.dot(fit.covariance(from, from) * g));
-    derived.push_back({quantity.name, quantity.unit, quantity.value, error, error});
+    const auto error = [&](const Eigen::MatrixXd& covariance) {
+      return n == 0 ? not_a_number : std::sqrt(g.dot(covariance(from, from) * g));
+    };
+    derived.push_back({quantity.name, quantity.unit, quantity.value, error(fit.covariance),
+                       error(fit.covariance_white)});
   }
   return derived;
 }

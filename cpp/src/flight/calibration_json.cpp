@@ -88,7 +88,8 @@ void read_parameters(const Json& parameters, const Calibration& calibration, Fit
   for (const Variable& own : calibration.probe->model().tables().parameters()) fit[own.name];
 }
 
-/// Correlation holds all that the covariance does beyond the standard errors.
+/// Correlation holds all that the covariance does beyond the standard errors. Of the white one
+/// nothing but the standard errors is kept.
 void read_correlation(const Json& correlation, Fit& fit) {
   const auto n = static_cast<Index>(fit.parameters.size());
   fit.correlation = Eigen::MatrixXd::Constant(n, n, undefined);
@@ -96,8 +97,11 @@ void read_correlation(const Json& correlation, Fit& fit) {
   fit.correlation(indices, indices) =
       matrix_of(correlation.at("matrix"), static_cast<Index>(indices.size()));
   VectorXd errors(n);
+  fit.covariance_white = Eigen::MatrixXd::Constant(n, n, undefined);
   for (Index k = 0; k < n; ++k) {
-    errors[k] = fit.parameters[static_cast<std::size_t>(k)].standard_error_white;
+    const Parameter& parameter = fit.parameters[static_cast<std::size_t>(k)];
+    errors[k] = parameter.standard_error;
+    fit.covariance_white(k, k) = parameter.standard_error_white * parameter.standard_error_white;
   }
   fit.covariance = errors.asDiagonal() * fit.correlation * errors.asDiagonal();
 }

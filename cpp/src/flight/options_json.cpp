@@ -79,6 +79,7 @@ Json write_options(const Calibration& calibration) {
   options["noise_tolerance"] = fit.noise_tolerance;
   options["noise_iterations"] = fit.noise_iterations;
   options["iterations"] = fit.iterations;
+  options["coloured_errors"] = fit.coloured_errors;
   options["threads"] = fit.threads;
   options["drop_invalid"] = calibration.options.drop_invalid;
   return options;
@@ -118,6 +119,7 @@ CalibrationOptions read_options(const Json& options) {
   fit.noise_tolerance = options.at("noise_tolerance").get<double>();
   fit.noise_iterations = whole_number<int>(options.at("noise_iterations"));
   fit.iterations = whole_number<int>(options.at("iterations"));
+  fit.coloured_errors = options.at("coloured_errors").get<bool>();
   fit.threads = whole_number<int>(options.at("threads"));
   result.drop_invalid = options.at("drop_invalid").get<bool>();
   return result;

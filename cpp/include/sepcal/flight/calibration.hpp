@@ -38,7 +38,7 @@ struct Derived {
   std::string unit;
   double value = 0.0;
   double standard_error = 0.0;        // NaN where that of a parameter it depends on is
-  double standard_error_white = 0.0;  // the same as long as residuals are taken as white
+  double standard_error_white = 0.0;  // what it would be if the residuals were white
 };
 
 /// One step of a chain of added effects. Undefined numbers are NaN; errors are RMSE over all
