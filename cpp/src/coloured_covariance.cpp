@@ -24,10 +24,9 @@ std::vector<Segment> gathered_segments(const Measurements& measurements) {
   return segments;
 }
 
-/// Akaike's criterion, corrected for few rows.
+/// Schwarz's criterion: under white noise AIC would take chance for colour in one fit of six.
 double criterion(double minus_two_log_likelihood, double parameters, Index rows) {
-  const auto n = static_cast<double>(rows);
-  return minus_two_log_likelihood + 2.0 * parameters * n / (n - parameters - 1.0);
+  return minus_two_log_likelihood + parameters * std::log(static_cast<double>(rows));
 }
 
 /// -2 ln L of white noise at its best sigma; with a free level, of the differences.
@@ -41,6 +40,16 @@ double white_likelihood(const VectorXd& e, const std::vector<Segment>& segments,
 }
 
 }  // namespace
+
+std::vector<Segment> join_segments(const std::vector<Segment>& segments) {
+  std::vector<Segment> joined;
+  std::size_t row = 0;
+  for (const Segment& segment : segments) {
+    joined.push_back({segment.label, row, row + segment.rows()});
+    row += segment.rows();
+  }
+  return joined;
+}
 
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
                                               const std::vector<Segment>& segments) {

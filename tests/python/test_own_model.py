@@ -56,7 +56,8 @@ def test_scipy_finds_the_same(second_stage: str) -> None:
     errors = np.sqrt(np.diag(np.linalg.inv(found.jac.T @ found.jac)))
     assert fit.status == "converged"
     assert_allclose(fit.values / errors, found.x / errors, rtol=0, atol=1e-5)  # SciPy's own stop
-    assert_allclose([fit[name].standard_error for name in fit.names], errors, rtol=1e-6)
+    white = [fit[name].standard_error_white for name in fit.names]
+    assert_allclose(white, errors, rtol=1e-6)
 
 
 def test_threads_do_not_change_a_bit() -> None:

@@ -54,7 +54,7 @@ struct Fit {
 
   /// Covariance of the estimates (n x n, parameters' order), behind standard_error and correlation:
   /// as the noise model of each output's residual has it. Equal to the white one where no other
-  /// noise is better by AIC, under 30 rows, and by FitOptions::coloured_errors. NaN in the rows of
+  /// noise is better by BIC, under 30 rows, and by FitOptions::coloured_errors. NaN in the rows of
   /// parameters without a standard error.
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd correlation;
