@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "failure_tables.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 
 namespace sepcal::app {
@@ -159,6 +160,7 @@ std::string comparison_table(const Comparison& comparison, const Calibration& ca
   for (const Misfit& misfit : comparison.overall) {
     text += fmt::format("{}: {}\n", misfit.output, verdict_on_noise(misfit));
   }
+  text += fmt::format("\n{}\n{}", channel_table(comparison), window_table(comparison));
   text += "\nrmse and mean of measured - modelled, in";
   for (const Misfit& misfit : comparison.overall) {
     text += fmt::format(" {} [{}]", misfit.output, misfit.unit);

@@ -58,7 +58,7 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
   const double square = rows.squaredNorm();
   if (rows.size() < fewest_rows || !(square > 0.0)) return std::nullopt;
   const NoiseFit fit = fit_noise(e, segments);
-  const NoiseModel white{.sigma = std::sqrt(square / static_cast<double>(rows.size()))};
+  NoiseModel white{.sigma = std::sqrt(square / static_cast<double>(rows.size()))};
   if (fit.model.d == 0.0 && fit.model.order() == 0) return white;
   const double coloured =
       criterion(fit.minus_two_log_likelihood, fit.model.order() + 2.0, fit.informative_rows);

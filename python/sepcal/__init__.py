@@ -15,7 +15,7 @@ north-east-down.
 from sepcal._core import Error, __version__
 from sepcal.calibration import Applied, Calibration, Derived, HistoryEntry, load
 from sepcal.catalogue import CataloguedEffect, effects
-from sepcal.comparison import Comparison, Misfit
+from sepcal.comparison import ChannelMisfit, Comparison, Misfit, Window
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
 from sepcal.models import (
@@ -36,6 +36,7 @@ __all__ = [
     "Applied",
     "Calibration",
     "CataloguedEffect",
+    "ChannelMisfit",
     "Combination",
     "Comparison",
     "Derived",
@@ -59,6 +60,7 @@ __all__ = [
     "SeparableModel",
     "SimulatedFlight",
     "StageOne",
+    "Window",
     "__version__",
     "effects",
     "fit",

@@ -95,11 +95,29 @@ class MisfitDescription(TypedDict):
     mean: float
     lag_one: float
 
+class ChannelDescription(TypedDict):
+    driver: str
+    output: str
+    share_line: float
+    share_smooth: float
+    slope: float
+    slope_error: float
+    unit: str
+
+class WindowDescription(TypedDict):
+    first_s: float
+    last_s: float
+    rows: int
+    rmse: dict[str, float]
+    mean: dict[str, float]
+
 class ComparisonDescription(TypedDict):
     status: str
     message: str
     overall: list[MisfitDescription]
     where: list[MisfitDescription]
+    channels: list[ChannelDescription]
+    windows: list[WindowDescription]
     time: Array
     residuals: Array
     notes: list[str]

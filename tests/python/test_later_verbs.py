@@ -62,6 +62,7 @@ def test_compare(bench: Bench, flight: str):
     result = compared.result
     assert list(result) == [
         "schema_version", "model", "inputs", "status", "message", "rmse", "residual", "where",
+        "channels", "windows",
     ]  # fmt: skip
     assert result["inputs"] == {
         "file": flight,

@@ -71,13 +71,40 @@ py::list describe(const std::vector<Misfit>& misfits) {
   return list;
 }
 
+py::list describe(const std::vector<ChannelMisfit>& channels) {
+  py::list list;
+  for (const ChannelMisfit& channel : channels) {
+    list.append(py::dict("driver"_a = channel.driver, "output"_a = channel.output,
+                         "share_line"_a = channel.share_line,
+                         "share_smooth"_a = channel.share_smooth, "slope"_a = channel.slope,
+                         "slope_error"_a = channel.slope_error, "unit"_a = channel.unit));
+  }
+  return list;
+}
+
+py::list describe(const std::vector<Window>& windows) {
+  const auto by_output = [](const std::vector<OutputValue>& values) {
+    py::dict dictionary;
+    for (const OutputValue& value : values) dictionary[py::str(value.name)] = value.value;
+    return dictionary;
+  };
+  py::list list;
+  for (const Window& window : windows) {
+    list.append(py::dict("first_s"_a = window.first_s, "last_s"_a = window.last_s,
+                         "rows"_a = window.rows, "rmse"_a = by_output(window.rmse),
+                         "mean"_a = by_output(window.mean)));
+  }
+  return list;
+}
+
 /// Keys as the fields of sepcal.Comparison.
 py::dict describe(Comparison comparison) {
-  return py::dict("status"_a = to_string(comparison.status), "message"_a = comparison.message,
-                  "overall"_a = describe(comparison.overall),
-                  "where"_a = describe(comparison.where), "residuals"_a = comparison.residuals,
-                  "notes"_a = comparison.notes, "json"_a = to_json(comparison),
-                  "time"_a = adopt(std::move(comparison.time)));
+  return py::dict(
+      "status"_a = to_string(comparison.status), "message"_a = comparison.message,
+      "overall"_a = describe(comparison.overall), "where"_a = describe(comparison.where),
+      "channels"_a = describe(comparison.channels), "windows"_a = describe(comparison.windows),
+      "residuals"_a = comparison.residuals, "notes"_a = comparison.notes,
+      "json"_a = to_json(comparison), "time"_a = adopt(std::move(comparison.time)));
 }
 
 /// {name: keys as the fields of sepcal.Derived}

@@ -8,10 +8,12 @@
 #include <limits>
 
 #include "calibrated_flight.hpp"
-#include "json_values.hpp"
+#include "coloured_covariance.hpp"
+#include "residual_channels.hpp"
 #include "sepcal/measurements.hpp"
 #include "sweep.hpp"
 #include "thread_pool.hpp"
+#include "worst_windows.hpp"
 
 namespace sepcal {
 namespace {
@@ -29,17 +31,6 @@ struct Part {
   std::string name;
   std::vector<Stretch> stretches;
 };
-
-/// Residual rows stand in the record's order, segment after segment.
-std::vector<Stretch> stretches_of(const Record& record) {
-  std::vector<Stretch> stretches;
-  std::size_t row = 0;
-  for (const Segment& segment : record.segments()) {
-    stretches.push_back({segment.label, row, row + segment.rows()});
-    row += segment.rows();
-  }
-  return stretches;
-}
 
 /// One part a label, in order of first appearance.
 std::vector<Part> parts_by_label(const std::vector<Stretch>& stretches) {
@@ -126,7 +117,8 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
     result.time.insert(result.time.end(), part.begin(), part.end());
   }
 
-  const std::vector<Stretch> stretches = stretches_of(record);
+  // Residual rows stand in the record's order, segment after segment.
+  const std::vector<Stretch> stretches = join_segments(record.segments());
   std::vector<Part> parts = parts_by_label(stretches);
   if (parts.size() < 2) parts = parts_by_time(stretches, result.time);
   const auto& outputs = probe.model().tables().outputs;
@@ -139,36 +131,10 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
       result.where.push_back(measure(part, result.residuals, static_cast<Index>(j), outputs[j]));
     }
   }
+  result.channels = compare_channels(record, probe.model().tables(), result.residuals, pool);
+  result.windows =
+      find_worst_windows(result.time, result.residuals, result.overall, calibration.fit.noise);
   return result;
-}
-
-std::string to_json(const Comparison& comparison) {
-  Json root;
-  root["schema_version"] = schema_version;
-  root["model"] = comparison.model;
-  root["inputs"] = {{"file", comparison.flight.file},
-                    {"sha256", comparison.flight.sha256},
-                    {"rows", comparison.flight.rows},
-                    {"rows_used", comparison.flight.rows_used}};
-  root["status"] = to_string(comparison.status);
-  root["message"] = comparison.message;
-  root["rmse"] = Json::object();
-  root["residual"] = Json::object();
-  for (const Misfit& misfit : comparison.overall) {
-    root["rmse"][misfit.output] = number(misfit.rmse);
-    root["residual"][misfit.output] = {{"lag_one", number(misfit.lag_one)},
-                                       {"mean", number(misfit.mean)}};
-  }
-  root["where"] = Json::array();
-  for (const Misfit& misfit : comparison.where) {
-    root["where"].push_back({{"segment", misfit.segment},
-                             {"output", misfit.output},
-                             {"rows", misfit.rows},
-                             {"rmse", number(misfit.rmse)},
-                             {"mean", number(misfit.mean)},
-                             {"lag_one", number(misfit.lag_one)}});
-  }
-  return text_of(root);
 }
 
 }  // namespace sepcal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The model against the measurements: how far off each output is, in which maneuver, and whether
-// the residuals are noise or still carry a shape (lag-one correlation near 0 or near 1).
+// The model against the measurements: how far off each output is, in which maneuver, against which
+// channel and when, and whether the residuals are noise or still carry a shape (lag-one correlation
+// near 0 or near 1).
 #pragma once
 
 #include <Eigen/Core>
@@ -22,24 +23,51 @@ struct Misfit {
   double lag_one = 0.0;  // correlation of neighbouring residuals, never across a segment's edge
 };
 
+/// One output's residual against one channel: what share of its variance a straight line, and a
+/// natural spline of six even knots, would explain. Noise alone gives the line 1 in N on average.
+struct ChannelMisfit {
+  std::string driver;  // "altitude_m"; "time", "alpha", "roll" for what the probe knows by itself
+  std::string output;
+  double share_line = 0.0;    // R^2 within [0, 1]
+  double share_smooth = 0.0;  // at least share_line
+  double slope = 0.0;         // of the line
+  double slope_error = 0.0;   // its standard error in the residual's own noise, which need not be
+                              // white and takes all of the residual for noise: rather too large
+  std::string unit;           // of the slope: "m/s per m"
+};
+
+/// A stretch of about a twentieth of the rows.
+struct Window {
+  double first_s = 0.0;  // time of its first and last row
+  double last_s = 0.0;
+  std::size_t rows = 0;
+  std::vector<OutputValue> rmse = {};
+  std::vector<OutputValue> mean = {};  // of z - model
+};
+
 struct Comparison {
   std::string model;
   FittedFlight flight;  // the flight compared with, not the one fitted
   FitStatus status;     // of the calibration, repeated
   std::string message;
-  std::vector<Misfit> overall;     // one an output
-  std::vector<Misfit> where;       // maneuver by maneuver, outputs within; in the flight's order
-  std::vector<std::string> notes;  // for people; not part of the JSON
-  std::vector<double> time;        // [s] of every row used
-  Eigen::MatrixXd residuals;       // rows x n_z, z - model
+  std::vector<Misfit> overall;  // one an output
+  std::vector<Misfit> where;    // maneuver by maneuver, outputs within; in the flight's order
+  std::vector<ChannelMisfit> channels;  // by share_smooth, largest first
+  std::vector<Window> windows;          // the five worst in units of the fit's noise, worst first
+  std::vector<std::string> notes;       // for people; not part of the JSON
+  std::vector<double> time;             // [s] of every row used
+  Eigen::MatrixXd residuals;            // rows x n_z, z - model
 };
 
 /// Runs of one label are taken together; a flight with fewer than two labels is cut into ten spans
-/// of equal length. Throws Error for bad input, as calibrate() does.
+/// of equal length. Channels are all numeric columns of the log and what the probe derives from
+/// them, but for its outputs and what is constant. Throws Error for bad input, as calibrate() does.
 Comparison compare(const Calibration& calibration, const Flight& flight);
 
 /// The JSON object: model, inputs, status, message, rmse {output}, residual {output: {lag_one}},
-/// where [{segment, output, rows, rmse, mean, lag_one}].
+/// where [{segment, output, rows, rmse, mean, lag_one}], channels [{driver, output, share_line,
+/// share_smooth, slope, slope_error, unit}], windows [{first_s, last_s, rows, rmse {output}, mean
+/// {output}}].
 std::string to_json(const Comparison& comparison);
 
 }  // namespace sepcal

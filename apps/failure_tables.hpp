@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a model fails, beside by maneuver: against which channel, and when.
+#pragma once
+
+#include <string>
+
+#include "sepcal/flight/comparison.hpp"
+
+namespace sepcal::app {
+
+/// The three channels that explain most of each output's residual, or a line saying that none does.
+std::string channel_table(const Comparison& comparison);
+
+/// The worst windows, each with the error and the mean of every output.
+std::string window_table(const Comparison& comparison);
+
+}  // namespace sepcal::app
