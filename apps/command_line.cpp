@@ -70,7 +70,9 @@ int run(Instrument& instrument, int argc, char** argv) {
   CLI::App cli(instrument.summary(), instrument.app());
   cli.require_subcommand(1);
   cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
-  cli.footer("Exit codes: 0 done, 2 bad input or usage, 4 not identifiable, 5 did not converge.");
+  cli.footer(
+      "Exit codes: 0 done, 2 bad input or usage, 3 an effect is missing, 4 not identifiable,\n"
+      "5 did not converge, 6 something is missing that no candidate explains.");
 
   Arguments arguments;
   FitArguments fit_arguments;
@@ -103,6 +105,18 @@ int run(Instrument& instrument, int argc, char** argv) {
   add_drop_invalid(compare);
   add_json(compare);
 
+  CLI::App& diagnose = *cli.add_subcommand("diagnose", "names the physical effect that is missing");
+  add_flight(diagnose);
+  add_calibration(diagnose);
+  add_file(diagnose, "-o,--output", arguments.output, "writes the diagnosis there")
+      ->type_name("D.json");
+  diagnose
+      .add_option("--inject", arguments.inject,
+                  "puts an effect into the measurements first: would it have been found?")
+      ->type_name("E=SIZE");
+  add_drop_invalid(diagnose);
+  add_json(diagnose);
+
   CLI::App& add = *cli.add_subcommand("add", "adds a physical effect and fits again");
   add_flight(add);
   add_calibration(add);
@@ -130,8 +144,6 @@ int run(Instrument& instrument, int argc, char** argv) {
   CLI::App& effects = *cli.add_subcommand("effects", "lists the physical effects a model may lack");
   add_json(effects);
 
-  cli.add_subcommand("diagnose", "not there yet")->allow_extras();
-
   try {
     cli.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -147,9 +159,8 @@ int run(Instrument& instrument, int argc, char** argv) {
     if (add.parsed()) return verbs.add();
     if (apply.parsed()) return verbs.apply();
     if (simulate.parsed()) return verbs.simulate(simulation.resolve());
-    if (effects.parsed()) return verbs.effects();
-    const std::string verb = cli.get_subcommands().front()->get_name();
-    throw Error(verb + " is not there yet; compare shows where the model fails");
+    if (diagnose.parsed()) return verbs.diagnose();
+    return verbs.effects();
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "{}: memory ran out; take fewer --samples or --rows, or a shorter log\n",
                instrument.app());

@@ -7,12 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "diagnosis_table.hpp"
 #include "flight/text_file.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/diagnosing.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "tables.hpp"
@@ -39,6 +41,17 @@ int exit_code(FitStatus status) {
       return 4;
     default:
       return 5;
+  }
+}
+
+int exit_code(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return 0;
+    case Verdict::effect_missing:
+      return 3;
+    default:
+      return 6;
   }
 }
 
@@ -84,6 +97,36 @@ int Verbs::compare() const {
   print_notes(comparison.notes);
   print(arguments_.json ? to_json(comparison) : comparison_table(comparison, calibration));
   return 0;
+}
+
+int Verbs::diagnose() const {
+  std::optional<OutputFile> output;
+  if (!arguments_.output.empty()) {
+    check_not_input(arguments_.output, arguments_.flight);
+    check_not_input(arguments_.output, arguments_.calibration);
+    output.emplace(arguments_.output);
+  }
+  std::optional<HiddenEffect> injected;
+  if (!arguments_.inject.empty()) injected = parse_hidden_effect(arguments_.inject);
+  const Calibration base = read_base();
+  const Flight flight = read_flight();
+  ProgressLine line;
+  DiagnosisOptions options;
+  options.threads = base.options.fit.threads;
+  options.progress = [&](std::string_view task, double fraction) { line.show(task, fraction); };
+  const FlightDiagnosis diagnosis = injected ? diagnose_with(*injected, base, flight, {}, options)
+                                             : sepcal::diagnose(base, flight, {}, options);
+  line.clear();
+  print_notes(diagnosis.notes);
+  const std::string json = to_json(diagnosis);
+  if (output) {
+    output->write(json);
+    output->commit();
+  }
+  print(arguments_.json ? json
+                        : diagnosis_table(diagnosis, instrument_.app(), arguments_.calibration));
+  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  return exit_code(diagnosis.diagnosis.verdict);
 }
 
 int Verbs::add() const {

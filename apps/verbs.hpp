@@ -16,12 +16,14 @@ struct Arguments {
   std::string output;
   std::string truth;
   std::string effect;
+  std::string inject;  // "E=SIZE", or empty
   bool json = false;
   bool drop_invalid = false;  // of a later verb: whatever the calibration says
 };
 
-/// Each returns the exit code: 0, or what the fit's status says (4 not identifiable, 5 not
-/// converged). All throw Error for bad input; nothing is written then.
+/// Each returns the exit code: 0, or what the fit's status (4 not identifiable, 5 not converged) or
+/// the diagnosis says (3 a missing effect, 6 unexplained). All throw Error for bad input; nothing
+/// is written then.
 class Verbs {
  public:
   Verbs(const Instrument& instrument, const Arguments& arguments)
@@ -29,6 +31,7 @@ class Verbs {
 
   int fit(CalibrationOptions options) const;
   int compare() const;
+  int diagnose() const;
   int add() const;
   int apply() const;
   int simulate(SimulationOrder order) const;

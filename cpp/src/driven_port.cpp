@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "driven_rows.hpp"
 #include "parameter_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/named_effects.hpp"
@@ -25,27 +26,11 @@ void forget_beyond(std::span<const double> time, const Segment& segment, double 
   }
 }
 
-/// phi over the record's segments (rows in segments x functions); NaN elsewhere and where
-/// a delay reaches beyond a segment.
-MatrixXd evaluate_over(const Driver& driver, double shape, const Record& record) {
-  const auto rows = static_cast<Index>(record.length());
-  MatrixXd phi = MatrixXd::Constant(rows, driver.functions(), not_a_number);
-  for (const Segment& segment : record.segments()) {
-    const double* d = nullptr;
-    if (driver.input()) d = record.column(driver.input()->name).data() + segment.first;
-    MatrixXd part(static_cast<Index>(segment.rows()), driver.functions());
-    driver.evaluate(d, segment.first, shape, part, nullptr);
-    phi.middleRows(static_cast<Index>(segment.first), part.rows()) = part;
-    if (driver.reach() > 0) forget_beyond(record.column("time"), segment, shape, phi);
-  }
-  return phi;
-}
-
 /// The largest |phi| of a driver over the record, its shape in the middle of its bounds.
 double largest(const Driver& driver, const Record& record) {
   const auto& shape = driver.shape();
   const double middle = shape ? 0.5 * (shape->lower + shape->upper) : 0.0;
-  const MatrixXd phi = evaluate_over(driver, middle, record);
+  const MatrixXd phi = drive(driver, middle, record);
   double most = 0.0;
   for (const double value : phi.reshaped()) {
     if (std::isfinite(value)) most = std::max(most, std::abs(value));
@@ -61,6 +46,20 @@ const Variable& input_of(const BlockModel& model, const std::string& name) {
 }
 
 }  // namespace
+
+MatrixXd drive(const Driver& driver, double shape, const Record& record) {
+  const auto rows = static_cast<Index>(record.length());
+  MatrixXd phi = MatrixXd::Constant(rows, driver.functions(), not_a_number);
+  for (const Segment& segment : record.segments()) {
+    const double* d = nullptr;
+    if (driver.input()) d = record.column(driver.input()->name).data() + segment.first;
+    MatrixXd part(static_cast<Index>(segment.rows()), driver.functions());
+    driver.evaluate(d, segment.first, shape, part, nullptr);
+    phi.middleRows(static_cast<Index>(segment.first), part.rows()) = part;
+    if (driver.reach() > 0) forget_beyond(record.column("time"), segment, shape, phi);
+  }
+  return phi;
+}
 
 Effect make_driven(const std::string& owner, const Port& port, const DriverPointer& driver,
                    const std::string& unit, const BlockModel& model, const Record& record) {
@@ -98,7 +97,7 @@ VectorXd port_total(const std::vector<Effect>& effects, const std::string& port,
       s[j] = value_of(
           values, effect.name + "." + component + driver.suffixes()[static_cast<std::size_t>(j)]);
     }
-    const VectorXd share = evaluate_over(driver, shape, record) * s;
+    const VectorXd share = drive(driver, shape, record) * s;
     total = total.size() == 0 ? share : VectorXd(total + share);
   }
   return total;

@@ -93,9 +93,8 @@ MatrixXd differentiate(const Likelihood& likelihood, const VectorXd& theta, cons
   return slopes;
 }
 
-Minimum minimise(const Likelihood& likelihood, const VectorXd& start) {
+Minimum minimise(const Likelihood& likelihood, const VectorXd& start, double least_gain) {
   constexpr int most_steps = 30;
-  constexpr double least_gain = 1e-4;  // in -2 ln L
   const auto n = static_cast<double>(likelihood.rows());
   Minimum best{likelihood.clip(start)};
   VectorXd y = likelihood.evaluate(best.theta);
@@ -221,7 +220,8 @@ NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segmen
     constexpr double hopeless = 20.0;  // in AIC: more than refining a scanned start gains
     for (std::size_t k = 0; k < 2; ++k) {
       if (first[k] > lowest + hopeless) continue;
-      const Minimum fitted = minimise(differences, pack(orders[k].d, orders[k].partial));
+      const Minimum fitted =
+          minimise(differences, pack(orders[k].d, orders[k].partial), options.least_gain);
       evaluations += fitted.evaluations;
       const double criterion = judge(fitted.square, orders[k]);
       if (theta.size() > 0 && !(criterion < lowest)) continue;
@@ -231,7 +231,7 @@ NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segmen
     free_level = theta[0] >= free_from;
   }
   const Likelihood likelihood(NoiseRows(rows, lengths, free_level));
-  const Minimum best = minimise(likelihood, theta);
+  const Minimum best = minimise(likelihood, theta, options.least_gain);
   NoiseFit fit;
   fit.model.d = best.theta[0];
   fit.model.phi = Likelihood::phi_of(best.theta);

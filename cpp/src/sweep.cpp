@@ -50,6 +50,13 @@ void Sweep::fill_linear(const Block& block, const Measurements::Range& range, co
   subtract_from_outputs(range, rows.rightCols<1>().col(0));
 }
 
+void Sweep::fill_tangent(const Block& block, const Measurements::Range& range, const VectorXd& xi1,
+                         const VectorXd& xi2, Carry* carry, Ref<MatrixXd> rows) const {
+  model_.evaluate(block, values_of(xi2), values_of(xi1), carry, rows);
+  subtract_from_outputs(range, rows.rightCols<1>().col(0));
+  rows.rightCols<1>().noalias() -= rows.leftCols(tables().n_1()) * xi1;
+}
+
 void Sweep::for_each_block(const Visit& visit) const {
   const auto& chunks = measurements_.chunks();
   pool_.for_each(chunks.size(), [&](std::size_t c) {
@@ -77,19 +84,35 @@ std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
 
 std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
                                                      const VectorXd& xi2) const {
-  const int n_1 = tables().n_1();
-  const int columns = n_1 + tables().n_2() + 1;
+  const int columns = tables().n_1() + tables().n_2() + 1;
   const int n_z = tables().n_z();
   std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
   for_each_block(
       [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
         rows.resize(n_z * rows_of(range), columns);
-        model_.evaluate(block, values_of(xi2), values_of(xi1), carry, rows);
-        subtract_from_outputs(range, rows.col(columns - 1));
-        rows.col(columns - 1).noalias() -= rows.leftCols(n_1) * xi1;
+        fill_tangent(block, range, xi1, xi2, carry, rows);
         absorb_by_output(rows, rows_of(range), parts[c]);
       });
   return merge_in_order(parts, n_z, columns);
+}
+
+std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
+  const int columns = tables().n_1() + tables().n_2() + 1;
+  const int n_z = tables().n_z();
+  std::vector<MatrixXd> outputs(
+      static_cast<std::size_t>(n_z),
+      MatrixXd(static_cast<Index>(measurements_.rows()), static_cast<Index>(columns)));
+  for_each_block(
+      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        rows.resize(n_z * rows_of(range), columns);
+        fill_tangent(block, range, xi1, xi2, carry, rows);
+        for (int j = 0; j < n_z; ++j) {
+          outputs[static_cast<std::size_t>(j)].middleRows(static_cast<Index>(range.offset),
+                                                          rows_of(range)) =
+              rows.middleRows(j * rows_of(range), rows_of(range));
+        }
+      });
+  return outputs;
 }
 
 MatrixXd Sweep::block_residuals(const Block& block, const Measurements::Range& range,
@@ -120,24 +143,6 @@ MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
       [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
         all.middleRows(static_cast<Index>(range.offset), rows_of(range)) =
             block_residuals(block, range, xi1, xi2, carry, rows);
-      });
-  return all;
-}
-
-std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
-  const int columns = tables().n_1() + tables().n_2();
-  const int n_z = tables().n_z();
-  std::vector<MatrixXd> all(static_cast<std::size_t>(n_z),
-                            MatrixXd(static_cast<Index>(measurements_.rows()), columns));
-  for_each_block(
-      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-        const Index count = rows_of(range);
-        rows.resize(n_z * count, columns + 1);
-        model_.evaluate(block, values_of(xi2), values_of(xi1), carry, rows);
-        for (Index j = 0; j < n_z; ++j) {
-          all[static_cast<std::size_t>(j)].middleRows(static_cast<Index>(range.offset), count) =
-              rows.block(j * count, 0, count, columns);
-        }
       });
   return all;
 }

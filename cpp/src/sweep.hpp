@@ -32,15 +32,16 @@ class Sweep {
   std::vector<TriangularFactor> tangent_factors(const Eigen::VectorXd& xi1,
                                                 const Eigen::VectorXd& xi2) const;
 
+  /// [A | D | r] at (xi1, xi2) of every selected row, output by output (n_z matrices of rows() rows
+  /// in the record's order): what depends on the order of rows, which a factor forgets.
+  std::vector<Eigen::MatrixXd> tangent_rows(const Eigen::VectorXd& xi1,
+                                            const Eigen::VectorXd& xi2) const;
+
   /// Sum of r^2 by output (n_z).
   Eigen::VectorXd squared_residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
 
   /// r of every selected row, in the record's order: rows() x n_z.
   Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
-
-  /// [A | D] of every selected row, in the record's order: n_z matrices of rows() x (n_1 + n_2).
-  std::vector<Eigen::MatrixXd> tangent_rows(const Eigen::VectorXd& xi1,
-                                            const Eigen::VectorXd& xi2) const;
 
   /// One unweighted factor of [A | z - b] over all outputs for every column of `samples`
   /// (n_2 x S). A block of data stays in the cache while all samples pass over it.
@@ -62,6 +63,10 @@ class Sweep {
   Eigen::MatrixXd block_residuals(const Block& block, const Measurements::Range& range,
                                   const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
                                   Carry* carry, Eigen::MatrixXd& rows) const;
+  /// A block's rows, (n_z * rows) x (n_1 + n_2 + 1): [A | D | r].
+  void fill_tangent(const Block& block, const Measurements::Range& range,
+                    const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2, Carry* carry,
+                    Eigen::Ref<Eigen::MatrixXd> rows) const;
   void subtract_from_outputs(const Measurements::Range& range,
                              Eigen::Ref<Eigen::VectorXd> values) const;
 

@@ -16,6 +16,7 @@ from sepcal._core import Error, __version__
 from sepcal.calibration import Applied, Calibration, Derived, HistoryEntry, load
 from sepcal.catalogue import CataloguedEffect, effects
 from sepcal.comparison import ChannelMisfit, Comparison, Misfit, Window
+from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
 from sepcal.models import (
@@ -40,7 +41,9 @@ __all__ = [
     "Combination",
     "Comparison",
     "Derived",
+    "Diagnosis",
     "Effect",
+    "EffectFinding",
     "EffectSetting",
     "Error",
     "Fit",
@@ -48,6 +51,7 @@ __all__ = [
     "FiveHoleProbe",
     "Flight",
     "HistoryEntry",
+    "Injection",
     "LocalMinimum",
     "Magnetometer",
     "Misfit",

@@ -3,13 +3,16 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Self
+
+import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
+from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit, to_fields
@@ -92,6 +95,39 @@ class Calibration(Fit):
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
         return Comparison._of(self.core.compare(self._or_fitted(flight, "compare(")._core))
+
+    def diagnose(
+        self,
+        flight: Flight | None = None,
+        *,
+        effects: Sequence[Effect] = (),
+        inject: Mapping[str, float | Sequence[float]] | None = None,
+        simulations: int = 199,
+        seed: int = 0,
+    ) -> Diagnosis:
+        """Which physical effect is missing on a flight, by default the fitted one?
+
+        Args:
+            flight: To diagnose.
+            effects: Candidates of your own, beside the catalogue's.
+            inject: One effect with its size (or one a coefficient) that is put into the
+                measurements first, to see whether it would have been found.
+            simulations: That calibrate the test of an effect as slow as noise may be.
+            seed: Of these simulations.
+
+        Raises:
+            Error: Bad input, as in fit(); an effect to inject that the flight can't make.
+        """
+        chosen = self._or_fitted(flight, "diagnose(")
+        hidden = [(name, np.ravel(size).tolist()) for name, size in (inject or {}).items()]
+        if len(hidden) > 1:
+            raise _core.Error("inject takes one effect at a time")
+        if simulations < 2 or seed < 0:
+            raise _core.Error("simulations must be at least 2, and seed not negative")
+        described = self.core.diagnose(
+            chosen._core, to_core_effects(effects), hidden[0] if hidden else None, simulations, seed
+        )
+        return Diagnosis._of(described)
 
     def add(self, effect: str | Effect, flight: Flight | None = None) -> "Calibration":
         """The calibration with one more effect, refitted from these estimates.

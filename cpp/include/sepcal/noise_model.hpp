@@ -38,6 +38,9 @@ struct NoiseFitOptions {
   /// An earlier fit: its order and its freedom of the level are kept, so that the two -2 ln L are
   /// of nested models. `order` and `max_order` are not used.
   std::optional<NoiseModel> start = {};
+
+  /// The search ends where another step would gain less in -2 ln L.
+  double least_gain = 1e-4;
 };
 
 struct NoiseFit {
@@ -47,7 +50,7 @@ struct NoiseFit {
   double minus_two_log_likelihood = 0.0;
   Eigen::Index informative_rows = 0;  // rows, less one for each segment where the level is free
   int evaluations = 0;                // of the likelihood
-  bool converged = true;              // another step would gain less than 1e-4 in -2 ln L
+  bool converged = true;              // another step would gain less than least_gain
 };
 
 /// Maximum likelihood. `e` has one value for each row of the record; rows outside the segments are

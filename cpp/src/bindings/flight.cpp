@@ -15,6 +15,7 @@
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/diagnosing.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::bindings {
@@ -128,6 +129,26 @@ py::dict compare_with(const Calibration& calibration, const Flight& flight) {
   return describe(run());
 }
 
+/// The JSON that the app's diagnose prints, and notes.
+py::dict diagnose_on(const Calibration& calibration, const Flight& flight,
+                     const std::vector<PythonEffect>& own,
+                     const std::optional<HiddenEffect>& injected, int simulations,
+                     std::uint64_t seed) {
+  const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
+  DiagnosisOptions options;
+  options.threads = calibration.options.fit.threads;
+  options.simulations = simulations;
+  options.seed = seed;
+  const auto run = [&] {
+    const py::gil_scoped_release release;
+    need_own_effects(calibration);
+    return injected ? diagnose_with(*injected, calibration, flight, makers, options)
+                    : diagnose(calibration, flight, makers, options);
+  };
+  const FlightDiagnosis diagnosis = run();
+  return py::dict("json"_a = to_json(diagnosis), "notes"_a = diagnosis.notes);
+}
+
 /// {header: values}
 py::dict apply_to(const Calibration& calibration, const Flight& flight) {
   const auto run = [&] {
@@ -213,6 +234,14 @@ void define_flight(py::module_& module) {
       .def_readonly("notes", &Calibration::notes)
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
       .def("compare", &compare_with)
+      .def("diagnose",
+           [](const Calibration& self, const Flight& flight, const std::vector<PythonEffect>& own,
+              const std::optional<std::pair<std::string, std::vector<double>>>& injected,
+              int simulations, std::uint64_t seed) {
+             std::optional<HiddenEffect> hidden;
+             if (injected) hidden = HiddenEffect{injected->first, injected->second};
+             return diagnose_on(self, flight, own, hidden, simulations, seed);
+           })
       .def("add", &add_to)
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sepcal::app {
+namespace {
+
+constexpr std::size_t most_shown = 12;
+
+std::string percent(double fraction) {
+  return std::isnan(fraction) ? "-" : fmt::format("{:.1f} %", 100.0 * fraction);
+}
+
+std::string probability(const EffectFinding& effect) {
+  if (effect.status == FindingStatus::cannot_be_seen) return "-";
+  if (effect.p_adjusted > 0 && effect.p_adjusted >= 1e-99) {
+    return fmt::format("{:.2g}", effect.p_adjusted);
+  }
+  return "<1e-99";
+}
+
+std::string in_words(FindingStatus status) {
+  switch (status) {
+    case FindingStatus::found:
+      return "FOUND";
+    case FindingStatus::not_seen:
+      return "not seen";
+    default:
+      return "cannot be seen";
+  }
+}
+
+std::string estimates(const EffectFinding& effect) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, effect.coefficients.size()); ++k) {
+    const Coefficient& coefficient = effect.coefficients[k];
+    const std::string component = coefficient.name.substr(coefficient.name.rfind('.') + 1);
+    text += fmt::format("{}{} {:.3g} +- {:.1g}", k == 0 ? "" : ", ", component,
+                        coefficient.estimate, coefficient.standard_error);
+  }
+  if (effect.coefficients.size() > most) text += ", ...";
+  return text + " " + effect.coefficients.front().unit;
+}
+
+std::string effect_rows(const FlightDiagnosis& result) {
+  const std::vector<EffectFinding>& effects = result.diagnosis.effects;
+  std::size_t width = 6;
+  for (std::size_t i = 0; i < std::min(most_shown, effects.size()); ++i) {
+    width = std::max(width, effects[i].name.size());
+  }
+  std::string text = fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10}\n", "effect", width,
+                                 "status", "p", "predicted", "held out", "visibility");
+  std::size_t shown = 0;
+  for (const EffectFinding& effect : effects) {
+    if (shown == most_shown || effect.status == FindingStatus::cannot_be_seen) break;
+    text +=
+        fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}\n", effect.name, width,
+                    in_words(effect.status), probability(effect), percent(effect.predicted_drop),
+                    percent(effect.held_out_gain), effect.visibility);
+    ++shown;
+  }
+  const auto hidden =
+      std::ranges::count(effects, FindingStatus::cannot_be_seen, &EffectFinding::status);
+  const auto others = static_cast<std::ptrdiff_t>(effects.size() - shown) - hidden;
+  if (others > 0) text += fmt::format("and {} more that are not seen\n", others);
+  if (hidden > 0) {
+    text += fmt::format("{} cannot be seen in this flight:", hidden);
+    for (const EffectFinding& effect : effects) {
+      if (effect.status == FindingStatus::cannot_be_seen) text += " " + effect.name;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string best_effect(const FlightDiagnosis& result, const std::string& app,
+                        const std::string& calibration) {
+  const EffectFinding& best = result.diagnosis.effects.front();
+  std::string text =
+      fmt::format("\n{}: {}\n  {}\n", best.name, result.sentences.front(), estimates(best));
+  if (best.family.size() > 1) {
+    text += "  this flight can't tell it from:";
+    for (const std::string& relative : best.family) {
+      if (relative != best.name) text += " " + relative;
+    }
+    text += "\n";
+  }
+  return text + fmt::format("\nnext: {} add {} {} '{}' -o NEXT.json\n", app, result.flight.file,
+                            calibration, best.name);
+}
+
+std::string unexplained_rows(const Omnibus& omnibus) {
+  std::string text = fmt::format("\noffsets of {} by window, in standard errors:", omnibus.where);
+  for (const auto& [window, sigmas] : omnibus.windows) {
+    text += fmt::format(" {} {:.1f}", window, sigmas);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string diagnosis_table(const FlightDiagnosis& result, const std::string& app,
+                            const std::string& calibration) {
+  const Diagnosis& diagnosis = result.diagnosis;
+  std::string text =
+      fmt::format("{}: {} of {} rows of {}\n{}\n\n", result.model, result.flight.rows_used,
+                  result.flight.rows, result.flight.file, verdict_sentence(result));
+  text += effect_rows(result);
+  if (diagnosis.verdict == Verdict::effect_missing) text += best_effect(result, app, calibration);
+  if (diagnosis.verdict == Verdict::unexplained) text += unexplained_rows(diagnosis.omnibus);
+  if (diagnosis.verdict != Verdict::effect_missing && !diagnosis.limits.empty()) {
+    text += "\na slow change over the flight would have shown from:";
+    for (const DetectionLimit& limit : diagnosis.limits) {
+      if (std::isfinite(limit.size)) {
+        text += fmt::format("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
+      }
+    }
+    text += "\n";
+  }
+  if (diagnosis.verdict != Verdict::effect_missing && !result.missing_channels.empty()) {
+    text += "not logged, and could explain more:";
+    for (const std::string& channel : result.missing_channels) text += " " + channel;
+    text += "\n";
+  }
+  if (result.injection) {
+    const Injection& injection = *result.injection;
+    text += fmt::format("\ninjected {}: {} (rank {}, p {:.2g})\n", injection.effect,
+                        injection.found ? "would have been found" : "would have been missed",
+                        injection.rank, injection.p_adjusted);
+  }
+  return text;
+}
+
+}  // namespace sepcal::app

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which physical effect does a fitted model lack? Every candidate is tried at the fit, by its
+// derivative at zero and without fitting again: screened by the score test, tested by a likelihood
+// ratio whose noise model is estimated anew on either side, judged by how much of the error falls
+// on rows that were held out. docs/diagnosis.md has the statistics.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sepcal/fit.hpp"
+#include "sepcal/named_effects.hpp"
+#include "sepcal/noise_model.hpp"
+
+namespace sepcal {
+
+enum class Verdict {
+  adequate,        // nothing is missing that this record can show
+  effect_missing,  // at least one candidate was found
+  unexplained      // something is missing, and no candidate explains it
+};
+
+/// "adequate", "effect_missing", "unexplained".
+std::string_view to_string(Verdict verdict);
+
+enum class FindingStatus {
+  found,          // significant after Holm's correction, and the held-out error falls
+  not_seen,       // nothing of it in the residuals
+  cannot_be_seen  // the record can't tell it from what the model has
+};
+
+/// "found", "not_seen", "cannot_be_seen".
+std::string_view to_string(FindingStatus status);
+
+/// A coefficient of an effect as one step from the fit estimates it.
+struct Coefficient {
+  std::string name;  // "wind[altitude_m].n"
+  std::string unit;
+  double estimate = 0.0;
+  double standard_error = 0.0;  // in the noise model with the effect
+};
+
+/// What the record says about one candidate. Undefined numbers are NaN.
+struct EffectFinding {
+  std::string name = {};  // what add() takes: "wind[altitude_m]", or "E1+E2"
+  std::vector<std::string> drivers =
+      {};  // channels; none where the effect has a physics of its own
+  std::vector<Coefficient> coefficients = {};
+  std::map<std::string, double> shapes = {};  // of a scan: "bias_step.t0", where it explains most
+
+  double log10_p = 0.0;     // of p_value, which may be too small for a double
+  double p_value = 1.0;     // for itself, corrected for its scan
+  double p_adjusted = 1.0;  // after Holm: for the verdict
+  double p_listed = 1.0;    // after Benjamini & Hochberg: for the list
+
+  double predicted_drop = 0.0;        // of the RMSE over all outputs, 1 - after / before
+  double held_out_before = 0.0;       // RMSE of rows left out, over all outputs
+  double held_out_after = 0.0;        // with the effect
+  double held_out_gain = 0.0;         // 1 - after / before
+  bool held_out_passed = false;       // the mean gain of a block exceeds its standard error
+  bool held_out_interleaved = false;  // blocks in between, not whole segments, were left out
+
+  double visibility = 0.0;  // sine of the smallest angle to the model's own tangent
+  std::map<std::string, double> absorbed_by = {};  // how far ignoring it shifts each parameter
+  std::vector<std::string> family = {};  // what this record can't tell apart; itself among them
+  FindingStatus status = FindingStatus::not_seen;
+};
+
+/// An output's residual. Undefined numbers are NaN.
+struct ResidualNoise {
+  std::string output = {};
+  std::string unit = {};
+  double rmse = 0.0;
+  double lag_one = 0.0;      // correlation of neighbouring rows
+  double ljung_box_p = 0.0;  // of 20 lags: small where the residual is not white
+  NoiseModel noise = {};     // in the output's unit
+  double floor = 0.0;        // sigma of `noise`: what no model of the past predicts better
+};
+
+/// The smallest slow effect that the record would have shown: a straight line in time that is
+/// found nine times in ten.
+struct DetectionLimit {
+  std::string port;
+  std::string unit;
+  double size = 0.0;  // change over the whole record
+};
+
+/// Offsets of every output and every port by window of the record, all at once.
+struct Omnibus {
+  double p_value = 1.0;
+  std::string where = {};  // the port or output whose offsets explain most
+  std::vector<std::pair<std::string, double>> windows =
+      {};  // and how far off each window is [sigma]
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::adequate;
+  std::vector<EffectFinding> effects = {};  // ranked, best first
+  std::vector<ResidualNoise> residual = {};
+  Omnibus omnibus;
+  std::vector<DetectionLimit> limits = {};
+  double rmse = 0.0;   // over all outputs
+  double floor = 0.0;  // innovations alone, over all outputs
+};
+
+struct DiagnosisOptions {
+  double significance = 0.05;       // of the verdict, after Holm
+  double unexplained_below = 0.01;  // p of the omnibus test
+  double least_visibility = 0.05;
+  double family_correlation = 0.9;
+  int simulations = 199;  // that calibrate the test of a smooth driver
+  std::uint64_t seed = 0;
+  int threads = 0;
+  FitProgress progress = {};
+};
+
+/// A fit to be diagnosed.
+struct DiagnosedFit {
+  std::shared_ptr<const BlockModel> model;  // without effects
+  EffectKit kit;
+  std::vector<EffectSetting> effects;  // that the fit has
+  Record record;                       // as compose() takes it, before without_edges()
+  std::vector<Segment> rows;           // that are used
+  Fit fit;
+};
+
+/// Tries `candidates`, by their names or as "E1+E2". Those that the record can't make (a channel
+/// that isn't there or is constant) are left out. Throws Error for a fit whose parameters are not
+/// those of its model.
+Diagnosis diagnose(const DiagnosedFit& fitted, const std::vector<std::string>& candidates,
+                   const DiagnosisOptions& options = {});
+
+}  // namespace sepcal

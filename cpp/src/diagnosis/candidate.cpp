@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/candidate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "driven_rows.hpp"
+#include "sepcal/composition.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/measurements.hpp"
+#include "sweep.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double rounding = 1e-11;  // of an output's rms: a smaller residual is none
+
+/// `count` values within the bounds of a shape, away from the ends, where a step or a ramp would
+/// leave one side without rows; evenly in the logarithm where the bounds span a decade above zero.
+std::vector<double> spread(const Variable& shape, int count) {
+  const bool by_ratio = shape.lower > 0 && shape.upper > 10.0 * shape.lower && shape.name != "t0";
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    const double share = (i + 0.5) / count;
+    values.push_back(by_ratio ? shape.lower * std::pow(shape.upper / shape.lower, share)
+                              : shape.lower + share * (shape.upper - shape.lower));
+  }
+  return values;
+}
+
+ShapeGrid grid_of(const Effect& effect) {
+  constexpr int times = 40;
+  constexpr int others = 9;
+  ShapeGrid grid{"", {not_a_number}};
+  if (!effect.driver || !effect.driver->shape()) return grid;
+  const Variable& shape = *effect.driver->shape();
+  grid.parameter = effect.name + "." + shape.name;
+  grid.values = spread(shape, shape.name == "t0" ? times : others);
+  return grid;
+}
+
+/// The names of an effect's parameters but its shape's, found by composing it with `model`.
+std::vector<Variable> coefficients_of(const BlockModel& with, const BlockModel& without,
+                                      const std::string& shape) {
+  std::vector<Variable> names;
+  const std::vector<Variable> before = without.tables().parameters();
+  for (const Variable& parameter : with.tables().parameters()) {
+    const bool old = std::ranges::find(before, parameter.name, &Variable::name) != before.end();
+    if (!old && parameter.name != shape) names.push_back(parameter);
+  }
+  return names;
+}
+
+Index find_column(const std::vector<Variable>& parameters, const std::string& name) {
+  return std::ranges::find(parameters, name, &Variable::name) - parameters.begin();
+}
+
+/// The values of a model's parameters by name; zero for a coefficient that has none.
+VectorXd values_in_order(const std::vector<Variable>& parameters, const ParameterValues& values) {
+  VectorXd ordered = VectorXd::Zero(static_cast<Index>(parameters.size()));
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const auto at = values.find(parameters[k].name);
+    if (at != values.end()) ordered[static_cast<Index>(k)] = at->second;
+  }
+  return ordered;
+}
+
+/// Whether the effect is a port's columns times a driver's functions and nothing else.
+bool is_driven(const Effect& effect, const EffectKit& kit) {
+  return effect.driver && effect.terms.empty() && effect.delays.empty() &&
+         std::ranges::find(kit.ports, effect.port, &Port::name) != kit.ports.end();
+}
+
+}  // namespace
+
+RowLayout lay_out(const std::vector<Segment>& segments) {
+  RowLayout layout;
+  std::size_t row = 0;
+  for (const Segment& segment : segments) {
+    layout.segments.push_back({segment.label, row, row + segment.rows()});
+    row += segment.rows();
+  }
+  layout.rows = static_cast<Index>(row);
+  return layout;
+}
+
+CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, ThreadPool& pool)
+    : fitted_(fitted),
+      record_(fitted.record),
+      settings_(fitted.effects),
+      effects_(make_effects(fitted.kit, *fitted.model, settings_, record_)),
+      values_(values_by_name(fitted.fit)) {
+  linearise(fitted.fit, pool);
+}
+
+void CandidateRoom::linearise(const Fit& fit, ThreadPool& pool) {
+  const auto model = this->model();
+  const Tables& tables = model->tables();
+  const std::vector<Variable> parameters = tables.parameters();
+  if (!std::ranges::equal(fit.parameters, parameters, {}, &Parameter::name, &Variable::name)) {
+    throw Error("the fit's parameters are not those of its model with its effects");
+  }
+  Record rows = record_;
+  rows.cut(fitted_.rows);
+  const Measurements measurements(*model, rows);
+  const Sweep sweep(*model, measurements, pool);
+  const std::vector<MatrixXd> outputs = sweep.tangent_rows(fit.xi1(), fit.xi2());
+
+  RowLayout& layout = linearisation_.layout = lay_out(fitted_.rows);
+  std::vector<Index> free;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    if (fit.parameters[k].fixed || fit.parameters[k].at_bound) continue;
+    free.push_back(static_cast<Index>(k));
+    linearisation_.parameters.push_back(fit.parameters[k].name);
+  }
+  const double count = static_cast<double>(layout.rows);
+  for (int j = 0; j < tables.n_z(); ++j) {
+    const auto& output = tables.outputs[static_cast<std::size_t>(j)];
+    const double rmse =
+        outputs[static_cast<std::size_t>(j)].rightCols<1>().norm() / std::sqrt(count);
+    const double rms = std::sqrt(measurements.output_square(j) / count);
+    if (!(rmse > rounding * rms) || !(rmse > 0)) continue;
+    layout.outputs.push_back({j, output.name, output.unit, rmse});
+  }
+  linearisation_.tangent = stack(outputs, free);
+  linearisation_.residual =
+      stack(outputs, {static_cast<Index>(parameters.size())}).reshaped(layout.count(), 1);
+}
+
+MatrixXd CandidateRoom::stack(const std::vector<MatrixXd>& outputs,
+                              const std::vector<Index>& columns) const {
+  const RowLayout& layout = linearisation_.layout;
+  MatrixXd stacked(layout.count(), static_cast<Index>(columns.size()));
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const UsedOutput& output = layout.outputs[j];
+    stacked.middleRows(layout.first(j), layout.rows) =
+        outputs[static_cast<std::size_t>(output.index)](Eigen::all, columns) / output.scale;
+  }
+  return stacked;
+}
+
+MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
+                                         const ParameterValues& shapes,
+                                         const std::vector<std::string>& names) const {
+  std::vector<Effect> all = effects_;
+  all.insert(all.end(), added.begin(), added.end());
+  const auto model = compose(fitted_.model, all, record_);
+  ParameterValues values = values_;
+  values.insert(shapes.begin(), shapes.end());
+  Record rows = record_;
+  rows.cut(fitted_.rows);
+  const Measurements measurements(*model, rows);
+  ThreadPool alone(1);
+  const std::vector<MatrixXd> outputs =
+      Sweep(*model, measurements, alone)
+          .tangent_rows(values_in_order(model->tables().linear, values),
+                        values_in_order(model->tables().nonlinear, values));
+  const std::vector<Variable> parameters = model->tables().parameters();
+  std::vector<Index> columns;
+  for (const std::string& name : names) columns.push_back(find_column(parameters, name));
+  return stack(outputs, columns);
+}
+
+std::shared_ptr<const BlockModel> CandidateRoom::model() const {
+  return compose(fitted_.model, effects_, record_);
+}
+
+std::shared_ptr<const BlockModel> CandidateRoom::model_with(const Candidate& candidate) const {
+  std::vector<Effect> all = effects_;
+  all.insert(all.end(), candidate.effects.begin(), candidate.effects.end());
+  return compose(fitted_.model, all, record_);
+}
+
+Candidate CandidateRoom::make(const std::string& name) {
+  Candidate candidate{.name = name};
+  for (const std::string& part : split_effects(name)) candidate.settings.push_back({.name = part});
+  candidate.effects = make_effects(fitted_.kit, *fitted_.model, candidate.settings, record_);
+  std::vector<Effect> all = effects_;
+  candidate.shape = {"", {not_a_number}};
+  for (const Effect& effect : candidate.effects) {
+    const auto before = compose(fitted_.model, all, record_);
+    all.push_back(effect);
+    const ShapeGrid grid = grid_of(effect);
+    if (!grid.parameter.empty()) {
+      if (!candidate.shape.parameter.empty()) {
+        throw Error("effect " + name + " would need a scan in two directions; try them one by one");
+      }
+      candidate.shape = grid;
+    }
+    const auto with = compose(fitted_.model, all, record_);
+    const auto names = coefficients_of(*with, *before, grid.parameter);
+    candidate.coefficients.insert(candidate.coefficients.end(), names.begin(), names.end());
+    if (is_driven(effect, fitted_.kit)) {
+      port_columns(*std::ranges::find(fitted_.kit.ports, effect.port, &Port::name));
+    }
+  }
+  std::string joined;
+  for (const EffectSetting& setting : candidate.settings) {
+    joined += (joined.empty() ? "" : "+") + setting.name;
+    const std::string driver = parse_effect_name(setting.name).base;
+    if (!driver.empty() && std::ranges::find(candidate.drivers, driver) == candidate.drivers.end())
+      candidate.drivers.push_back(driver);
+  }
+  candidate.name = joined;
+  return candidate;
+}
+
+const MatrixXd& CandidateRoom::port_columns(const Port& port) {
+  const auto known = ports_.find(port.name);
+  if (known != ports_.end()) return known->second;
+  const Effect constant =
+      make_driven("constant", port, constant_driver(), port.unit, *fitted_.model, record_);
+  std::vector<std::string> names;
+  for (const Port::Component& component : port.components)
+    names.push_back("constant." + component.name);
+  return ports_.emplace(port.name, composed_columns({constant}, {}, names)).first->second;
+}
+
+MatrixXd CandidateRoom::driven_columns(const Effect& effect, double shape, bool centred) const {
+  const MatrixXd& base = ports_.at(effect.port);
+  const MatrixXd whole = drive(*effect.driver, shape, record_);
+  const RowLayout& layout = linearisation_.layout;
+  MatrixXd phi(layout.rows, whole.cols());
+  for (std::size_t i = 0; i < layout.segments.size(); ++i) {
+    const Segment& from = fitted_.rows[i];
+    const auto length = static_cast<Index>(from.rows());
+    phi.middleRows(static_cast<Index>(layout.segments[i].first), length) =
+        whole.middleRows(static_cast<Index>(from.first), length);
+  }
+  phi = phi.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
+  if (centred) phi.rowwise() -= phi.colwise().mean().eval();
+  MatrixXd columns(base.rows(), base.cols() * phi.cols());
+  for (Index c = 0; c < base.cols(); ++c) {
+    for (Index k = 0; k < phi.cols(); ++k) {
+      for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+        columns.col(c * phi.cols() + k).segment(layout.first(j), layout.rows) =
+            base.col(c).segment(layout.first(j), layout.rows).cwiseProduct(phi.col(k));
+      }
+    }
+  }
+  return columns;
+}
+
+MatrixXd CandidateRoom::fill(const Candidate& candidate, double shape, bool centred) const {
+  MatrixXd all(linearisation_.layout.count(), static_cast<Index>(candidate.coefficients.size()));
+  Index at = 0;
+  for (const Effect& effect : candidate.effects) {
+    MatrixXd part;
+    if (is_driven(effect, fitted_.kit)) {
+      part = driven_columns(effect, effect.driver->shape() ? shape : 0.0, centred);
+    } else {
+      std::vector<std::string> names;
+      for (const Variable& coefficient : candidate.coefficients) {
+        if (coefficient.name.starts_with(effect.name + ".")) names.push_back(coefficient.name);
+      }
+      ParameterValues shapes;
+      if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
+      part = composed_columns({effect}, shapes, names);
+    }
+    all.middleCols(at, part.cols()) = part;
+    at += part.cols();
+  }
+  return all;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A candidate effect at the fit: the columns dz/d eta at eta = 0 that it would add. An effect on a
+// port has those of the port times its driver's functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnosis/linearisation.hpp"
+#include "parameter_values.hpp"
+#include "sepcal/diagnosis.hpp"
+#include "thread_pool.hpp"
+
+namespace sepcal {
+
+/// A shape does not exist at zero size: it is scanned.
+struct ShapeGrid {
+  std::string parameter;       // "bias_step.t0"; empty: there is none
+  std::vector<double> values;  // at least one: NaN where there is no shape
+};
+
+struct Candidate {
+  std::string name = {};
+  std::vector<std::string> drivers = {};
+  std::vector<EffectSetting> settings = {};  // of the effect, or of a pair's
+  std::vector<Effect> effects = {};
+  std::vector<Variable> coefficients = {};  // in the order of the columns
+  ShapeGrid shape = {};
+};
+
+/// Makes candidates and their columns for one fit. columns() may be called from several threads.
+class CandidateRoom {
+ public:
+  /// Evaluates the fit. Throws Error for a fit whose parameters are not those of its model.
+  CandidateRoom(const DiagnosedFit& fitted, ThreadPool& pool);
+
+  const Linearisation& fit() const { return linearisation_; }
+  const Record& record() const { return record_; }
+  const std::vector<Segment>& rows() const { return fitted_.rows; }
+  const Fit& fitted() const { return fitted_.fit; }
+
+  /// The model of the fit, and with a candidate.
+  std::shared_ptr<const BlockModel> model() const;
+  std::shared_ptr<const BlockModel> model_with(const Candidate& candidate) const;
+
+  /// Throws Error where the record can't make it.
+  Candidate make(const std::string& name);
+
+  /// The port's columns for a driver that is 1 in every row: a column a component.
+  const Eigen::MatrixXd& port_columns(const Port& port);
+
+  /// count() x coefficients.
+  Eigen::MatrixXd columns(const Candidate& candidate, double shape) const {
+    return fill(candidate, shape, false);
+  }
+
+  /// The same with drivers about their mean: what of an effect varies. A constant share is the
+  /// matter of the model's own parameters.
+  Eigen::MatrixXd varying_columns(const Candidate& candidate, double shape) const {
+    return fill(candidate, shape, true);
+  }
+
+ private:
+  Eigen::MatrixXd fill(const Candidate& candidate, double shape, bool centred) const;
+  Eigen::MatrixXd driven_columns(const Effect& effect, double shape, bool centred) const;
+  Eigen::MatrixXd composed_columns(const std::vector<Effect>& added, const ParameterValues& shapes,
+                                   const std::vector<std::string>& names) const;
+  Eigen::MatrixXd stack(const std::vector<Eigen::MatrixXd>& outputs,
+                        const std::vector<Eigen::Index>& columns) const;
+  void linearise(const Fit& fit, ThreadPool& pool);
+
+  const DiagnosedFit& fitted_;
+  Record record_;  // with what effects derive from other columns
+  std::vector<EffectSetting> settings_;
+  std::vector<Effect> effects_;  // that the fit has
+  ParameterValues values_;
+  Linearisation linearisation_;
+  std::map<std::string, Eigen::MatrixXd> ports_;
+};
+
+}  // namespace sepcal

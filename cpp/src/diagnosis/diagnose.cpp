@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The recipe in order: make the candidates, screen all of them, test those near the top, calibrate
+// what smooth noise could imitate, hold rows out, correct for their number; pairs where no single
+// one passes; and where nothing does, whether anything is there.
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+
+#include "diagnosis/omnibus.hpp"
+#include "diagnosis/residual_noise.hpp"
+#include "diagnosis/tails.hpp"
+#include "diagnosis/trial.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::size_t most_tested = 12;  // of either screen's best
+constexpr std::size_t most_paired = 10;
+constexpr std::size_t most_proxied = 3;
+constexpr std::size_t most_confirmed = 3;
+constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
+constexpr int few_simulations = 39;
+constexpr std::size_t most_simulated = 3;  // the others are corrected as the worst of these
+constexpr std::size_t most_pairs_tested = 5;
+
+bool share_port(const Candidate& a, const Candidate& b) {
+  return std::ranges::any_of(a.effects, [&](const Effect& effect) {
+    return !effect.port.empty() &&
+           std::ranges::find(b.effects, effect.port, &Effect::port) != b.effects.end();
+  });
+}
+
+class Recipe {
+ public:
+  Recipe(const DiagnosedFit& fitted, const DiagnosisOptions& options)
+      : fitted_(fitted), options_(options), pool_(options.threads), room_(fitted, pool_) {}
+
+  Diagnosis run(const std::vector<std::string>& names);
+
+ private:
+  using Trials = std::vector<Trial>;
+
+  void make(const std::vector<std::string>& names);
+  void screen_all(Trials& trials);
+  void test_best(Trials& trials, std::size_t most);
+  void hold_out_significant(Trials& trials);
+  void confirm_best(Trials& trials, double threshold);
+  /// `tests`: how many could have been chosen.
+  std::vector<EffectFinding> judge(Trials& trials, double tests);
+  void try_pairs(const std::vector<EffectFinding>& singles);
+  EffectFinding describe(const Trial& trial) const;
+  bool is_proxy(const Trial& first, const Trial& other, std::size_t tests) const;
+  void find_families(const Trials& trials, std::vector<EffectFinding>& findings) const;
+  void tell(std::string_view task, double fraction) const {
+    if (options_.progress) options_.progress(task, fraction);
+  }
+
+  const DiagnosedFit& fitted_;
+  const DiagnosisOptions& options_;
+  ThreadPool pool_;
+  CandidateRoom room_;
+  NullHypothesis null_;
+  Trials trials_;
+  Diagnosis result_;
+};
+
+void Recipe::make(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    try {
+      Trial trial{.candidate = room_.make(name)};
+      const bool twice = std::ranges::any_of(trials_, [&](const Trial& other) {
+        return other.candidate.name == trial.candidate.name;
+      });
+      if (!twice) trials_.push_back(std::move(trial));
+    } catch (const Error&) {
+      continue;  // the record doesn't have what it takes
+    }
+  }
+}
+
+void Recipe::screen_all(Trials& trials) {
+  std::mutex mutex;
+  double done = 0.0;
+  pool_.for_each(trials.size(), [&](std::size_t i) {
+    trials[i].least_visibility = options_.least_visibility;
+    screen(room_, null_, trials[i]);
+    const std::lock_guard lock(mutex);
+    tell("screening effects", ++done / static_cast<double>(trials.size()));
+  });
+}
+
+void Recipe::test_best(Trials& trials, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      if (trials[i].visible) order.push_back(i);
+    }
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return trials[i].*by; });
+    if (order.size() > most) order.resize(most);
+    for (const std::size_t i : order) {
+      if (std::ranges::find(chosen, i) == chosen.end()) chosen.push_back(i);
+    }
+  }
+  std::mutex mutex;
+  double done = 0.0;
+  pool_.for_each(chosen.size(), [&](std::size_t k) {
+    test(room_, null_, trials[chosen[k]]);
+    const std::lock_guard lock(mutex);
+    tell("testing effects", ++done / static_cast<double>(chosen.size()));
+  });
+}
+
+EffectFinding Recipe::describe(const Trial& trial) const {
+  EffectFinding finding{.name = trial.candidate.name,
+                        .drivers = trial.candidate.drivers,
+                        .log10_p = trial.log10_p,
+                        .p_value = std::pow(10.0, trial.log10_p),
+                        .predicted_drop = not_a_number,
+                        .held_out_before = not_a_number,
+                        .held_out_after = not_a_number,
+                        .held_out_gain = not_a_number,
+                        .visibility = trial.visibility,
+                        .family = {trial.candidate.name}};
+  finding.status = trial.visible ? FindingStatus::not_seen : FindingStatus::cannot_be_seen;
+  for (std::size_t k = 0; k < trial.candidate.coefficients.size(); ++k) {
+    const Variable& coefficient = trial.candidate.coefficients[k];
+    const auto at = static_cast<Index>(k);
+    const bool known = trial.visible && trial.estimate.size() > at;
+    finding.coefficients.push_back({coefficient.name, coefficient.unit,
+                                    known ? trial.estimate[at] : not_a_number,
+                                    known ? std::sqrt(trial.covariance(at, at)) : not_a_number});
+  }
+  if (!trial.visible) return finding;
+  finding.predicted_drop = trial.predicted_drop;
+  if (!trial.candidate.shape.parameter.empty()) {
+    finding.shapes[trial.candidate.shape.parameter] = trial.shape;
+  }
+  if (trial.held_out.judged) {
+    finding.held_out_before = trial.held_out.before;
+    finding.held_out_after = trial.held_out.after;
+    finding.held_out_gain = trial.held_out.gain;
+    finding.held_out_passed = trial.held_out.passed;
+    finding.held_out_interleaved = trial.folds.interleaved;
+  }
+  if (trial.tested) {
+    const Eigen::VectorXd signal = room_.columns(trial.candidate, trial.shape) * trial.estimate;
+    const Eigen::VectorXd shift =
+        Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(room_.fit().tangent).solve(signal);
+    for (Index k = 0; k < shift.size(); ++k) {
+      finding.absorbed_by[room_.fit().parameters[static_cast<std::size_t>(k)]] = shift[k];
+    }
+  }
+  return finding;
+}
+
+/// Whether `other` explains next to nothing beyond `first` of what it explains alone, at the same
+/// port: a proxy of the same cause.
+bool Recipe::is_proxy(const Trial& first, const Trial& other, std::size_t tests) const {
+  const double threshold = std::log10(options_.significance / static_cast<double>(tests));
+  if (other.log10_plain > threshold || !share_port(first.candidate, other.candidate)) return false;
+  const Eigen::MatrixXd taken =
+      orthonormal_basis(remove_span(null_.basis, room_.columns(first.candidate, first.shape)));
+  const Eigen::MatrixXd beyond =
+      remove_span(null_.basis, room_.columns(other.candidate, other.shape));
+  const Eigen::VectorXd residual = remove_span(null_.basis, room_.fit().residual);
+  const double alone = (orthonormal_basis(beyond).transpose() * residual).squaredNorm();
+  const Eigen::MatrixXd left = orthonormal_basis(remove_span(taken, beyond));
+  const double more = (left.transpose() * remove_span(taken, residual)).squaredNorm();
+  const double cosine = options_.family_correlation;
+  return more < (1.0 - cosine * cosine) * alone;
+}
+
+void Recipe::find_families(const Trials& trials, std::vector<EffectFinding>& findings) const {
+  constexpr std::size_t most = 12;
+  const auto trial_of = [&](const EffectFinding& finding) -> const Trial& {
+    return *std::ranges::find_if(
+        trials, [&](const Trial& trial) { return trial.candidate.name == finding.name; });
+  };
+  for (std::size_t a = 0; a < std::min(most, findings.size()); ++a) {
+    const Trial& first = trial_of(findings[a]);
+    if (!first.visible) continue;
+    for (const EffectFinding& finding : findings) {
+      const Trial& other = trial_of(finding);
+      if (&other == &first || !other.visible) continue;
+      if (canonical_correlation(first.thinned_basis, other.thinned_basis) >
+              options_.family_correlation ||
+          (a < most_proxied && is_proxy(first, other, findings.size()))) {
+        findings[a].family.push_back(finding.name);
+      }
+    }
+  }
+}
+
+void Recipe::hold_out_significant(Trials& trials) {
+  const double threshold = std::log10(options_.significance);
+  pool_.for_each(trials.size(), [&](std::size_t i) {
+    if (trials[i].tested || (trials[i].visible && trials[i].log10_p < threshold)) {
+      hold_out(room_, null_, trials[i]);
+    }
+  });
+}
+
+/// One step may fail an effect that bends the model: those that explain more than the best that
+/// passed get real fits.
+void Recipe::confirm_best(Trials& trials, double threshold) {
+  std::vector<Trial*> order;
+  for (Trial& trial : trials) {
+    if (trial.held_out.judged && trial.log10_p < threshold) order.push_back(&trial);
+  }
+  std::ranges::stable_sort(order, {}, &Trial::log10_p);
+  std::size_t confirmed = 0;
+  for (Trial* trial : order) {
+    if (trial->held_out.passed || confirmed == most_confirmed) break;
+    confirm(room_, pool_, *trial);
+    ++confirmed;
+    if (trial->held_out.passed) break;
+  }
+}
+
+std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
+  hold_out_significant(trials);
+  const auto visible_trials =
+      static_cast<double>(std::ranges::count(trials, true, &Trial::visible));
+  const double number = std::max({1.0, visible_trials, tests});
+  const double threshold = std::log10(options_.significance / number) + 0.3;  // about Holm's
+  const std::uint64_t seed = options_.seed;
+  std::vector<Trial*> smooth;
+  for (Trial& trial : trials) {
+    if (needs_calibration(room_, threshold, trial)) smooth.push_back(&trial);
+  }
+  std::ranges::stable_sort(smooth, {}, &Trial::log10_p);
+  Inflation worst;
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    tell("calibrating tests", static_cast<double>(i) / static_cast<double>(smooth.size()));
+    if (i < most_simulated) {
+      const bool beyond_doubt = smooth[i]->log10_p < doubtless;
+      const Inflation own = simulate_inflation(
+          room_, null_, *smooth[i], beyond_doubt ? few_simulations : options_.simulations, seed + i,
+          pool_);
+      worst = {std::max(worst.mean, own.mean), std::max(worst.variance, own.variance)};
+    }
+    inflate(worst, *smooth[i]);
+  }
+  confirm_best(trials, threshold);
+  std::vector<double> log10_p;
+  std::vector<std::size_t> visible;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (!trials[i].visible) continue;
+    visible.push_back(i);
+    log10_p.push_back(trials[i].log10_p);
+  }
+  // Those that could have been chosen and were not count as if they had said nothing.
+  log10_p.resize(std::max(log10_p.size(), static_cast<std::size_t>(tests)), 0.0);
+  const std::vector<double> holm = adjust_by_holm(log10_p);
+  const std::vector<double> listed = adjust_by_benjamini_hochberg(log10_p);
+  std::vector<EffectFinding> findings;
+  std::size_t v = 0;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    EffectFinding finding = describe(trials[i]);
+    if (v < visible.size() && visible[v] == i) {
+      finding.p_adjusted = holm[v];
+      finding.p_listed = listed[v];
+      ++v;
+      if (finding.p_adjusted < options_.significance && finding.held_out_passed) {
+        finding.status = FindingStatus::found;
+      }
+    }
+    findings.push_back(std::move(finding));
+  }
+  std::ranges::stable_sort(findings, [](const EffectFinding& a, const EffectFinding& b) {
+    if (a.status != b.status) return a.status < b.status;
+    return a.log10_p < b.log10_p;
+  });
+  find_families(trials, findings);
+  return findings;
+}
+
+void Recipe::try_pairs(const std::vector<EffectFinding>& singles) {
+  std::vector<std::string> best;
+  double visible = 0.0;
+  for (const EffectFinding& finding : singles) {
+    if (finding.status == FindingStatus::cannot_be_seen) continue;
+    ++visible;
+    if (best.size() < most_paired && finding.shapes.empty()) best.push_back(finding.name);
+  }
+  Trials pairs;
+  for (std::size_t a = 0; a < best.size(); ++a) {
+    for (std::size_t b = a + 1; b < best.size(); ++b) {
+      try {
+        pairs.push_back({.candidate = room_.make(best[a] + "+" + best[b])});
+      } catch (const Error&) {
+        continue;
+      }
+    }
+  }
+  screen_all(pairs);
+  test_best(pairs, most_pairs_tested);
+  // The ten were chosen by what they explain: every pair of all candidates could have been.
+  std::vector<EffectFinding> findings = judge(pairs, 0.5 * visible * (visible - 1.0));
+  std::erase_if(findings,
+                [](const EffectFinding& pair) { return pair.status != FindingStatus::found; });
+  result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
+}
+
+Diagnosis Recipe::run(const std::vector<std::string>& names) {
+  if (room_.fit().layout.outputs.empty()) return result_;  // nothing is left to explain
+  tell("fitting the noise", 0.0);
+  null_ = find_null(room_.fit());
+  result_.residual = describe_residual(null_);
+  result_.rmse = total_rmse(room_.fit().layout, room_.fit().residual);
+  double floor = 0.0;
+  for (const ResidualNoise& noise : result_.residual) floor += noise.floor * noise.floor;
+  result_.floor = std::sqrt(floor / static_cast<double>(result_.residual.size()));
+  make(names);
+  screen_all(trials_);
+  test_best(trials_, most_tested);
+  result_.effects = judge(trials_, 0.0);
+  const auto is_found = [](const EffectFinding& finding) {
+    return finding.status == FindingStatus::found;
+  };
+  if (std::ranges::none_of(result_.effects, is_found)) try_pairs(result_.effects);
+  tell("looking for structure", 0.0);
+  if (std::ranges::any_of(result_.effects, is_found)) {
+    result_.verdict = Verdict::effect_missing;
+  } else {
+    result_.omnibus = test_for_structure(room_, fitted_.kit, null_, options_, pool_);
+    if (result_.omnibus.p_value < options_.unexplained_below) {
+      result_.verdict = Verdict::unexplained;
+    }
+  }
+  result_.limits = find_limits(room_, fitted_.kit, null_, options_.significance, trials_.size());
+  return result_;
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return "adequate";
+    case Verdict::effect_missing:
+      return "effect_missing";
+    default:
+      return "unexplained";
+  }
+}
+
+std::string_view to_string(FindingStatus status) {
+  switch (status) {
+    case FindingStatus::found:
+      return "found";
+    case FindingStatus::not_seen:
+      return "not_seen";
+    default:
+      return "cannot_be_seen";
+  }
+}
+
+Diagnosis diagnose(const DiagnosedFit& fitted, const std::vector<std::string>& candidates,
+                   const DiagnosisOptions& options) {
+  return Recipe(fitted, options).run(candidates);
+}
+
+}  // namespace sepcal

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/held_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sepcal/triangular_factor.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int folds_of_blocks = 6;
+
+/// [J G e] of the rows of one fold, triangularised.
+std::vector<TriangularFactor> factor_by_fold(const RowLayout& layout, const MatrixXd& columns,
+                                             const Folds& folds) {
+  std::vector<TriangularFactor> factors(static_cast<std::size_t>(folds.count),
+                                        TriangularFactor(static_cast<int>(columns.cols())));
+  for (const LeftOut& block : folds.blocks) {
+    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+      MatrixXd rows = columns.middleRows(layout.first(j) + block.first, block.last - block.first);
+      factors[static_cast<std::size_t>(block.fold)].absorb(rows);
+    }
+  }
+  return factors;
+}
+
+/// The least-squares estimate from all folds but one.
+VectorXd estimate_without(const std::vector<TriangularFactor>& factors, int left_out) {
+  TriangularFactor others(factors.front().columns());
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (static_cast<int>(f) != left_out) others.merge(factors[f]);
+  }
+  const Index n = others.columns() - 1;
+  return solve_triangular(others.matrix().topLeftCorner(n, n), others.matrix().col(n).head(n)).x;
+}
+
+/// Squared error of a block in the outputs' unit.
+double square_of(const RowLayout& layout, const MatrixXd& columns, const VectorXd& estimate,
+                 const LeftOut& block) {
+  double square = 0.0;
+  const Index n = estimate.size();
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const auto rows = columns.middleRows(layout.first(j) + block.first, block.last - block.first);
+    const double scale = layout.outputs[j].scale;
+    square += scale * scale * (rows.col(n) - rows.leftCols(n) * estimate).squaredNorm();
+  }
+  return square;
+}
+
+/// Whether most of a block's rows lie within what the rows of other folds span, column by column.
+bool interpolates(const RowLayout& layout, const MatrixXd& G, const Folds& folds,
+                  const LeftOut& block) {
+  for (Index k = 0; k < G.cols(); ++k) {
+    double lowest = infinity;
+    double highest = -infinity;
+    for (const LeftOut& other : folds.blocks) {
+      if (other.fold == block.fold) continue;
+      for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+        const auto rows = G.col(k).segment(layout.first(j) + other.first, other.last - other.first);
+        lowest = std::min(lowest, rows.minCoeff());
+        highest = std::max(highest, rows.maxCoeff());
+      }
+    }
+    Index outside = 0;
+    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+      const auto rows =
+          G.col(k).segment(layout.first(j) + block.first, block.last - block.first).array();
+      outside += (rows < lowest || rows > highest).count();
+    }
+    const auto count = static_cast<Index>(layout.outputs.size()) * (block.last - block.first);
+    if (2 * outside > count) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Folds whole_segments(const RowLayout& layout) {
+  constexpr int fewest = 4;
+  Folds folds;
+  const std::string* label = nullptr;
+  for (const Segment& segment : layout.segments) {
+    const auto last = static_cast<Index>(segment.last);
+    if (label != nullptr && *label == segment.label) {
+      folds.blocks.back().last = last;
+      continue;
+    }
+    label = &segment.label;
+    folds.blocks.push_back({static_cast<Index>(segment.first), last, folds.count++});
+  }
+  return folds.count < fewest ? Folds{} : folds;
+}
+
+Folds interleaved_blocks(const RowLayout& layout, double correlation, int fewest) {
+  constexpr double least = 2.0 * folds_of_blocks;
+  constexpr double most = 10.0 * folds_of_blocks;
+  const double rows = static_cast<double>(layout.rows);
+  const double wanted = std::clamp(std::floor(rows / (10.0 * correlation)),
+                                   std::clamp<double>(fewest, least, most), most);
+  const auto count = static_cast<Index>(std::min(wanted, rows));
+  Folds folds{{}, folds_of_blocks, true};
+  for (Index i = 0; i < count; ++i) {
+    const Index first = layout.rows * i / count;
+    const Index last = layout.rows * (i + 1) / count;
+    folds.blocks.push_back({first, last, static_cast<int>(i % folds_of_blocks)});
+  }
+  return folds;
+}
+
+void judge_interpolated(const RowLayout& layout, const MatrixXd& G, Folds& folds) {
+  for (LeftOut& block : folds.blocks) block.judged = interpolates(layout, G, folds, block);
+}
+
+double correlation_rows(const RowLayout& layout, const VectorXd& residual) {
+  constexpr double negligible = 0.05;
+  double longest = 1.0;
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const auto e = residual.segment(layout.first(j), layout.rows);
+    const double square = e.squaredNorm();
+    if (!(square > 0)) continue;
+    double time = 1.0;
+    for (Index lag = 1; lag < layout.rows / 4; ++lag) {
+      double product = 0.0;
+      for (const Segment& segment : layout.segments) {
+        const Index pairs = static_cast<Index>(segment.rows()) - lag;
+        if (pairs <= 0) continue;
+        const auto first = static_cast<Index>(segment.first);
+        product += e.segment(first, pairs).dot(e.segment(first + lag, pairs));
+      }
+      const double correlation = product / square;
+      if (correlation < negligible) break;
+      time += 2.0 * correlation;
+    }
+    longest = std::max(longest, time);
+  }
+  return longest;
+}
+
+double total_rmse(const RowLayout& layout, const VectorXd& residual) {
+  double square = 0.0;
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const double scale = layout.outputs[j].scale;
+    square += scale * scale * residual.segment(layout.first(j), layout.rows).squaredNorm();
+  }
+  return std::sqrt(square / static_cast<double>(layout.count()));
+}
+
+HeldOut summarise(const std::vector<double>& before, const std::vector<double>& after,
+                  double measurements) {
+  constexpr std::size_t fewest_judged = 4;
+  HeldOut result;
+  if (before.size() < fewest_judged) return result;
+  const auto count = static_cast<Index>(before.size());
+  const Eigen::Map<const VectorXd> old(before.data(), count);
+  const Eigen::Map<const VectorXd> now(after.data(), count);
+  const VectorXd gain = old - now;
+  const auto blocks = static_cast<double>(count);
+  const double variance = (gain.array() - gain.mean()).square().sum() / (blocks - 1.0);
+  result.judged = true;
+  result.before = std::sqrt(old.sum() / measurements);
+  result.after = std::sqrt(now.sum() / measurements);
+  result.gain = 1.0 - result.after / result.before;
+  result.passed = gain.mean() > std::sqrt(variance / blocks);
+  return result;
+}
+
+HeldOut hold_out(const Linearisation& fit, const MatrixXd& G, const Folds& folds) {
+  const RowLayout& layout = fit.layout;
+  const Index n = fit.tangent.cols();
+  MatrixXd without(layout.count(), n + 1);
+  without << fit.tangent, fit.residual;
+  MatrixXd with(layout.count(), n + G.cols() + 1);
+  with << fit.tangent, G, fit.residual;
+  const auto factors_without = factor_by_fold(layout, without, folds);
+  const auto factors_with = factor_by_fold(layout, with, folds);
+  std::vector<VectorXd> estimates_without;
+  std::vector<VectorXd> estimates_with;
+  for (int f = 0; f < folds.count; ++f) {
+    estimates_without.push_back(estimate_without(factors_without, f));
+    estimates_with.push_back(estimate_without(factors_with, f));
+  }
+  std::vector<double> before;
+  std::vector<double> after;
+  double rows = 0.0;
+  for (const LeftOut& block : folds.blocks) {
+    if (!block.judged) continue;
+    const auto f = static_cast<std::size_t>(block.fold);
+    before.push_back(square_of(layout, without, estimates_without[f], block));
+    after.push_back(square_of(layout, with, estimates_with[f], block));
+    rows += static_cast<double>(block.last - block.first);
+  }
+  return summarise(before, after, rows * static_cast<double>(layout.outputs.size()));
+}
+
+}  // namespace sepcal

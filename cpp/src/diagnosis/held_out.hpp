@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cross-validation of a candidate: every block of rows is predicted by what the others determine,
+// with and without it. Both fits take one Gauss-Newton step from the fit to all rows, which is
+// exact for linear terms.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnosis/linearisation.hpp"
+
+namespace sepcal {
+
+/// Rows that are left out together, as a block; blocks of one fold are left out at once.
+struct LeftOut {
+  Eigen::Index first = 0;  // among the N rows
+  Eigen::Index last = 0;
+  int fold = 0;
+  bool judged = true;  // false: it would be extrapolated to
+};
+
+struct Folds {
+  std::vector<LeftOut> blocks;
+  int count = 0;
+  bool interleaved = false;
+};
+
+/// Runs of one label, each a fold of its own; no folds where there are fewer than four.
+Folds whole_segments(const RowLayout& layout);
+
+/// Blocks of at least ten correlation times [rows], at least `fewest` and at most sixty of them,
+/// dealt to six folds.
+Folds interleaved_blocks(const RowLayout& layout, double correlation_rows, int fewest);
+
+/// Judges a block only where most of its rows lie, column by column of the candidate's G, within
+/// what the other folds span.
+void judge_interpolated(const RowLayout& layout, const Eigen::MatrixXd& G, Folds& folds);
+
+/// The integrated correlation time of a residual [rows], of its most correlated output.
+double correlation_rows(const RowLayout& layout, const Eigen::VectorXd& residual);
+
+struct HeldOut {
+  double before = 0.0;  // RMSE over all outputs, in their unit
+  double after = 0.0;
+  double gain = 0.0;    // 1 - after / before
+  bool passed = false;  // mean gain of a block over its standard error > 1
+  bool judged = false;  // false: too few blocks in which the driver interpolates
+};
+
+/// From the squared errors of each block without and with the candidate, over `measurements`.
+HeldOut summarise(const std::vector<double>& before, const std::vector<double>& after,
+                  double measurements);
+
+/// `G`: the candidate's columns, count() x q.
+HeldOut hold_out(const Linearisation& fit, const Eigen::MatrixXd& G, const Folds& folds);
+
+/// RMSE over all outputs, in their unit, of a residual whose outputs are scaled.
+double total_rmse(const RowLayout& layout, const Eigen::VectorXd& residual);
+
+}  // namespace sepcal

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/likelihood_ratio.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "diagnosis/projection.hpp"
+#include "diagnosis/tails.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Each stride-th row of every segment.
+struct Thinned {
+  RowLayout layout;
+  std::vector<Index> rows;  // among count()
+};
+
+Thinned thin_out(const RowLayout& layout, Index most_rows) {
+  const Index stride = (layout.rows + most_rows - 1) / most_rows;
+  Thinned thinned;
+  std::vector<Index> of_output;
+  for (const Segment& segment : layout.segments) {
+    const auto first = of_output.size();
+    for (std::size_t row = segment.first; row < segment.last;
+         row += static_cast<std::size_t>(stride))
+      of_output.push_back(static_cast<Index>(row));
+    thinned.layout.segments.push_back({segment.label, first, of_output.size()});
+  }
+  thinned.layout.outputs = layout.outputs;
+  thinned.layout.rows = static_cast<Index>(of_output.size());
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    for (const Index row : of_output) thinned.rows.push_back(layout.first(j) + row);
+  }
+  return thinned;
+}
+
+MatrixXd join(const MatrixXd& left, const MatrixXd& right) {
+  MatrixXd both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
+}
+
+}  // namespace
+
+NullHypothesis find_null(const Linearisation& fit) {
+  NullHypothesis null{.fit = &fit};
+  null.basis = orthonormal_basis(fit.tangent);
+  const VectorXd residual = remove_span(null.basis, fit.residual);
+  const NoiseModels noise = fit_noise_models(fit.layout, residual);
+  null.best = maximise(fit.layout, null.basis, residual, {noise, forget_colour(noise)});
+  null.best.coefficients += null.basis.transpose() * (fit.residual - residual);
+  MatrixXd white = join(null.basis, residual);
+  whiten(fit.layout, null.best.noise, white);
+  null.white_basis = orthonormal_basis(white.leftCols(null.basis.cols()));
+  null.white_residual = remove_span(null.white_basis, white.rightCols<1>());
+  return null;
+}
+
+LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& added) {
+  const RowLayout& layout = null.fit->layout;
+  const VectorXd& residual = null.fit->residual;
+  const MatrixXd columns = join(null.basis, added);
+  // Where the effect looks like slow noise, the search must also begin with the effect taken out
+  // and noise without colour.
+  const VectorXd left = remove_span(added, remove_span(null.basis, residual));
+  NoiseModels plain = forget_colour(null.best.noise);
+  for (std::size_t j = 0; j < plain.size(); ++j) {
+    plain[j].sigma = std::max(
+        1e-9, left.segment(layout.first(j), layout.rows).norm() / std::sqrt(double(layout.rows)));
+  }
+  LikelihoodRatio ratio;
+  ratio.with = maximise(layout, columns, residual, {null.best.noise, plain});
+  ratio.value =
+      std::max(0.0, null.best.minus_two_log_likelihood - ratio.with.minus_two_log_likelihood);
+  return ratio;
+}
+
+RatioMoments simulate_ratio(const NullHypothesis& null, const MatrixXd& added, int simulations,
+                            std::uint64_t seed, ThreadPool& pool) {
+  constexpr Index most_rows = 400;
+  constexpr Effort quick{.rounds = 1, .least_gain = 0.05};
+  const Thinned thinned = thin_out(null.fit->layout, most_rows);
+  const MatrixXd basis = orthonormal_basis(null.basis(thinned.rows, Eigen::all));
+  const MatrixXd columns =
+      join(basis, orthonormal_basis(remove_span(basis, added(thinned.rows, Eigen::all))));
+  const RowLayout& layout = thinned.layout;
+  const NoiseModels& noise = null.best.noise;
+  std::mt19937_64 generator(seed);
+  MatrixXd draws(layout.count(), simulations);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    draws.middleRows(layout.first(j), layout.rows) =
+        simulate_noise(noise[j], layout.segments, simulations, generator);
+  }
+  VectorXd ratios(simulations);
+  pool.for_each(static_cast<std::size_t>(simulations), [&](std::size_t i) {
+    const auto k = static_cast<Index>(i);
+    const VectorXd residual = draws.col(k);
+    const Hypothesis without = maximise(layout, basis, residual, {noise}, quick);
+    const Hypothesis with = maximise(layout, columns, residual, {without.noise}, quick);
+    ratios[k] = std::max(0.0, without.minus_two_log_likelihood - with.minus_two_log_likelihood);
+  });
+  const double mean = ratios.mean();
+  const double square = (ratios.array() - mean).square().sum();
+  return {mean, square / static_cast<double>(simulations - 1)};
+}
+
+double log10_tail(double ratio, const RatioMoments& moments) {
+  if (!(moments.mean > 0) || !(moments.variance > 0)) return 0.0;
+  const double scale = moments.variance / moments.mean;
+  return log10_gamma_tail(moments.mean / scale, ratio / scale);
+}
+
+}  // namespace sepcal

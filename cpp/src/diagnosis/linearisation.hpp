@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The neighbourhood of a fit, dense: residual and tangent of every row, output after output, each
+// divided by the output's RMSE. What a factor forgets, the order of rows, is what noise models and
+// held-out rows need.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal {
+
+/// An output whose residual is not zero.
+struct UsedOutput {
+  int index = 0;  // among the model's
+  std::string name;
+  std::string unit;
+  double scale = 1.0;  // RMSE of its residual, which all its rows are divided by
+};
+
+/// Where rows stand: N of each output, segment after segment, one output below the other.
+struct RowLayout {
+  std::vector<Segment> segments;  // among the N rows
+  std::vector<UsedOutput> outputs;
+  Eigen::Index rows = 0;  // N
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(outputs.size()) * rows; }
+  /// The rows of the j-th used output.
+  Eigen::Index first(std::size_t j) const { return static_cast<Eigen::Index>(j) * rows; }
+};
+
+/// The layout of `segments` without outputs.
+RowLayout lay_out(const std::vector<Segment>& segments);
+
+struct Linearisation {
+  RowLayout layout;
+  std::vector<std::string> parameters;  // estimated and not at a bound: the columns of `tangent`
+  Eigen::MatrixXd tangent;              // count() x parameters
+  Eigen::VectorXd residual;             // count(), z - model
+};
+
+}  // namespace sepcal

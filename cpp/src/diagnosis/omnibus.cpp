@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/omnibus.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/held_out.hpp"
+#include "diagnosis/projection.hpp"
+#include "diagnosis/tails.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Window {
+  std::string name;
+  std::vector<Segment> stretches;
+};
+
+/// By label where there are a few, else even windows of at least ten correlation times.
+std::vector<Window> cut_windows(const CandidateRoom& room, double correlation) {
+  constexpr std::size_t fewest = 3;
+  constexpr std::size_t most = 20;
+  const RowLayout& layout = room.fit().layout;
+  std::vector<Window> windows;
+  for (const Segment& segment : layout.segments) {
+    const auto same = std::ranges::find(windows, segment.label, &Window::name);
+    if (same == windows.end()) {
+      windows.push_back({segment.label, {segment}});
+    } else {
+      same->stretches.push_back(segment);
+    }
+  }
+  if (windows.size() >= fewest && windows.size() <= most) return windows;
+  windows.clear();
+  const auto length = static_cast<std::size_t>(layout.rows);
+  const double wanted = std::floor(static_cast<double>(length) / (10.0 * correlation));
+  const auto count = static_cast<std::size_t>(std::clamp(wanted, 4.0, static_cast<double>(most)));
+  std::vector<double> time;
+  if (room.record().has("time")) {
+    const auto column = room.record().column("time");
+    for (const Segment& segment : room.rows()) {
+      time.insert(time.end(), column.begin() + static_cast<std::ptrdiff_t>(segment.first),
+                  column.begin() + static_cast<std::ptrdiff_t>(segment.last));
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t first = length * i / count;
+    const std::size_t last = length * (i + 1) / count;
+    if (first == last) continue;
+    const auto name = [&](std::size_t row) {
+      std::string text = time.empty() ? std::to_string(row) : std::to_string(time[row]);
+      if (text.find('.') != std::string::npos) text.resize(text.find('.') + 2);
+      return text;
+    };
+    windows.push_back({name(first) + ":" + name(last - 1), {{"", first, last}}});
+  }
+  return windows;
+}
+
+/// Each column restricted to each window, one window left out: the columns' own constants are for
+/// the tangent to tell.
+MatrixXd by_window(const RowLayout& layout, const MatrixXd& columns,
+                   const std::vector<Window>& windows) {
+  const auto count = static_cast<Index>(windows.size());
+  MatrixXd parts = MatrixXd::Zero(layout.count(), columns.cols() * count);
+  for (Index k = 0; k < columns.cols(); ++k) {
+    for (Index w = 0; w < count; ++w) {
+      for (const Segment& stretch : windows[static_cast<std::size_t>(w)].stretches) {
+        for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+          const Index first = layout.first(j) + static_cast<Index>(stretch.first);
+          const auto rows = static_cast<Index>(stretch.rows());
+          parts.col(k * count + w).segment(first, rows) = columns.col(k).segment(first, rows);
+        }
+      }
+    }
+  }
+  return parts;
+}
+
+struct Offsets {
+  std::string where;
+  MatrixXd basis;  // orthonormal, beyond the tangent
+  MatrixXd parts;
+};
+
+std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
+                                  const NullHypothesis& null, const std::vector<Window>& windows) {
+  const RowLayout& layout = room.fit().layout;
+  std::vector<Offsets> sets;
+  const auto add = [&](const std::string& where, const MatrixXd& columns) {
+    const MatrixXd parts = by_window(layout, columns, windows);
+    const MatrixXd beyond = remove_span(null.basis, parts);
+    std::vector<Index> seen;
+    for (Index k = 0; k < parts.cols(); ++k) {
+      if (beyond.col(k).norm() > 0.05 * parts.col(k).norm()) seen.push_back(k);
+    }
+    if (!seen.empty()) sets.push_back({where, orthonormal_basis(beyond(Eigen::all, seen)), parts});
+  };
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    VectorXd ones = VectorXd::Zero(layout.count());
+    ones.segment(layout.first(j), layout.rows).setOnes();
+    add(layout.outputs[j].name, ones);
+  }
+  for (const Port& port : kit.ports) {
+    try {
+      add(port.name, room.port_columns(port));
+    } catch (const Error&) {
+      continue;  // the record doesn't log what the port needs
+    }
+  }
+  return sets;
+}
+
+/// How far each window is off, in its own standard errors: the larger of its columns'.
+std::vector<std::pair<std::string, double>> describe_windows(const RowLayout& layout,
+                                                             const NullHypothesis& null,
+                                                             const Offsets& offsets,
+                                                             const std::vector<Window>& windows) {
+  std::vector<std::pair<std::string, double>> described;
+  const auto count = static_cast<Index>(windows.size());
+  for (Index w = 0; w < count; ++w) {
+    double furthest = 0.0;
+    for (Index k = w; k < offsets.parts.cols(); k += count) {
+      MatrixXd white = offsets.parts.col(k);
+      whiten(layout, null.best.noise, white);
+      white = remove_span(null.white_basis, white);
+      const double norm = white.norm();
+      if (!(norm > 0)) continue;
+      furthest = std::max(furthest, std::abs(white.col(0).dot(null.white_residual)) / norm);
+    }
+    described.emplace_back(windows[static_cast<std::size_t>(w)].name, furthest);
+  }
+  return described;
+}
+
+/// The point that a standard normal variable exceeds with that probability.
+double upper_normal_point(double probability) {
+  double low = -10.0;
+  double high = 40.0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(middle / std::sqrt(2.0)) > probability ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
+                           const DiagnosisOptions& options, ThreadPool& pool) {
+  const RowLayout& layout = room.fit().layout;
+  const VectorXd residual = remove_span(null.basis, room.fit().residual);
+  const std::vector<Window> windows = cut_windows(room, correlation_rows(layout, residual));
+  const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
+  std::vector<double> ratios(sets.size());
+  pool.for_each(sets.size(),
+                [&](std::size_t i) { ratios[i] = compare_with_null(null, sets[i].basis).value; });
+  Omnibus result;
+  const double correction = std::log10(static_cast<double>(std::max<std::size_t>(1, sets.size())));
+  double least = 0.0;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const auto freedom = static_cast<double>(sets[i].basis.cols());
+    double log10_p = correction + log10_chi_squared_tail(ratios[i], freedom);
+    if (log10_p < std::log10(options.unexplained_below)) {
+      const RatioMoments moments =
+          simulate_ratio(null, sets[i].basis, options.simulations, options.seed + i, pool);
+      log10_p = std::max(log10_p, correction + log10_tail(ratios[i], moments));
+    }
+    if (!(log10_p < least)) continue;
+    least = log10_p;
+    result.where = sets[i].where;
+    result.windows = describe_windows(layout, null, sets[i], windows);
+  }
+  result.p_value = std::pow(10.0, least);
+  return result;
+}
+
+std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& kit,
+                                        const NullHypothesis& null, double significance,
+                                        std::size_t candidates) {
+  std::vector<DetectionLimit> limits;
+  if (!room.record().has("time")) return limits;
+  const RowLayout& layout = room.fit().layout;
+  const auto time = room.record().column("time");
+  VectorXd ramp(layout.rows);
+  Index at = 0;
+  for (const Segment& segment : room.rows()) {
+    for (std::size_t row = segment.first; row < segment.last; ++row) ramp[at++] = time[row];
+  }
+  const double span = ramp.maxCoeff() - ramp.minCoeff();
+  if (!(span > 0)) return limits;
+  ramp = (ramp.array() - ramp.mean()) / span;
+  const auto tests = static_cast<double>(std::max<std::size_t>(1, candidates));
+  const double sigmas = upper_normal_point(0.5 * significance / tests) + upper_normal_point(0.1);
+  for (const Port& port : kit.ports) {
+    MatrixXd columns;
+    try {
+      columns = room.port_columns(port);
+    } catch (const Error&) {
+      continue;
+    }
+    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+      auto part = columns.middleRows(layout.first(j), layout.rows);
+      part.array().colwise() *= ramp.array();
+    }
+    whiten(layout, null.best.noise, columns);
+    columns = remove_span(null.white_basis, columns);
+    double size = 0.0;
+    for (Index k = 0; k < columns.cols(); ++k) {
+      size = std::max(size, sigmas / columns.col(k).norm());
+    }
+    limits.push_back({port.name, port.unit, size});
+  }
+  return limits;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/refits.hpp"
+
+#include <algorithm>
+
+#include "sepcal/error.hpp"
+#include "sepcal/measurements.hpp"
+#include "sweep.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rows [first, last) of the layout as segments of the record.
+void append_rows(const CandidateRoom& room, Index first, Index last, std::vector<Segment>& rows) {
+  const std::vector<Segment>& layout = room.fit().layout.segments;
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    const auto begin = std::max(static_cast<std::size_t>(first), layout[i].first);
+    const auto end = std::min(static_cast<std::size_t>(last), layout[i].last);
+    if (begin >= end) continue;
+    const Segment& whole = room.rows()[i];
+    const std::size_t shift = whole.first - layout[i].first;
+    rows.push_back({whole.label, begin + shift, end + shift});
+  }
+}
+
+/// What a fit to some of the rows takes from the fit to all of them.
+FitOptions options_from(const Fit& fit) {
+  FitOptions options;
+  options.samples = 0;
+  options.noise_tolerance = 1e-4;
+  options.threads = 1;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const Parameter& parameter = fit.parameters[k];
+    if (parameter.fixed) {
+      options.fixed[parameter.name] = parameter.value;
+      continue;
+    }
+    options.bounds[parameter.name] = {parameter.lower, parameter.upper};
+    if (static_cast<int>(k) >= fit.n_1) options.start[parameter.name] = parameter.value;
+  }
+  return options;
+}
+
+/// The same for the model with the candidate, which begins at zero; its shape is held.
+FitOptions with_candidate(FitOptions options, const Tables& tables, const Candidate& candidate,
+                          double shape) {
+  if (!candidate.shape.parameter.empty()) options.fixed[candidate.shape.parameter] = shape;
+  for (const Variable& coefficient : candidate.coefficients) {
+    if (std::ranges::find(tables.nonlinear, coefficient.name, &Variable::name) !=
+        tables.nonlinear.end()) {
+      options.start[coefficient.name] = 0.0;
+    }
+  }
+  return options;
+}
+
+/// The same starts at the estimates of a fit to all rows.
+FitOptions start_from(FitOptions options, const Fit& fit) {
+  for (auto& [name, start] : options.start) start = fit[name].value;
+  return options;
+}
+
+/// Squared error of each block of one fold, in the outputs' unit.
+VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOptions& options,
+                const Folds& folds, int fold) {
+  std::vector<Segment> others;
+  std::vector<std::vector<Segment>> left_out;
+  for (const LeftOut& block : folds.blocks) {
+    if (block.fold == fold) {
+      if (block.judged) append_rows(room, block.first, block.last, left_out.emplace_back());
+    } else {
+      append_rows(room, block.first, block.last, others);
+    }
+  }
+  Record rows = room.record();
+  rows.cut(others);
+  const Fit fitted = fit(model, rows, options);
+  ThreadPool alone(1);
+  VectorXd squares(static_cast<Index>(left_out.size()));
+  for (std::size_t b = 0; b < left_out.size(); ++b) {
+    rows.cut(left_out[b]);
+    const Measurements measurements(model, rows);
+    squares[static_cast<Index>(b)] =
+        Sweep(model, measurements, alone).squared_residuals(fitted.xi1(), fitted.xi2()).sum();
+  }
+  return squares;
+}
+
+}  // namespace
+
+HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
+                           const Folds& folds, ThreadPool& pool) {
+  const auto without = room.model();
+  const auto with = room.model_with(candidate);
+  const FitOptions base = options_from(room.fitted());
+  FitOptions extended = with_candidate(base, with->tables(), candidate, shape);
+  const auto count = static_cast<std::size_t>(folds.count);
+  std::vector<VectorXd> before(count);
+  std::vector<VectorXd> after(count);
+  try {
+    Record rows = room.record();
+    rows.cut(room.rows());
+    extended = start_from(std::move(extended), fit(*with, rows, extended));
+    pool.for_each(2 * count, [&](std::size_t task) {
+      const std::size_t f = task / 2;
+      if (task % 2 == 0) {
+        before[f] = errors(*without, room, base, folds, static_cast<int>(f));
+      } else {
+        after[f] = errors(*with, room, extended, folds, static_cast<int>(f));
+      }
+    });
+  } catch (const Error&) {
+    return {};
+  }
+  std::vector<double> old;
+  std::vector<double> now;
+  double rows = 0.0;
+  for (std::size_t f = 0; f < count; ++f) {
+    old.insert(old.end(), before[f].begin(), before[f].end());
+    now.insert(now.end(), after[f].begin(), after[f].end());
+  }
+  for (const LeftOut& block : folds.blocks) {
+    if (block.judged) rows += static_cast<double>(block.last - block.first);
+  }
+  return summarise(old, now, rows * static_cast<double>(without->tables().n_z()));
+}
+
+}  // namespace sepcal

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the residual of each output is like, before anybody explains it.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/likelihood_ratio.hpp"
+#include "sepcal/diagnosis.hpp"
+
+namespace sepcal {
+
+/// One entry a used output.
+std::vector<ResidualNoise> describe_residual(const NullHypothesis& null);
+
+}  // namespace sepcal

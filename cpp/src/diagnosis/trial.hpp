@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The trial of one candidate: screened by the score test over its shapes, tested by a likelihood
+// ratio, estimated by one step.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "diagnosis/candidate.hpp"
+#include "diagnosis/held_out.hpp"
+#include "diagnosis/likelihood_ratio.hpp"
+#include "diagnosis/projection.hpp"
+
+namespace sepcal {
+
+/// A candidate at one of its shapes.
+struct ShapeScore {
+  double shape = not_a_number;
+  int freedom = 0;     // directions that can be seen
+  double white = 0.0;  // log10 of the score's tail in the null's noise model
+  double plain = 0.0;  // the same as if the residual were white
+};
+
+struct Trial {
+  Candidate candidate = {};
+  double visibility = 0.0;
+  double least_visibility = 0.05;
+  bool visible = false;  // in one direction at least
+  std::vector<ShapeScore> scores = {};
+  double shape = not_a_number;  // where it explains most
+  double log10_white = 0.0;     // of the best score's tail, corrected for the scan
+  double log10_plain = 0.0;
+  double log10_p = 0.0;  // of the test where it was made, else of the score
+  bool tested = false;
+  double ratio = 0.0;
+  int freedom = 0;
+  Eigen::VectorXd estimate = {};
+  Eigen::MatrixXd covariance = {};
+  double predicted_drop = 0.0;
+  HeldOut held_out = {};
+  Folds folds = {};
+  Eigen::VectorXd absorbed = {};       // shift of each column of the tangent
+  Eigen::MatrixXd thinned_basis = {};  // orthonormal, of some rows of G_perp
+};
+
+/// Scores every shape in the directions that can be seen.
+void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
+
+/// The likelihood ratio at the shapes that score best, with the estimate there.
+void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
+
+/// Whether the columns hardly change within a hundredth of the record: noise that is as slow
+/// imitates them.
+bool is_smooth(const RowLayout& layout, const Eigen::MatrixXd& columns);
+
+/// How much larger the ratio's first two moments are than chi-squared's, under the null.
+struct Inflation {
+  double mean = 1.0;
+  double variance = 1.0;
+};
+
+/// Whether the tail is below `threshold` (log10) and the columns are smooth, so that noise as slow
+/// as the effect may have made it.
+bool needs_calibration(const CandidateRoom& room, double threshold, const Trial& trial);
+
+/// By simulation of the null.
+Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
+                             const Trial& trial, int simulations, std::uint64_t seed,
+                             ThreadPool& pool);
+
+/// Corrects the test's tail.
+void inflate(const Inflation& inflation, Trial& trial);
+
+/// Cross-validation by one step from the fit: of whole segments where the effect isn't smooth and
+/// there are a few, else of blocks in between.
+void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
+
+/// The same by real fits, which replace the steps.
+void confirm(const CandidateRoom& room, ThreadPool& pool, Trial& trial);
+
+}  // namespace sepcal

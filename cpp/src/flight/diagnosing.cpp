@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/diagnosing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrated_flight.hpp"
+#include "effect_candidates.hpp"
+#include "parameter_values.hpp"
+#include "sepcal/composition.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/measurements.hpp"
+#include "sweep.hpp"
+#include "thread_pool.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A flight as both the candidates and the refit after an injection take it.
+struct Ground {
+  ProbeRecord prepared;  // before effects in time cut its edges
+  OwnEffects own;        // the calibration's and the caller's
+};
+
+Ground prepare_ground(const Calibration& calibration, const Flight& flight, const OwnEffects& own) {
+  Ground ground{calibration.probe->prepare(flight, calibration.options.drop_invalid),
+                calibration.options.own_effects};
+  for (const auto& [name, maker] : own) ground.own[name] = maker;
+  return ground;
+}
+
+DiagnosedFit diagnosed_fit(const Calibration& calibration, const Ground& ground) {
+  const Probe& probe = *calibration.probe;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  const EffectiveFlight effective = with_effects(probe, ground.prepared.record, settings,
+                                                 ground.own, calibration.options.fit.bounds);
+  return {
+      .model = model_of(probe),
+      .kit = effect_kit(probe.name(), ground.own),
+      .effects = std::move(settings),
+      .record = ground.prepared.record,
+      .rows =
+          effective.prepared.record.select(calibration.options.fit.stage_two_segments).segments(),
+      .fit = calibration.fit};
+}
+
+/// Those of the catalogue that the calibration doesn't have yet.
+std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Calibration& calibration,
+                                        const Flight& flight) {
+  std::vector<std::string> names =
+      list_candidates(fitted.kit, calibration.probe->name(), fitted.record, flight);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::ranges::find(fitted.effects, name, &EffectSetting::name) != fitted.effects.end();
+  });
+  return names;
+}
+
+FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const Flight& flight,
+                    const DiagnosisOptions& options) {
+  const DiagnosedFit fitted = diagnosed_fit(calibration, ground);
+  FlightDiagnosis result;
+  result.model = calibration.probe->name();
+  result.status = calibration.fit.status;
+  result.message = calibration.fit.message;
+  result.notes = ground.prepared.notes;
+  result.diagnosis = diagnose(fitted, candidates_for(fitted, calibration, flight), options);
+  for (const EffectFinding& effect : result.diagnosis.effects) {
+    result.sentences.push_back(describe_effect(effect.name));
+  }
+  std::size_t used = 0;
+  for (const Segment& segment : fitted.rows) used += segment.rows();
+  result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
+  result.missing_channels = list_missing_channels(result.model, flight);
+  return result;
+}
+
+/// What the effect adds to every output at the calibration's estimates (rows x n_z, of the whole
+/// record), NaN outside its segments.
+MatrixXd added_outputs(const Calibration& calibration, const Ground& ground,
+                       const HiddenEffect& injected, Injection& injection) {
+  const Probe& probe = *calibration.probe;
+  const EffectKit kit = effect_kit(probe.name(), ground.own);
+  Record record = ground.prepared.record;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  settings.push_back({.name = injected.name});
+  const std::vector<Effect> effects = make_effects(kit, *model_of(probe), settings, record);
+  injection.effect = settings.back().name;
+  for (std::size_t i = 0; i + 1 < settings.size(); ++i) {
+    if (settings[i].name != injection.effect) continue;
+    throw Error(fmt::format("the calibration has the effect {} already", injection.effect));
+  }
+  const auto model = compose(model_of(probe), effects, record);
+  ParameterValues values = values_by_name(calibration.fit);
+  std::vector<std::string> added;
+  for (const Variable& parameter : model->tables().parameters()) {
+    if (!values.contains(parameter.name)) added.push_back(parameter.name);
+  }
+  std::vector<double> sizes = injected.sizes;
+  if (sizes.size() == 1) sizes.assign(added.size(), sizes.front());
+  if (sizes.size() != added.size()) {
+    throw Error(fmt::format("inject {}: {} sizes for the {} parameters {}", injection.effect,
+                            injected.sizes.size(), added.size(), fmt::join(added, ", ")));
+  }
+  injection.sizes = sizes;
+  ParameterValues without = values;
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    values[added[i]] = sizes[i];
+    const bool is_shape = effects.back().driver && effects.back().driver->shape() &&
+                          added[i].ends_with("." + effects.back().driver->shape()->name);
+    without[added[i]] = is_shape ? sizes[i] : 0.0;
+  }
+  const Measurements measurements(*model, record);
+  ThreadPool pool(calibration.options.fit.threads);
+  const Sweep sweep(*model, measurements, pool);
+  const auto residuals = [&](const ParameterValues& at) {
+    return sweep.residuals(in_order(model->tables().linear, at),
+                           in_order(model->tables().nonlinear, at));
+  };
+  const MatrixXd difference = residuals(without) - residuals(values);
+  MatrixXd whole = MatrixXd::Constant(static_cast<Index>(record.length()), difference.cols(), 0.0);
+  Index at = 0;
+  for (const Segment& segment : record.segments()) {
+    const auto rows = static_cast<Index>(segment.rows());
+    whole.middleRows(static_cast<Index>(segment.first), rows) = difference.middleRows(at, rows);
+    at += rows;
+  }
+  return whole;
+}
+
+/// The record with something added to its outputs.
+Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
+                    const MatrixXd& added) {
+  Record changed;
+  for (const std::string& name : record.names()) {
+    const auto output = std::ranges::find(outputs, name, &Variable::name);
+    if (output == outputs.end()) {
+      changed.view(name, record.column(name));
+      continue;
+    }
+    const auto column = record.column(name);
+    std::vector<double> values(column.begin(), column.end());
+    const VectorXd shift = added.col(output - outputs.begin());
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      values[row] += shift[static_cast<Index>(row)];
+    }
+    changed.add(name, std::move(values));
+  }
+  changed.cut(record.segments());
+  return changed;
+}
+
+}  // namespace
+
+FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
+                         const OwnEffects& own, const DiagnosisOptions& options) {
+  try {
+    const Ground ground = prepare_ground(calibration, flight, own);
+    FlightDiagnosis result = run(calibration, ground, flight, options);
+    result.where = compare(calibration, flight).where;
+    return result;
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    if (what.starts_with(flight.name())) throw;
+    throw Error(fmt::format("{}: {}", flight.name(), what));
+  }
+}
+
+FlightDiagnosis diagnose_with(const HiddenEffect& injected, const Calibration& calibration,
+                              const Flight& flight, const OwnEffects& own,
+                              const DiagnosisOptions& options) {
+  Ground ground = prepare_ground(calibration, flight, own);
+  Injection injection;
+  const MatrixXd added = added_outputs(calibration, ground, injected, injection);
+  const Record original = ground.prepared.record;
+  ground.prepared.record =
+      with_outputs(original, calibration.probe->model().tables().outputs, added);
+  CalibrationOptions refit = calibration.options;
+  refit.fit.start = nonlinear_estimates(calibration.fit);
+  refit.fit.progress = options.progress;
+  refit.own_effects = ground.own;
+  const Calibration again = calibrate(calibration.probe, ground.prepared.record, refit);
+  FlightDiagnosis result = run(again, ground, flight, options);
+  std::vector<std::string> relatives{injection.effect};
+  for (const EffectFinding& effect : result.diagnosis.effects) {
+    if (effect.name != injection.effect) continue;
+    relatives = effect.family;
+    injection.estimate = effect.coefficients;
+    injection.p_adjusted = effect.p_adjusted;
+  }
+  for (std::size_t i = 0; i < result.diagnosis.effects.size(); ++i) {
+    const EffectFinding& effect = result.diagnosis.effects[i];
+    if (effect.status == FindingStatus::cannot_be_seen) continue;
+    if (std::ranges::find(relatives, effect.name) == relatives.end()) continue;
+    if (injection.rank == 0) injection.rank = i + 1;
+    injection.found = injection.found || effect.status == FindingStatus::found;
+  }
+  result.injection = std::move(injection);
+  return result;
+}
+
+std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
+  const Diagnosis& found = diagnosis.diagnosis;
+  const std::string unit = found.residual.empty() ? "" : found.residual.front().unit;
+  const std::string left =
+      fmt::format("{:.3g} {} of error are left; noise alone would leave {:.3g} {}", found.rmse,
+                  unit, found.floor, unit);
+  if (found.verdict == Verdict::unexplained) {
+    return fmt::format(
+        "Something is missing that no candidate explains: {}; it shows as offsets of {} from "
+        "window to window (p = {:.1g}).",
+        left, found.omnibus.where, found.omnibus.p_value);
+  }
+  if (found.verdict == Verdict::adequate) {
+    return fmt::format("Nothing is missing that this flight can show: {}.", left);
+  }
+  const EffectFinding& best = found.effects.front();
+  return fmt::format(
+      "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less, {:.0f} % on rows "
+      "held out).",
+      best.name, diagnosis.sentences.front(), left, found.rmse * (1.0 - best.predicted_drop), unit,
+      100.0 * best.predicted_drop, 100.0 * best.held_out_gain);
+}
+
+}  // namespace sepcal

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which physical effect is missing: candidates, ranked, with what each would bring."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Self
+
+from sepcal import _core
+
+
+@dataclass(frozen=True)
+class EffectFinding:
+    """What a flight says about one candidate; None where a number is undefined."""
+
+    name: str  # what add() takes
+    sentence: str  # in plain words
+    drivers: list[str]  # channels
+    estimate: dict[str, float | None]  # by coefficient, as one step from the fit has it
+    standard_error: dict[str, float | None]  # in the noise model with the effect
+    unit: dict[str, str]
+    shapes: dict[str, float]  # of a scan: {"bias_step.t0": 41.2}
+    p_value: float  # for itself, corrected for its scan
+    log10_p: float  # of the same, which may be too small for a float
+    p_adjusted: float  # after Holm: for the verdict
+    p_listed: float  # after Benjamini & Hochberg: for the list
+    predicted_drop: float | None  # of the RMSE over all outputs, 1 - after / before
+    held_out_gain: float | None  # the same on rows left out
+    held_out_before: float | None  # RMSE of rows left out
+    held_out_after: float | None
+    held_out_passed: bool  # the mean gain of a block exceeds its standard error
+    held_out_interleaved: bool  # blocks in between, not whole segments, were left out
+    visibility: float  # below 0.05 the flight can't show at least a part of it
+    absorbed_by: dict[str, float]  # how far ignoring it shifts each parameter
+    family: list[str]  # what this flight can't tell apart, itself among them
+    status: str  # "found", "not_seen", "cannot_be_seen"
+
+
+@dataclass(frozen=True)
+class Injection:
+    """An effect that was put into the measurements, to see whether it would have been found."""
+
+    effect: str
+    sizes: list[float]
+    found: bool  # itself or one of its family
+    rank: int | None  # of the first of its family, from 1; None: the flight can't show it
+    p_adjusted: float
+    estimate: dict[str, float | None]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Diagnosis:
+    """A verdict and the ranked candidates. `print(diagnosis)` shows the table."""
+
+    verdict: str  # "adequate", "effect_missing", "unexplained"
+    sentence: str  # the verdict in one sentence
+    rmse: float | None  # over all outputs, in their unit
+    noise_floor: float | None  # innovations alone
+    effects: list[EffectFinding]  # best first
+    residual: dict[str, dict[str, Any]]  # by output: rmse, lag_one, ljung_box_p, noise, floor
+    where: list[dict[str, Any]]  # by segment and output
+    unexplained: dict[str, Any]  # p_value of the test for any structure, where, windows
+    limits: dict[str, dict[str, Any]]  # by port: the smallest slow effect that would have shown
+    missing_channels: list[str]  # not logged, and could explain what is left
+    injected: Injection | None
+    status: str  # of the calibration, repeated
+    message: str
+    notes: list[str]  # one line each, for people
+    json: str
+
+    @classmethod
+    def _of(cls, described: Mapping[str, Any]) -> Self:
+        read = json.loads(described["json"])
+        names = {field.name for field in fields(cls)}
+        values = {name: value for name, value in read.items() if name in names}
+        values["effects"] = [EffectFinding(**effect) for effect in read["effects"]]
+        injected = read.get("injected")
+        values["injected"] = Injection(**injected) if injected else None
+        return cls(**values, notes=described["notes"], json=described["json"])
+
+    @property
+    def found(self) -> list[EffectFinding]:
+        """Those of the effects that were found, best first."""
+        return [effect for effect in self.effects if effect.status == "found"]
+
+    def __getitem__(self, name: str) -> EffectFinding:
+        """The candidate of that name. Raises Error where it was not tried."""
+        for effect in self.effects:
+            if effect.name == name:
+                return effect
+        raise _core.Error(f"there is no candidate '{name}' in this diagnosis")
+
+    def to_json(self) -> str:
+        """The JSON that the app's diagnose writes."""
+        return self.json
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary; None where a number is undefined."""
+        read: dict[str, Any] = json.loads(self.json)
+        return read
+
+    def __str__(self) -> str:
+        shown = [effect for effect in self.effects if effect.status != "cannot_be_seen"][:12]
+        width = max([len("effect"), *(len(effect.name) for effect in shown)])
+        lines = [self.sentence, ""]
+        lines.append(f"{'effect':<{width}}  status     p          predicted  held out  visibility")
+        for effect in shown:
+            lines.append(
+                f"{effect.name:<{width}}  {effect.status:<9}  {effect.p_adjusted:<9.2g}  "
+                f"{_percent(effect.predicted_drop):>9}  {_percent(effect.held_out_gain):>8}  "
+                f"{effect.visibility:>10.2f}"
+            )
+        hidden = [effect.name for effect in self.effects if effect.status == "cannot_be_seen"]
+        if hidden:
+            lines.append(f"cannot be seen in this flight: {' '.join(hidden)}")
+        return "\n".join([*lines, *self.notes])
+
+    def __repr__(self) -> str:
+        return f"<Diagnosis\n{self}>"
+
+
+def _percent(fraction: float | None) -> str:
+    return "-" if fraction is None else f"{100 * fraction:.1f} %"
