@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The recipe in order: make the candidates, screen all of them, test those near the top, calibrate
-// what smooth noise could imitate, hold rows out, correct for their number; pairs where no single
-// one passes; and where nothing does, whether anything is there.
+// what slow noise could imitate, hold rows out, correct for their number; pairs where no
+// single one passes; and where nothing does, whether anything is there.
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -229,22 +229,22 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
   const double number = std::max({1.0, visible_trials, tests});
   const double threshold = std::log10(options_.significance / number) + 0.3;  // about Holm's
   const std::uint64_t seed = options_.seed;
-  std::vector<Trial*> smooth;
+  std::vector<Trial*> significant;
   for (Trial& trial : trials) {
-    if (needs_calibration(room_, threshold, trial)) smooth.push_back(&trial);
+    if (trial.tested && trial.log10_p < threshold) significant.push_back(&trial);
   }
-  std::ranges::stable_sort(smooth, {}, &Trial::log10_p);
+  std::ranges::stable_sort(significant, {}, &Trial::log10_p);
   Inflation worst;
-  for (std::size_t i = 0; i < smooth.size(); ++i) {
-    tell("calibrating tests", static_cast<double>(i) / static_cast<double>(smooth.size()));
+  for (std::size_t i = 0; i < significant.size(); ++i) {
+    tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
     if (i < most_simulated) {
-      const bool beyond_doubt = smooth[i]->log10_p < doubtless;
+      const bool beyond_doubt = significant[i]->log10_p < doubtless;
       const Inflation own = simulate_inflation(
-          room_, null_, *smooth[i], beyond_doubt ? few_simulations : options_.simulations, seed + i,
-          pool_);
+          room_, null_, *significant[i], beyond_doubt ? few_simulations : options_.simulations,
+          seed + i, pool_);
       worst = {std::max(worst.mean, own.mean), std::max(worst.variance, own.variance)};
     }
-    inflate(worst, *smooth[i]);
+    inflate(worst, *significant[i]);
   }
   confirm_best(trials, threshold);
   std::vector<double> log10_p;

@@ -122,11 +122,6 @@ bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
   return changes < little * spread;
 }
 
-bool needs_calibration(const CandidateRoom& room, double threshold, const Trial& trial) {
-  return trial.tested && trial.log10_p < threshold &&
-         is_smooth(room.fit().layout, room.columns(trial.candidate, trial.shape));
-}
-
 Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
                              const Trial& trial, int simulations, std::uint64_t seed,
                              ThreadPool& pool) {

@@ -60,10 +60,6 @@ struct Inflation {
   double variance = 1.0;
 };
 
-/// Whether the tail is below `threshold` (log10) and the columns are smooth, so that noise as slow
-/// as the effect may have made it.
-bool needs_calibration(const CandidateRoom& room, double threshold, const Trial& trial);
-
 /// By simulation of the null.
 Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
                              const Trial& trial, int simulations, std::uint64_t seed,
