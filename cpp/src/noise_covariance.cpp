@@ -77,10 +77,17 @@ MatrixXd multiply_toeplitz(const VectorXd& lags, const Ref<const MatrixXd>& X) {
   return product;
 }
 
+/// The sizes of `innovations` with the signs of `x`; x where they are zero.
+void keep_sizes(const Ref<const VectorXd>& innovations, Ref<VectorXd> x) {
+  for (Index t = 0; t < x.size(); ++t) {
+    if (innovations[t] != 0.0) x[t] = std::copysign(innovations[t], x[t]);
+  }
+}
+
 }  // namespace
 
 MatrixXd simulate_noise(const NoiseModel& model, const std::vector<Segment>& segments, Index draws,
-                        std::mt19937_64& generator) {
+                        std::mt19937_64& generator, const VectorXd& innovations) {
   check_noise_model(model);
   const std::vector<Index> lengths = find_lengths(segments);
   const bool free = model.level_is_free();
@@ -91,6 +98,10 @@ MatrixXd simulate_noise(const NoiseModel& model, const std::vector<Segment>& seg
     rows += block;
     if (free) block = 2 * block - 1;
   }
+  if (innovations.size() > 0 && innovations.size() != rows) {
+    throw Error("there are " + std::to_string(innovations.size()) +
+                " innovations; the segments have " + std::to_string(rows) + " rows");
+  }
   const ArfimaFactor factor(model.d - (free ? 1.0 : 0.0), model.phi, blocks);
   MatrixXd noise(rows, draws);
   VectorXd x;
@@ -99,6 +110,9 @@ MatrixXd simulate_noise(const NoiseModel& model, const std::vector<Segment>& seg
     for (std::size_t k = 0; k < lengths.size(); ++k) {
       x.resize(blocks[k]);
       draw_normals(generator, x);
+      if (innovations.size() > 0) {
+        keep_sizes(innovations.segment(first, lengths[k]), x.tail(lengths[k]));
+      }
       factor.colour(x);
       if (free) {
         for (Index t = 1; t < x.size(); ++t) x[t] += x[t - 1];

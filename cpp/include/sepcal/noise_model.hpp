@@ -102,9 +102,12 @@ class Whitener {
 
 /// Draws of the noise: an independent one in each column, segment after segment (rows x draws).
 /// Where the level is free the noise begins at zero as many rows before a segment as the segment
-/// has. Throws Error as Whitener does; sigma may be 0.
+/// has. `innovations`, where given (rows of them, whitened residuals): their sizes are kept and
+/// their signs drawn, so that bursts stay where they are; zeros are drawn as normals. Throws Error
+/// as Whitener does; sigma may be 0.
 Eigen::MatrixXd simulate_noise(const NoiseModel& model, const std::vector<Segment>& segments,
-                               Eigen::Index draws, std::mt19937_64& generator);
+                               Eigen::Index draws, std::mt19937_64& generator,
+                               const Eigen::VectorXd& innovations = {});
 
 /// X' Sigma X (q x q) of columns X (rows x q, gather_rows' layout), Sigma the covariance of what
 /// simulate_noise draws. Throws Error as Whitener does (sigma may be 0) and for other rows.

@@ -92,10 +92,12 @@ RatioMoments simulate_ratio(const NullHypothesis& null, const MatrixXd& added, i
   const RowLayout& layout = thinned.layout;
   const NoiseModels& noise = null.best.noise;
   std::mt19937_64 generator(seed);
+  const VectorXd innovations = null.white_residual(thinned.rows);
   MatrixXd draws(layout.count(), simulations);
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     draws.middleRows(layout.first(j), layout.rows) =
-        simulate_noise(noise[j], layout.segments, simulations, generator);
+        simulate_noise(noise[j], layout.segments, simulations, generator,
+                       innovations.segment(layout.first(j), layout.rows));
   }
   VectorXd ratios(simulations);
   pool.for_each(static_cast<std::size_t>(simulations), [&](std::size_t i) {
