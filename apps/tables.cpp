@@ -133,9 +133,17 @@ std::string history_table(const Calibration& calibration) {
   std::size_t width = 0;
   for (const HistoryEntry& entry : history) width = std::max(width, entry.effect.size());
   for (const HistoryEntry& entry : history) {
-    text += fmt::format("  + {:<{}}  {:.4g} -> {:.4g}  ({:+.1f} %)\n", entry.effect, width,
+    text += fmt::format("  + {:<{}}  {:.4g} -> {:.4g}  ({:+.1f} %", entry.effect, width,
                         entry.rmse_before, entry.rmse_after,
                         100.0 * (entry.rmse_after / entry.rmse_before - 1.0));
+    if (std::isfinite(entry.predicted_drop)) {
+      text += fmt::format(", promised {:+.1f} %", -100.0 * entry.predicted_drop);
+    }
+    if (std::isfinite(entry.held_out_before)) {
+      text += fmt::format("; on rows held out {:.4g} -> {:.4g}", entry.held_out_before,
+                          entry.held_out_after);
+    }
+    text += ")\n";
   }
   return text;
 }

@@ -130,6 +130,18 @@ struct DiagnosedFit {
   Fit fit;
 };
 
+/// What an effect promises before it is added. Undefined numbers are NaN.
+struct Promise {
+  double predicted_drop = not_a_number;   // of the RMSE over all outputs, by one step from the fit
+  double held_out_before = not_a_number;  // RMSE of rows left out, by real fits to the others
+  double held_out_after = not_a_number;
+};
+
+/// Of `effect`, a name or "E1+E2". `shapes`: where a step or another shape was found. Throws Error
+/// where the record can't make it.
+Promise promise(const DiagnosedFit& fitted, const std::string& effect,
+                const std::map<std::string, double>& shapes, int threads = 0);
+
 /// Tries `candidates`, by their names or as "E1+E2". Those that the record can't make (a channel
 /// that isn't there or is constant) are left out. Throws Error for a fit whose parameters are not
 /// those of its model.

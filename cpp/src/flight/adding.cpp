@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calibrated_flight.hpp"
+#include "diagnosed_flight.hpp"
 #include "parameter_values.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
@@ -38,6 +39,18 @@ void refuse_twice(const CalibrationOptions& options) {
   throw Error(fmt::format("the calibration has the effect {} already", *twice));
 }
 
+/// What the effect promised at the base's estimates; nothing where it can't be tried there.
+Promise promise_of(const Calibration& base, const Calibration& next, const Flight& flight,
+                   const std::string& effect) {
+  try {
+    const ProbeRecord prepared = base.probe->prepare(flight, base.options.drop_invalid);
+    return promise(diagnosed_fit(base, prepared.record, next.options.own_effects), effect,
+                   values_by_name(next.fit), base.options.fit.threads);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
@@ -60,10 +73,14 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
   }
   Record rows = before.prepared.record;
   rows.cut(record.segments());
+  const Promise promised = promise_of(base, next, flight, added);
   next.history = base.history;
   next.history.push_back({.effect = added,
                           .rmse_before = total_rmse(base, before, rows),
-                          .rmse_after = total_rmse(next, after, record)});
+                          .rmse_after = total_rmse(next, after, record),
+                          .held_out_before = promised.held_out_before,
+                          .held_out_after = promised.held_out_after,
+                          .predicted_drop = promised.predicted_drop});
   return next;
 }
 

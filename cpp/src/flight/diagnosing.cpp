@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrated_flight.hpp"
+#include "diagnosed_flight.hpp"
 #include "effect_candidates.hpp"
 #include "parameter_values.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/measurements.hpp"
 #include "sweep.hpp"
 #include "thread_pool.hpp"
@@ -35,21 +36,6 @@ Ground prepare_ground(const Calibration& calibration, const Flight& flight, cons
   return ground;
 }
 
-DiagnosedFit diagnosed_fit(const Calibration& calibration, const Ground& ground) {
-  const Probe& probe = *calibration.probe;
-  std::vector<EffectSetting> settings = calibration.options.effects;
-  const EffectiveFlight effective = with_effects(probe, ground.prepared.record, settings,
-                                                 ground.own, calibration.options.fit.bounds);
-  return {
-      .model = model_of(probe),
-      .kit = effect_kit(probe.name(), ground.own),
-      .effects = std::move(settings),
-      .record = ground.prepared.record,
-      .rows =
-          effective.prepared.record.select(calibration.options.fit.stage_two_segments).segments(),
-      .fit = calibration.fit};
-}
-
 /// Those of the catalogue that the calibration doesn't have yet.
 std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Calibration& calibration,
                                         const Flight& flight) {
@@ -63,7 +49,7 @@ std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Calibr
 
 FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const Flight& flight,
                     const DiagnosisOptions& options) {
-  const DiagnosedFit fitted = diagnosed_fit(calibration, ground);
+  const DiagnosedFit fitted = diagnosed_fit(calibration, ground.prepared.record, ground.own);
   FlightDiagnosis result;
   result.model = calibration.probe->name();
   result.status = calibration.fit.status;
@@ -156,6 +142,22 @@ Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
 }
 
 }  // namespace
+
+DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& record,
+                           const OwnEffects& own) {
+  const Probe& probe = *calibration.probe;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  const EffectiveFlight effective =
+      with_effects(probe, record, settings, own, calibration.options.fit.bounds);
+  return {
+      .model = model_of(probe),
+      .kit = effect_kit(probe.name(), own),
+      .effects = std::move(settings),
+      .record = record,
+      .rows =
+          effective.prepared.record.select(calibration.options.fit.stage_two_segments).segments(),
+      .fit = calibration.fit};
+}
 
 FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
                          const OwnEffects& own, const DiagnosisOptions& options) {

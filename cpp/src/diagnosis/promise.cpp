@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/trial.hpp"
+
+namespace sepcal {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Promise promise(const DiagnosedFit& fitted, const std::string& effect,
+                const std::map<std::string, double>& shapes, int threads) {
+  ThreadPool pool(threads);
+  CandidateRoom room(fitted, pool);
+  const Linearisation& fit = room.fit();
+  Promise promised;
+  if (fit.layout.outputs.empty()) return promised;  // nothing is left to explain
+  Trial trial{.candidate = room.make(effect)};
+  const auto shape = shapes.find(trial.candidate.shape.parameter);
+  if (shape != shapes.end()) trial.shape = shape->second;
+  const NullHypothesis null{.fit = &fit, .basis = orthonormal_basis(fit.tangent)};
+  const MatrixXd G = room.columns(trial.candidate, trial.shape);
+  const MatrixXd added = orthonormal_basis(remove_span(null.basis, G));
+  const VectorXd left = remove_span(added, remove_span(null.basis, fit.residual));
+  promised.predicted_drop =
+      1.0 - total_rmse(fit.layout, left) / total_rmse(fit.layout, fit.residual);
+  hold_out(room, null, trial);
+  confirm(room, pool, trial);
+  if (!trial.held_out.judged) return promised;
+  promised.held_out_before = trial.held_out.before;
+  promised.held_out_after = trial.held_out.after;
+  return promised;
+}
+
+}  // namespace sepcal
