@@ -46,6 +46,11 @@ MatrixXd join(const MatrixXd& left, const MatrixXd& right) {
   return both;
 }
 
+/// Whether slow effects could hide in it.
+bool is_coloured(const NoiseModel& noise) {
+  return noise.d > 0.2 || (noise.phi.size() > 0 && noise.phi.cwiseAbs().maxCoeff() > 0.3);
+}
+
 }  // namespace
 
 NullHypothesis find_null(const Linearisation& fit) {
@@ -66,16 +71,20 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& ad
   const RowLayout& layout = null.fit->layout;
   const VectorXd& residual = null.fit->residual;
   const MatrixXd columns = join(null.basis, added);
+  std::vector<NoiseModels> starts{null.best.noise};
   // Where the effect looks like slow noise, the search must also begin with the effect taken out
   // and noise without colour.
-  const VectorXd left = remove_span(added, remove_span(null.basis, residual));
-  NoiseModels plain = forget_colour(null.best.noise);
-  for (std::size_t j = 0; j < plain.size(); ++j) {
-    plain[j].sigma = std::max(
-        1e-9, left.segment(layout.first(j), layout.rows).norm() / std::sqrt(double(layout.rows)));
+  if (std::ranges::any_of(null.best.noise, is_coloured)) {
+    const VectorXd left = remove_span(added, remove_span(null.basis, residual));
+    NoiseModels plain = forget_colour(null.best.noise);
+    for (std::size_t j = 0; j < plain.size(); ++j) {
+      const double square = left.segment(layout.first(j), layout.rows).squaredNorm();
+      plain[j].sigma = std::max(1e-9, std::sqrt(square / static_cast<double>(layout.rows)));
+    }
+    starts.push_back(std::move(plain));
   }
   LikelihoodRatio ratio;
-  ratio.with = maximise(layout, columns, residual, {null.best.noise, plain});
+  ratio.with = maximise(layout, columns, residual, starts);
   ratio.value =
       std::max(0.0, null.best.minus_two_log_likelihood - ratio.with.minus_two_log_likelihood);
   return ratio;
@@ -84,7 +93,7 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& ad
 RatioMoments simulate_ratio(const NullHypothesis& null, const MatrixXd& added, int simulations,
                             std::uint64_t seed, ThreadPool& pool) {
   constexpr Index most_rows = 400;
-  constexpr Effort quick{.rounds = 1, .least_gain = 0.05};
+  constexpr double roughly = 0.05;  // in -2 ln L, of the search for the noise model
   const Thinned thinned = thin_out(null.fit->layout, most_rows);
   const MatrixXd basis = orthonormal_basis(null.basis(thinned.rows, Eigen::all));
   const MatrixXd columns =
@@ -99,13 +108,14 @@ RatioMoments simulate_ratio(const NullHypothesis& null, const MatrixXd& added, i
         simulate_noise(noise[j], layout.segments, simulations, generator,
                        innovations.segment(layout.first(j), layout.rows));
   }
+  const WhitenedColumns without(layout, basis, noise);
+  const WhitenedColumns with(layout, columns, noise);
   VectorXd ratios(simulations);
   pool.for_each(static_cast<std::size_t>(simulations), [&](std::size_t i) {
-    const auto k = static_cast<Index>(i);
-    const VectorXd residual = draws.col(k);
-    const Hypothesis without = maximise(layout, basis, residual, {noise}, quick);
-    const Hypothesis with = maximise(layout, columns, residual, {without.noise}, quick);
-    ratios[k] = std::max(0.0, without.minus_two_log_likelihood - with.minus_two_log_likelihood);
+    const VectorXd residual = draws.col(static_cast<Index>(i));
+    ratios[static_cast<Index>(i)] =
+        std::max(0.0, without.step(residual, roughly).minus_two_log_likelihood -
+                          with.step(residual, roughly).minus_two_log_likelihood);
   });
   const double mean = ratios.mean();
   const double square = (ratios.array() - mean).square().sum();

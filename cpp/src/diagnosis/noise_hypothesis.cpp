@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/noise_hypothesis.hpp"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -12,22 +12,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double least_sigma = 1e-9;  // of the RMSE: nothing at all can't be whitened
+
 std::span<const double> rows_of(const RowLayout& layout, const VectorXd& values, std::size_t j) {
   return {values.data() + layout.first(j), static_cast<std::size_t>(layout.rows)};
-}
-
-/// The coefficients by generalised least squares, with their covariance.
-void solve(const RowLayout& layout, const MatrixXd& columns, const VectorXd& residual,
-           Hypothesis& at) {
-  MatrixXd white(columns.rows(), columns.cols() + 1);
-  white << columns, residual;
-  whiten(layout, at.noise, white);
-  const Index n = columns.cols();
-  const MatrixXd square = white.leftCols(n).transpose() * white.leftCols(n);
-  const VectorXd product = white.leftCols(n).transpose() * white.col(n);
-  const Eigen::LDLT<MatrixXd> factor(square);
-  at.coefficients = factor.solve(product);
-  at.covariance = factor.solve(MatrixXd::Identity(n, n));
 }
 
 }  // namespace
@@ -55,28 +43,56 @@ void whiten(const RowLayout& layout, const NoiseModels& noise, MatrixXd& columns
   }
 }
 
+WhitenedColumns::WhitenedColumns(const RowLayout& layout, const MatrixXd& columns,
+                                 const NoiseModels& noise)
+    : layout_(layout), noise_(noise), columns_(columns), white_(columns) {
+  whiten(layout, noise, white_);
+  factor_.compute(white_.transpose() * white_);
+}
+
+VectorXd WhitenedColumns::estimate(const VectorXd& residual) const {
+  MatrixXd white = residual;
+  whiten(layout_, noise_, white);
+  return factor_.solve(white_.transpose() * white.col(0));
+}
+
+MatrixXd WhitenedColumns::covariance() const {
+  return factor_.solve(MatrixXd::Identity(columns_.cols(), columns_.cols()));
+}
+
+Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain) const {
+  Hypothesis at{.noise = noise_, .coefficients = estimate(residual)};
+  const VectorXd left = residual - columns_ * at.coefficients;
+  for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
+    const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.segments,
+                                   {.start = noise_[j], .least_gain = least_gain});
+    at.noise[j] = fit.model;
+    at.noise[j].sigma = std::max(fit.model.sigma, least_sigma);
+    at.minus_two_log_likelihood += fit.minus_two_log_likelihood;
+  }
+  return at;
+}
+
 Hypothesis maximise(const RowLayout& layout, const MatrixXd& columns, const VectorXd& residual,
-                    const std::vector<NoiseModels>& starts, const Effort& effort) {
-  constexpr double least_gain = 0.02;  // in -2 ln L
+                    const std::vector<NoiseModels>& starts) {
+  constexpr int most_rounds = 3;
+  constexpr double least_gain = 0.02;  // in -2 ln L, of a round
+  constexpr double precise = 1e-4;     // of the search for the noise model
   Hypothesis best;
   best.minus_two_log_likelihood = std::numeric_limits<double>::infinity();
   for (const NoiseModels& start : starts) {
     NoiseModels noise = start;
     double last = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < effort.rounds; ++round) {
-      Hypothesis at{.noise = noise};
-      solve(layout, columns, residual, at);
-      const VectorXd left = residual - columns * at.coefficients;
-      for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-        const NoiseFit fit = fit_noise(rows_of(layout, left, j), layout.segments,
-                                       {.start = noise[j], .least_gain = effort.least_gain});
-        at.noise[j] = fit.model;
-        at.minus_two_log_likelihood += fit.minus_two_log_likelihood;
-      }
+    for (int round = 0; round < most_rounds; ++round) {
+      const WhitenedColumns whitened(layout, columns, noise);
+      Hypothesis at = whitened.step(residual, precise);
       noise = at.noise;
       const double gain = last - at.minus_two_log_likelihood;
       last = at.minus_two_log_likelihood;
-      if (last < best.minus_two_log_likelihood) best = std::move(at);
+      if (last < best.minus_two_log_likelihood) {
+        best = std::move(at);
+        best.covariance = whitened.covariance();
+      }
       if (gain < least_gain) break;
     }
   }

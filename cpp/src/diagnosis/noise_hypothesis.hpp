@@ -4,6 +4,7 @@
 // likelihood ratio of what the larger has more.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
@@ -30,15 +31,31 @@ NoiseModels forget_colour(NoiseModels noise);
 /// Whitens columns of count() rows, output by output.
 void whiten(const RowLayout& layout, const NoiseModels& noise, Eigen::MatrixXd& columns);
 
-/// How well a likelihood is maximised.
-struct Effort {
-  int rounds = 3;            // of generalised least squares and the noise model by turns
-  double least_gain = 1e-4;  // in -2 ln L, of the search for the noise model
+/// Columns in one noise model, whitened once for many residuals.
+class WhitenedColumns {
+ public:
+  /// `layout` and `columns` (about orthonormal) must outlive it.
+  WhitenedColumns(const RowLayout& layout, const Eigen::MatrixXd& columns,
+                  const NoiseModels& noise);
+
+  /// Generalised least squares of a residual on the columns, and its covariance.
+  Eigen::VectorXd estimate(const Eigen::VectorXd& residual) const;
+  Eigen::MatrixXd covariance() const;
+
+  /// That estimate, and the noise model of what it leaves, of the same order. The search ends where
+  /// another step would gain less than `least_gain` in -2 ln L. Without the covariance.
+  Hypothesis step(const Eigen::VectorXd& residual, double least_gain) const;
+
+ private:
+  const RowLayout& layout_;
+  NoiseModels noise_;
+  const Eigen::MatrixXd& columns_;
+  Eigen::MatrixXd white_;
+  Eigen::LDLT<Eigen::MatrixXd> factor_;
 };
 
-/// The best that `starts` lead to; their orders are kept. `columns` are about orthonormal.
+/// Steps until they gain nothing, from the best of `starts`, whose orders are kept.
 Hypothesis maximise(const RowLayout& layout, const Eigen::MatrixXd& columns,
-                    const Eigen::VectorXd& residual, const std::vector<NoiseModels>& starts,
-                    const Effort& effort = {});
+                    const Eigen::VectorXd& residual, const std::vector<NoiseModels>& starts);
 
 }  // namespace sepcal

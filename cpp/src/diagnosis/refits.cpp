@@ -33,6 +33,7 @@ FitOptions options_from(const Fit& fit) {
   options.samples = 0;
   options.noise_tolerance = 1e-4;
   options.threads = 1;
+  options.coloured_errors = false;
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const Parameter& parameter = fit.parameters[k];
     if (parameter.fixed) {

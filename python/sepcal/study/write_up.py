@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The study's rates as Markdown tables, and the power curve as a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from sepcal._core import Error
+from sepcal.study.hidden_effects import StudyOptions
+
+Row = dict[str, Any]
+
+
+def write_up(rows: dict[str, list[Row]], options: StudyOptions, file: Path) -> None:
+    """Writes `file` (Markdown) and, beside it, the power curve as an SVG of the same name.
+
+    Raises:
+        Error: matplotlib is missing, or a file can't be written.
+    """
+    picture = file.with_suffix(".svg")
+    sections = [
+        _head(options, picture.name),
+        _power(rows["power"]),
+        _nulls(rows["null"]),
+        _others(rows),
+        _promises(rows["power"]),
+    ]
+    try:
+        file.write_text("\n\n".join(sections) + "\n", encoding="utf-8")
+        _draw(rows["power"], picture)
+    except OSError as error:
+        raise Error(f"{file} can't be written: {error.strerror}") from error
+
+
+def upper_limit(events: int, trials: int, confidence: float = 0.99) -> float:
+    """Clopper & Pearson's one-sided upper limit of a rate, by bisection."""
+    if events >= trials:
+        return 1.0
+
+    def at_most(rate: float) -> float:
+        return math.fsum(
+            math.comb(trials, k) * rate**k * (1.0 - rate) ** (trials - k) for k in range(events + 1)
+        )
+
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if at_most(middle) > 1.0 - confidence else (low, middle)
+    return high
+
+
+def _table(head: Sequence[str], body: Iterable[Sequence[str]]) -> str:
+    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
+    return "\n".join([*lines, *(f"| {' | '.join(cells)} |" for cells in body)])
+
+
+def _rate(rows: list[Row], is_one: Callable[[Row], bool]) -> str:
+    return f"{sum(is_one(row) for row in rows)} of {len(rows)}" if rows else "-"
+
+
+def _head(options: StudyOptions, picture: str) -> str:
+    command = (
+        f"python -m sepcal study hidden-effects --seeds {options.seeds} "
+        f"--null-seeds {options.null_seeds} -o docs/hidden-effects.md"
+    )
+    return f"""# Hidden effects: what is found, and what isn't
+
+Written by
+
+    {command}
+
+An effect is hidden in a simulated flight of two minutes, 400 to 1,200 rows, by a simulator that
+shares no code with the effects; the probe is calibrated without it and the calibration diagnosed.
+A size of s sigmas is a noncentrality of s^2: what the best fit without the effect leaves of a
+flight without noise, in variances of the noise. "First": the top-ranked effect's family holds the
+true one. "Found": one of the effects found does (Holm p < 0.05 and the held-out gate passed).
+Seeds count from {options.first_seed}.
+
+![share of flights against size]({picture})"""
+
+
+def _sizes(rows: list[Row]) -> list[float]:
+    return sorted({row["sigmas"] for row in rows})
+
+
+def _power(rows: list[Row]) -> str:
+    sizes = _sizes(rows)
+    kinds = sorted({(row["probe"], row["effect"]) for row in rows})
+
+    def cells(chosen: list[Row]) -> list[str]:
+        at = [[row for row in chosen if row["sigmas"] == size] for size in sizes]
+        return [f"{_share(some, 'first')} / {_share(some, 'found')}" for some in at]
+
+    body = [
+        [probe, f"`{effect}`", *cells([r for r in rows if (r["probe"], r["effect"]) == kind])]
+        for kind in kinds
+        for probe, effect in [kind]
+    ]
+    body.append(["all", "", *cells(rows)])
+    head = ["probe", "hidden", *(f"{size:g} sigmas" for size in sizes)]
+    return "## One effect: per cent first / found\n\n" + _table(head, body)
+
+
+def _share(rows: list[Row], key: str) -> str:
+    return f"{100 * sum(row[key] for row in rows) / len(rows):.0f}" if rows else "-"
+
+
+def _nulls(rows: list[Row]) -> str:
+    def is_alarm(row: Row) -> bool:
+        return bool(row["verdict"] == "effect_missing")
+
+    body = []
+    for noise in dict.fromkeys(row["noise"] for row in rows):
+        chosen = [row for row in rows if row["noise"] == noise]
+        alarms = sum(is_alarm(row) for row in chosen)
+        body.append(
+            [
+                noise,
+                _rate(chosen, is_alarm),
+                f"{100 * upper_limit(alarms, len(chosen)):.1f} %",
+                _rate(chosen, lambda row: row["verdict"] == "unexplained"),
+            ]
+        )
+    alarms = sum(is_alarm(row) for row in rows)
+    limit = f"{100 * upper_limit(alarms, len(rows)):.1f} %"
+    unexplained = _rate(rows, lambda row: row["verdict"] == "unexplained")
+    body.append(["all", _rate(rows, is_alarm), limit, unexplained])
+    head = ["noise", "an effect is called found", "99 % upper limit of the rate", "unexplained"]
+    return "## Nothing hidden\n\n" + _table(head, body)
+
+
+def _others(rows: dict[str, list[Row]]) -> str:
+    def by(experiment: str, key: str) -> Iterable[tuple[str, list[Row]]]:
+        for value in dict.fromkeys(row[key] for row in rows[experiment]):
+            yield value, [row for row in rows[experiment] if row[key] == value]
+
+    body = []
+    for effects, chosen in by("pairs", "effects"):
+        what = f"two at 7 sigmas: {effects}"
+        both = _rate(chosen, lambda row: row["both"] and not row["third"])
+        body.append([what, "both are added and no third", both])
+    decoys = rows["decoys"]
+    chosen_decoys = _rate(decoys, lambda row: row["decoys"] > 0)
+    body.append(["five decoy channels, nothing hidden", "a decoy is called found", chosen_decoys])
+    for effect, chosen in by("invisible", "effect"):
+        what = f"`{effect}`, which the model absorbs"
+        body.append([what, "it is called found", _rate(chosen, lambda r: r["status"] == "found")])
+        said = _rate(chosen, lambda row: row["status"] == "cannot_be_seen")
+        body.append([what, "said to be invisible", said])
+    proxy = rows["proxy"]
+    what = "`bias[current_a]` at 10 sigmas beside a voltage that sags with it"
+    body.append(
+        [what, "first's family holds the current", _rate(proxy, lambda r: r["true_in_family"])]
+    )
+    body.append([what, "and the voltage", _rate(proxy, lambda row: row["proxy_in_family"])])
+    for effect, chosen in by("unlogged", "effect"):
+        what = f"`{effect}` at 20 sigmas, its channel not logged"
+        for verdict in ("unexplained", "effect_missing", "adequate"):
+            rate = _rate(chosen, lambda row, verdict=verdict: row["verdict"] == verdict)
+            body.append([what, verdict, rate])
+    slow = rows["slow"]
+    what = "a wind that drifts by 2 m/s in two minutes, noise 0.15 m/s"
+    body.append([what, "first", _rate(slow, lambda row: row["first"])])
+    body.append([what, "found", _rate(slow, lambda row: row["found"])])
+    return "## Harder questions\n\n" + _table(["what is flown", "how often", "flights"], body)
+
+
+def _promises(rows: list[Row]) -> str:
+    kept = [row for row in rows if row.get("promised") is not None]
+    if not kept:
+        return ""
+
+    def near(row: Row) -> bool:
+        return bool(abs(row["promised"] - row["achieved"]) <= 0.05 * abs(row["achieved"]))
+
+    judged = [row for row in kept if row["held_out_before"] is not None]
+    body = [
+        ["the drop of the error is within 5 % of the promise", _rate(kept, near)],
+        [
+            "the error of rows held out falls",
+            _rate(judged, lambda row: row["held_out_after"] < row["held_out_before"]),
+        ],
+        [
+            "the furthest parameter is nearer to the truth",
+            _rate(kept, lambda row: row["worst_error_after"] < row["worst_error_before"]),
+        ],
+        [
+            "neighbouring residuals correlate less",
+            _rate(kept, lambda row: row["lag_one_after"] < row["lag_one_before"]),
+        ],
+    ]
+    return "## After `add`, at 10 sigmas\n\n" + _table(["", "flights"], body)
+
+
+def _draw(rows: list[Row], file: Path) -> None:
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise Error("the power curve needs matplotlib: pip install sepcal[paper]") from error
+    sizes = _sizes(rows)
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    axes = figure.add_subplot()
+    for probe in dict.fromkeys(row["probe"] for row in rows):
+        for key, style in (("first", "--"), ("found", "-")):
+            chosen = [[r for r in rows if r["probe"] == probe and r["sigmas"] == s] for s in sizes]
+            shares = [sum(row[key] for row in some) / len(some) for some in chosen]
+            axes.plot(sizes, shares, style, marker="o", markersize=3, label=f"{probe}, {key}")
+    axes.axhline(0.9, color="0.8", linewidth=0.8)
+    axes.set(xlabel="size of the hidden effect [sigmas]", ylabel="share of flights", ylim=(0, 1.02))
+    axes.legend(frameon=False, fontsize=8)
+    figure.savefig(file)
