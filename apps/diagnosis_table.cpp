@@ -10,6 +10,13 @@ namespace sepcal::app {
 namespace {
 
 constexpr std::size_t most_shown = 12;
+constexpr std::size_t most_unseen = 3;
+constexpr double significant = 0.05;
+
+/// Significant, and yet the rows left out are not predicted better.
+bool is_refused(const EffectFinding& effect) {
+  return effect.status == FindingStatus::not_seen && effect.p_adjusted < significant;
+}
 
 std::string percent(double fraction) {
   return std::isnan(fraction) ? "-" : fmt::format("{:.1f} %", 100.0 * fraction);
@@ -23,15 +30,9 @@ std::string probability(const EffectFinding& effect) {
   return "<1e-99";
 }
 
-std::string in_words(FindingStatus status) {
-  switch (status) {
-    case FindingStatus::found:
-      return "FOUND";
-    case FindingStatus::not_seen:
-      return "not seen";
-    default:
-      return "cannot be seen";
-  }
+std::string in_words(const EffectFinding& effect) {
+  if (effect.status == FindingStatus::found) return "FOUND";
+  return is_refused(effect) ? "not held out" : "not seen";
 }
 
 std::string estimates(const EffectFinding& effect) {
@@ -56,18 +57,26 @@ std::string effect_rows(const FlightDiagnosis& result) {
   std::string text = fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10}\n", "effect", width,
                                  "status", "p", "predicted", "held out", "visibility");
   std::size_t shown = 0;
+  std::size_t refused = 0;
+  std::size_t unseen = 0;
   for (const EffectFinding& effect : effects) {
     if (shown == most_shown || effect.status == FindingStatus::cannot_be_seen) break;
-    text +=
-        fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}\n", effect.name, width,
-                    in_words(effect.status), probability(effect), percent(effect.predicted_drop),
-                    percent(effect.held_out_gain), effect.visibility);
+    if (effect.status == FindingStatus::not_seen && !is_refused(effect) && ++unseen > most_unseen) {
+      break;
+    }
+    if (is_refused(effect)) ++refused;
+    text += fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}\n", effect.name, width,
+                        in_words(effect), probability(effect), percent(effect.predicted_drop),
+                        percent(effect.held_out_gain), effect.visibility);
     ++shown;
   }
   const auto hidden =
       std::ranges::count(effects, FindingStatus::cannot_be_seen, &EffectFinding::status);
   const auto others = static_cast<std::ptrdiff_t>(effects.size() - shown) - hidden;
-  if (others > 0) text += fmt::format("and {} more that are not seen\n", others);
+  if (others > 0) text += fmt::format("and {} more\n", others);
+  if (refused > 0) {
+    text += "not held out: significant, but the error of rows left out does not fall\n";
+  }
   if (hidden > 0) {
     text += fmt::format("{} cannot be seen in this flight:", hidden);
     for (const EffectFinding& effect : effects) {

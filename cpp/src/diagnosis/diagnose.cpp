@@ -313,9 +313,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   null_ = find_null(room_.fit());
   result_.residual = describe_residual(null_);
   result_.rmse = total_rmse(room_.fit().layout, room_.fit().residual);
-  double floor = 0.0;
-  for (const ResidualNoise& noise : result_.residual) floor += noise.floor * noise.floor;
-  result_.floor = std::sqrt(floor / static_cast<double>(result_.residual.size()));
+  result_.floor = noise_floor(room_.fit().layout, null_.best.noise);
   make(names);
   screen_all(trials_);
   test_best(trials_, most_tested);
@@ -327,6 +325,11 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   tell("looking for structure", 0.0);
   if (std::ranges::any_of(result_.effects, is_found)) {
     result_.verdict = Verdict::effect_missing;
+    for (const Trial& trial : trials_) {
+      if (trial.candidate.name == result_.effects.front().name) {
+        result_.floor = std::min(result_.floor, trial.floor);
+      }
+    }
   } else {
     result_.omnibus = test_for_structure(room_, fitted_.kit, null_, options_, pool_);
     if (result_.omnibus.p_value < options_.unexplained_below) {

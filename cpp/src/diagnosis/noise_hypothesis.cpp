@@ -2,6 +2,7 @@
 #include "diagnosis/noise_hypothesis.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -19,6 +20,15 @@ std::span<const double> rows_of(const RowLayout& layout, const VectorXd& values,
 }
 
 }  // namespace
+
+double noise_floor(const RowLayout& layout, const NoiseModels& noise) {
+  double square = 0.0;
+  for (std::size_t j = 0; j < noise.size(); ++j) {
+    const double sigma = noise[j].sigma * layout.outputs[j].scale;
+    square += sigma * sigma;
+  }
+  return std::sqrt(square / static_cast<double>(noise.size()));
+}
 
 NoiseModels fit_noise_models(const RowLayout& layout, const VectorXd& residual) {
   NoiseModels noise;

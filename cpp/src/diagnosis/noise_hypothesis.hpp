@@ -22,6 +22,10 @@ struct Hypothesis {
   Eigen::MatrixXd covariance = {};    // of the coefficients, in that noise
 };
 
+/// The innovations' standard deviation over all outputs, in their unit: what no model of the past
+/// predicts better.
+double noise_floor(const RowLayout& layout, const NoiseModels& noise);
+
 /// The noise models of a residual (count() rows), of free order.
 NoiseModels fit_noise_models(const RowLayout& layout, const Eigen::VectorXd& residual);
 

@@ -93,6 +93,7 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     const LikelihoodRatio ratio = compare_with_null(null, added.basis);
     if (!(ratio.value > trial.ratio)) continue;
     trial.ratio = ratio.value;
+    trial.floor = noise_floor(layout, ratio.with.noise);
     trial.shape = shape;
     const auto q = added.visible();
     keep_estimate(added, ratio.with.coefficients.tail(q),

@@ -34,6 +34,7 @@ struct Trial {
   double log10_p = 0.0;  // of the test where it was made, else of the score
   bool tested = false;
   double ratio = 0.0;
+  double floor = infinity;  // innovations alone with the effect, over all outputs
   int freedom = 0;
   Eigen::VectorXd estimate = {};
   Eigen::MatrixXd covariance = {};
