@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The likelihood ratio of added columns: in closed form where noise is white, against the noise
+// model's own whitening where it isn't, with the drift that a whitener alone would hide.
+#include "diagnosis/likelihood_ratio.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/projection.hpp"
+#include "diagnosis/residual_noise.hpp"
+#include "diagnosis/tails.hpp"
+#include "linearisations.hpp"
+#include "noises.hpp"
+
+using doctest::Approx;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using namespace sepcal;
+using namespace sepcal::test;
+
+namespace {
+
+MatrixXd perpendicular(const Linearisation& fit, const MatrixXd& columns) {
+  return orthonormal_basis(remove_span(orthonormal_basis(fit.tangent), columns));
+}
+
+/// N ln(s0^2 / s1^2) of one output, by dense least squares.
+double white_ratio(const Linearisation& fit, const MatrixXd& added) {
+  MatrixXd columns(added.rows(), fit.tangent.cols() + added.cols());
+  columns << fit.tangent, added;
+  const VectorXd left = fit.residual - columns * least_squares(columns, fit.residual);
+  return static_cast<double>(fit.layout.rows) *
+         std::log(fit.residual.squaredNorm() / left.squaredNorm());
+}
+
+/// A level and two slow waves: what a wind box would leave of a tangent.
+MatrixXd waves(Index rows) {
+  const VectorXd t = VectorXd::LinSpaced(rows, 0.0, 2.0 * std::numbers::pi);
+  MatrixXd columns(rows, 3);
+  columns << VectorXd::Ones(rows), (3.0 * t.array()).sin().matrix(),
+      (5.0 * t.array()).cos().matrix();
+  return columns;
+}
+
+/// 250 s of a velocity [m/s], noise 0.15, at 5 Hz, with a wind that changes by `drift` in all.
+struct Drifting {
+  static constexpr Index rows = 1250;
+  RowLayout layout = make_layout({{"", rows}}, {1.0});
+  VectorXd ramp = VectorXd::LinSpaced(rows, -0.5, 0.5);
+  Linearisation fit;
+
+  explicit Drifting(double drift, std::uint64_t seed = 5) {
+    Draws draws(seed);
+    fit = fit_to(layout, waves(rows), drift * ramp + 0.15 * draws.normal_matrix(rows, 1));
+    const double rmse = fit.residual.norm() / std::sqrt(double{rows});
+    fit.residual /= rmse;
+    fit.layout.outputs[0].scale = rmse;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("white noise with colour none: N ln of the variances' ratio, to the digit") {
+  int without_colour = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Draws draws(seed);
+    const RowLayout layout = make_layout({{"", 500}}, {1.0});
+    const MatrixXd G = draws.normal_matrix(500, 2);
+    const Linearisation fit = fit_to(layout, draws.normal_matrix(500, 3),
+                                     G.col(0) * 0.4 + VectorXd(draws.normal_matrix(500, 1)));
+    const NullHypothesis null = find_null(fit);
+    const LikelihoodRatio ratio = compare_with_null(null, perpendicular(fit, G));
+    const double expected = white_ratio(fit, G);
+    CAPTURE(seed);
+    CHECK(ratio.value == Approx(expected).epsilon(0.1));
+    const auto is_white = [](const NoiseModel& noise) {
+      return noise.order() == 0 && noise.d < 1e-9 && !noise.level_is_free();
+    };
+    if (!is_white(null.best.noise[0]) || !is_white(ratio.with.noise[0])) continue;
+    ++without_colour;
+    CHECK(ratio.value == Approx(expected).epsilon(1e-9));
+  }
+  CHECK(without_colour >= 3);
+}
+
+TEST_CASE("two outputs: the sum over them, whatever their scales") {
+  Draws draws(31);
+  const RowLayout layout = make_layout({{"a", 300}, {"b", 400}}, {0.1, 25.0});
+  const MatrixXd G = draws.normal_matrix(1400, 1);
+  VectorXd noise = draws.normal_matrix(1400, 1);
+  noise.tail(700) *= 3.0;
+  const Linearisation fit = fit_to(layout, draws.normal_matrix(1400, 4), 0.5 * G + noise);
+  const NullHypothesis null = find_null(fit);
+  const LikelihoodRatio ratio = compare_with_null(null, perpendicular(fit, G));
+
+  // Weighted least squares by turns with the two variances.
+  const auto minus_two_log_likelihood = [&](const MatrixXd& columns) {
+    Eigen::Array2d sigma(1.0, 3.0);
+    for (int turn = 0; turn < 30; ++turn) {
+      VectorXd weight(1400);
+      weight << VectorXd::Constant(700, 1 / sigma[0]), VectorXd::Constant(700, 1 / sigma[1]);
+      const VectorXd x =
+          least_squares(weight.asDiagonal() * columns, VectorXd(weight.cwiseProduct(fit.residual)));
+      const VectorXd left = fit.residual - columns * x;
+      sigma = Eigen::Array2d(left.head(700).norm(), left.tail(700).norm()) / std::sqrt(700.0);
+    }
+    return 1400.0 * sigma.log().sum();
+  };
+  MatrixXd both(1400, 5);
+  both << fit.tangent, G;
+  const double expected = minus_two_log_likelihood(fit.tangent) - minus_two_log_likelihood(both);
+  CHECK(expected > 50.0);
+  CHECK(ratio.value == Approx(expected).epsilon(0.05));
+}
+
+TEST_CASE("the estimate and its covariance are those of generalised least squares") {
+  Draws draws(8);
+  const RowLayout layout = make_layout({{"a", 400}, {"b", 500}}, {1.0});
+  const MatrixXd G = draws.normal_matrix(900, 2);
+  const Linearisation fit = fit_to(layout, draws.normal_matrix(900, 3),
+                                   0.3 * G.col(1) + draw_noise("AR(0.9)", 900, draws));
+  const NullHypothesis null = find_null(fit);
+  const MatrixXd added = perpendicular(fit, G);
+  const Hypothesis with = compare_with_null(null, added).with;
+  MatrixXd columns(900, 5);
+  columns << null.basis, added;
+  const MatrixXd identity = MatrixXd::Identity(900, 900);
+  const MatrixXd Sigma = covariance_product(with.noise[0], layout.segments, identity);
+  const MatrixXd inverse = Sigma.ldlt().solve(identity);
+  const MatrixXd covariance = (columns.transpose() * inverse * columns).inverse();
+  const VectorXd expected = covariance * columns.transpose() * inverse * fit.residual;
+  for (Index k = 0; k < 5; ++k) {
+    const double error = std::sqrt(covariance(k, k));
+    CHECK(std::abs(with.coefficients[k] - expected[k]) < 0.02 * error);
+    CHECK(std::sqrt(with.covariance(k, k)) == Approx(error).epsilon(0.03));
+  }
+}
+
+TEST_CASE("the larger hypothesis is never the worse one") {
+  for (const std::string& kind : kinds) {
+    CAPTURE(kind);
+    Draws draws(17);
+    const RowLayout layout = make_layout({{"a", 150}, {"b", 250}}, {1.0, 1.0});
+    VectorXd noise(800);
+    noise << draw_noise(kind, 400, draws), draw_noise(kind, 400, draws);
+    const Linearisation fit = fit_to(layout, draws.normal_matrix(800, 4), noise);
+    const NullHypothesis null = find_null(fit);
+    MatrixXd columns(800, 0);
+    double last = null.best.minus_two_log_likelihood;
+    for (int q = 1; q <= 4; ++q) {
+      columns.conservativeResize(Eigen::NoChange, q);
+      columns.col(q - 1) = draws.normal_matrix(800, 1);
+      const LikelihoodRatio ratio = compare_with_null(null, perpendicular(fit, columns));
+      CHECK(ratio.value >= 0.0);
+      CHECK(ratio.with.minus_two_log_likelihood < last + 0.05);
+      last = ratio.with.minus_two_log_likelihood;
+    }
+  }
+}
+
+TEST_CASE("a slow drift that the null's noise model swallows stands out in the ratio") {
+  const Drifting flight(2.0);
+  const NullHypothesis null = find_null(flight.fit);
+  CHECK(null.best.noise[0].d > 0.2);  // the drift, taken for slow noise
+  const MatrixXd added = perpendicular(flight.fit, flight.ramp);
+
+  MatrixXd white = added;
+  whiten(flight.fit.layout, null.best.noise, white);
+  white = remove_span(null.white_basis, white);
+  const double score = std::pow(white.col(0).dot(null.white_residual), 2) / white.squaredNorm();
+  const double ratio = compare_with_null(null, added).value;
+  CHECK(log10_chi_squared_tail(score, 1.0) > -10.0);  // in the null's whitener: next to nothing
+  CHECK(ratio > 400.0);
+  CHECK(ratio >
+        0.7 * (white_ratio(flight.fit, flight.ramp) - white_ratio(Drifting(0.0).fit, flight.ramp)) -
+            1600.0);
+}
+
+TEST_CASE("without a drift the ratio of a ramp is that of chance") {
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Drifting flight(0.0, seed);
+    const NullHypothesis null = find_null(flight.fit);
+    sum += compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
+  }
+  CHECK(sum / 20.0 > 0.2);
+  CHECK(sum / 20.0 < 2.5);  // 1 but for what a noise model takes of it
+}
+
+TEST_CASE("simulated under white noise, the ratio has the moments of chi-squared") {
+  Draws draws(12);
+  const RowLayout layout = make_layout({{"", 390}}, {1.0});
+  const Linearisation fit =
+      fit_to(layout, draws.normal_matrix(390, 4), draws.normal_matrix(390, 1));
+  const NullHypothesis null = find_null(fit);
+  const MatrixXd added = perpendicular(fit, draws.normal_matrix(390, 3));
+  ThreadPool pool(2);
+  const RatioMoments moments = simulate_ratio(null, added, 400, 1, pool);
+  CHECK(std::abs(moments.mean - 3.0) < 4.0 * std::sqrt(6.0 / 400.0));
+  CHECK(moments.variance > 3.5);
+  CHECK(moments.variance < 9.5);
+
+  ThreadPool alone(1);
+  const RatioMoments again = simulate_ratio(null, added, 400, 1, alone);
+  CHECK(again.mean == moments.mean);
+  CHECK(again.variance == moments.variance);
+  CHECK(simulate_ratio(null, added, 400, 2, pool).mean != moments.mean);
+}
+
+TEST_CASE("where noise is as slow as the effect, simulations say how much larger ratios get") {
+  Draws draws(3);
+  const RowLayout layout = make_layout({{"", 390}}, {1.0});
+  const Linearisation fit = fit_to(layout, waves(390), draw_noise("pink", 390, draws));
+  const NullHypothesis null = find_null(fit);
+  ThreadPool pool(2);
+  const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
+  CHECK(simulate_ratio(null, ramp, 100, 1, pool).mean > 1.3);
+}
+
+TEST_CASE("the tail of a ratio by its moments is chi-squared's where they are") {
+  for (const double q : {1.0, 2.0, 6.0}) {
+    CHECK(log10_tail(31.0, {q, 2.0 * q}) == Approx(log10_chi_squared_tail(31.0, q)).epsilon(1e-12));
+    CHECK(log10_tail(31.0, {2.0 * q, 8.0 * q}) ==
+          Approx(log10_chi_squared_tail(15.5, q)).epsilon(1e-12));  // twice chi-squared
+  }
+  CHECK(log10_tail(31.0, {0.0, 0.0}) == 0.0);
+}
+
+TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the output's unit") {
+  Draws draws(2);
+  const RowLayout layout = make_layout({{"a", 900}, {"b", 600}}, {0.5, 4.0});
+  VectorXd noise(3000);
+  noise << draw_noise("AR(0.9)", 1500, draws), draw_noise("white", 1500, draws);
+  const Linearisation fit = fit_to(layout, draws.normal_matrix(3000, 2), noise);
+  const std::vector<ResidualNoise> described = describe_residual(find_null(fit));
+  REQUIRE(described.size() == 2);
+  for (std::size_t j = 0; j < 2; ++j) {
+    const VectorXd e = fit.residual.segment(layout.first(j), 1500);
+    const VectorXd centred = e.array() - e.mean();
+    double Q = 0.0;
+    double first = 0.0;
+    for (Index lag = 1; lag <= 20; ++lag) {
+      double sum = 0.0;
+      for (Index i = lag; i < 1500; ++i) {
+        if (i < 900 || i - lag >= 900) sum += centred[i] * centred[i - lag];
+      }
+      const double r = sum / centred.squaredNorm();
+      if (lag == 1) first = r;
+      Q += 1500.0 * 1502.0 * r * r / static_cast<double>(1500 - lag);
+    }
+    CHECK(described[j].output == (j == 0 ? "z0" : "z1"));
+    CHECK(described[j].unit == "m/s");
+    CHECK(described[j].rmse == layout.outputs[j].scale);
+    CHECK(described[j].lag_one == Approx(first).epsilon(1e-10));
+    CHECK(described[j].ljung_box_p ==
+          Approx(std::pow(10.0, log10_chi_squared_tail(Q, 20.0))).epsilon(1e-8));
+  }
+  CHECK(described[0].lag_one == Approx(0.9).epsilon(0.05));
+  CHECK(described[0].ljung_box_p < 1e-50);
+  CHECK(described[1].ljung_box_p > 1e-4);
+  CHECK(described[0].floor == Approx(0.5 * std::sqrt(0.19)).epsilon(0.05));
+  CHECK(described[1].floor == Approx(4.0).epsilon(0.05));
+  CHECK(described[0].noise.sigma == described[0].floor);
+}

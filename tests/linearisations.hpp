@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Neighbourhoods of fits that never took place: a tangent and a residual on rows in segments.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/linearisation.hpp"
+
+namespace sepcal::test {
+
+/// Segments one after another, by label and length, and outputs by their scales.
+inline RowLayout make_layout(const std::vector<std::pair<std::string, std::size_t>>& segments,
+                             const std::vector<double>& scales) {
+  std::vector<Segment> cut;
+  std::size_t row = 0;
+  for (const auto& [label, length] : segments) {
+    cut.push_back({label, row, row + length});
+    row += length;
+  }
+  RowLayout layout{cut, {}, static_cast<Eigen::Index>(row)};
+  for (std::size_t j = 0; j < scales.size(); ++j) {
+    layout.outputs.push_back({static_cast<int>(j), "z" + std::to_string(j), "m/s", scales[j]});
+  }
+  return layout;
+}
+
+/// The least-squares estimate, by a decomposition of its own.
+inline Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& z) {
+  return columns.colPivHouseholderQr().solve(z);
+}
+
+/// The fit of z = tangent x + noise: what least squares leaves, output by output below each other.
+inline Linearisation fit_to(const RowLayout& layout, const Eigen::MatrixXd& tangent,
+                            const Eigen::VectorXd& z) {
+  Linearisation fit{layout, {}, tangent, z - tangent * least_squares(tangent, z)};
+  for (Eigen::Index k = 0; k < tangent.cols(); ++k) {
+    fit.parameters.push_back("x" + std::to_string(k));
+  }
+  return fit;
+}
+
+}  // namespace sepcal::test
