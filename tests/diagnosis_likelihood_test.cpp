@@ -184,6 +184,22 @@ TEST_CASE("a slow drift that the null's noise model swallows stands out in the r
   CHECK(std::abs(ratio.with.minus_two_log_likelihood - white_noise) < 10.0);
 }
 
+TEST_CASE("the larger a drift, the larger its ratio" * doctest::may_fail()) {
+  for (const std::uint64_t seed : {5, 6, 7}) {
+    double last = 0.0;
+    for (const double drift : {0.1, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+      CAPTURE(seed);
+      CAPTURE(drift);
+      const Drifting flight(drift, seed);
+      const NullHypothesis null = find_null(flight.fit);
+      const double ratio = compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
+      CHECK(ratio > 0.5 * last);
+      last = std::max(last, ratio);
+    }
+    CHECK(last > 60.0);
+  }
+}
+
 TEST_CASE("without a drift the ratio of a ramp is that of chance") {
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
