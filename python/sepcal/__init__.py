@@ -30,6 +30,7 @@ from sepcal.models import (
 from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.reporting import report
 from sepcal.results import Combination, EffectSetting, Fit, LocalMinimum, Parameter, StageOne
 from sepcal.simulation import SimulatedFlight, simulate
 
@@ -70,5 +71,6 @@ __all__ = [
     "fit",
     "load",
     "read_csv",
+    "report",
     "simulate",
 ]

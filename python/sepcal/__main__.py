@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""python -m sepcal COMMAND: what the package does from a terminal beside the two apps.
+
+A command is a module with add_to(commands), which registers a parser whose default `run` takes the
+arguments and returns an exit code. Bad input is one line on standard error and exit code 2.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from sepcal import _core
+from sepcal.reporting import command as report
+
+COMMANDS = (report,)
+BAD_INPUT = 2
+
+
+class Parser(argparse.ArgumentParser):
+    """Says in one line what is wrong."""
+
+    def error(self, message: str) -> NoReturn:
+        """Exits with 2."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; --help shows how\n")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs a command and returns its exit code."""
+    parser = Parser(prog="sepcal", description="Beside sepcal-pitot and sepcal-mag.")
+    parser.add_argument("--version", action="version", version=f"sepcal {_core.__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
+    for command in COMMANDS:
+        command.add_to(commands)
+    chosen = parser.parse_args(arguments)
+    try:
+        return int(chosen.run(chosen))
+    except _core.Error as error:
+        print(f"sepcal {chosen.command}: {error}", file=sys.stderr)
+        return BAD_INPUT
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What to fly or log next, and how to make the page again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import shlex
+from html import escape
+
+from sepcal import _core
+from sepcal.calibration import Calibration
+from sepcal.reporting import tables
+from sepcal.reporting.gather import Material
+from sepcal.reporting.words import number, with_unit
+
+TWINS = 4  # members of a family that are named
+
+
+def warn(last: Calibration) -> list[str]:
+    """What to know of the fit before reading on, HTML lines; its whole message where it failed."""
+    lines = []
+    if last.status != "converged":
+        lines.append(f"<b>{escape(last.status.replace('_', ' '))}:</b> {escape(last.message)}")
+    elif last.weak:
+        count = len(last.weak)
+        lines.append(
+            f"{'One combination' if count == 1 else f'{count} combinations'} of the parameters "
+            f"{'is' if count == 1 else 'are'} poorly determined by this flight; "
+            '<a href="#s8">section 8</a> has them.'
+        )
+    if last.at_bound:
+        names = ", ".join(f"<code>{escape(name)}</code>" for name in last.at_bound)
+        lines.append(f"At a bound, so the true value may lie beyond: {names}.")
+    return lines
+
+
+def advise(material: Material) -> str:
+    """Bullets, the most useful first."""
+    last, found = material.last, material.diagnosis
+    lines: list[str] = []
+    if found.missing_channels:
+        names = ", ".join(f"<code>{escape(name)}</code>" for name in found.missing_channels)
+        lines.append(
+            f"<b>Log</b> what this flight lacks and what could explain more of the error: {names}."
+        )
+    families: set[frozenset[str]] = set()
+    for effect in found.found:
+        family = frozenset(effect.family)
+        if len(family) < 2 or any(effect.name in known for known in families):
+            continue
+        families.add(family)
+        others = [escape(name) for name in effect.family if name != effect.name]
+        more = f" and {len(others) - TWINS} more" if len(others) > TWINS else ""
+        lines.append(
+            f"<b>Fly</b> so that their drivers vary one without the other: this flight can't tell "
+            f"<code>{escape(effect.name)}</code> from {', '.join(others[:TWINS])}{more}."
+        )
+    for at in last.unobservable:
+        lines.append(
+            f"<b>Fly</b> what separates {escape(', '.join(at.parameters))}, or hold one of them "
+            "with <code>--fix NAME=VALUE</code>: their combination "
+            f"<code>{escape(at.text)}</code> is open."
+        )
+    for at in last.weak:
+        lines.append(
+            f"<b>Fly</b> more of what separates {escape(', '.join(at.parameters[:TWINS]))}: they "
+            "are poorly told apart."
+        )
+    for name in last.at_bound:
+        lines.append(
+            f"<b>Check</b> <code>{escape(name)}</code>: it stopped at its bound. A sign, a unit or "
+            "a sensitivity may be wrong; else widen it, "
+            f"<code>--bounds {escape(name)}=LO,HI</code>."
+        )
+    hidden = [escape(at.name) for at in found.effects if at.status == "cannot_be_seen"]
+    if hidden:
+        lines.append(
+            "These could be there unseen, because the parameters absorb them on this flight: "
+            f"{', '.join(hidden)}."
+        )
+    return tables.bullets(lines) if lines else "<p>Nothing stands out.</p>"
+
+
+def list_limits(material: Material) -> str:
+    """The smallest slow effect of each port that would have shown."""
+    limits = material.diagnosis.limits
+    if not limits:
+        return ""
+    rows = [
+        [f"<b>{escape(port)}</b>", with_unit(limit["size"], limit["unit"])]
+        for port, limit in limits.items()
+    ]
+    head = [("enters at", False), ("smallest slow effect that would have shown", True)]
+    return f"<h3>How small an effect this flight could show</h3>{tables.table(head, rows)}"
+
+
+def next_command(material: Material, file: str) -> str:
+    """The shell command that adds the first effect found; empty where none was."""
+    if not material.diagnosis.found or not file or not material.flight.sha256:
+        return ""
+    app = "sepcal-mag" if material.model.startswith("magnetometer") else "sepcal-pitot"
+    words = [app, "add", material.flight.name, file, material.diagnosis.found[0].name]
+    return f"{shlex.join(words)} -o NEXT.json"
+
+
+def report_command(material: Material, file: str) -> str:
+    """What makes this page again."""
+    if material.files and material.flight.sha256:
+        words = ["python", "-m", "sepcal", "report", material.flight.name, *material.files]
+        return shlex.join([*words, "-o", file])
+    return f"sepcal.report(calibrations, {file!r}, flight)"
+
+
+def list_provenance(material: Material, file: str) -> str:
+    """Inputs, version, seed, options."""
+    flight, inputs = material.flight, material.description["inputs"]
+    rows = [
+        ["flight", f"{escape(flight.name)}, {flight.rows:,} rows, {material.rows.size:,} used"],
+        ["sha256 of the flight", f"<code>{flight.sha256 or 'none: arrays, not a file'}</code>"],
+    ]
+    for i, calibration in enumerate(material.chain):
+        name = material.files[i] if i < len(material.files) else f"calibration {i + 1}"
+        digest = hashlib.sha256(calibration.to_json().encode()).hexdigest()
+        rows.append([f"sha256 of {escape(name)}", f"<code>{digest}</code>"])
+    if not material.is_fitted_flight:
+        rows.append(["fitted on", f"{escape(inputs['file'])}, <code>{inputs['sha256']}</code>"])
+    rows += [
+        ["model", escape(material.model)],
+        ["sepcal", f"{escape(_core.__version__)}, Python {platform.python_version()}"],
+        ["seed of stage one", f"{material.options.get('seed', 0)}"],
+        ["status of the fit", escape(f"{material.last.status.replace('_', ' ')}, "
+                                     f"{material.last.method}, cost "
+                                     f"{number(material.last.cost, 6)}")],
+    ]  # fmt: skip
+    options = escape(json.dumps(material.options, indent=None))
+    shown = tables.table([("", False), ("", False)], rows)
+    return (
+        f"{shown}<p>This page again:</p><pre>{escape(report_command(material, file))}</pre>"
+        f"<details><summary>all options of the fit</summary><pre>{options}</pre></details>"
+    )

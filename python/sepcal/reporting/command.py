@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`python -m sepcal report FLIGHT.csv CAL.json [CAL2.json ...] -o report.html`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from sepcal.calibration import load
+from sepcal.flight import read_csv
+from sepcal.reporting import report
+
+
+def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Registers the command."""
+    parser = commands.add_parser(
+        "report",
+        help="one self-contained HTML page: what the calibration gets right, what it lacks, why",
+        description="Writes one HTML page that needs no network: the verdict, the error after "
+        "every added effect, measured and modelled, where it fails, the ranked causes, the noise, "
+        "the parameters, what the flight covered and what to fly next.",
+    )
+    parser.add_argument("flight", metavar="FLIGHT.csv", help="the log to report on")
+    parser.add_argument(
+        "calibrations",
+        metavar="CAL.json",
+        nargs="+",
+        help="a calibration, or a chain of them in the order made; the verdict is of the last",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="REPORT.html", default="report.html", help="default: report.html"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Writes the page; returns 0. Raises sepcal.Error on bad input."""
+    flight = read_csv(arguments.flight)
+    chain = [load(file) for file in arguments.calibrations]
+    live = sys.stderr.isatty()
+
+    def tell(what: str) -> None:
+        if live:
+            print(f"\r\033[Ksepcal report: {what} ...", end="", file=sys.stderr, flush=True)
+
+    try:
+        report(chain, arguments.output, flight, files=arguments.calibrations, progress=tell)
+    finally:
+        if live:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+    print(f"wrote {arguments.output}")
+    return 0

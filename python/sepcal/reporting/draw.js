@@ -1,0 +1,44 @@
+// Puts the arrays back into the figures and draws them; says on <html> how many, and what failed.
+"use strict";
+(() => {
+  const root = document.documentElement;
+  const problems = [];
+  const fail = (what) => {
+    problems.push(String(what));
+    root.dataset.problems = problems.join("; ");
+  };
+  window.addEventListener("error", (event) => fail(event.message));
+  window.addEventListener("unhandledrejection", (event) => fail(event.reason));
+
+  const decode = (text) => {
+    const bytes = Uint8Array.from(atob(text.slice(3)), (letter) => letter.charCodeAt(0));
+    return text.startsWith("f4") ? new Float32Array(bytes.buffer) : new Float64Array(bytes.buffer);
+  };
+  const pool = JSON.parse(document.getElementById("pool").textContent);
+  const arrays = pool.arrays.map(decode);
+  const unpack = (value) => {
+    if (Array.isArray(value)) return value.map(unpack);
+    if (value === null || typeof value !== "object") return value;
+    if ("$" in value) return arrays[value.$];
+    return Object.fromEntries(Object.entries(value).map(([key, at]) => [key, unpack(at)]));
+  };
+
+  // Only these buttons: Plotly's own set has one that uploads the figure, and a flight stays here.
+  const config = { responsive: true, displaylogo: false, plotlyServerURL: "" };
+  const buttons = [["toImage", "zoom2d", "pan2d", "resetScale2d"]];
+  let drawn = 0;
+  const draw = (place) => {
+    const figure = unpack(pool.figures[Number(place.dataset.figure)]);
+    const bar = place.closest(".grid") ? { displayModeBar: false } : { modeBarButtons: buttons };
+    return Plotly.newPlot(place, figure.data, figure.layout, { ...config, ...bar }).then(() => {
+      drawn += 1;
+      root.dataset.drawn = String(drawn);
+    });
+  };
+  // One after the other, so that the top of a long page is there at once.
+  const next = (places) => {
+    if (places.length === 0) return;
+    draw(places[0]).catch(fail).then(() => setTimeout(() => next(places.slice(1)), 0));
+  };
+  next([...document.querySelectorAll("[data-figure]")]);
+})();

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the error follows: residual against channels, and added-variable plots of candidates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sepcal.columns import Array
+from sepcal.reporting import words
+from sepcal.reporting.page import Figure
+from sepcal.reporting.statistics import Smooth, binned_means
+from sepcal.reporting.thin import keep_even
+
+FARTHEST = 25  # points of each output that an added-variable plot always shows
+
+
+def draw_channel(
+    title: str, x_title: str, y_title: str, x: Array, residual: Array, smooth: Smooth
+) -> Figure:
+    """A cloud of residuals over a channel, the spline through it, and its band about zero."""
+    there = np.flatnonzero(np.isfinite(x))
+    kept = there[keep_even(there.size)]
+    data: list[dict[str, Any]] = [
+        {"type": "scatter", "mode": "markers", "x": x[kept], "y": residual[kept],
+         "marker": {"size": 3, "color": "rgba(120,132,144,0.45)"}, "hoverinfo": "skip"},
+        words.band(smooth.x, smooth.mean - smooth.half_width, smooth.mean + smooth.half_width,
+                   "rgba(184,58,38,0.20)"),
+        {"type": "scatter", "mode": "lines", "x": smooth.x, "y": smooth.mean,
+         "line": {"color": words.ALARM, "width": 2}},
+    ]  # fmt: skip
+    layout = words.layout(
+        220,
+        title,
+        margin={"l": 48, "r": 8, "t": 30, "b": 38},
+        xaxis=words.axis(x_title, nticks=5),
+        yaxis=words.axis(
+            y_title, zeroline=True, zerolinecolor="#8b949c", nticks=5, range=visible(residual)
+        ),
+    )
+    return Figure(data, layout, f"{title}: residual against {x_title}")
+
+
+def visible(residual: Array) -> list[float]:
+    """A range that holds all but the farthest thousandth on either side, and a little room."""
+    low, high = np.quantile(residual, [0.001, 0.999])
+    room = 0.08 * max(high - low, 1e-300)
+    return [float(low - room), float(high + room)]
+
+
+def draw_added_variable(
+    title: str, explained: Array, residual: Array, noise: Array, outputs: list[str]
+) -> Figure:
+    """Residual over what adding the candidate explains, both in units of the noise.
+
+    Args:
+        title: The candidate's name.
+        explained: Old minus new residual, (N, n_z); NaN where there is none.
+        residual: (N, n_z).
+        noise: Standard deviations, (n_z,).
+        outputs: n_z names.
+    """
+    x, y = explained / noise, residual / noise
+    data: list[dict[str, Any]] = []
+    for i, output in enumerate(outputs):
+        there = np.flatnonzero(np.isfinite(x[:, i]))
+        kept = there[keep_even(there.size, 500)]
+        kept = np.union1d(kept, there[np.argsort(-np.abs(x[there, i]))[:FARTHEST]])
+        colour = words.BY_OUTPUT[i % len(words.BY_OUTPUT)]
+        data.append({
+            "type": "scatter", "mode": "markers", "name": output, "x": x[kept, i], "y": y[kept, i],
+            "marker": {"size": 3, "color": colour, "opacity": 0.35}, "hoverinfo": "skip",
+        })  # fmt: skip
+    whole = np.isfinite(x)
+    low, high = float(np.min(x[whole])), float(np.max(x[whole]))
+    means = binned_means(x[whole], y[whole])
+    data += [
+        {"type": "scatter", "mode": "lines", "showlegend": False, "x": [low, high],
+         "y": [low, high], "line": {"color": words.INK, "width": 1.4, "dash": "dash"}},
+        {"type": "scatter", "mode": "markers", "showlegend": False, "x": means[0], "y": means[1],
+         "marker": {"size": 8, "color": "#fff", "line": {"width": 2, "color": words.INK}}},
+    ]  # fmt: skip
+    layout = words.layout(
+        320,
+        title,
+        showlegend=len(outputs) > 1,
+        margin={"l": 48, "r": 10, "t": 58, "b": 42},
+        xaxis=words.axis("what it explains [sigma]"),
+        yaxis=words.axis("residual [sigma]", zeroline=True, zerolinecolor="#8b949c"),
+    )
+    return Figure(data, layout, f"Added-variable plot of {title}")

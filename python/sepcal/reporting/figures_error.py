@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How large the error is: the waterfall of a chain of effects, and the heat strip of where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from sepcal.comparison import Misfit
+from sepcal.reporting import words
+from sepcal.reporting.page import Figure
+
+LEGIBLE = 26  # columns of a heat strip whose numbers can be read
+
+
+@dataclass(frozen=True)
+class Step:
+    """One bar of the waterfall; None where a number is unknown."""
+
+    label: str
+    fitted: float | None  # RMSE over all outputs; of a step not taken, what is predicted
+    held_out: float | None
+    promised: float | None  # what was predicted before the effect was added
+    is_next: bool = False  # not taken yet
+
+
+def draw_waterfall(steps: list[Step], floor: float | None, unit: str) -> Figure:
+    """A bar a step, fitted and held out, the promise as a tick, the noise floor as a line."""
+    held = any(step.held_out is not None for step in steps)
+    data: list[dict[str, Any]] = [
+        _bars("fitted", steps, [step.fitted for step in steps], -0.19 * held, words.MODELLED),
+        _bars("held out", steps, [step.held_out for step in steps], 0.19, words.HELD_OUT),
+    ]
+    data[1]["visible"] = held
+    shapes: list[dict[str, Any]] = []
+    notes: list[dict[str, Any]] = []
+    for i, step in enumerate(steps):
+        if step.promised is not None:
+            at = i - 0.19 * held
+            shapes.append({
+                "type": "line", "x0": at - 0.23, "x1": at + 0.23, "y0": step.promised,
+                "y1": step.promised, "line": {"color": words.INK, "width": 3},
+            })  # fmt: skip
+    if any(step.promised is not None for step in steps):
+        line = {"color": words.INK, "width": 3}
+        data.append({
+            "type": "scatter", "mode": "lines", "name": "promised", "x": [None], "y": [None],
+            "line": line,
+        })  # fmt: skip
+    if floor is not None:
+        shapes.append({
+            "type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": floor, "y1": floor,
+            "line": {"color": words.ALARM, "width": 1.5, "dash": "dash"},
+        })  # fmt: skip
+        notes.append({
+            "xref": "paper", "x": 1, "y": floor, "xanchor": "right", "yanchor": "bottom",
+            "text": f"noise floor {words.number(floor)} {escape(unit)}",
+            "showarrow": False, "font": {"color": words.ALARM, "size": 12},
+        })  # fmt: skip
+    ticks = words.axis(
+        tickvals=list(range(len(steps))),
+        ticktext=[escape(step.label) for step in steps],
+        tickfont={"size": 13},
+        showgrid=False,
+        range=[-0.6, max(len(steps), 2) - 0.05],  # room for the noise floor's words at the right
+    )
+    layout = words.layout(
+        330,
+        barmode="overlay",
+        showlegend=True,
+        shapes=shapes,
+        annotations=notes,
+        xaxis=ticks,
+        yaxis=words.axis(f"RMSE over all outputs [{unit}]", rangemode="tozero"),
+    )
+    return Figure(data, layout, "The error after every step")
+
+
+def _bars(
+    name: str, steps: list[Step], values: list[float | None], shift: float, colour: str
+) -> dict[str, Any]:
+    """One bar a step, pale where the step has not been taken."""
+    return {
+        "type": "bar", "name": name, "x": [i + shift for i in range(len(steps))], "y": values,
+        "width": 0.34, "text": ["" if at is None else words.number(at) for at in values],
+        "textposition": "outside", "cliponaxis": False, "hoverinfo": "y+name",
+        "marker": {"color": colour, "opacity": [0.32 if step.is_next else 1 for step in steps]},
+    }  # fmt: skip
+
+
+def draw_heat_strip(where: list[Misfit], outputs: list[str], floors: list[float]) -> Figure:
+    """RMSE by stretch (columns) and output (rows); the colour is its ratio to the noise floor."""
+    stretches = list(dict.fromkeys(misfit.segment for misfit in where))
+    shown = {(misfit.output, misfit.segment): misfit for misfit in where}
+    values = np.array(
+        [
+            [shown[output, at].rmse if (output, at) in shown else np.nan for at in stretches]
+            for output in outputs
+        ]
+    )
+    ratio = values / np.array(floors)[:, None]
+    ticks = [escape(shorten(at)) for at in stretches]
+    legible = len(stretches) <= LEGIBLE
+    trace: dict[str, Any] = {
+        "type": "heatmap", "z": ratio, "zmin": 1, "zmax": max(2.0, float(np.nanmax(ratio))),
+        "x": list(range(len(stretches))), "y": list(range(len(outputs))), "xgap": 2, "ygap": 2,
+        "colorscale": [[0, "#f2f5f7"], [0.35, "#f6c98f"], [0.7, "#dd7447"], [1, "#a32a1c"]],
+        "customdata": [
+            [f"{escape(outputs[i])}, {ticks[j]}: {words.number(values[i, j])}"
+             for j in range(len(ticks))]
+            for i in range(len(outputs))
+        ],
+        "hovertemplate": "%{customdata}<br>%{z:.2f} times the noise<extra></extra>",
+        "colorbar": {
+            "title": {"text": "times the<br>noise floor"}, "thickness": 10, "outlinewidth": 0,
+        },
+        "text": [[words.number(value, 2) for value in row] if legible else [] for row in values],
+        "texttemplate": "%{text}" if legible else "",
+    }  # fmt: skip
+    layout = words.layout(
+        130 + 44 * len(outputs),
+        xaxis=words.axis(
+            tickvals=list(range(len(ticks))), ticktext=ticks, tickangle=-35, showgrid=False,
+        ),
+        yaxis=words.axis(
+            tickvals=list(range(len(outputs))), ticktext=[escape(o) for o in outputs],
+            autorange="reversed", showgrid=False, ticks="",
+        ),
+    )  # fmt: skip
+    return Figure([trace], layout, "The error by stretch of the flight and output")
+
+
+def shorten(stretch: str) -> str:
+    """A stretch without a label is its times: "3.76597:7.53917" becomes "3.77 to 7.54 s"."""
+    first, colon, last = stretch.partition(":")
+    try:
+        times = float(first), float(last)
+    except ValueError:
+        return stretch.replace("_", " ")
+    return f"{times[0]:.4g} to {times[1]:.4g} s" if colon else stretch

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measured over modelled, and what lies between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from sepcal.columns import Array
+from sepcal.reporting import words
+from sepcal.reporting.channels import Rows
+from sepcal.reporting.page import Figure
+from sepcal.reporting.thin import keep_extremes
+
+NAMED = 16  # maneuvers whose names fit above a picture
+BACKGROUND = ("", "cruise")  # labels of flying between maneuvers, left unshaded
+GAP = 5  # median intervals of the log: no line bridges a longer one
+
+Run = tuple[str, float, float]  # a maneuver: label, first and last time [s]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One output over time; arrays of shape (N,)."""
+
+    name: str
+    unit: str
+    measured: Array  # NaN where it can't be told
+    modelled: Array
+    residual: Array  # as the engine has it
+    noise: float  # standard deviation
+
+
+def draw_overlay(time: Array, channels: list[Channel], runs: list[Run]) -> Figure:
+    """Every output over the same time [s], measured over modelled; below each, its residual."""
+    after_gap = np.diff(time, prepend=time[:1]) > GAP * median_step(time)
+    breaks = np.cumsum(after_gap).astype(np.float64)  # number of gaps up to each row
+    data: list[dict[str, Any]] = []
+    shapes = shade(runs)
+    named = [run for run in runs if run[0] not in BACKGROUND]
+    named = named if len(named) <= NAMED else []
+    room = 88 if named else 30  # [px] above the first output, for names and the legend
+    layout = words.layout(
+        250 * len(channels) + room + 50,
+        showlegend=True,
+        shapes=shapes,
+        annotations=[_name(run) for run in named],
+        margin={"l": 62, "r": 72 if named else 14, "t": room, "b": 78},
+        legend={"orientation": "h", "x": 0, "xanchor": "left", "y": 0, "yref": "container",
+                "yanchor": "bottom", "traceorder": "normal"},
+    )  # fmt: skip
+    slot = 1 / len(channels)
+    for i, channel in enumerate(channels):
+        top = 1 - i * slot
+        main, strip = f"y{2 * i + 1}", f"y{2 * i + 2}"
+        kept = keep_extremes(channel.residual)
+        data += _trace(channel, time[kept], kept, breaks, main, strip, legend=i == 0)
+        layout[main.replace("y", "yaxis")] = words.axis(
+            f"{channel.name} [{channel.unit}]", domain=[top - 0.60 * slot, top]
+        )
+        layout[strip.replace("y", "yaxis")] = words.axis(
+            "residual", domain=[top - 0.92 * slot, top - 0.65 * slot], nticks=4
+        )
+        for sign in (-2, 2):
+            level = sign * channel.noise
+            shapes.append({
+                "type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": strip, "y0": level,
+                "y1": level, "line": {"color": words.INK, "width": 1, "dash": "dot"},
+            })  # fmt: skip
+    layout["yaxis"] = layout.pop("yaxis1")
+    bottom = f"y{2 * len(channels)}"
+    ends = [float(time[0]), float(time[-1])]
+    layout["xaxis"] = words.axis("time [s]", anchor=bottom, range=ends)
+    return Figure(data, layout, "Measured and modelled, and the residuals, over time")
+
+
+def _trace(
+    channel: Channel, t: Array, kept: Rows, breaks: Array, main: str, strip: str, *, legend: bool
+) -> list[dict[str, Any]]:
+    """The curves of one output at the kept rows."""
+    broken = np.diff(breaks[kept], prepend=breaks[kept[:1]]) > 0
+    m, f, r = (
+        np.where(broken, np.nan, at[kept])
+        for at in (channel.measured, channel.modelled, channel.residual)
+    )
+    line: dict[str, Any] = {"mode": "lines", "type": "scatter", "x": t, "xaxis": "x"}
+    main = main if main != "y1" else "y"
+    show = {"showlegend": legend, "yaxis": main}
+    around: list[dict[str, Any]] = []
+    if np.isfinite(m).any():
+        band = words.band(t, f - 2 * channel.noise, f + 2 * channel.noise, words.BAND, **show)
+        grey, blue = {"color": words.MEASURED, "width": 2}, {"color": words.MODELLED, "width": 1.1}
+        around = [
+            {**band, "name": "modelled, 2-sigma band"},
+            {**line, **show, "y": m, "line": grey, "name": "measured"},
+            {**line, **show, "y": f, "line": blue, "name": "modelled"},
+        ]
+    thin = {"color": words.MODELLED, "width": 0.8}
+    below = {**line, "y": r, "yaxis": strip, "line": thin, "name": "residual", "showlegend": False}
+    return [*around, below]
+
+
+def median_step(time: Array) -> float:
+    """The log's interval [s]."""
+    return float(np.median(np.diff(time))) if time.size > 1 else 1.0
+
+
+def shade(runs: list[Run]) -> list[dict[str, Any]]:
+    """A pale stripe a maneuver, darker by turns where they adjoin."""
+    shapes = []
+    for i, (_, first, last) in enumerate(run for run in runs if run[0] not in BACKGROUND):
+        colour = "rgba(40,60,80,0.085)" if i % 2 == 0 else "rgba(40,60,80,0.045)"
+        shapes.append({
+            "type": "rect", "xref": "x", "yref": "paper", "x0": first, "x1": last, "y0": 0, "y1": 1,
+            "fillcolor": colour, "line": {"width": 0}, "layer": "below",
+        })  # fmt: skip
+    return shapes
+
+
+def _name(run: Run) -> dict[str, Any]:
+    """A maneuver's name above the picture."""
+    return {
+        "x": 0.5 * (run[1] + run[2]), "xref": "x", "y": 1.0, "yref": "paper", "yanchor": "bottom",
+        "xanchor": "left", "text": escape(run[0].replace("_", " ")), "textangle": -35,
+        "showarrow": False, "font": {"size": 11, "color": words.QUIET},
+    }  # fmt: skip

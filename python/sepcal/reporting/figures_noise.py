@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether what is left is noise: autocorrelation, spectrum, quantiles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sepcal.columns import Array
+from sepcal.reporting import words
+from sepcal.reporting.page import Figure
+from sepcal.reporting.statistics import autocorrelation, quantiles, spectrum
+
+LEAST = 0.1  # a correlation: no axis is drawn finer
+
+
+def _lines(output: str, i: int, x: Array, y: Array) -> dict[str, Any]:
+    colour = words.BY_OUTPUT[i % len(words.BY_OUTPUT)]
+    return {
+        "type": "scatter", "mode": "lines", "name": output, "x": x, "y": y,
+        "line": {"color": colour, "width": 1.4},
+    }  # fmt: skip
+
+
+def draw_autocorrelation(
+    outputs: list[str], residuals: Array, segments: list[slice], interval: float
+) -> Figure:
+    """Correlation over lag [s], with the limits that white noise keeps nineteen times in twenty."""
+    data, widest = [], LEAST
+    for i, output in enumerate(outputs):
+        lags, values, limit = autocorrelation(residuals[:, i], segments)
+        if i == 0:
+            grey = "rgba(92,102,112,0.22)"
+            data.append(words.band(lags * interval, -limit, limit, grey, showlegend=False))
+        widest = max(widest, float(np.nanmax(np.abs(values), initial=0.0)))
+        data.append(_lines(output, i, lags * interval, values))
+    layout = words.layout(
+        290,
+        "Autocorrelation",
+        showlegend=True,
+        margin={"l": 50, "r": 10, "t": 62, "b": 42},
+        xaxis=words.axis("lag [s]", type="log", dtick=1),
+        yaxis=words.axis(
+            "correlation", zeroline=True, zerolinecolor="#8b949c", range=[-widest, 1.05 * widest]
+        ),
+    )
+    return Figure(data, layout, "Autocorrelation of the residuals")
+
+
+def draw_spectrum(
+    outputs: list[str],
+    unit: str,
+    residuals: Array,
+    segments: list[slice],
+    interval: float,
+    floors: list[float],
+) -> Figure:
+    """Power density over frequency; dotted, white noise of the floor's size."""
+    data = []
+    for i, output in enumerate(outputs):
+        frequency, density = spectrum(residuals[:, i], segments, interval)
+        if frequency.size == 0:
+            continue
+        data.append(_lines(output, i, frequency, density))
+        white = 2 * interval * floors[i] ** 2
+        floor = _lines(output, i, np.array([frequency[0], frequency[-1]]), np.full(2, white))
+        floor["line"] = {**floor["line"], "dash": "dot", "width": 1}
+        data.append({**floor, "showlegend": False, "hoverinfo": "skip"})
+    layout = words.layout(
+        290,
+        "Spectrum",
+        showlegend=True,
+        margin={"l": 62, "r": 10, "t": 62, "b": 42},
+        xaxis=words.axis("frequency [Hz]", type="log", dtick=1),
+        yaxis=words.axis(f"density [({unit})²/Hz]", type="log", exponentformat="power"),
+    )
+    return Figure(data, layout, "Spectrum of the residuals")
+
+
+def draw_quantiles(outputs: list[str], residuals: Array, noise: Array) -> Figure:
+    """Quantiles of the residual over its noise, against the normal distribution's."""
+    data = []
+    furthest = 3.0
+    for i, output in enumerate(outputs):
+        normal, found = quantiles(residuals[:, i] / noise[i])
+        trace = _lines(output, i, normal, found)
+        data.append({**trace, "mode": "markers", "marker": {"size": 4, **trace["line"]}})
+        furthest = max(furthest, float(normal[-1]))
+    data.append({
+        "type": "scatter", "mode": "lines", "name": "normal", "x": [-furthest, furthest],
+        "y": [-furthest, furthest], "line": {"color": words.INK, "width": 1, "dash": "dash"},
+        "showlegend": False,
+    })  # fmt: skip
+    layout = words.layout(
+        290,
+        "Q-Q",
+        showlegend=True,
+        margin={"l": 50, "r": 10, "t": 62, "b": 42},
+        xaxis=words.axis("normal quantile [sigma]"),
+        yaxis=words.axis("residual [sigma]"),
+    )
+    return Figure(data, layout, "Quantiles of the residuals against a normal distribution")

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""All that a report shows, computed once: the engine's verdicts, and the rows they are about."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sepcal import _core
+from sepcal.calibration import Calibration
+from sepcal.columns import Array
+from sepcal.comparison import Comparison
+from sepcal.diagnosis import Diagnosis, EffectFinding
+from sepcal.flight import Flight
+from sepcal.reporting.channels import Rows, airspeed, find_rows, find_segments, quantity
+
+TRIED = 3  # of the ranked candidates: so many are added, to show what each explains
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A candidate that was added for the picture alone."""
+
+    finding: EffectFinding
+    explained: Array  # (N, n_z), old minus new residual; NaN in a row that the new fit lacks
+
+
+@dataclass(frozen=True)
+class Material:
+    """The last calibration of a chain on a flight. N is the number of rows compared."""
+
+    chain: list[Calibration]
+    comparisons: list[Comparison]  # one a calibration
+    files: list[str]  # of the calibrations; empty where they have none
+    flight: Flight
+    diagnosis: Diagnosis
+    description: dict[str, Any]  # Calibration.to_dict() of the last
+    rows: Rows  # (N,), of the flight
+    segments: list[slice]  # of the N rows
+    labels: list[str]  # N of them, or none
+    measured: Array  # (N, n_z), in the units used inside; NaN where it can't be told
+    modelled: Array  # (N, n_z)
+    trials: list[Trial]
+    notes: list[str]
+
+    @property
+    def last(self) -> Calibration:
+        """The calibration that the report is about."""
+        return self.chain[-1]
+
+    @property
+    def comparison(self) -> Comparison:
+        """Of the last."""
+        return self.comparisons[-1]
+
+    @property
+    def title(self) -> str:
+        """The flight's name without its folder."""
+        return os.path.basename(self.flight.name) or self.flight.name
+
+    @property
+    def model(self) -> str:
+        """five-hole, pitot-static, magnetometer, magnetometer-norm."""
+        return str(self.description["model"])
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Of the last calibration's fit."""
+        return dict(self.description["options"])
+
+    @property
+    def outputs(self) -> list[str]:
+        """Their names, in the order of the residuals' columns."""
+        return [misfit.output for misfit in self.comparison.overall]
+
+    @property
+    def units(self) -> list[str]:
+        """Of the outputs."""
+        return [misfit.unit for misfit in self.comparison.overall]
+
+    @property
+    def noise(self) -> Array:
+        """Of the outputs on the flight that was fitted: what the 2-sigma bands are made of."""
+        return np.array([self.last.noise[output] for output in self.outputs])
+
+    @property
+    def floors(self) -> list[float]:
+        """Of the outputs on this flight: innovations alone; its RMSE where that isn't known."""
+        told = self.diagnosis.residual
+        return [
+            told.get(misfit.output, {}).get("floor") or misfit.rmse
+            for misfit in self.comparison.overall
+        ]
+
+    @property
+    def is_fitted_flight(self) -> bool:
+        """Whether the last calibration was fitted on this flight, as far as can be told."""
+        fitted = self.description["inputs"]["sha256"]
+        return bool(fitted == self.flight.sha256)
+
+
+def gather(
+    chain: Sequence[Calibration],
+    flight: Flight | None,
+    diagnosis: Diagnosis | None,
+    files: list[str],
+    tell: Callable[[str], None],
+) -> Material:
+    """Compares, diagnoses and tries the first candidates. Raises Error as those do."""
+    last = chain[-1]
+    described = [calibration.to_dict() for calibration in chain]
+    models = sorted({str(description["model"]) for description in described})
+    if len(models) > 1:
+        raise _core.Error(f"the calibrations are of several models: {', '.join(models)}; give one")
+    if flight is None:
+        flight = last.flight
+    if flight is None:
+        raise _core.Error(
+            "a loaded calibration has no flight; give one: "
+            f"report(..., flight=sepcal.read_csv({last.core.file!r}))"
+        )
+    tell("comparing")
+    comparisons = [calibration.compare(flight) for calibration in chain]
+    tell("diagnosing, which may take a minute")
+    found = diagnosis if diagnosis is not None else last.diagnose(flight)
+    rows = find_rows(flight, comparisons[-1].time)
+    labels = [flight.maneuvers[row] for row in rows] if flight.maneuvers else []
+    notes: list[str] = []
+    measured, modelled = find_measured(last, flight, comparisons[-1], rows)
+    return Material(
+        chain=list(chain),
+        comparisons=comparisons,
+        files=files,
+        flight=flight,
+        diagnosis=found,
+        description=described[-1],
+        rows=rows,
+        segments=find_segments(comparisons[-1].time, labels),
+        labels=labels,
+        measured=measured,
+        modelled=modelled,
+        trials=try_candidates(last, flight, comparisons[-1], found, notes, tell),
+        notes=list(dict.fromkeys([*last.notes, *found.notes, *comparisons[-1].notes, *notes])),
+    )
+
+
+def find_measured(
+    calibration: Calibration, flight: Flight, comparison: Comparison, rows: Rows
+) -> tuple[Array, Array]:
+    """Measured and modelled, (N, n_z) each.
+
+    The output `field` is zero by construction: there it is the strength after calibration beside
+    the given one, whose difference is minus the residual.
+    """
+    measured = np.full(comparison.residuals.shape, np.nan)
+    modelled = measured.copy()
+    for i, misfit in enumerate(comparison.overall):
+        residual = comparison.residuals[:, i]
+        if misfit.output == "field":
+            modelled[:, i] = calibration.to_dict()["options"]["field_strength"]
+            measured[:, i] = modelled[:, i] - residual
+            continue
+        read = airspeed(flight) if misfit.output == "airspeed" else None
+        values = read if read is not None else quantity(flight, misfit.output)
+        if values is not None:
+            measured[:, i] = values[rows]
+            modelled[:, i] = values[rows] - residual
+    return measured, modelled
+
+
+def try_candidates(
+    calibration: Calibration,
+    flight: Flight,
+    comparison: Comparison,
+    diagnosis: Diagnosis,
+    notes: list[str],
+    tell: Callable[[str], None],
+) -> list[Trial]:
+    """What each of the first candidates explains once every parameter has taken its share."""
+    trials: list[Trial] = []
+    for finding in diagnosis.effects:
+        if len(trials) == TRIED:
+            break
+        if finding.status == "cannot_be_seen":
+            continue
+        tell(f"trying {finding.name}")
+        try:
+            tried = calibration.add(finding.name, flight).compare(flight)
+        except _core.Error as error:
+            notes.append(f"{finding.name} can't be drawn: {error}")
+            continue
+        place = {at: row for row, at in enumerate(tried.time.tolist())}
+        there = [place.get(at, -1) for at in comparison.time.tolist()]
+        left = np.vstack([tried.residuals, np.full((1, tried.residuals.shape[1]), np.nan)])
+        trials.append(Trial(finding, comparison.residuals - left[there]))
+    return trials

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report's sections, in the order in which a flight-test engineer asks."""
+
+from __future__ import annotations
+
+from html import escape
+
+import numpy as np
+
+from sepcal.comparison import ChannelMisfit
+from sepcal.reporting import advice, tables, words
+from sepcal.reporting.channels import driver
+from sepcal.reporting.figures_cause import draw_added_variable, draw_channel
+from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall
+from sepcal.reporting.figures_fit import Channel, draw_overlay
+from sepcal.reporting.gather import Material
+from sepcal.reporting.page import Figure, Grid, Page, Section
+from sepcal.reporting.sections_flight import show_coverage, show_noise
+from sepcal.reporting.statistics import fit_smooth
+from sepcal.reporting.thin import say_thinned
+
+CHANNELS = 12  # drawn; the others are named
+
+
+def compose(material: Material, file: str) -> Page:
+    """The whole page but for Plotly; `file` is where it will stand."""
+    sections = [
+        show_waterfall(material),
+        show_overlay(material),
+        show_where(material),
+        show_candidates(material),
+        show_channels(material),
+        show_trials(material),
+        show_noise(material),
+        show_parameters(material),
+        show_coverage(material),
+        Section(
+            "What to fly or log next",
+            blocks=[advice.advise(material), advice.list_limits(material)],
+        ),
+        Section("Where this comes from", blocks=[advice.list_provenance(material, file)]),
+    ]
+    return Page(f"{material.title}: sepcal report", show_verdict(material), sections)
+
+
+def pooled_unit(material: Material) -> str:
+    """Of the RMSE over all outputs: they share one."""
+    return material.units[0]
+
+
+def show_verdict(material: Material) -> str:
+    """The sentence on top, the numbers behind it, and what to type next."""
+    found, last = material.diagnosis, material.last
+    unit = pooled_unit(material)
+    facts = [
+        (words.with_unit(found.rmse, unit), "RMSE left, all outputs"),
+        (words.with_unit(found.noise_floor, unit), "noise floor"),
+    ]
+    if found.found:
+        best = found.found[0]
+        facts += [
+            (words.percent(best.predicted_drop), f"less with {escape(best.name)}"),
+            (words.percent(best.held_out_gain), "less on rows held out"),
+        ]
+    facts.append((escape(last.status.replace("_", " ")), "status of the fit"))
+    shown = "".join(f"<div><b>{value}</b><span>{name}</span></div>" for value, name in facts)
+    effects = ", ".join(at.name for at in last.effects)
+    kind = words.MODELS.get(material.model, material.model)
+    heading = f"<b>{escape(material.title)}</b> · {escape(kind)}" + (
+        f" with {escape(effects)}" if effects else ""
+    )
+    warnings = advice.warn(last)
+    if not material.is_fitted_flight:
+        fitted = material.description["inputs"]["file"]
+        warnings.append(f"The calibration was fitted on another flight, {escape(fitted)}.")
+    file = material.files[-1] if material.files else ""
+    command = advice.next_command(material, file)
+    more = "".join(f'<p class="warning">{warning}</p>' for warning in warnings)
+    if material.notes:
+        notes = tables.bullets([escape(note) for note in material.notes])
+        more += f"<details><summary>notes on the data</summary>{notes}</details>"
+    return (
+        f"<h1>{heading}</h1>"
+        f'<div class="verdict {found.verdict}"><span class="tag">'
+        f"{words.VERDICTS.get(found.verdict, found.verdict)}</span>"
+        f"<p>{escape(found.sentence)}</p></div>"
+        f'<div class="facts">{shown}</div>'
+        + (f"<p>To add it:</p><pre>{escape(command)}</pre>" if command else "")
+        + more
+    )
+
+
+def show_waterfall(material: Material) -> Section:
+    """Fitted and held out after every step, and what was promised before it."""
+    unit, history = pooled_unit(material), material.last.history
+    found = material.diagnosis.found
+    steps: list[Step] = []
+    if history:
+        before = history[0]
+        steps.append(Step("first model", before.rmse_before, before.held_out_before, None))
+    for entry in history:
+        promised = (
+            entry.rmse_before * (1 - entry.predicted_drop)
+            if entry.rmse_before is not None and entry.predicted_drop is not None
+            else None
+        )
+        steps.append(Step(f"+ {entry.effect}", entry.rmse_after, entry.held_out_after, promised))
+    if not steps:
+        held = found[0].held_out_before if found else None
+        steps.append(Step("this model", material.diagnosis.rmse, held, None))
+    if found and material.diagnosis.rmse is not None and found[0].predicted_drop is not None:
+        promised = material.diagnosis.rmse * (1 - found[0].predicted_drop)
+        label = f"next: + {found[0].name}"
+        steps.append(Step(label, promised, found[0].held_out_after, None, is_next=True))
+    blocks: list[str | Figure | Grid] = [
+        draw_waterfall(steps, material.diagnosis.noise_floor, unit)
+    ]
+    if history:
+        blocks.append(tables.list_history(history, unit))
+    blocks.append(tables.list_calibrations(material.chain, material.files, material.comparisons))
+    lead = (
+        "One step an added effect. A step is worth keeping when the error falls on rows held out "
+        "of the fit too; a black tick is what was promised before, a pale bar what is promised "
+        "next. The noise floor is estimated from what is left: while an effect is missing, it may "
+        "be too high."
+    )
+    return Section("The error, step by step", lead, blocks)
+
+
+def show_overlay(material: Material) -> Section:
+    """Every output over time."""
+    time, comparison = material.comparison.time, material.comparison
+    runs = [
+        (material.labels[at.start], float(time[at.start]), float(time[at.stop - 1]))
+        for at in material.segments
+        if material.labels
+    ]
+    channels = [
+        Channel(
+            "calibrated strength" if output == "field" else output,
+            material.units[i],
+            material.measured[:, i],
+            material.modelled[:, i],
+            comparison.residuals[:, i],
+            float(material.noise[i]),
+        )
+        for i, output in enumerate(material.outputs)
+    ]
+    figures: list[str | Figure | Grid] = [draw_overlay(time, channels, runs)]
+    lead = (
+        "Grey is what was measured, blue what the calibrated model says, pale blue its 2-sigma "
+        "band. Below each, the residual, measured minus modelled, between its 2-sigma lines: "
+        "what leaves them for long is not noise."
+    )
+    if "field" in material.outputs:
+        lead += (
+            " The attitude is unknown here, so the strength of the calibrated field stands beside "
+            "the given one; the residual is the given minus the calibrated."
+        )
+    if runs:
+        lead += " Maneuvers are shaded."
+    if note := say_thinned(time.size):
+        figures.append(f'<p class="note">{note}</p>')
+    return Section("Measured and modelled", lead, figures)
+
+
+def show_where(material: Material) -> Section:
+    """The heat strip and the worst windows."""
+    comparison = material.comparison
+    strip = draw_heat_strip(comparison.where, material.outputs, material.floors)
+    lead = (
+        f"RMSE by {'maneuver' if material.labels else 'stretch of time [s]'} and output, in the "
+        "output's unit; the colour is how many times the noise floor it is."
+    )
+    return Section("Where it fails", lead, [strip, tables.list_windows(comparison)])
+
+
+def show_candidates(material: Material) -> Section:
+    """The ranking of physical effects."""
+    lead = (
+        "Physical effects that the model may lack, best first. <b>p</b> is corrected for their "
+        "number; an effect is <b>found</b> when p is below 0.05 and rows held out of the fit gain "
+        "too. <b>Visibility</b> near 0: other parameters absorb the effect on this flight, "
+        "which then can't show it."
+    )
+    extra: list[str | Figure | Grid] = [tables.list_candidates(material.diagnosis.effects)]
+    unexplained = material.diagnosis.unexplained
+    if material.diagnosis.verdict == "unexplained" and unexplained.get("where"):
+        extra.append(
+            f"<p>Structure that no candidate explains, p = "
+            f"{words.probability(unexplained.get('p_value'))}: {escape(unexplained['where'])}.</p>"
+        )
+    return Section("Ranked candidates", lead, extra)
+
+
+def show_channels(material: Material) -> Section:
+    """The channels that the residual follows most, each with the output it shows in."""
+    comparison, outputs = material.comparison, material.outputs
+    best: dict[str, ChannelMisfit] = {}
+    for channel in comparison.channels:
+        best.setdefault(channel.driver, channel)
+    figures: list[Figure] = []
+    for channel in list(best.values())[:CHANNELS]:
+        values = driver(material.flight, channel.driver, material.options)
+        if values is None:
+            continue
+        residual = comparison.residuals[:, outputs.index(channel.output)]
+        smooth = fit_smooth(values[material.rows], residual)
+        if smooth is None:
+            continue
+        title = f"{channel.driver}: {words.share(channel.share_smooth)} of {channel.output}"
+        unit = material.units[outputs.index(channel.output)]
+        _, _, per = channel.unit.partition(" per ")
+        x_title = f"{channel.driver} [{per}]" if per else channel.driver
+        y_title = f"{channel.output} [{unit}]"
+        x = values[material.rows]
+        figures.append(draw_channel(title, x_title, y_title, x, residual, smooth))
+    others = list(best.values())[CHANNELS:]
+    blocks: list[str | Figure | Grid] = [Grid(figures, 320)]
+    if others:
+        most = max(channel.share_smooth for channel in others)
+        blocks.append(
+            f'<p class="note">Not drawn, {words.percent(most)} at most: '
+            f"{escape(', '.join(channel.driver for channel in others))}.</p>"
+        )
+    lead = (
+        "Residual against each logged channel, in the output where a smooth curve explains the "
+        "most of it. The curve means something where its band, 2 standard errors that allow for "
+        "neighbouring residuals being correlated, leaves zero out. A few hundred of the rows are "
+        "drawn as points; the curve is of all."
+    )
+    return Section("Residual against the channels", lead, blocks)
+
+
+def show_trials(material: Material) -> Section:
+    """What the first candidates explain."""
+    comparison = material.comparison
+    figures = [
+        draw_added_variable(
+            trial.finding.name, trial.explained, comparison.residuals, material.noise,
+            material.outputs,
+        )
+        for trial in material.trials
+        if np.isfinite(trial.explained).any() and np.nanmax(np.abs(trial.explained)) > 0
+    ]  # fmt: skip
+    lead = (
+        "Each of the first candidates was added and all parameters fitted again. Across: by how "
+        "much that changes the modelled value, which is the effect without what the other "
+        "parameters can do in its place. Up: the residual before. Both in standard deviations. "
+        "Circles, the mean residual, on the dashed line of slope 1 show that the effect is at work "
+        "at every size; where only the farthest points follow the line, look at those rows first."
+    )
+    if not material.diagnosis.found:
+        lead += " None was found: this is what nothing looks like."
+    blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else ["<p>None.</p>"]
+    return Section("What the first candidates explain", lead, blocks)
+
+
+def show_parameters(material: Material) -> Section:
+    """Estimates, errors, what can't be told apart."""
+    lead = (
+        "The standard error allows for residuals whose neighbours correlate; beside it, what it "
+        "would be if they were white. Neither covers a cause that the model lacks."
+    )
+    blocks: list[str | Figure | Grid] = [
+        tables.list_parameters(material.last),
+        tables.list_directions(material.last.unobservable, material.last.weak),
+    ]
+    return Section("Parameters", lead, blocks)
