@@ -14,8 +14,9 @@ from typing import NoReturn
 
 from sepcal import _core
 from sepcal.reporting import command as report
+from sepcal.study import command as study
 
-COMMANDS = (report,)
+COMMANDS = (report, study)
 BAD_INPUT = 2
 
 

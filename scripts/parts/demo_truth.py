@@ -26,9 +26,7 @@ def main(folder: Path) -> None:
     base = read(folder / "base.json")["parameters"]
     better = read(folder / "better.json")["parameters"]
     width = max(len(name) for name in better)
-    print(
-        f"{'parameter':<{width}}  {'unit':<9}{'truth':>10}{'before':>11}{'after':>11}  after, off by"
-    )
+    print(f"{'parameter':<{width}}  {'unit':<9}{'truth':>10}{'before':>11}{'after':>11}  off by")
     for name, entry in better.items():
         before = f"{base[name]['value']:.5f}" if name in base else "-"
         off = abs(entry["value"] - truth[name]) / entry["standard_error"]
