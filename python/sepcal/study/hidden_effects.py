@@ -58,8 +58,8 @@ def hidden_effects(
             experiment, row = future.result()
             rows.setdefault(experiment, []).append(row)
             tell(done / len(tasks))
-    for experiment in rows.values():
-        experiment.sort(key=lambda row: tuple(str(value) for value in row.values()))
+    for flights in rows.values():
+        flights.sort(key=lambda row: tuple(str(value) for value in row.values()))
     return rows
 
 

@@ -159,8 +159,8 @@ def _others(rows: dict[str, list[Row]]) -> str:
     for effect, chosen in by("unlogged", "effect"):
         what = f"`{effect}` at 20 sigmas, its channel not logged"
         for verdict in ("unexplained", "effect_missing", "adequate"):
-            rate = _rate(chosen, lambda row, verdict=verdict: row["verdict"] == verdict)
-            body.append([what, verdict, rate])
+            count = sum(row["verdict"] == verdict for row in chosen)
+            body.append([what, verdict, f"{count} of {len(chosen)}"])
     slow = rows["slow"]
     what = "a wind that drifts by 2 m/s in two minutes, noise 0.15 m/s"
     body.append([what, "first", _rate(slow, lambda row: row["first"])])
