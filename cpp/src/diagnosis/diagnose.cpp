@@ -239,9 +239,9 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
     tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
     if (i < most_simulated) {
       const bool beyond_doubt = significant[i]->log10_p < doubtless;
-      const Inflation own = simulate_inflation(
-          room_, null_, *significant[i], beyond_doubt ? few_simulations : options_.simulations,
-          seed + i, pool_);
+      const Inflation own =
+          simulate_inflation(room_, null_, *significant[i],
+                             beyond_doubt ? few_simulations : options_.simulations, seed, pool_);
       worst = {std::max(worst.mean, own.mean), std::max(worst.variance, own.variance)};
     }
     inflate(worst, *significant[i]);
