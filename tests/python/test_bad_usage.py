@@ -134,18 +134,15 @@ def test_field_options(magnetometer: Bench, options: tuple[str, ...], words: tup
     assert_refused(magnetometer, "fit", "flight.csv", *options, words=words)
 
 
-@pytest.mark.parametrize("arguments", [(), ("flight.csv", "base.json", "wind_drift"), ("--json",)])
-def test_verbs_to_come(bench: Bench, arguments: tuple[str, ...]):
-    assert_refused(bench, "diagnose", *arguments, words=("diagnose is not there yet", "compare"))
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         ((), ("--help",)),
-        (("calibrate",), ("'calibrate' is no verb", "fit, compare, add, apply", "--help")),
+        (("calibrate",), ("'calibrate' is no verb", "fit, compare, diagnose, add", "--help")),
         (("fit",), ("FLIGHT is required", "fit --help")),
         (("compare", "flight.csv"), ("CALIBRATION is required", "compare --help")),
+        (("diagnose",), ("FLIGHT is required", "diagnose --help")),
+        (("diagnose", "flight.csv"), ("CALIBRATION is required", "diagnose --help")),
         (("add", "flight.csv", "base.json"), ("E is required", "add --help")),
         (("apply", "flight.csv", "base.json"), ("--output is required", "apply --help")),
         (("simulate",), ("--output is required", "simulate --help")),
