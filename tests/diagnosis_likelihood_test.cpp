@@ -184,7 +184,7 @@ TEST_CASE("a slow drift that the null's noise model swallows stands out in the r
   CHECK(std::abs(ratio.with.minus_two_log_likelihood - white_noise) < 10.0);
 }
 
-TEST_CASE("the larger a drift, the larger its ratio" * doctest::may_fail()) {
+TEST_CASE("the larger a drift, the larger its ratio") {
   for (const std::uint64_t seed : {5, 6, 7}) {
     double last = 0.0;
     for (const double drift : {0.1, 0.5, 1.0, 2.0, 4.0, 8.0}) {
