@@ -30,7 +30,7 @@ inline const std::vector<HiddenCase> strong_effects{
 
 inline DiagnosisOptions quick_diagnosis() {
   DiagnosisOptions options;
-  options.simulations = 99;
+  options.simulations = 49;
   options.threads = 1;
   return options;
 }

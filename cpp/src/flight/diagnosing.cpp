@@ -208,7 +208,8 @@ FlightDiagnosis diagnose_with(const HiddenEffect& injected, const Calibration& c
 
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const Diagnosis& found = diagnosis.diagnosis;
-  const std::string unit = found.residual.empty() ? "" : found.residual.front().unit;
+  if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
+  const std::string& unit = found.residual.front().unit;
   const std::string left =
       fmt::format("{:.3g} {} of error are left; noise alone would leave {:.3g} {}", found.rmse,
                   unit, found.floor, unit);
