@@ -206,6 +206,20 @@ TEST_CASE("the end blocks of a ramp would be extrapolated to: they are not judge
   CHECK_FALSE(folds.blocks.back().judged);
 }
 
+TEST_CASE("so it is where the ramp is in one output of three, and larger in one than in another") {
+  const RowLayout layout = make_layout({{"", 1200}}, {1.0, 1.0, 1.0});
+  const VectorXd ramp = VectorXd::LinSpaced(1200, -3.0, 5.0);
+  for (const double share : {0.0, 0.1, -1.0}) {
+    CAPTURE(share);
+    VectorXd column = VectorXd::Zero(3600);
+    column.head(1200) = ramp;
+    column.tail(1200) = share * ramp;
+    Folds folds = interleaved_blocks(layout, 10.0, 0);
+    judge_interpolated(layout, column, folds);
+    for (std::size_t i = 0; i < 12; ++i) CHECK(folds.blocks[i].judged == (i != 0 && i != 11));
+  }
+}
+
 TEST_CASE("a segment in which alone the driver moved is not judged") {
   const RowLayout layout = make_layout({{"a", 50}, {"b", 50}, {"c", 50}, {"d", 50}}, {1.0});
   VectorXd driver = VectorXd::Zero(200);

@@ -32,8 +32,8 @@ Folds whole_segments(const RowLayout& layout);
 /// dealt to six folds.
 Folds interleaved_blocks(const RowLayout& layout, double correlation_rows, int fewest);
 
-/// Judges a block only where most of its rows lie, column by column of the candidate's G, within
-/// what the other folds span.
+/// Judges a block only where most of its rows lie, column by column of the candidate's G and output
+/// by output, within what the other folds span.
 void judge_interpolated(const RowLayout& layout, const Eigen::MatrixXd& G, Folds& folds);
 
 /// The integrated correlation time of a residual [rows], of its most correlated output.
