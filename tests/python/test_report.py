@@ -242,6 +242,28 @@ def test_bad_calls(small: Path, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_another_flight_than_the_fitted_one(small: Path, tmp_path: Path) -> None:
+    """A parameter that was fitted elsewhere is said to be."""
+    other = sepcal.simulate(sepcal.PitotStatic(), rows=500, seed=9)
+    base = sepcal.load(small / "base.json")
+    sepcal.report(base, tmp_path / "r.html", other)
+    assert "fitted on another flight, " in (tmp_path / "r.html").read_text()
+
+
+def test_a_fit_that_failed_says_so_on_top(tmp_path: Path) -> None:
+    """Straight and level: nothing separates the wind from the airspeed's errors."""
+    flight = sepcal.simulate(FIVE_HOLE, rows=500, seed=4, excitation="poor")
+    base = sepcal.fit(FIVE_HOLE, flight)
+    assert base.status == "not_identifiable"
+    sepcal.report(base, tmp_path / "r.html")
+    html = (tmp_path / "r.html").read_text()
+    top = html[: html.index(TITLES[0])]
+    assert "not identifiable" in top
+    assert escape(base.message) in top
+    for at in base.unobservable:
+        assert escape(at.text) in html[len(top) :]
+
+
 def test_without_plotly(small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "plotly.offline", None)
     base = sepcal.load(small / "base.json")

@@ -57,6 +57,14 @@ def advise(material: Material) -> str:
             f"<b>Fly</b> so that their drivers vary one without the other: this flight can't tell "
             f"<code>{escape(effect.name)}</code> from {', '.join(others[:TWINS])}{more}."
         )
+    for effect in found.found[:1]:
+        if effect.visibility < tables.CLOSE:
+            lines.append(
+                f"<b>Fly</b> more variety before trusting the parameters beside "
+                f"<code>{escape(effect.name)}</code>: on this flight they can do most of what at "
+                f"least a part of it does (visibility {number(effect.visibility, 2)}), and will be "
+                "poorly determined once it is added."
+            )
     for at in last.unobservable:
         lines.append(
             f"<b>Fly</b> what separates {escape(', '.join(at.parameters))}, or hold one of them "

@@ -86,7 +86,10 @@ def _bars(
     return {
         "type": "bar", "name": name, "x": [i + shift for i in range(len(steps))], "y": values,
         "width": 0.34, "text": ["" if at is None else words.number(at) for at in values],
-        "textposition": "outside", "cliponaxis": False, "hoverinfo": "y+name",
+        "textposition": "auto", "insidetextanchor": "middle", "textangle": 0, "cliponaxis": False,
+        "hoverinfo": "y+name", "textfont": {"size": 13}, "insidetextfont": {
+            "color": [words.INK if step.is_next else "#fff" for step in steps], "size": 13,
+        },
         "marker": {"color": colour, "opacity": [0.32 if step.is_next else 1 for step in steps]},
     }  # fmt: skip
 
@@ -116,12 +119,13 @@ def draw_heat_strip(where: list[Misfit], outputs: list[str], floors: list[float]
         "hovertemplate": "%{customdata}<br>%{z:.2f} times the noise<extra></extra>",
         "colorbar": {
             "title": {"text": "times the<br>noise floor"}, "thickness": 10, "outlinewidth": 0,
+            "lenmode": "pixels", "len": 130, "y": 1, "yanchor": "top", "nticks": 4,
         },
         "text": [[words.number(value, 2) for value in row] if legible else [] for row in values],
         "texttemplate": "%{text}" if legible else "",
     }  # fmt: skip
     layout = words.layout(
-        130 + 44 * len(outputs),
+        148 + 40 * len(outputs),
         xaxis=words.axis(
             tickvals=list(range(len(ticks))), ticktext=ticks, tickangle=-35, showgrid=False,
         ),

@@ -17,7 +17,7 @@ from sepcal.reporting.thin import keep_extremes
 
 NAMED = 16  # maneuvers whose names fit above a picture
 BACKGROUND = ("", "cruise")  # labels of flying between maneuvers, left unshaded
-GAP = 5  # median intervals of the log: no line bridges a longer one
+GAP, GAP_SHARE = 5, 0.01  # no line bridges so many median intervals and this share of the flight
 
 Run = tuple[str, float, float]  # a maneuver: label, first and last time [s]
 
@@ -36,7 +36,8 @@ class Channel:
 
 def draw_overlay(time: Array, channels: list[Channel], runs: list[Run]) -> Figure:
     """Every output over the same time [s], measured over modelled; below each, its residual."""
-    after_gap = np.diff(time, prepend=time[:1]) > GAP * median_step(time)
+    longest = max(GAP * median_step(time), GAP_SHARE * float(time[-1] - time[0]))
+    after_gap = np.diff(time, prepend=time[:1]) > longest
     breaks = np.cumsum(after_gap).astype(np.float64)  # number of gaps up to each row
     data: list[dict[str, Any]] = []
     shapes = shade(runs)

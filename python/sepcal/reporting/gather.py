@@ -98,7 +98,9 @@ class Material:
 
     @property
     def is_fitted_flight(self) -> bool:
-        """Whether the last calibration was fitted on this flight, as far as can be told."""
+        """Whether the last was fitted on this flight; arrays have no hash to tell by."""
+        if not self.flight.sha256:
+            return self.last.flight is self.flight
         fitted = self.description["inputs"]["sha256"]
         return bool(fitted == self.flight.sha256)
 

@@ -62,7 +62,9 @@ def show_verdict(material: Material) -> str:
             (words.percent(best.predicted_drop), f"less with {escape(best.name)}"),
             (words.percent(best.held_out_gain), "less on rows held out"),
         ]
-    facts.append((escape(last.status.replace("_", " ")), "status of the fit"))
+    status = escape(last.status.replace("_", " "))
+    flagged = status if last.status == "converged" else f'<span class="flag">{status}</span>'
+    facts.append((flagged, "status of the fit"))
     shown = "".join(f"<div><b>{value}</b><span>{name}</span></div>" for value, name in facts)
     effects = ", ".join(at.name for at in last.effects)
     kind = words.MODELS.get(material.model, material.model)
@@ -137,7 +139,7 @@ def show_overlay(material: Material) -> Section:
     ]
     channels = [
         Channel(
-            "calibrated strength" if output == "field" else output,
+            "strength" if output == "field" else output,
             material.units[i],
             material.measured[:, i],
             material.modelled[:, i],
@@ -184,6 +186,8 @@ def show_candidates(material: Material) -> Section:
         "which then can't show it."
     )
     extra: list[str | Figure | Grid] = [tables.list_candidates(material.diagnosis.effects)]
+    for effect in material.diagnosis.found[:1]:
+        extra.append(tables.list_absorbed(effect, material.last))
     unexplained = material.diagnosis.unexplained
     if material.diagnosis.verdict == "unexplained" and unexplained.get("where"):
         extra.append(

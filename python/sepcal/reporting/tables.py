@@ -23,6 +23,7 @@ from sepcal.reporting.words import (
 from sepcal.results import Combination, Parameter
 
 SHOWN = 10  # candidates; the others are folded away
+NEGLIGIBLE = 0.3  # standard errors: a shift that needs no table
 CLOSE = 0.05  # visibility below which a flight can't show at least a part of an effect
 
 
@@ -143,7 +144,7 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> str:
     return table(head, rows)
 
 
-def _coefficients(effect: EffectFinding, most: int = 6) -> str:
+def _coefficients(effect: EffectFinding, most: int = 4) -> str:
     lines = []
     for name, value in list(effect.estimate.items())[:most]:
         short = name.removeprefix(effect.name).lstrip(".") or name
@@ -167,13 +168,44 @@ def _family(effect: EffectFinding, most: int = 3) -> str:
     return shown + (f"<br><small>and {left} more</small>" if left > 0 else "")
 
 
+def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5) -> str:
+    """How far ignoring an effect shifts the parameters, those that are off most first."""
+    shifts = []
+    for name, shift in effect.absorbed_by.items():
+        if name not in calibration.parameters:
+            continue
+        parameter = calibration[name]
+        ratio = abs(shift) / parameter.standard_error if parameter.standard_error > 0 else 0.0
+        shifts.append((ratio, parameter, shift))
+    shifts.sort(key=lambda entry: -entry[0])
+    rows = [
+        [
+            f"<b>{escape(parameter.name)}</b>",
+            f"<small>{escape(meaning(parameter, calibration))}</small>",
+            with_unit(shift, parameter.unit, 2),
+            number(ratio, 2),
+        ]
+        for ratio, parameter, shift in shifts[:most]
+    ]
+    if not rows:
+        return ""
+    if shifts[0][0] < NEGLIGIBLE:
+        return (
+            f"<p>Ignoring <code>{escape(effect.name)}</code> shifts no parameter by more than "
+            f"{number(shifts[0][0], 1)} of its standard error.</p>"
+        )
+    head = [("parameter", False), ("", False), ("off by", True), ("in standard errors", True)]
+    title = f"<h3>What ignoring <code>{escape(effect.name)}</code> does to the parameters</h3>"
+    return title + table(head, rows)
+
+
 def list_parameters(calibration: Calibration) -> str:
     """Estimates with both standard errors, flags, and the most correlated partner."""
     rows = []
     for i, parameter in enumerate(calibration.parameters.values()):
         partner, r = find_partner(calibration, i)
         strong = abs(r) >= 0.9
-        told = f"{escape(partner)} {number(r, 2)}" if partner else "–"
+        told = f"{escape(partner)} {number(r, 3 if abs(r) > 0.95 else 2)}" if partner else "–"
         rows.append([
             f"<b>{escape(parameter.name)}</b>",
             f"<small>{escape(meaning(parameter, calibration))}</small>",
