@@ -127,10 +127,12 @@ def gather(
         )
     tell("comparing")
     comparisons = [calibration.compare(flight) for calibration in chain]
-    tell("diagnosing, which may take a minute")
+    if diagnosis is None:
+        tell("diagnosing, which may take a minute")
     found = diagnosis if diagnosis is not None else last.diagnose(flight)
     rows = find_rows(flight, comparisons[-1].time)
-    labels = [flight.maneuvers[row] for row in rows] if flight.maneuvers else []
+    every = flight.maneuvers  # a list made anew at each call
+    labels = [every[row] for row in rows] if every else []
     notes: list[str] = []
     measured, modelled = find_measured(last, flight, comparisons[-1], rows)
     return Material(
