@@ -219,16 +219,13 @@ TEST_CASE("simulated under white noise, the ratio has the moments of chi-squared
   const NullHypothesis null = find_null(fit);
   const MatrixXd added = perpendicular(fit, draws.normal_matrix(390, 3));
   ThreadPool pool(2);
-  const RatioMoments moments = simulate_ratio(null, added, 400, 1, pool);
-  CHECK(std::abs(moments.mean - 3.0) < 4.0 * std::sqrt(6.0 / 400.0));
-  CHECK(moments.variance > 3.5);
-  CHECK(moments.variance < 9.5);
+  const VectorXd ratios = simulate_ratios(null, added, 400, 1, pool);
+  CHECK(std::abs(ratios.mean() - 3.0) < 4.0 * std::sqrt(6.0 / 400.0));
+  CHECK(inflation_of(ratios, 3) < 1.3);
 
   ThreadPool alone(1);
-  const RatioMoments again = simulate_ratio(null, added, 400, 1, alone);
-  CHECK(again.mean == moments.mean);
-  CHECK(again.variance == moments.variance);
-  CHECK(simulate_ratio(null, added, 400, 2, pool).mean != moments.mean);
+  CHECK(simulate_ratios(null, added, 400, 1, alone) == ratios);
+  CHECK(simulate_ratios(null, added, 400, 2, pool) != ratios);
 }
 
 TEST_CASE("where noise is as slow as the effect, simulations say how much larger ratios get") {
@@ -238,16 +235,23 @@ TEST_CASE("where noise is as slow as the effect, simulations say how much larger
   const NullHypothesis null = find_null(fit);
   ThreadPool pool(2);
   const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
-  CHECK(simulate_ratio(null, ramp, 100, 1, pool).mean > 1.3);
+  CHECK(simulate_ratios(null, ramp, 100, 1, pool).mean() > 1.3);
 }
 
-TEST_CASE("the tail of a ratio by its moments is chi-squared's where they are") {
-  for (const double q : {1.0, 2.0, 6.0}) {
-    CHECK(log10_tail(31.0, {q, 2.0 * q}) == Approx(log10_chi_squared_tail(31.0, q)).epsilon(1e-12));
-    CHECK(log10_tail(31.0, {2.0 * q, 8.0 * q}) ==
-          Approx(log10_chi_squared_tail(15.5, q)).epsilon(1e-12));  // twice chi-squared
+TEST_CASE("inflation: of chi-squared's own quantiles none, of twice these two, of outliers none") {
+  constexpr int count = 1000;
+  for (const int q : {1, 2, 6}) {
+    VectorXd ratios(count);
+    for (int i = 0; i < count; ++i) ratios[i] = chi_squared_point(1.0 - (i + 0.5) / count, q);
+    CHECK(inflation_of(ratios, q) == Approx(1.0).epsilon(0.02));
+    CHECK(inflation_of(2.0 * ratios, q) == Approx(2.0).epsilon(0.02));
+    CHECK(inflation_of(0.5 * ratios, q) == 1.0);
+    ratios.tail(count / 20).setConstant(1e4);
+    CHECK(inflation_of(ratios, q) == Approx(1.0).epsilon(0.02));
   }
-  CHECK(log10_tail(31.0, {0.0, 0.0}) == 0.0);
+  // SciPy 1.11: chi2.isf(0.5, 2), chi2.isf(0.1, 5)
+  CHECK(chi_squared_point(0.5, 2.0) == Approx(1.3862943611198906).epsilon(1e-9));
+  CHECK(chi_squared_point(0.1, 5.0) == Approx(9.236356899781123).epsilon(1e-9));
 }
 
 TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the output's unit") {

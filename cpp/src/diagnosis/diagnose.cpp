@@ -234,17 +234,18 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
     if (trial.tested && trial.log10_p < threshold) significant.push_back(&trial);
   }
   std::ranges::stable_sort(significant, {}, &Trial::log10_p);
-  Inflation worst;
+  double worst = 1.0;
   for (std::size_t i = 0; i < significant.size(); ++i) {
     tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
+    double inflation = worst;
     if (i < most_simulated) {
       const bool beyond_doubt = significant[i]->log10_p < doubtless;
-      const Inflation own =
+      inflation =
           simulate_inflation(room_, null_, *significant[i],
                              beyond_doubt ? few_simulations : options_.simulations, seed, pool_);
-      worst = {std::max(worst.mean, own.mean), std::max(worst.variance, own.variance)};
+      worst = std::max(worst, inflation);
     }
-    inflate(worst, *significant[i]);
+    inflate(inflation, *significant[i]);
   }
   confirm_best(trials, threshold);
   std::vector<double> log10_p;

@@ -90,8 +90,8 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& ad
   return ratio;
 }
 
-RatioMoments simulate_ratio(const NullHypothesis& null, const MatrixXd& added, int simulations,
-                            std::uint64_t seed, ThreadPool& pool) {
+VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, int simulations,
+                         std::uint64_t seed, ThreadPool& pool) {
   constexpr Index most_rows = 400;
   constexpr double roughly = 0.05;  // in -2 ln L, of the search for the noise model
   const Thinned thinned = thin_out(null.fit->layout, most_rows);
@@ -117,15 +117,18 @@ RatioMoments simulate_ratio(const NullHypothesis& null, const MatrixXd& added, i
         std::max(0.0, without.step(residual, roughly).minus_two_log_likelihood -
                           with.step(residual, roughly).minus_two_log_likelihood);
   });
-  const double mean = ratios.mean();
-  const double square = (ratios.array() - mean).square().sum();
-  return {mean, square / static_cast<double>(simulations - 1)};
+  return ratios;
 }
 
-double log10_tail(double ratio, const RatioMoments& moments) {
-  if (!(moments.mean > 0) || !(moments.variance > 0)) return 0.0;
-  const double scale = moments.variance / moments.mean;
-  return log10_gamma_tail(moments.mean / scale, ratio / scale);
+double inflation_of(const VectorXd& ratios, int freedom) {
+  VectorXd sorted = ratios;
+  std::ranges::sort(sorted);
+  double inflation = 1.0;
+  for (const double share : {0.5, 0.9}) {
+    const auto at = static_cast<Index>(share * static_cast<double>(sorted.size()));
+    inflation = std::max(inflation, sorted[at] / chi_squared_point(1.0 - share, freedom));
+  }
+  return inflation;
 }
 
 }  // namespace sepcal

@@ -30,18 +30,14 @@ struct LikelihoodRatio {
 };
 LikelihoodRatio compare_with_null(const NullHypothesis& null, const Eigen::MatrixXd& added);
 
-/// The first two moments of the ratio over simulations of the null.
-struct RatioMoments {
-  double mean = 0.0;
-  double variance = 0.0;
-};
+/// The ratio on simulations of the null, whose own innovations keep their sizes; records of more
+/// than a few hundred rows are thinned out, which errs on the safe side.
+Eigen::VectorXd simulate_ratios(const NullHypothesis& null, const Eigen::MatrixXd& added,
+                                int simulations, std::uint64_t seed, ThreadPool& pool);
 
-/// Simulates the null's noise `simulations` times; records of more than a few thousand rows are
-/// thinned out, which errs on the safe side.
-RatioMoments simulate_ratio(const NullHypothesis& null, const Eigen::MatrixXd& added,
-                            int simulations, std::uint64_t seed, ThreadPool& pool);
-
-/// log10 of the probability of a larger ratio: of a gamma variable of those moments.
-double log10_tail(double ratio, const RatioMoments& moments);
+/// What chi-squared with `freedom` degrees is to be multiplied by, at least 1, to have the median
+/// and the ninetieth percentile of `ratios`. The largest few don't count: where a search ends in a
+/// poor optimum it makes a ratio of any size.
+double inflation_of(const Eigen::VectorXd& ratios, int freedom);
 
 }  // namespace sepcal

@@ -167,9 +167,10 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
     const auto freedom = static_cast<double>(sets[i].basis.cols());
     double log10_p = correction + log10_chi_squared_tail(ratios[i], freedom);
     if (log10_p < std::log10(options.unexplained_below)) {
-      const RatioMoments moments =
-          simulate_ratio(null, sets[i].basis, options.simulations, options.seed + i, pool);
-      log10_p = std::max(log10_p, correction + log10_tail(ratios[i], moments));
+      const double inflation = inflation_of(
+          simulate_ratios(null, sets[i].basis, options.simulations, options.seed + i, pool),
+          static_cast<int>(freedom));
+      log10_p = correction + log10_chi_squared_tail(ratios[i] / inflation, freedom);
     }
     if (!(log10_p < least)) continue;
     least = log10_p;

@@ -70,6 +70,17 @@ double log10_chi_squared_tail(double x, double freedom) {
   return log10_gamma_tail(0.5 * freedom, 0.5 * x);
 }
 
+double chi_squared_point(double probability, double freedom) {
+  const double log10_p = std::log10(probability);
+  double low = 0.0;
+  double high = 2.0 * freedom + 1500.0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (log10_chi_squared_tail(middle, freedom) > log10_p ? low : high) = middle;
+  }
+  return low;
+}
+
 std::vector<double> adjust_by_holm(const std::vector<double>& log10_p) {
   std::vector<double> adjusted(log10_p.size());
   double largest = 0.0;

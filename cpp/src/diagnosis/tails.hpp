@@ -13,6 +13,9 @@ double log10_gamma_tail(double shape, double x);
 /// log10 of the probability that chi-squared with `freedom` degrees exceeds x.
 double log10_chi_squared_tail(double x, double freedom);
 
+/// What chi-squared with `freedom` degrees exceeds with that probability, above 1e-300.
+double chi_squared_point(double probability, double freedom);
+
 /// Holm's step-down and Benjamini & Hochberg's step-up adjusted probabilities, in the order of the
 /// logarithms (base 10) given, within [0, 1].
 std::vector<double> adjust_by_holm(const std::vector<double>& log10_p);

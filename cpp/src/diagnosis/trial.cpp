@@ -123,20 +123,16 @@ bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
   return changes < little * spread;
 }
 
-Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
-                             const Trial& trial, int simulations, std::uint64_t seed,
-                             ThreadPool& pool) {
+double simulate_inflation(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
+                          int simulations, std::uint64_t seed, ThreadPool& pool) {
   const Projection added = project_trial(room, null, trial, trial.shape);
-  const RatioMoments moments = simulate_ratio(null, added.basis, simulations, seed, pool);
-  const auto q = static_cast<double>(trial.freedom);
-  return {std::max(1.0, moments.mean / q), std::max(1.0, moments.variance / (2.0 * q))};
+  return inflation_of(simulate_ratios(null, added.basis, simulations, seed, pool), trial.freedom);
 }
 
-void inflate(const Inflation& inflation, Trial& trial) {
-  const auto q = static_cast<double>(trial.freedom);
-  const RatioMoments moments{q * inflation.mean, 2.0 * q * inflation.variance};
-  const double calibrated = std::min(0.0, log10_size(trial) + log10_tail(trial.ratio, moments));
-  trial.log10_p = std::max(trial.log10_p, calibrated);
+void inflate(double inflation, Trial& trial) {
+  const double calibrated =
+      log10_size(trial) + log10_chi_squared_tail(trial.ratio / inflation, trial.freedom);
+  trial.log10_p = std::max(trial.log10_p, std::min(0.0, calibrated));
 }
 
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {

@@ -55,19 +55,12 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 /// imitates them.
 bool is_smooth(const RowLayout& layout, const Eigen::MatrixXd& columns);
 
-/// How much larger the ratio's first two moments are than chi-squared's, under the null.
-struct Inflation {
-  double mean = 1.0;
-  double variance = 1.0;
-};
-
-/// By simulation of the null.
-Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
-                             const Trial& trial, int simulations, std::uint64_t seed,
-                             ThreadPool& pool);
+/// By how much noise as slow as the effect enlarges the ratio, by simulation of the null.
+double simulate_inflation(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
+                          int simulations, std::uint64_t seed, ThreadPool& pool);
 
 /// Corrects the test's tail.
-void inflate(const Inflation& inflation, Trial& trial);
+void inflate(double inflation, Trial& trial);
 
 /// Cross-validation by one step from the fit: of whole segments where the effect isn't smooth and
 /// there are a few, else of blocks in between.
