@@ -44,6 +44,18 @@ int exit_code(FitStatus status) {
   }
 }
 
+/// Throws Error naming the option.
+HiddenEffect parse_injection(const std::string& text) {
+  try {
+    return parse_hidden_effect(text);
+  } catch (const Error&) {
+    throw Error(
+        fmt::format("--inject {}: write E=SIZE or E=SIZE1:SIZE2:..., sizes in the units of "
+                    "the effect's parameters",
+                    text));
+  }
+}
+
 int exit_code(Verdict verdict) {
   switch (verdict) {
     case Verdict::adequate:
@@ -107,7 +119,7 @@ int Verbs::diagnose() const {
     output.emplace(arguments_.output);
   }
   std::optional<HiddenEffect> injected;
-  if (!arguments_.inject.empty()) injected = parse_hidden_effect(arguments_.inject);
+  if (!arguments_.inject.empty()) injected = parse_injection(arguments_.inject);
   const Calibration base = read_base();
   const Flight flight = read_flight();
   ProgressLine line;

@@ -66,7 +66,12 @@ TEST_CASE("a chain of two effects: the errors of its history are those of compar
   check(two.history[1].rmse_after, of_two);
   CHECK(two.history[0].rmse_after < 0.8 * two.history[0].rmse_before);
   CHECK(std::abs(two.history[1].rmse_after / 0.1 - 1.0) < 0.1);  // the noise
-  CHECK(std::isnan(two.history[0].held_out_after));
+  for (const HistoryEntry& entry : two.history) {
+    const double achieved = 1.0 - entry.rmse_after / entry.rmse_before;
+    CHECK(entry.predicted_drop == doctest::Approx(achieved).epsilon(0.05));
+    CHECK(entry.held_out_before == doctest::Approx(entry.rmse_before).epsilon(0.1));
+    CHECK(entry.held_out_after < entry.held_out_before);
+  }
 }
 
 TEST_CASE("an effect added is the same as one fitted at once") {

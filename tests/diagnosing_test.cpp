@@ -73,15 +73,15 @@ TEST_CASE("an effect of ten standard errors is found first, or the first can't b
   }
 }
 
-// May fail as yet: a null's noise model that has swallowed a large effect leaves the search for the
-// larger hypothesis in a poor optimum, or makes simulated ratios of any size.
-TEST_CASE("the larger an effect, the surer it is found" * doctest::may_fail()) {
+// A null's noise model swallows a large slow effect: its simulations make a few ratios of any size.
+TEST_CASE("the larger an effect, the surer it is found") {
   for (const double size : {0.012, 0.02, 0.04}) {
     for (const std::uint64_t seed : {22, 23}) {
       CAPTURE(size);
       CAPTURE(seed);
       const DiagnosedFlight flight = diagnose_flight(
           "five-hole", {{"wind[altitude_m]", {size, -1.5 * size}}}, {.noise = 0.15, .seed = seed});
+      CAPTURE(to_json(flight.result).substr(0, 30000));
       CHECK(flight.result.diagnosis.verdict == Verdict::effect_missing);
       CHECK(has(flight.result.diagnosis.effects.front().family, "wind[altitude_m]"));
     }

@@ -218,14 +218,16 @@ TEST_CASE("simulated under white noise, the ratio has the moments of chi-squared
       fit_to(layout, draws.normal_matrix(390, 4), draws.normal_matrix(390, 1));
   const NullHypothesis null = find_null(fit);
   const MatrixXd added = perpendicular(fit, draws.normal_matrix(390, 3));
+  const Hypothesis with = compare_with_null(null, added).with;
   ThreadPool pool(2);
-  const VectorXd ratios = simulate_ratios(null, added, 400, 1, pool);
+  const VectorXd ratios = simulate_ratios(null, added, with, 400, 1, pool);
   CHECK(std::abs(ratios.mean() - 3.0) < 4.0 * std::sqrt(6.0 / 400.0));
-  CHECK(inflation_of(ratios, 3) < 1.3);
+  CHECK(inflation_of(ratios, 3).median < 1.3);
+  CHECK(inflation_of(ratios, 3).ninetieth < 1.3);
 
   ThreadPool alone(1);
-  CHECK(simulate_ratios(null, added, 400, 1, alone) == ratios);
-  CHECK(simulate_ratios(null, added, 400, 2, pool) != ratios);
+  CHECK(simulate_ratios(null, added, with, 400, 1, alone) == ratios);
+  CHECK(simulate_ratios(null, added, with, 400, 2, pool) != ratios);
 }
 
 TEST_CASE("where noise is as slow as the effect, simulations say how much larger ratios get") {
@@ -235,19 +237,27 @@ TEST_CASE("where noise is as slow as the effect, simulations say how much larger
   const NullHypothesis null = find_null(fit);
   ThreadPool pool(2);
   const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
-  CHECK(simulate_ratios(null, ramp, 100, 1, pool).mean() > 1.3);
+  CHECK(simulate_ratios(null, ramp, compare_with_null(null, ramp).with, 100, 1, pool).mean() > 1.3);
 }
 
 TEST_CASE("inflation: of chi-squared's own quantiles none, of twice these two, of outliers none") {
   constexpr int count = 1000;
-  for (const int q : {1, 2, 6}) {
+  for (const int q : {1, 2, 6, 30}) {
     VectorXd ratios(count);
     for (int i = 0; i < count; ++i) ratios[i] = chi_squared_point(1.0 - (i + 0.5) / count, q);
-    CHECK(inflation_of(ratios, q) == Approx(1.0).epsilon(0.02));
-    CHECK(inflation_of(2.0 * ratios, q) == Approx(2.0).epsilon(0.02));
-    CHECK(inflation_of(0.5 * ratios, q) == 1.0);
+    const auto check = [&](const VectorXd& some, double expected) {
+      CHECK(inflation_of(some, q).median == Approx(expected).epsilon(0.02));
+      CHECK(inflation_of(some, q).ninetieth == Approx(expected).epsilon(0.02));
+    };
+    check(ratios, 1.0);
+    check(2.0 * ratios, 2.0);
+    check(0.5 * ratios, 1.0);
     ratios.tail(count / 20).setConstant(1e4);
-    CHECK(inflation_of(ratios, q) == Approx(1.0).epsilon(0.02));
+    check(ratios, 1.0);
+    const double ratio = 40.0 + q;
+    CHECK(log10_ratio_tail(ratio, q, {}) == Approx(log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
+    CHECK(log10_ratio_tail(2.0 * ratio, q, {2.0, 2.0}) ==
+          Approx(log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
   }
   // SciPy 1.11: chi2.isf(0.5, 2), chi2.isf(0.1, 5)
   CHECK(chi_squared_point(0.5, 2.0) == Approx(1.3862943611198906).epsilon(1e-9));

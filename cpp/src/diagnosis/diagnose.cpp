@@ -234,16 +234,17 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
     if (trial.tested && trial.log10_p < threshold) significant.push_back(&trial);
   }
   std::ranges::stable_sort(significant, {}, &Trial::log10_p);
-  double worst = 1.0;
+  Inflation worst;
   for (std::size_t i = 0; i < significant.size(); ++i) {
     tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
-    double inflation = worst;
+    Inflation inflation = worst;
     if (i < most_simulated) {
       const bool beyond_doubt = significant[i]->log10_p < doubtless;
       inflation =
           simulate_inflation(room_, null_, *significant[i],
                              beyond_doubt ? few_simulations : options_.simulations, seed, pool_);
-      worst = std::max(worst, inflation);
+      worst = {std::max(worst.median, inflation.median),
+               std::max(worst.ninetieth, inflation.ninetieth)};
     }
     inflate(inflation, *significant[i]);
   }

@@ -46,11 +46,6 @@ MatrixXd join(const MatrixXd& left, const MatrixXd& right) {
   return both;
 }
 
-/// Whether slow effects could hide in it.
-bool is_coloured(const NoiseModel& noise) {
-  return noise.d > 0.2 || (noise.phi.size() > 0 && noise.phi.cwiseAbs().maxCoeff() > 0.3);
-}
-
 }  // namespace
 
 NullHypothesis find_null(const Linearisation& fit) {
@@ -90,8 +85,8 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& ad
   return ratio;
 }
 
-VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, int simulations,
-                         std::uint64_t seed, ThreadPool& pool) {
+VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, const Hypothesis& with,
+                         int simulations, std::uint64_t seed, ThreadPool& pool) {
   constexpr Index most_rows = 400;
   constexpr double roughly = 0.05;  // in -2 ln L, of the search for the noise model
   const Thinned thinned = thin_out(null.fit->layout, most_rows);
@@ -99,36 +94,56 @@ VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, int 
   const MatrixXd columns =
       join(basis, orthonormal_basis(remove_span(basis, added(thinned.rows, Eigen::all))));
   const RowLayout& layout = thinned.layout;
-  const NoiseModels& noise = null.best.noise;
+  const NoiseModels& noise = with.noise;
+  MatrixXd white = null.fit->residual - join(null.basis, added) * with.coefficients;
+  whiten(null.fit->layout, noise, white);
   std::mt19937_64 generator(seed);
-  const VectorXd innovations = null.white_residual(thinned.rows);
+  const VectorXd innovations = white.col(0)(thinned.rows);
   MatrixXd draws(layout.count(), simulations);
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     draws.middleRows(layout.first(j), layout.rows) =
         simulate_noise(noise[j], layout.segments, simulations, generator,
                        innovations.segment(layout.first(j), layout.rows));
   }
-  const WhitenedColumns without(layout, basis, noise);
-  const WhitenedColumns with(layout, columns, noise);
+  const WhitenedColumns small(layout, basis, noise);
+  const WhitenedColumns large(layout, columns, noise);
   VectorXd ratios(simulations);
   pool.for_each(static_cast<std::size_t>(simulations), [&](std::size_t i) {
     const VectorXd residual = draws.col(static_cast<Index>(i));
     ratios[static_cast<Index>(i)] =
-        std::max(0.0, without.step(residual, roughly).minus_two_log_likelihood -
-                          with.step(residual, roughly).minus_two_log_likelihood);
+        std::max(0.0, small.step(residual, roughly).minus_two_log_likelihood -
+                          large.step(residual, roughly).minus_two_log_likelihood);
   });
   return ratios;
 }
 
-double inflation_of(const VectorXd& ratios, int freedom) {
+Inflation inflation_of(const VectorXd& ratios, int freedom) {
   VectorXd sorted = ratios;
   std::ranges::sort(sorted);
-  double inflation = 1.0;
-  for (const double share : {0.5, 0.9}) {
+  const auto larger = [&](double share) {
     const auto at = static_cast<Index>(share * static_cast<double>(sorted.size()));
-    inflation = std::max(inflation, sorted[at] / chi_squared_point(1.0 - share, freedom));
+    return std::max(1.0, sorted[at] / chi_squared_point(1.0 - share, freedom));
+  };
+  return {larger(0.5), larger(0.9)};
+}
+
+double log10_ratio_tail(double ratio, int freedom, const Inflation& inflation) {
+  const double median = inflation.median * chi_squared_point(0.5, freedom);
+  const double ninetieth = inflation.ninetieth * chi_squared_point(0.1, freedom);
+  double few = 0.02;  // the freedom of a chi-squared whose percentiles have that ratio
+  double many = 4.0 * freedom + 100.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(few * many);
+    const double spread = chi_squared_point(0.1, middle) / chi_squared_point(0.5, middle);
+    (spread > ninetieth / median ? few : many) = middle;
   }
-  return inflation;
+  const double scale = median / chi_squared_point(0.5, few);
+  // Both have the ninetieth percentile; the first is too strict far out, the second of many
+  // columns.
+  const double stretched = log10_chi_squared_tail(ratio / scale, few);
+  const double larger = std::max(inflation.median, inflation.ninetieth);
+  const double scaled = log10_chi_squared_tail(ratio / larger, freedom);
+  return std::max(std::min(stretched, scaled), log10_chi_squared_tail(ratio, freedom));
 }
 
 }  // namespace sepcal

@@ -30,14 +30,25 @@ struct LikelihoodRatio {
 };
 LikelihoodRatio compare_with_null(const NullHypothesis& null, const Eigen::MatrixXd& added);
 
-/// The ratio on simulations of the null, whose own innovations keep their sizes; records of more
-/// than a few hundred rows are thinned out, which errs on the safe side.
+/// The ratio on simulations without the effect. The noise is that of the hypothesis `with` it,
+/// which is the null's where there is no effect and hasn't swallowed it where there is one; its
+/// innovations keep their sizes. Records of more than a few hundred rows are thinned out, which
+/// errs on the safe side.
 Eigen::VectorXd simulate_ratios(const NullHypothesis& null, const Eigen::MatrixXd& added,
-                                int simulations, std::uint64_t seed, ThreadPool& pool);
+                                const Hypothesis& with, int simulations, std::uint64_t seed,
+                                ThreadPool& pool);
 
-/// What chi-squared with `freedom` degrees is to be multiplied by, at least 1, to have the median
-/// and the ninetieth percentile of `ratios`. The largest few don't count: where a search ends in a
-/// poor optimum it makes a ratio of any size.
-double inflation_of(const Eigen::VectorXd& ratios, int freedom);
+/// How much larger the median and the ninetieth percentile of a ratio are than chi-squared's, each
+/// at least 1. The largest ratios don't count: where a search ends in a poor optimum it makes one
+/// of any size.
+struct Inflation {
+  double median = 1.0;
+  double ninetieth = 1.0;
+};
+Inflation inflation_of(const Eigen::VectorXd& ratios, int freedom);
+
+/// log10 of the probability of a larger ratio: of the gamma variable whose two percentiles are
+/// those of chi-squared, inflated.
+double log10_ratio_tail(double ratio, int freedom, const Inflation& inflation);
 
 }  // namespace sepcal

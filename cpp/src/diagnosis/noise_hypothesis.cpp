@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/noise_hypothesis.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,6 +22,10 @@ std::span<const double> rows_of(const RowLayout& layout, const VectorXd& values,
 
 }  // namespace
 
+bool is_coloured(const NoiseModel& noise) {
+  return noise.d > 0.2 || (noise.phi.size() > 0 && noise.phi.cwiseAbs().maxCoeff() > 0.3);
+}
+
 double noise_floor(const RowLayout& layout, const NoiseModels& noise) {
   double square = 0.0;
   for (std::size_t j = 0; j < noise.size(); ++j) {
@@ -31,9 +36,13 @@ double noise_floor(const RowLayout& layout, const NoiseModels& noise) {
 }
 
 NoiseModels fit_noise_models(const RowLayout& layout, const VectorXd& residual) {
+  // A long autoregression of a short record learns a slow effect by heart.
+  constexpr Index rows_a_coefficient = 200;
+  const auto order = static_cast<int>(std::clamp<Index>(layout.rows / rows_a_coefficient, 1, 8));
   NoiseModels noise;
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    noise.push_back(fit_noise(rows_of(layout, residual, j), layout.segments).model);
+    noise.push_back(
+        fit_noise(rows_of(layout, residual, j), layout.segments, {.max_order = order}).model);
   }
   return noise;
 }
@@ -53,32 +62,47 @@ void whiten(const RowLayout& layout, const NoiseModels& noise, MatrixXd& columns
   }
 }
 
+MatrixXd pseudo_inverse(const MatrixXd& square) {
+  constexpr double undetermined = 1e-10;  // of the largest eigenvalue
+  if (square.size() == 0) return square;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(square);
+  const VectorXd& values = solver.eigenvalues();
+  const double least = undetermined * values.tail<1>().value();
+  const VectorXd inverse =
+      values.unaryExpr([least](double value) { return value > least ? 1.0 / value : 0.0; });
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
 WhitenedColumns::WhitenedColumns(const RowLayout& layout, const MatrixXd& columns,
                                  const NoiseModels& noise)
     : layout_(layout), noise_(noise), columns_(columns), white_(columns) {
   whiten(layout, noise, white_);
-  factor_.compute(white_.transpose() * white_);
+  covariance_ = pseudo_inverse(white_.transpose() * white_);
 }
 
 VectorXd WhitenedColumns::estimate(const VectorXd& residual) const {
   MatrixXd white = residual;
   whiten(layout_, noise_, white);
-  return factor_.solve(white_.transpose() * white.col(0));
-}
-
-MatrixXd WhitenedColumns::covariance() const {
-  return factor_.solve(MatrixXd::Identity(columns_.cols(), columns_.cols()));
+  return covariance_ * (white_.transpose() * white.col(0));
 }
 
 Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain) const {
   Hypothesis at{.noise = noise_, .coefficients = estimate(residual)};
   const VectorXd left = residual - columns_ * at.coefficients;
   for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
-    const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.segments,
-                                   {.start = noise_[j], .least_gain = least_gain});
-    at.noise[j] = fit.model;
-    at.noise[j].sigma = std::max(fit.model.sigma, least_sigma);
-    at.minus_two_log_likelihood += fit.minus_two_log_likelihood;
+    // A search from noise that has nearly swallowed the residual may end in a poor optimum.
+    std::vector<NoiseModel> starts{noise_[j]};
+    if (is_coloured(noise_[j])) starts.push_back(forget_colour({noise_[j]}).front());
+    double least = std::numeric_limits<double>::infinity();
+    for (const NoiseModel& start : starts) {
+      const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.segments,
+                                     {.start = start, .least_gain = least_gain});
+      if (!(fit.minus_two_log_likelihood < least)) continue;
+      least = fit.minus_two_log_likelihood;
+      at.noise[j] = fit.model;
+      at.noise[j].sigma = std::max(fit.model.sigma, least_sigma);
+    }
+    at.minus_two_log_likelihood += least;
   }
   return at;
 }

@@ -4,7 +4,6 @@
 // likelihood ratio of what the larger has more.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
@@ -29,11 +28,18 @@ double noise_floor(const RowLayout& layout, const NoiseModels& noise);
 /// The noise models of a residual (count() rows), of free order.
 NoiseModels fit_noise_models(const RowLayout& layout, const Eigen::VectorXd& residual);
 
+/// Whether slow effects could hide in it.
+bool is_coloured(const NoiseModel& noise);
+
 /// White models of the same order and freedom of the level: another start of the search.
 NoiseModels forget_colour(NoiseModels noise);
 
 /// Whitens columns of count() rows, output by output.
 void whiten(const RowLayout& layout, const NoiseModels& noise, Eigen::MatrixXd& columns);
+
+/// Of a symmetric matrix that is not negative. A free level of the noise leaves constants
+/// undetermined: such directions stay zero.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& square);
 
 /// Columns in one noise model, whitened once for many residuals.
 class WhitenedColumns {
@@ -44,7 +50,7 @@ class WhitenedColumns {
 
   /// Generalised least squares of a residual on the columns, and its covariance.
   Eigen::VectorXd estimate(const Eigen::VectorXd& residual) const;
-  Eigen::MatrixXd covariance() const;
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
 
   /// That estimate, and the noise model of what it leaves, of the same order. The search ends where
   /// another step would gain less than `least_gain` in -2 ln L. Without the covariance.
@@ -55,7 +61,7 @@ class WhitenedColumns {
   NoiseModels noise_;
   const Eigen::MatrixXd& columns_;
   Eigen::MatrixXd white_;
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd covariance_;
 };
 
 /// Steps until they gain nothing, from the best of `starts`, whose orders are kept.

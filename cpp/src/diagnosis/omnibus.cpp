@@ -157,20 +157,22 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
   const VectorXd residual = remove_span(null.basis, room.fit().residual);
   const std::vector<Window> windows = cut_windows(room, correlation_rows(layout, residual));
   const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
-  std::vector<double> ratios(sets.size());
+  std::vector<LikelihoodRatio> ratios(sets.size());
   pool.for_each(sets.size(),
-                [&](std::size_t i) { ratios[i] = compare_with_null(null, sets[i].basis).value; });
+                [&](std::size_t i) { ratios[i] = compare_with_null(null, sets[i].basis); });
   Omnibus result;
   const double correction = std::log10(static_cast<double>(std::max<std::size_t>(1, sets.size())));
   double least = 0.0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const auto freedom = static_cast<double>(sets[i].basis.cols());
-    double log10_p = correction + log10_chi_squared_tail(ratios[i], freedom);
+    double log10_p = correction + log10_chi_squared_tail(ratios[i].value, freedom);
     if (log10_p < std::log10(options.unexplained_below)) {
-      const double inflation = inflation_of(
-          simulate_ratios(null, sets[i].basis, options.simulations, options.seed + i, pool),
-          static_cast<int>(freedom));
-      log10_p = correction + log10_chi_squared_tail(ratios[i] / inflation, freedom);
+      const Inflation inflation =
+          inflation_of(simulate_ratios(null, sets[i].basis, ratios[i].with, options.simulations,
+                                       options.seed + i, pool),
+                       static_cast<int>(freedom));
+      log10_p =
+          correction + log10_ratio_tail(ratios[i].value, static_cast<int>(freedom), inflation);
     }
     if (!(log10_p < least)) continue;
     least = log10_p;

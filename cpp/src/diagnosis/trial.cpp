@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/trial.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -56,9 +55,9 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     MatrixXd white = added.basis;
     whiten(layout, null.best.noise, white);
     white = remove_span(null.white_basis, white);
-    const Eigen::LDLT<MatrixXd> square(white.transpose() * white);
+    const MatrixXd covariance = pseudo_inverse(white.transpose() * white);
     const VectorXd product = white.transpose() * null.white_residual;
-    const VectorXd step = square.solve(product);
+    const VectorXd step = covariance * product;
     score.white = product.dot(step);
     score.white = log10_chi_squared_tail(score.white, score.freedom);
     score.plain = log10_chi_squared_tail(score.plain, score.freedom);
@@ -68,7 +67,7 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     best_white = score.white;
     trial.shape = shape;
     trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
-    keep_estimate(added, step, square.solve(MatrixXd::Identity(step.size(), step.size())), trial);
+    keep_estimate(added, step, covariance, trial);
     const VectorXd left = remove_span(added.basis, remove_span(null.basis, room.fit().residual));
     trial.predicted_drop = 1.0 - total_rmse(layout, left) / total_rmse(layout, room.fit().residual);
   }
@@ -94,6 +93,7 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     if (!(ratio.value > trial.ratio)) continue;
     trial.ratio = ratio.value;
     trial.floor = noise_floor(layout, ratio.with.noise);
+    trial.with = ratio.with;
     trial.shape = shape;
     const auto q = added.visible();
     keep_estimate(added, ratio.with.coefficients.tail(q),
@@ -123,15 +123,17 @@ bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
   return changes < little * spread;
 }
 
-double simulate_inflation(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
-                          int simulations, std::uint64_t seed, ThreadPool& pool) {
+Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
+                             const Trial& trial, int simulations, std::uint64_t seed,
+                             ThreadPool& pool) {
   const Projection added = project_trial(room, null, trial, trial.shape);
-  return inflation_of(simulate_ratios(null, added.basis, simulations, seed, pool), trial.freedom);
+  return inflation_of(simulate_ratios(null, added.basis, trial.with, simulations, seed, pool),
+                      trial.freedom);
 }
 
-void inflate(double inflation, Trial& trial) {
+void inflate(const Inflation& inflation, Trial& trial) {
   const double calibrated =
-      log10_size(trial) + log10_chi_squared_tail(trial.ratio / inflation, trial.freedom);
+      log10_size(trial) + log10_ratio_tail(trial.ratio, trial.freedom, inflation);
   trial.log10_p = std::max(trial.log10_p, std::min(0.0, calibrated));
 }
 

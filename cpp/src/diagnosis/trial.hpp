@@ -34,6 +34,7 @@ struct Trial {
   double log10_p = 0.0;  // of the test where it was made, else of the score
   bool tested = false;
   double ratio = 0.0;
+  Hypothesis with = {};     // the effect, in noise of its own
   double floor = infinity;  // innovations alone with the effect, over all outputs
   int freedom = 0;
   Eigen::VectorXd estimate = {};
@@ -56,11 +57,12 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 bool is_smooth(const RowLayout& layout, const Eigen::MatrixXd& columns);
 
 /// By how much noise as slow as the effect enlarges the ratio, by simulation of the null.
-double simulate_inflation(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
-                          int simulations, std::uint64_t seed, ThreadPool& pool);
+Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
+                             const Trial& trial, int simulations, std::uint64_t seed,
+                             ThreadPool& pool);
 
 /// Corrects the test's tail.
-void inflate(double inflation, Trial& trial);
+void inflate(const Inflation& inflation, Trial& trial);
 
 /// Cross-validation by one step from the fit: of whole segments where the effect isn't smooth and
 /// there are a few, else of blocks in between.
