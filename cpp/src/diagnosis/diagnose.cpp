@@ -21,6 +21,7 @@ using Eigen::Index;
 constexpr std::size_t most_tested = 12;  // of either screen's best
 constexpr std::size_t most_paired = 10;
 constexpr std::size_t most_proxied = 3;
+constexpr double least_of_proxy = 0.2;  // of what the first explains
 constexpr std::size_t most_confirmed = 3;
 constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
 constexpr int few_simulations = 39;
@@ -158,8 +159,8 @@ EffectFinding Recipe::describe(const Trial& trial) const {
   return finding;
 }
 
-/// Whether `other` explains next to nothing beyond `first` of what it explains alone, at the same
-/// port: a proxy of the same cause.
+/// Whether `other` explains a good part of what `first` does and, beyond it, next to nothing of
+/// that, at the same port: a proxy of the same cause.
 bool Recipe::is_proxy(const Trial& first, const Trial& other, std::size_t tests) const {
   const double threshold = std::log10(options_.significance / static_cast<double>(tests));
   if (other.log10_plain > threshold || !share_port(first.candidate, other.candidate)) return false;
@@ -169,6 +170,7 @@ bool Recipe::is_proxy(const Trial& first, const Trial& other, std::size_t tests)
       remove_span(null_.basis, room_.columns(other.candidate, other.shape));
   const Eigen::VectorXd residual = remove_span(null_.basis, room_.fit().residual);
   const double alone = (orthonormal_basis(beyond).transpose() * residual).squaredNorm();
+  if (alone < least_of_proxy * (taken.transpose() * residual).squaredNorm()) return false;
   const Eigen::MatrixXd left = orthonormal_basis(remove_span(taken, beyond));
   const double more = (left.transpose() * remove_span(taken, residual)).squaredNorm();
   const double cosine = options_.family_correlation;

@@ -11,6 +11,7 @@
 #include "parameter_values.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/measurements.hpp"
 #include "sweep.hpp"
@@ -47,6 +48,25 @@ std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Calibr
   return names;
 }
 
+/// Among effects that the flight can't tell apart, by p either, the one of the catalogue comes
+/// first: the wind goes with the height and not, as it does as well, with the temperature.
+void prefer_catalogued(std::string_view model, std::vector<EffectFinding>& effects) {
+  if (effects.empty() || effects.front().status != FindingStatus::found) return;
+  constexpr double margin = 0.05;  // of log10 p
+  const EffectFinding first = effects.front();
+  const auto is_catalogued = [&](const EffectFinding& effect) {
+    return std::ranges::find(effect_catalogue(model), effect.name, &CataloguedEffect::name) !=
+           effect_catalogue(model).end();
+  };
+  if (is_catalogued(first)) return;
+  const auto preferred = std::ranges::find_if(effects, [&](const EffectFinding& effect) {
+    return effect.status == FindingStatus::found && is_catalogued(effect) &&
+           effect.log10_p < (1.0 - margin) * first.log10_p &&
+           std::ranges::find(first.family, effect.name) != first.family.end();
+  });
+  if (preferred != effects.end()) std::rotate(effects.begin(), preferred, preferred + 1);
+}
+
 FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const Flight& flight,
                     const DiagnosisOptions& options) {
   const DiagnosedFit fitted = diagnosed_fit(calibration, ground.prepared.record, ground.own);
@@ -56,6 +76,7 @@ FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const 
   result.message = calibration.fit.message;
   result.notes = ground.prepared.notes;
   result.diagnosis = diagnose(fitted, candidates_for(fitted, calibration, flight), options);
+  prefer_catalogued(result.model, result.diagnosis.effects);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(describe_effect(effect.name));
   }
