@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The numbers and the picture of docs/case-studies.md, from recorded flights.
 
-Usage: case_studies.py FOLDER PICTURE.svg, FOLDER with the recordings that tests use (SEPCAL_FIXTURES).
+Usage: case_studies.py FOLDER PICTURE.svg, FOLDER with the recordings that the tests use.
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -25,10 +24,12 @@ def octocopter(file: Path, effects: tuple[str, ...]) -> tuple[list[Bar], str]:
     return tell(file.stem, base, effects), "uT"
 
 
-def tube(file: Path, effects: tuple[str, ...], **options: Any) -> tuple[list[Bar], str]:
+def tube(
+    file: Path, effects: tuple[str, ...], bounds: dict[str, tuple[float, float]] | None = None
+) -> tuple[list[Bar], str]:
     """A Pitot-static tube, with each effect added by itself."""
     flight = sepcal.read_csv(file)
-    base = sepcal.fit(sepcal.PitotStatic(), flight, **options)
+    base = sepcal.fit(sepcal.PitotStatic(), flight, bounds=bounds or {})
     return tell(file.stem, base, effects), "m/s"
 
 
@@ -40,7 +41,8 @@ def tell(name: str, base: sepcal.Calibration, effects: tuple[str, ...]) -> list[
     for effect in effects:
         better = base.add(effect)
         entry = better.history[-1]
-        assert entry.rmse_before and entry.rmse_after
+        assert entry.rmse_before
+        assert entry.rmse_after
         print(
             f"+ {effect}: {entry.rmse_before:.4g} -> {entry.rmse_after:.4g}, promised "
             f"{100 * (entry.predicted_drop or float('nan')):.1f} %; held out "
