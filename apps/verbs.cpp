@@ -44,15 +44,16 @@ int exit_code(FitStatus status) {
   }
 }
 
-/// Throws Error naming the option.
+/// Throws Error as parse_hidden_effect() does, in this option's name.
 HiddenEffect parse_injection(const std::string& text) {
+  constexpr std::string_view other = "--hide";
   try {
     return parse_hidden_effect(text);
-  } catch (const Error&) {
-    throw Error(
-        fmt::format("--inject {}: write E=SIZE or E=SIZE1:SIZE2:..., sizes in the units of "
-                    "the effect's parameters",
-                    text));
+  } catch (const Error& error) {
+    std::string what = error.what();
+    const std::size_t at = what.find(other);
+    if (at != std::string::npos) what.replace(at, other.size(), "--inject");
+    throw Error(what);
   }
 }
 

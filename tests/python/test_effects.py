@@ -126,7 +126,13 @@ def test_adding_one_after_the_other(
     assert second.rmse_before == first.rmse_after
     assert second.rmse_after == pytest.approx(total_rmse(better), rel=1e-12)
     assert second.rmse_after < second.rmse_before < first.rmse_before
-    assert (first.held_out_before, first.held_out_after, first.predicted_drop) == (None,) * 3
+    for entry in (first, second):
+        assert entry.rmse_before
+        assert entry.rmse_after
+        assert entry.held_out_before
+        assert entry.predicted_drop == pytest.approx(1 - entry.rmse_after / entry.rmse_before, 0.05)
+        assert entry.held_out_after is not None
+        assert entry.held_out_after < entry.held_out_before
     assert base.history == []
 
 

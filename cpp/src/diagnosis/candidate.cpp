@@ -117,7 +117,7 @@ void CandidateRoom::linearise(const Fit& fit, ThreadPool& pool) {
     free.push_back(static_cast<Index>(k));
     linearisation_.parameters.push_back(fit.parameters[k].name);
   }
-  const double count = static_cast<double>(layout.rows);
+  const auto count = static_cast<double>(layout.rows);
   for (int j = 0; j < tables.n_z(); ++j) {
     const auto& output = tables.outputs[static_cast<std::size_t>(j)];
     const double rmse =

@@ -95,7 +95,7 @@ Folds whole_segments(const RowLayout& layout) {
 Folds interleaved_blocks(const RowLayout& layout, double correlation, int fewest) {
   constexpr double least = 2.0 * folds_of_blocks;
   constexpr double most = 10.0 * folds_of_blocks;
-  const double rows = static_cast<double>(layout.rows);
+  const auto rows = static_cast<double>(layout.rows);
   const double wanted = std::clamp(std::floor(rows / (10.0 * correlation)),
                                    std::clamp<double>(fewest, least, most), most);
   const auto count = static_cast<Index>(std::min(wanted, rows));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
@@ -144,7 +145,7 @@ double upper_normal_point(double probability) {
   double high = 40.0;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(middle / std::sqrt(2.0)) > probability ? low : high) = middle;
+    (0.5 * std::erfc(middle / std::numbers::sqrt2) > probability ? low : high) = middle;
   }
   return low;
 }

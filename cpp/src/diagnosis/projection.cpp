@@ -58,7 +58,7 @@ Projection project(const MatrixXd& tangent_basis, const MatrixXd& G, const Matri
   const Eigen::HouseholderQR<MatrixXd> qr(remove_span(tangent_basis, G * to_coefficients));
   const MatrixXd relative = qr.matrixQR().topRows(q).triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<MatrixXd> svd(relative, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const VectorXd sines = svd.singularValues();
+  const VectorXd& sines = svd.singularValues();
   projection.visibility = std::min(1.0, sines[q - 1]);
   const Index visible = (sines.array() >= least_visibility).count();
   projection.basis = thin_q(qr, q) * svd.matrixU().leftCols(visible);

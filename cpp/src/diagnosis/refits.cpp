@@ -105,7 +105,7 @@ HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate
   try {
     Record rows = room.record();
     rows.cut(room.rows());
-    extended = start_from(std::move(extended), fit(*with, rows, extended));
+    extended = start_from(extended, fit(*with, rows, extended));
     pool.for_each(2 * count, [&](std::size_t task) {
       const std::size_t f = task / 2;
       if (task % 2 == 0) {
