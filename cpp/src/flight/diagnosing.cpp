@@ -38,10 +38,8 @@ Ground prepare_ground(const Calibration& calibration, const Flight& flight, cons
 }
 
 /// Those of the catalogue that the calibration doesn't have yet.
-std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Calibration& calibration,
-                                        const Flight& flight) {
-  std::vector<std::string> names =
-      list_candidates(fitted.kit, calibration.probe->name(), fitted.record, flight);
+std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Flight& flight) {
+  std::vector<std::string> names = list_candidates(fitted.kit, fitted.record, flight);
   std::erase_if(names, [&](const std::string& name) {
     return std::ranges::find(fitted.effects, name, &EffectSetting::name) != fitted.effects.end();
   });
@@ -75,7 +73,7 @@ FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const 
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
   result.notes = ground.prepared.notes;
-  result.diagnosis = diagnose(fitted, candidates_for(fitted, calibration, flight), options);
+  result.diagnosis = diagnose(fitted, candidates_for(fitted, flight), options);
   prefer_catalogued(result.model, result.diagnosis.effects);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(describe_effect(effect.name));

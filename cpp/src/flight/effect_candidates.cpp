@@ -91,8 +91,8 @@ std::string describe_driver(const EffectName& name) {
 
 }  // namespace
 
-std::vector<std::string> list_candidates(const EffectKit& kit, std::string_view /*probe*/,
-                                         const Record& record, const Flight& flight) {
+std::vector<std::string> list_candidates(const EffectKit& kit, const Record& record,
+                                         const Flight& flight) {
   std::vector<std::string> names;
   for (const auto& [name, maker] : kit.own) names.push_back(name);
   const std::vector<std::string> drivers = list_drivers(record, flight);
@@ -108,7 +108,7 @@ std::vector<std::string> list_candidates(const EffectKit& kit, std::string_view 
   }
   if (!flight.maneuvers().empty()) {
     for (const Port& port : kit.ports) {
-      if (port.name == "wind") names.push_back("wind[maneuver]");
+      if (port.name == "wind") names.emplace_back("wind[maneuver]");
     }
   }
   return names;

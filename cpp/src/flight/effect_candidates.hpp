@@ -14,8 +14,8 @@ namespace sepcal {
 /// Every effect of the kit and every port with every channel of the record that the flight logs
 /// under its own header, with time and with the state functions; smooth and curved ones where
 /// physics is seldom straight.
-std::vector<std::string> list_candidates(const EffectKit& kit, std::string_view probe,
-                                         const Record& record, const Flight& flight);
+std::vector<std::string> list_candidates(const EffectKit& kit, const Record& record,
+                                         const Flight& flight);
 
 /// Channels of effects that the flight doesn't log: "throttle".
 std::vector<std::string> list_missing_channels(std::string_view probe, const Flight& flight);
