@@ -61,6 +61,29 @@ void add_simulate_options(CLI::App& simulate, Arguments& arguments, Instrument& 
   simulation.add_to(simulate);
 }
 
+void add_diagnose_options(CLI::App& diagnose, Arguments& arguments) {
+  add_file(diagnose, "-o,--output", arguments.output, "writes the diagnosis there")
+      ->type_name("D.json");
+  diagnose
+      .add_option("--inject", arguments.inject,
+                  "puts an effect into the measurements first: would it have been found?")
+      ->type_name("E=SIZE");
+}
+
+void add_adding_options(CLI::App& add, Arguments& arguments) {
+  add.add_option("E", arguments.effect,
+                 "the effect, by name or alias; E1+E2 adds both (see effects)")
+      ->required();
+  add_file(add, "-o,--output", arguments.output, "writes the next calibration there")
+      ->type_name("NEXT.json");
+}
+
+void add_applying_options(CLI::App& apply, Arguments& arguments) {
+  add_file(apply, "-o,--output", arguments.output, "writes the corrected log there")
+      ->type_name("CORRECTED.csv")
+      ->required();
+}
+
 }  // namespace
 
 int run(Instrument& instrument, int argc, char** argv) {
@@ -108,32 +131,21 @@ int run(Instrument& instrument, int argc, char** argv) {
   CLI::App& diagnose = *cli.add_subcommand("diagnose", "names the physical effect that is missing");
   add_flight(diagnose);
   add_calibration(diagnose);
-  add_file(diagnose, "-o,--output", arguments.output, "writes the diagnosis there")
-      ->type_name("D.json");
-  diagnose
-      .add_option("--inject", arguments.inject,
-                  "puts an effect into the measurements first: would it have been found?")
-      ->type_name("E=SIZE");
+  add_diagnose_options(diagnose, arguments);
   add_drop_invalid(diagnose);
   add_json(diagnose);
 
   CLI::App& add = *cli.add_subcommand("add", "adds a physical effect and fits again");
   add_flight(add);
   add_calibration(add);
-  add.add_option("E", arguments.effect,
-                 "the effect, by name or alias; E1+E2 adds both (see effects)")
-      ->required();
-  add_file(add, "-o,--output", arguments.output, "writes the next calibration there")
-      ->type_name("NEXT.json");
+  add_adding_options(add, arguments);
   add_drop_invalid(add);
   add_json(add);
 
   CLI::App& apply = *cli.add_subcommand("apply", "adds the calibrated readings to a log");
   add_flight(apply);
   add_calibration(apply);
-  add_file(apply, "-o,--output", arguments.output, "writes the corrected log there")
-      ->type_name("CORRECTED.csv")
-      ->required();
+  add_applying_options(apply, arguments);
   add_drop_invalid(apply);
   add_json(apply);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace sepcal::app {
 namespace {
@@ -30,7 +31,7 @@ std::string probability(const EffectFinding& effect) {
   return "<1e-99";
 }
 
-std::string in_words(const EffectFinding& effect) {
+std::string_view in_words(const EffectFinding& effect) {
   if (effect.status == FindingStatus::found) return "FOUND";
   return is_refused(effect) ? "not held out" : "not seen";
 }
@@ -82,7 +83,7 @@ std::string effect_rows(const FlightDiagnosis& result) {
     for (const EffectFinding& effect : effects) {
       if (effect.status == FindingStatus::cannot_be_seen) text += " " + effect.name;
     }
-    text += "\n";
+    text += '\n';
   }
   return text;
 }
@@ -97,7 +98,7 @@ std::string best_effect(const FlightDiagnosis& result, const std::string& app,
     for (const std::string& relative : best.family) {
       if (relative != best.name) text += " " + relative;
     }
-    text += "\n";
+    text += '\n';
   }
   return text + fmt::format("\nnext: {} add {} {} '{}' -o NEXT.json\n", app, result.flight.file,
                             calibration, best.name);
@@ -129,12 +130,12 @@ std::string diagnosis_table(const FlightDiagnosis& result, const std::string& ap
         text += fmt::format("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
       }
     }
-    text += "\n";
+    text += '\n';
   }
   if (diagnosis.verdict != Verdict::effect_missing && !result.missing_channels.empty()) {
     text += "not logged, and could explain more:";
     for (const std::string& channel : result.missing_channels) text += " " + channel;
-    text += "\n";
+    text += '\n';
   }
   if (result.injection) {
     const Injection& injection = *result.injection;
