@@ -116,7 +116,7 @@ def test_documents_are_plain_text_without_emojis(document):
 def test_every_option_in_the_documents_is_in_the_help():
     known = set()
     for app in ("sepcal-pitot", "sepcal-mag"):
-        for verb in ("fit", "compare", "add", "apply", "simulate", "effects"):
+        for verb in ("fit", "compare", "diagnose", "add", "apply", "simulate", "effects"):
             known |= set(re.findall(r"--[a-z][a-z-]*", run(app, verb, "--help")))
     text = "\n".join(document.read_text() for document in DOCUMENTS)
     said = re.findall(r"`(--[a-z][a-z-]*)", text)
