@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coloured_covariance.hpp"
 #include "driven_rows.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
@@ -78,13 +79,8 @@ bool is_driven(const Effect& effect, const EffectKit& kit) {
 }  // namespace
 
 RowLayout lay_out(const std::vector<Segment>& segments) {
-  RowLayout layout;
-  std::size_t row = 0;
-  for (const Segment& segment : segments) {
-    layout.segments.push_back({segment.label, row, row + segment.rows()});
-    row += segment.rows();
-  }
-  layout.rows = static_cast<Index>(row);
+  RowLayout layout{.segments = join_segments(segments)};
+  if (!segments.empty()) layout.rows = static_cast<Index>(layout.segments.back().last);
   return layout;
 }
 
@@ -146,9 +142,7 @@ MatrixXd CandidateRoom::stack(const std::vector<MatrixXd>& outputs,
 MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
                                          const ParameterValues& shapes,
                                          const std::vector<std::string>& names) const {
-  std::vector<Effect> all = effects_;
-  all.insert(all.end(), added.begin(), added.end());
-  const auto model = compose(fitted_.model, all, record_);
+  const auto model = model_with(added);
   ParameterValues values = values_;
   values.insert(shapes.begin(), shapes.end());
   Record rows = record_;
@@ -169,9 +163,10 @@ std::shared_ptr<const BlockModel> CandidateRoom::model() const {
   return compose(fitted_.model, effects_, record_);
 }
 
-std::shared_ptr<const BlockModel> CandidateRoom::model_with(const Candidate& candidate) const {
+std::shared_ptr<const BlockModel> CandidateRoom::model_with(
+    const std::vector<Effect>& added) const {
   std::vector<Effect> all = effects_;
-  all.insert(all.end(), candidate.effects.begin(), candidate.effects.end());
+  all.insert(all.end(), added.begin(), added.end());
   return compose(fitted_.model, all, record_);
 }
 

@@ -41,9 +41,9 @@ class CandidateRoom {
   const std::vector<Segment>& rows() const { return fitted_.rows; }
   const Fit& fitted() const { return fitted_.fit; }
 
-  /// The model of the fit, and with a candidate.
+  /// The model of the fit, and with more effects.
   std::shared_ptr<const BlockModel> model() const;
-  std::shared_ptr<const BlockModel> model_with(const Candidate& candidate) const;
+  std::shared_ptr<const BlockModel> model_with(const std::vector<Effect>& added) const;
 
   /// Throws Error where the record can't make it.
   Candidate make(const std::string& name);

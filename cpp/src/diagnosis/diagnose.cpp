@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/residual_noise.hpp"

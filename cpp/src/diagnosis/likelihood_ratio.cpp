@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/tails.hpp"
 
@@ -54,12 +55,17 @@ NullHypothesis find_null(const Linearisation& fit) {
   const VectorXd residual = remove_span(null.basis, fit.residual);
   const NoiseModels noise = fit_noise_models(fit.layout, residual);
   null.best = maximise(fit.layout, null.basis, residual, {noise, forget_colour(noise)});
-  null.best.coefficients += null.basis.transpose() * (fit.residual - residual);
   MatrixXd white = join(null.basis, residual);
   whiten(fit.layout, null.best.noise, white);
   null.white_basis = orthonormal_basis(white.leftCols(null.basis.cols()));
   null.white_residual = remove_span(null.white_basis, white.rightCols<1>());
   return null;
+}
+
+double predict_drop(const NullHypothesis& null, const MatrixXd& added) {
+  const Linearisation& fit = *null.fit;
+  const VectorXd left = remove_span(added, remove_span(null.basis, fit.residual));
+  return 1.0 - total_rmse(fit.layout, left) / total_rmse(fit.layout, fit.residual);
 }
 
 LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& added) {

@@ -22,6 +22,10 @@ struct NullHypothesis {
 /// `fit` must outlive it.
 NullHypothesis find_null(const Linearisation& fit);
 
+/// What of the fit's RMSE over all outputs goes, 1 - after / before, once columns that are
+/// orthonormal and orthogonal to the null's basis join it.
+double predict_drop(const NullHypothesis& null, const Eigen::MatrixXd& added);
+
 /// `added`: orthonormal and orthogonal to the null's basis. Twice the logarithm of the ratio, not
 /// negative, and the hypothesis with the columns [basis, added].
 struct LikelihoodRatio {

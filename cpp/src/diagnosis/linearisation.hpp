@@ -23,8 +23,8 @@ struct UsedOutput {
 
 /// Where rows stand: N of each output, segment after segment, one output below the other.
 struct RowLayout {
-  std::vector<Segment> segments;  // among the N rows
-  std::vector<UsedOutput> outputs;
+  std::vector<Segment> segments = {};  // among the N rows
+  std::vector<UsedOutput> outputs = {};
   Eigen::Index rows = 0;  // N
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(outputs.size()) * rows; }

@@ -63,8 +63,7 @@ std::vector<Window> cut_windows(const CandidateRoom& room, double correlation) {
   return windows;
 }
 
-/// Each column restricted to each window, one window left out: the columns' own constants are for
-/// the tangent to tell.
+/// Each column restricted to each window.
 MatrixXd by_window(const RowLayout& layout, const MatrixXd& columns,
                    const std::vector<Window>& windows) {
   const auto count = static_cast<Index>(windows.size());

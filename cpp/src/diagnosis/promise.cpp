@@ -4,7 +4,6 @@
 namespace sepcal {
 
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads) {
@@ -19,9 +18,7 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
   const NullHypothesis null{.fit = &fit, .basis = orthonormal_basis(fit.tangent)};
   const MatrixXd G = room.columns(trial.candidate, trial.shape);
   const MatrixXd added = orthonormal_basis(remove_span(null.basis, G));
-  const VectorXd left = remove_span(added, remove_span(null.basis, fit.residual));
-  promised.predicted_drop =
-      1.0 - total_rmse(fit.layout, left) / total_rmse(fit.layout, fit.residual);
+  promised.predicted_drop = predict_drop(null, added);
   hold_out(room, null, trial);
   confirm(room, pool, trial);
   if (!trial.held_out.judged) return promised;

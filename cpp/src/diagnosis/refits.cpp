@@ -96,7 +96,7 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
                            const Folds& folds, ThreadPool& pool) {
   const auto without = room.model();
-  const auto with = room.model_with(candidate);
+  const auto with = room.model_with(candidate.effects);
   const FitOptions base = options_from(room.fitted());
   FitOptions extended = with_candidate(base, with->tables(), candidate, shape);
   const auto count = static_cast<std::size_t>(folds.count);

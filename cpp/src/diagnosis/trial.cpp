@@ -68,8 +68,7 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     trial.shape = shape;
     trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
     keep_estimate(added, step, covariance, trial);
-    const VectorXd left = remove_span(added.basis, remove_span(null.basis, room.fit().residual));
-    trial.predicted_drop = 1.0 - total_rmse(layout, left) / total_rmse(layout, room.fit().residual);
+    trial.predicted_drop = predict_drop(null, added.basis);
   }
   trial.visible = !trial.scores.empty();
   if (!trial.visible) return;
@@ -98,9 +97,7 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     const auto q = added.visible();
     keep_estimate(added, ratio.with.coefficients.tail(q),
                   ratio.with.covariance.bottomRightCorner(q, q), trial);
-    const VectorXd plain = remove_span(null.basis, room.fit().residual);
-    const VectorXd left = remove_span(added.basis, plain);
-    trial.predicted_drop = 1.0 - total_rmse(layout, left) / total_rmse(layout, room.fit().residual);
+    trial.predicted_drop = predict_drop(null, added.basis);
     trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
   }
   trial.log10_p =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "json_values.hpp"
+#include "findings_json.hpp"
 #include "sepcal/flight/comparison.hpp"
 
 namespace sepcal {
@@ -23,12 +23,7 @@ std::string to_json(const Comparison& comparison) {
   }
   root["where"] = Json::array();
   for (const Misfit& misfit : comparison.where) {
-    root["where"].push_back({{"segment", misfit.segment},
-                             {"output", misfit.output},
-                             {"rows", misfit.rows},
-                             {"rmse", number(misfit.rmse)},
-                             {"mean", number(misfit.mean)},
-                             {"lag_one", number(misfit.lag_one)}});
+    root["where"].push_back(write_misfit(misfit));
   }
   root["channels"] = Json::array();
   for (const ChannelMisfit& channel : comparison.channels) {

@@ -86,7 +86,7 @@ FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const 
 }
 
 /// What the effect adds to every output at the calibration's estimates (rows x n_z, of the whole
-/// record), NaN outside its segments.
+/// record), zero outside its segments.
 MatrixXd added_outputs(const Calibration& calibration, const Ground& ground,
                        const HiddenEffect& injected, Injection& injection) {
   const Probe& probe = *calibration.probe;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include "json_values.hpp"
+#include "findings_json.hpp"
 #include "sepcal/flight/diagnosing.hpp"
 
 namespace sepcal {
@@ -56,12 +56,6 @@ Json write_residual(const ResidualNoise& residual) {
           {"floor", number(residual.floor)}};
 }
 
-Json write_where(const Misfit& misfit) {
-  return {{"segment", misfit.segment},   {"output", misfit.output},
-          {"rows", misfit.rows},         {"rmse", number(misfit.rmse)},
-          {"mean", number(misfit.mean)}, {"lag_one", number(misfit.lag_one)}};
-}
-
 Json write_injection(const Injection& injection) {
   Json estimate = Json::object();
   for (const Coefficient& coefficient : injection.estimate) {
@@ -93,7 +87,7 @@ std::string to_json(const FlightDiagnosis& result) {
   root["rmse"] = number(diagnosis.rmse);
   root["noise_floor"] = number(diagnosis.floor);
   root["where"] = Json::array();
-  for (const Misfit& misfit : result.where) root["where"].push_back(write_where(misfit));
+  for (const Misfit& misfit : result.where) root["where"].push_back(write_misfit(misfit));
   root["residual"] = Json::object();
   for (const ResidualNoise& residual : diagnosis.residual) {
     root["residual"][residual.output] = write_residual(residual);

@@ -3,6 +3,12 @@
 
 namespace sepcal {
 
+Json write_misfit(const Misfit& misfit) {
+  return {{"segment", misfit.segment},   {"output", misfit.output},
+          {"rows", misfit.rows},         {"rmse", number(misfit.rmse)},
+          {"mean", number(misfit.mean)}, {"lag_one", number(misfit.lag_one)}};
+}
+
 Json write_derived(const std::vector<Derived>& derived) {
   Json object = Json::object();
   for (const Derived& quantity : derived) {

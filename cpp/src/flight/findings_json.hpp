@@ -7,8 +7,12 @@
 
 #include "json_values.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/comparison.hpp"
 
 namespace sepcal {
+
+/// {segment, output, rows, rmse, mean, lag_one}
+Json write_misfit(const Misfit& misfit);
 
 Json write_derived(const std::vector<Derived>& derived);
 std::vector<Derived> read_derived(const Json& object);
