@@ -105,6 +105,28 @@ TEST_CASE("two channels that are nearly one are a family, and the third isn't of
   CHECK(diagnosis.effects[2].family == Texts{"c[decoy]"});
 }
 
+TEST_CASE(
+    "a small effect's family is what the flight can't tell from it, a large one's is itself") {
+  for (const auto& [size, relatives] : {std::pair{0.2, 1U}, std::pair{1.5, 0U}}) {
+    CAPTURE(size);
+    Bench bench;
+    const VectorXd warmth = bench.add_white("warmth");
+    const auto u = bench.record.column("u");
+    VectorXd heat = 0.49 * draw_noise("white", rows, bench.draws);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      heat[i] += 0.87 * u[static_cast<std::size_t>(i)] * warmth[i] / std::sqrt(4.0 / 3.0);
+    }
+    bench.add("heat", heat);  // its cosine with s[warmth] is 0.87
+    bench.add_white("decoy");
+    const Diagnosis diagnosis = bench.diagnose(size * heat, {"c[heat]", "s[warmth]", "c[decoy]"});
+    const EffectFinding& heated = diagnosis.effects.front();
+    CHECK(heated.name == "c[heat]");
+    CHECK(heated.status == FindingStatus::found);
+    CHECK(heated.family.size() == 1U + relatives);
+    CHECK(heated.family.back() == std::string(relatives > 0 ? "s[warmth]" : "c[heat]"));
+  }
+}
+
 TEST_CASE("two effects that only show together are found as a pair") {
   Bench bench;
   const VectorXd common = draw_noise("white", rows, bench.draws);

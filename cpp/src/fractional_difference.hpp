@@ -6,8 +6,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace sepcal {
+
+/// Eight terms w e^{-lambda k} of a sum over the rows k that are gone by.
+struct Exponentials {
+  static constexpr int count = 8;
+  alignas(64) double decay[count] = {};   // e^{-lambda}
+  alignas(64) double weight[count] = {};  // w
+};
 
 class FractionalDifference {
  public:
@@ -19,11 +27,10 @@ class FractionalDifference {
   void apply(Eigen::Ref<Eigen::VectorXd> x) const;
 
  private:
-  double d_;               // of the coefficients below, in [0, 1)
-  bool summed_;            // (1 - B)^{d-1} is a running sum of (1 - B)^d
-  Eigen::VectorXd near_;   // the first coefficients, one by one
-  Eigen::ArrayXd decay_;   // exponentials for the others: e^{-lambda}
-  Eigen::ArrayXd weight_;  // their shares in the first of the others
+  double d_;                           // of the coefficients below, in [0, 1)
+  bool summed_;                        // (1 - B)^{d-1} is a running sum of (1 - B)^d
+  Eigen::VectorXd near_;               // the first coefficients, one by one, the last first
+  std::vector<Exponentials> distant_;  // all others
 };
 
 }  // namespace sepcal

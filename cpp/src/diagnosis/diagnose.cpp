@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
+#include "diagnosis/family.hpp"
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/residual_noise.hpp"
 #include "diagnosis/tails.hpp"
@@ -19,20 +21,13 @@ using Eigen::Index;
 
 constexpr std::size_t most_tested = 12;  // of either screen's best
 constexpr std::size_t most_paired = 10;
-constexpr std::size_t most_proxied = 3;
-constexpr double least_of_proxy = 0.2;  // of what the first explains
+constexpr std::size_t most_families = 12;
+constexpr std::size_t most_compared = 3;  // with the residual, not by their columns alone
 constexpr std::size_t most_confirmed = 3;
 constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
 constexpr int few_simulations = 39;
 constexpr std::size_t most_simulated = 3;  // the others are corrected as the worst of these
 constexpr std::size_t most_pairs_tested = 5;
-
-bool share_port(const Candidate& a, const Candidate& b) {
-  return std::ranges::any_of(a.effects, [&](const Effect& effect) {
-    return !effect.port.empty() &&
-           std::ranges::find(b.effects, effect.port, &Effect::port) != b.effects.end();
-  });
-}
 
 class Recipe {
  public:
@@ -53,8 +48,7 @@ class Recipe {
   std::vector<EffectFinding> judge(Trials& trials, double tests);
   void try_pairs(const std::vector<EffectFinding>& singles);
   EffectFinding describe(const Trial& trial) const;
-  bool is_proxy(const Trial& first, const Trial& other, std::size_t tests) const;
-  void find_families(const Trials& trials, std::vector<EffectFinding>& findings) const;
+  void find_families(const Trials& trials, std::vector<EffectFinding>& findings);
   void tell(std::string_view task, double fraction) const {
     if (options_.progress) options_.progress(task, fraction);
   }
@@ -64,6 +58,7 @@ class Recipe {
   ThreadPool pool_;
   CandidateRoom room_;
   NullHypothesis null_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> tangent_;
   Trials trials_;
   Diagnosis result_;
 };
@@ -149,8 +144,7 @@ EffectFinding Recipe::describe(const Trial& trial) const {
   }
   if (trial.tested) {
     const Eigen::VectorXd signal = room_.columns(trial.candidate, trial.shape) * trial.estimate;
-    const Eigen::VectorXd shift =
-        Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(room_.fit().tangent).solve(signal);
+    const Eigen::VectorXd shift = tangent_.solve(signal);
     for (Index k = 0; k < shift.size(); ++k) {
       finding.absorbed_by[room_.fit().parameters[static_cast<std::size_t>(k)]] = shift[k];
     }
@@ -158,41 +152,28 @@ EffectFinding Recipe::describe(const Trial& trial) const {
   return finding;
 }
 
-/// Whether `other` explains a good part of what `first` does and, beyond it, next to nothing of
-/// that, at the same port: a proxy of the same cause.
-bool Recipe::is_proxy(const Trial& first, const Trial& other, std::size_t tests) const {
-  const double threshold = std::log10(options_.significance / static_cast<double>(tests));
-  if (other.log10_plain > threshold || !share_port(first.candidate, other.candidate)) return false;
-  const Eigen::MatrixXd taken =
-      orthonormal_basis(remove_span(null_.basis, room_.columns(first.candidate, first.shape)));
-  const Eigen::MatrixXd beyond =
-      remove_span(null_.basis, room_.columns(other.candidate, other.shape));
-  const Eigen::VectorXd residual = remove_span(null_.basis, room_.fit().residual);
-  const double alone = (orthonormal_basis(beyond).transpose() * residual).squaredNorm();
-  if (alone < least_of_proxy * (taken.transpose() * residual).squaredNorm()) return false;
-  const Eigen::MatrixXd left = orthonormal_basis(remove_span(taken, beyond));
-  const double more = (left.transpose() * remove_span(taken, residual)).squaredNorm();
-  const double cosine = options_.family_correlation;
-  return more < (1.0 - cosine * cosine) * alone;
-}
-
-void Recipe::find_families(const Trials& trials, std::vector<EffectFinding>& findings) const {
-  constexpr std::size_t most = 12;
+void Recipe::find_families(const Trials& trials, std::vector<EffectFinding>& findings) {
   const auto trial_of = [&](const EffectFinding& finding) -> const Trial& {
     return *std::ranges::find_if(
         trials, [&](const Trial& trial) { return trial.candidate.name == finding.name; });
   };
-  for (std::size_t a = 0; a < std::min(most, findings.size()); ++a) {
+  const double threshold = std::log10(options_.significance / static_cast<double>(findings.size()));
+  for (std::size_t a = 0; a < std::min(most_families, findings.size()); ++a) {
     const Trial& first = trial_of(findings[a]);
     if (!first.visible) continue;
-    for (const EffectFinding& finding : findings) {
-      const Trial& other = trial_of(finding);
-      if (&other == &first || !other.visible) continue;
-      if (canonical_correlation(first.thinned_basis, other.thinned_basis) >
-              options_.family_correlation ||
-          (a < most_proxied && is_proxy(first, other, findings.size()))) {
-        findings[a].family.push_back(finding.name);
-      }
+    std::optional<Family> family;
+    if (a < most_compared && first.tested) {
+      family.emplace(room_, null_, first, options_.family_correlation);
+    }
+    std::vector<char> belongs(findings.size(), 0);
+    pool_.for_each(findings.size(), [&](std::size_t b) {
+      const Trial& other = trial_of(findings[b]);
+      if (b == a || !other.visible) return;
+      belongs[b] = are_alike(first, other, options_.family_correlation) ||
+                   (family && (family->is_proxy(other, threshold) || family->is_rival(other)));
+    });
+    for (std::size_t b = 0; b < findings.size(); ++b) {
+      if (belongs[b] != 0) findings[a].family.push_back(findings[b].name);
     }
   }
 }
@@ -314,6 +295,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   if (room_.fit().layout.outputs.empty()) return result_;  // nothing is left to explain
   tell("fitting the noise", 0.0);
   null_ = find_null(room_.fit());
+  tangent_.compute(room_.fit().tangent);
   result_.residual = describe_residual(null_);
   result_.rmse = total_rmse(room_.fit().layout, room_.fit().residual);
   result_.floor = noise_floor(room_.fit().layout, null_.best.noise);

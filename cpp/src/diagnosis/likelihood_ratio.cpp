@@ -91,8 +91,8 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& ad
   return ratio;
 }
 
-VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, const Hypothesis& with,
-                         int simulations, std::uint64_t seed, ThreadPool& pool) {
+VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, int simulations,
+                         std::uint64_t seed, ThreadPool& pool) {
   constexpr Index most_rows = 400;
   constexpr double roughly = 0.05;  // in -2 ln L, of the search for the noise model
   const Thinned thinned = thin_out(null.fit->layout, most_rows);
@@ -100,11 +100,9 @@ VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, cons
   const MatrixXd columns =
       join(basis, orthonormal_basis(remove_span(basis, added(thinned.rows, Eigen::all))));
   const RowLayout& layout = thinned.layout;
-  const NoiseModels& noise = with.noise;
-  MatrixXd white = null.fit->residual - join(null.basis, added) * with.coefficients;
-  whiten(null.fit->layout, noise, white);
+  const NoiseModels& noise = null.best.noise;
   std::mt19937_64 generator(seed);
-  const VectorXd innovations = white.col(0)(thinned.rows);
+  const VectorXd innovations = null.white_residual(thinned.rows);
   MatrixXd draws(layout.count(), simulations);
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     draws.middleRows(layout.first(j), layout.rows) =
@@ -117,8 +115,8 @@ VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, cons
   pool.for_each(static_cast<std::size_t>(simulations), [&](std::size_t i) {
     const VectorXd residual = draws.col(static_cast<Index>(i));
     ratios[static_cast<Index>(i)] =
-        std::max(0.0, small.step(residual, roughly).minus_two_log_likelihood -
-                          large.step(residual, roughly).minus_two_log_likelihood);
+        std::max(0.0, small.step(residual, roughly, true).minus_two_log_likelihood -
+                          large.step(residual, roughly, true).minus_two_log_likelihood);
   });
   return ratios;
 }

@@ -34,13 +34,10 @@ struct LikelihoodRatio {
 };
 LikelihoodRatio compare_with_null(const NullHypothesis& null, const Eigen::MatrixXd& added);
 
-/// The ratio on simulations without the effect. The noise is that of the hypothesis `with` it,
-/// which is the null's where there is no effect and hasn't swallowed it where there is one; its
-/// innovations keep their sizes. Records of more than a few hundred rows are thinned out, which
-/// errs on the safe side.
+/// The ratio on simulations without the effect, in the null's noise; its innovations keep their
+/// sizes. Records of more than a few hundred rows are thinned out, which errs on the safe side.
 Eigen::VectorXd simulate_ratios(const NullHypothesis& null, const Eigen::MatrixXd& added,
-                                const Hypothesis& with, int simulations, std::uint64_t seed,
-                                ThreadPool& pool);
+                                int simulations, std::uint64_t seed, ThreadPool& pool);
 
 /// How much larger the median and the ninetieth percentile of a ratio are than chi-squared's, each
 /// at least 1. The largest ratios don't count: where a search ends in a poor optimum it makes one

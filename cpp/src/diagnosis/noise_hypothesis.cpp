@@ -86,13 +86,13 @@ VectorXd WhitenedColumns::estimate(const VectorXd& residual) const {
   return covariance_ * (white_.transpose() * white.col(0));
 }
 
-Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain) const {
+Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain, bool afresh) const {
   Hypothesis at{.noise = noise_, .coefficients = estimate(residual)};
   const VectorXd left = residual - columns_ * at.coefficients;
   for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
     // A search from noise that has nearly swallowed the residual may end in a poor optimum.
     std::vector<NoiseModel> starts{noise_[j]};
-    if (is_coloured(noise_[j])) starts.push_back(forget_colour({noise_[j]}).front());
+    if (afresh && is_coloured(noise_[j])) starts.push_back(forget_colour({noise_[j]}).front());
     double least = std::numeric_limits<double>::infinity();
     for (const NoiseModel& start : starts) {
       const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.segments,
@@ -111,7 +111,7 @@ Hypothesis maximise(const RowLayout& layout, const MatrixXd& columns, const Vect
                     const std::vector<NoiseModels>& starts) {
   constexpr int most_rounds = 3;
   constexpr double least_gain = 0.02;  // in -2 ln L, of a round
-  constexpr double precise = 1e-4;     // of the search for the noise model
+  constexpr double precise = 1e-3;     // of the search for the noise model
   Hypothesis best;
   best.minus_two_log_likelihood = std::numeric_limits<double>::infinity();
   for (const NoiseModels& start : starts) {
@@ -119,7 +119,7 @@ Hypothesis maximise(const RowLayout& layout, const MatrixXd& columns, const Vect
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < most_rounds; ++round) {
       const WhitenedColumns whitened(layout, columns, noise);
-      Hypothesis at = whitened.step(residual, precise);
+      Hypothesis at = whitened.step(residual, precise, round == 0);
       noise = at.noise;
       const double gain = last - at.minus_two_log_likelihood;
       last = at.minus_two_log_likelihood;

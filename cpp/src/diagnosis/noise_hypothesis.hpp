@@ -53,8 +53,9 @@ class WhitenedColumns {
   const Eigen::MatrixXd& covariance() const { return covariance_; }
 
   /// That estimate, and the noise model of what it leaves, of the same order. The search ends where
-  /// another step would gain less than `least_gain` in -2 ln L. Without the covariance.
-  Hypothesis step(const Eigen::VectorXd& residual, double least_gain) const;
+  /// another step would gain less than `least_gain` in -2 ln L; with `afresh` it begins a second
+  /// time without colour. Without the covariance.
+  Hypothesis step(const Eigen::VectorXd& residual, double least_gain, bool afresh) const;
 
  private:
   const RowLayout& layout_;

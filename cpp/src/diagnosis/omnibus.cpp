@@ -167,10 +167,9 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
     const auto freedom = static_cast<double>(sets[i].basis.cols());
     double log10_p = correction + log10_chi_squared_tail(ratios[i].value, freedom);
     if (log10_p < std::log10(options.unexplained_below)) {
-      const Inflation inflation =
-          inflation_of(simulate_ratios(null, sets[i].basis, ratios[i].with, options.simulations,
-                                       options.seed + i, pool),
-                       static_cast<int>(freedom));
+      const Inflation inflation = inflation_of(
+          simulate_ratios(null, sets[i].basis, options.simulations, options.seed + i, pool),
+          static_cast<int>(freedom));
       log10_p =
           correction + log10_ratio_tail(ratios[i].value, static_cast<int>(freedom), inflation);
     }

@@ -22,10 +22,6 @@ MatrixXd thin_out(const MatrixXd& columns) {
   return columns(Eigen::seqN(0, rows, stride), Eigen::all);
 }
 
-double log10_size(const Trial& trial) {
-  return std::log10(static_cast<double>(trial.candidate.shape.values.size()));
-}
-
 /// The estimate of the effect from that of its basis.
 void keep_estimate(const Projection& added, const VectorXd& of_basis, const MatrixXd& covariance,
                    Trial& trial) {
@@ -41,6 +37,10 @@ Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, 
 }
 
 }  // namespace
+
+double log10_scan(const Trial& trial) {
+  return std::log10(static_cast<double>(trial.candidate.shape.values.size()));
+}
 
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   const RowLayout& layout = room.fit().layout;
@@ -72,7 +72,7 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
   }
   trial.visible = !trial.scores.empty();
   if (!trial.visible) return;
-  const double scans = log10_size(trial);
+  const double scans = log10_scan(trial);
   trial.log10_white = std::min(0.0, scans + best_white);
   trial.log10_plain = std::min(0.0, scans + best_plain);
   trial.log10_p = trial.log10_white;
@@ -91,8 +91,8 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     const LikelihoodRatio ratio = compare_with_null(null, added.basis);
     if (!(ratio.value > trial.ratio)) continue;
     trial.ratio = ratio.value;
-    trial.floor = noise_floor(layout, ratio.with.noise);
-    trial.with = ratio.with;
+    trial.noise = ratio.with.noise;
+    trial.floor = noise_floor(layout, trial.noise);
     trial.shape = shape;
     const auto q = added.visible();
     keep_estimate(added, ratio.with.coefficients.tail(q),
@@ -101,7 +101,7 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
   }
   trial.log10_p =
-      std::min(0.0, log10_size(trial) + log10_chi_squared_tail(trial.ratio, trial.freedom));
+      std::min(0.0, log10_scan(trial) + log10_chi_squared_tail(trial.ratio, trial.freedom));
 }
 
 bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
@@ -124,13 +124,12 @@ Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& nu
                              const Trial& trial, int simulations, std::uint64_t seed,
                              ThreadPool& pool) {
   const Projection added = project_trial(room, null, trial, trial.shape);
-  return inflation_of(simulate_ratios(null, added.basis, trial.with, simulations, seed, pool),
-                      trial.freedom);
+  return inflation_of(simulate_ratios(null, added.basis, simulations, seed, pool), trial.freedom);
 }
 
 void inflate(const Inflation& inflation, Trial& trial) {
   const double calibrated =
-      log10_size(trial) + log10_ratio_tail(trial.ratio, trial.freedom, inflation);
+      log10_scan(trial) + log10_ratio_tail(trial.ratio, trial.freedom, inflation);
   trial.log10_p = std::max(trial.log10_p, std::min(0.0, calibrated));
 }
 

@@ -34,7 +34,7 @@ struct Trial {
   double log10_p = 0.0;  // of the test where it was made, else of the score
   bool tested = false;
   double ratio = 0.0;
-  Hypothesis with = {};     // the effect, in noise of its own
+  NoiseModels noise = {};   // beside the effect
   double floor = infinity;  // innovations alone with the effect, over all outputs
   int freedom = 0;
   Eigen::VectorXd estimate = {};
@@ -45,6 +45,9 @@ struct Trial {
   Eigen::VectorXd absorbed = {};       // shift of each column of the tangent
   Eigen::MatrixXd thinned_basis = {};  // orthonormal, of some rows of G_perp
 };
+
+/// log10 of the number of shapes tried, by which the best one's probability is multiplied.
+double log10_scan(const Trial& trial);
 
 /// Scores every shape in the directions that can be seen.
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);

@@ -129,13 +129,17 @@ def fly(
 def factor_for(case: Case, sigmas: float) -> float:
     """What to multiply a case's size by for a noncentrality of sigmas^2.
 
-    That is what the best fit without the effect leaves of a flight without noise, in units of the
-    noise's variance; it grows as the size squared.
+    That is what the best fit without the effect, in the study's weights, leaves of a flight without
+    noise, in units of the noise's variance. It grows about as the size squared.
     """
     quiet = dict.fromkeys(OUTPUTS[case.probe], 1e-9)
-    flight = simulate(
-        case.probe, hide={case.effect: case.sizes(1.0)}, noise=quiet, rows=case.rows, seed=7
-    )
-    left = calibrate(case.probe, flight)
-    square = sum(rmse**2 for rmse in left.rmse.values()) * left.rows / NOISE[case.probe] ** 2
-    return float(sigmas / np.sqrt(square))
+    weights = dict.fromkeys(OUTPUTS[case.probe], NOISE[case.probe])
+    factor = 1.0
+    for _ in range(2):
+        flight = simulate(
+            case.probe, hide={case.effect: case.sizes(factor)}, noise=quiet, rows=case.rows, seed=7
+        )
+        left = fit(PROBES[case.probe], flight, noise=weights, threads=1)
+        square = sum(rmse**2 for rmse in left.rmse.values()) * left.rows / NOISE[case.probe] ** 2
+        factor *= sigmas / float(np.sqrt(square))
+    return factor

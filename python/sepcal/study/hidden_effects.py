@@ -13,6 +13,7 @@ import numpy as np
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
+from sepcal.simulation import simulate
 from sepcal.study.cases import (
     CASES,
     INVISIBLE,
@@ -240,8 +241,12 @@ def _unlogged(case: Case, factor: float, seed: int) -> Row:
 
 
 def _slow(seed: int) -> Row:
-    """A wind that drifts by 2 m/s in all, which noise of its own speed could swallow."""
-    flight = fly("five-hole", {SLOW: [2.0 / 120.0, 0.0]}, seed, 1200)
+    """A wind that drifts by 2 m/s in 250 s, which noise of its own speed could swallow."""
+    seconds = 250.0
+    full = simulate("five-hole", hide={SLOW: [2.0 / seconds, 0.0]}, rate=10.0, seed=seed)
+    rows = full["time_s"] < full["time_s"][0] + seconds
+    columns = {header: values[rows] for header, values in full.items()}
+    flight = Flight(columns, maneuver=np.asarray(full.maneuvers)[rows])
     diagnosis = calibrate("five-hole", flight).diagnose()
     return {
         "seed": seed,

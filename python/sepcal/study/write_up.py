@@ -162,7 +162,7 @@ def _others(rows: dict[str, list[Row]]) -> str:
             count = sum(row["verdict"] == verdict for row in chosen)
             body.append([what, verdict, f"{count} of {len(chosen)}"])
     slow = rows["slow"]
-    what = "a wind that drifts by 2 m/s in two minutes, noise 0.15 m/s"
+    what = "a wind that drifts by 2 m/s in 250 s, noise 0.15 m/s"
     body.append([what, "first", _rate(slow, lambda row: row["first"])])
     body.append([what, "found", _rate(slow, lambda row: row["found"])])
     return "## Harder questions\n\n" + _table(["what is flown", "how often", "flights"], body)
