@@ -263,6 +263,13 @@ TEST_CASE("inflation: of chi-squared's own quantiles none, of twice these two, o
   CHECK(chi_squared_point(0.1, 5.0) == Approx(9.236356899781123).epsilon(1e-9));
 }
 
+TEST_CASE("a ninetieth percentile below the median's inflation makes no tail shorter") {
+  for (const int q : {1, 3, 12}) {
+    CHECK(log10_ratio_tail(60.0, q, {1.8, 1.3}) >= log10_ratio_tail(60.0, q, {1.3, 1.3}) - 1e-9);
+    CHECK(log10_ratio_tail(60.0, q, {1.3, 1.8}) > log10_ratio_tail(60.0, q, {1.3, 1.3}));
+  }
+}
+
 TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the output's unit") {
   Draws draws(2);
   const RowLayout layout = make_layout({{"a", 900}, {"b", 600}}, {0.5, 4.0});

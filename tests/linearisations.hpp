@@ -21,7 +21,7 @@ inline RowLayout make_layout(const std::vector<std::pair<std::string, std::size_
     cut.push_back({label, row, row + length});
     row += length;
   }
-  RowLayout layout{cut, {}, static_cast<Eigen::Index>(row)};
+  RowLayout layout{cut, cut, {}, static_cast<Eigen::Index>(row)};
   for (std::size_t j = 0; j < scales.size(); ++j) {
     layout.outputs.push_back({static_cast<int>(j), "z" + std::to_string(j), "m/s", scales[j]});
   }

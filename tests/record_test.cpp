@@ -10,6 +10,7 @@
 
 using doctest::Contains;
 using sepcal::Error;
+using sepcal::find_runs;
 using sepcal::find_segments;
 using sepcal::Record;
 using sepcal::Segment;
@@ -172,4 +173,22 @@ TEST_CASE("time must increase, and labels must be as many as rows") {
   CHECK_THROWS_WITH_AS(find_segments(std::vector<double>{0, nan, 2}, {}), Contains("row 1"), Error);
   CHECK_THROWS_WITH_AS(find_segments(std::vector<double>{0, 1}, std::vector<std::string>{"a"}),
                        Contains("1 labels for 2 rows"), Error);
+}
+
+TEST_CASE("a run goes on where a label changes and ends at a gap") {
+  const auto runs = [](std::vector<double> time, std::vector<Segment> segments) {
+    Record record;
+    record.add("time", std::move(time)).cut(std::move(segments));
+    return describe(find_runs(record));
+  };
+  CHECK(describe(find_runs(make_record())) == "[0,10) ");
+  CHECK(runs({0, 1, 2, 3, 10, 11, 12}, {{"a", 0, 2}, {"b", 2, 4}, {"c", 4, 7}}) == "[0,4) [4,7) ");
+  // Rows that nobody selected: two of them are no gap, six are one. Runs are gathered rows.
+  CHECK(runs({0, 1, 2, 3, 4, 5}, {{"a", 0, 2}, {"b", 4, 6}}) == "[0,4) ");
+  CHECK(runs({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {{"a", 0, 2}, {"b", 8, 10}}) == "[0,2) [2,4) ");
+  // Two logs, one behind the other: time runs back.
+  CHECK(runs({0, 1, 2, 0, 1, 2}, {{"a", 0, 3}, {"b", 3, 6}}) == "[0,3) [3,6) ");
+  Record timeless;
+  timeless.add("u", {1, 2, 3, 4}).cut({{"a", 0, 2}, {"b", 2, 4}});
+  CHECK(describe(find_runs(timeless)) == "[0,2) [2,4) ");
 }

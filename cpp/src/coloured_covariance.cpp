@@ -13,17 +13,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Where the rows of each segment stand in a matrix of the selected rows.
-std::vector<Segment> gathered_segments(const Measurements& measurements) {
-  std::vector<Segment> segments;
-  for (const auto& chunk : measurements.chunks()) {
-    for (const Measurements::Range& range : chunk) {
-      if (range.starts_segment) segments.push_back({"", range.offset, range.offset});
-      segments.back().last = range.offset + range.rows;
-    }
-  }
-  return segments;
-}
-
 /// Schwarz's criterion: under white noise AIC would take chance for colour in one fit of six.
 double criterion(double minus_two_log_likelihood, double parameters, Index rows) {
   return minus_two_log_likelihood + parameters * std::log(static_cast<double>(rows));
@@ -77,7 +66,7 @@ MatrixXd find_coloured_covariance(const Sweep& sweep, const StageTwo& two,
   if (inside.empty() || !(freedom > 0.0) || !white.allFinite() || !residuals.allFinite()) {
     return white;
   }
-  const std::vector<Segment> segments = gathered_segments(sweep.measurements());
+  const std::vector<Segment>& runs = sweep.measurements().runs();
   const auto outputs = static_cast<std::size_t>(residuals.cols());
   std::vector<std::optional<NoiseModel>> models(outputs);
   sweep.pool().for_each(outputs, [&](std::size_t j) {
@@ -85,7 +74,7 @@ MatrixXd find_coloured_covariance(const Sweep& sweep, const StageTwo& two,
     // An estimated R above its own residual stands at its floor: what is left is rounding.
     const double rms = e.norm() / std::sqrt(static_cast<double>(e.size()));
     if (!noise_given && rms < 0.99 * two.noise[static_cast<Index>(j)]) return;
-    models[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, segments);
+    models[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, runs);
   });
   const bool all_white = std::ranges::all_of(models, [](const std::optional<NoiseModel>& model) {
     return !model || (model->d == 0.0 && model->order() == 0);
@@ -103,7 +92,7 @@ MatrixXd find_coloured_covariance(const Sweep& sweep, const StageTwo& two,
     R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
     if (models[j]) {
       models[j]->sigma /= noise;
-      parts[j] = inflation * covariance_product(*models[j], segments, Q);
+      parts[j] = inflation * covariance_product(*models[j], runs, Q);
     } else {
       parts[j] = (noise_given ? 1.0 : inflation) * Q.transpose() * Q;
     }

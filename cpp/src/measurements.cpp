@@ -21,7 +21,8 @@ void check_finite(const std::string& name, std::span<const double> values, const
 
 }  // namespace
 
-Measurements::Measurements(const BlockModel& model, const Record& record) : rows_(record.rows()) {
+Measurements::Measurements(const BlockModel& model, const Record& record)
+    : runs_(find_runs(record)), rows_(record.rows()) {
   const auto find = [&](const Variable& variable) {
     const std::span<const double> column = record.column(variable.name);
     check_finite(variable.name, column, record);

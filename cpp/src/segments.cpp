@@ -71,14 +71,20 @@ std::string describe_time(const Record& record) {
   return text.str();
 }
 
-/// The middle one of the intervals, or the mean of the middle two; there is at least one.
-double find_median_interval(std::span<const double> time) {
-  std::vector<double> intervals(time.size() - 1);
-  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = time[i + 1] - time[i];
+/// A gap is an interval > 5 (1 + 1e-6) medians: four lost samples of a regular record are exactly
+/// five intervals, which rounding must not turn into a gap. Infinite where there is no interval.
+double find_gap(std::vector<double> intervals) {
+  constexpr double gap_intervals = 5 * (1 + 1e-6);
+  if (intervals.empty()) return infinity;
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::ranges::nth_element(intervals, middle);
-  if (intervals.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(intervals.begin(), middle)) / 2;
+  if (intervals.size() % 2 == 1) return gap_intervals * *middle;
+  return gap_intervals * (*middle + *std::max_element(intervals.begin(), middle)) / 2;
+}
+
+/// Appends the intervals within some rows.
+void add_intervals(std::span<const double> time, std::vector<double>& intervals) {
+  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
 }
 
 }  // namespace
@@ -145,10 +151,9 @@ std::vector<Segment> find_segments(std::span<const double> time,
                   " (the first is 0): sort the rows and delete repeated ones");
     }
   }
-  // A gap is an interval > 5 (1 + 1e-6) medians: four lost samples of a regular record are exactly
-  // five intervals, which rounding must not turn into a gap.
-  constexpr double gap_intervals = 5 * (1 + 1e-6);
-  const double gap = time.size() < 2 ? infinity : gap_intervals * find_median_interval(time);
+  std::vector<double> intervals;
+  add_intervals(time, intervals);
+  const double gap = find_gap(std::move(intervals));
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < time.size(); ++i) {
     const bool begins =
@@ -157,6 +162,28 @@ std::vector<Segment> find_segments(std::span<const double> time,
     segments.back().last = i + 1;
   }
   return segments;
+}
+
+std::vector<Segment> find_runs(const Record& record) {
+  const auto time = record.has("time") ? record.column("time") : std::span<const double>();
+  std::vector<double> intervals;
+  if (!time.empty()) {
+    for (const Segment& segment : record.segments()) {
+      add_intervals(time.subspan(segment.first, segment.rows()), intervals);
+    }
+  }
+  const double gap = find_gap(std::move(intervals));
+  std::vector<Segment> runs;
+  std::size_t row = 0;
+  double last = not_a_number;
+  for (const Segment& segment : record.segments()) {
+    const double interval = time.empty() ? not_a_number : time[segment.first] - last;
+    if (!(interval > 0.0 && interval <= gap)) runs.push_back({"", row, row});
+    row += segment.rows();
+    runs.back().last = row;
+    if (!time.empty()) last = time[segment.last - 1];
+  }
+  return runs;
 }
 
 }  // namespace sepcal

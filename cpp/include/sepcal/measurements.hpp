@@ -31,6 +31,9 @@ class Measurements {
   /// Rows in the record's segments, N.
   std::size_t rows() const { return rows_; }
 
+  /// The rows cut where there are gaps, find_runs() of the record.
+  const std::vector<Segment>& runs() const { return runs_; }
+
   /// Blocks of at most block_rows samples, grouped into chunks: what one task works through in
   /// order. The grouping depends on the record alone, never on the number of threads.
   const std::vector<std::vector<Range>>& chunks() const { return chunks_; }
@@ -59,6 +62,7 @@ class Measurements {
   std::vector<std::span<const double>> outputs_;
   std::vector<double> output_squares_;
   std::vector<std::vector<Range>> chunks_;
+  std::vector<Segment> runs_;
   std::size_t rows_ = 0;
 };
 

@@ -72,4 +72,9 @@ class Record {
 std::vector<Segment> find_segments(std::span<const double> time,
                                    std::span<const std::string> labels);
 
+/// The rows of the record's segments one after another, cut only where `time` [s] has a gap over
+/// five median intervals or runs back: noise runs on where a label changes. Cut like the segments
+/// where the record has no time.
+std::vector<Segment> find_runs(const Record& record);
+
 }  // namespace sepcal

@@ -78,12 +78,6 @@ bool is_driven(const Effect& effect, const EffectKit& kit) {
 
 }  // namespace
 
-RowLayout lay_out(const std::vector<Segment>& segments) {
-  RowLayout layout{.segments = join_segments(segments)};
-  if (!segments.empty()) layout.rows = static_cast<Index>(layout.segments.back().last);
-  return layout;
-}
-
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, ThreadPool& pool)
     : fitted_(fitted),
       record_(fitted.record),
@@ -106,7 +100,10 @@ void CandidateRoom::linearise(const Fit& fit, ThreadPool& pool) {
   const Sweep sweep(*model, measurements, pool);
   const std::vector<MatrixXd> outputs = sweep.tangent_rows(fit.xi1(), fit.xi2());
 
-  RowLayout& layout = linearisation_.layout = lay_out(fitted_.rows);
+  RowLayout& layout = linearisation_.layout;
+  layout = {.segments = join_segments(fitted_.rows),
+            .runs = measurements.runs(),
+            .rows = static_cast<Index>(rows.rows())};
   std::vector<Index> free;
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     if (fit.parameters[k].fixed || fit.parameters[k].at_bound) continue;

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Each stride-th row of every segment.
+/// Each stride-th row of every run, without segments.
 struct Thinned {
   RowLayout layout;
   std::vector<Index> rows;  // among count()
@@ -26,12 +26,11 @@ Thinned thin_out(const RowLayout& layout, Index most_rows) {
   const Index stride = (layout.rows + most_rows - 1) / most_rows;
   Thinned thinned;
   std::vector<Index> of_output;
-  for (const Segment& segment : layout.segments) {
+  for (const Segment& run : layout.runs) {
     const auto first = of_output.size();
-    for (std::size_t row = segment.first; row < segment.last;
-         row += static_cast<std::size_t>(stride))
+    for (std::size_t row = run.first; row < run.last; row += static_cast<std::size_t>(stride))
       of_output.push_back(static_cast<Index>(row));
-    thinned.layout.segments.push_back({segment.label, first, of_output.size()});
+    thinned.layout.runs.push_back({run.label, first, of_output.size()});
   }
   thinned.layout.outputs = layout.outputs;
   thinned.layout.rows = static_cast<Index>(of_output.size());
@@ -106,7 +105,7 @@ VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, int 
   MatrixXd draws(layout.count(), simulations);
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     draws.middleRows(layout.first(j), layout.rows) =
-        simulate_noise(noise[j], layout.segments, simulations, generator,
+        simulate_noise(noise[j], layout.runs, simulations, generator,
                        innovations.segment(layout.first(j), layout.rows));
   }
   const WhitenedColumns small(layout, basis, noise);
@@ -132,7 +131,9 @@ Inflation inflation_of(const VectorXd& ratios, int freedom) {
 }
 
 double log10_ratio_tail(double ratio, int freedom, const Inflation& inflation) {
-  const double median = inflation.median * chi_squared_point(0.5, freedom);
+  // By chance the ninetieth percentile may be inflated less: no reason for a shorter tail.
+  const double median =
+      std::min(inflation.median, inflation.ninetieth) * chi_squared_point(0.5, freedom);
   const double ninetieth = inflation.ninetieth * chi_squared_point(0.1, freedom);
   double few = 0.02;  // the freedom of a chi-squared whose percentiles have that ratio
   double many = 4.0 * freedom + 100.0;

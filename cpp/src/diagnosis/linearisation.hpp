@@ -24,6 +24,7 @@ struct UsedOutput {
 /// Where rows stand: N of each output, segment after segment, one output below the other.
 struct RowLayout {
   std::vector<Segment> segments = {};  // among the N rows
+  std::vector<Segment> runs = {};      // the same rows, cut where there are gaps: as noise runs
   std::vector<UsedOutput> outputs = {};
   Eigen::Index rows = 0;  // N
 
@@ -31,9 +32,6 @@ struct RowLayout {
   /// The rows of the j-th used output.
   Eigen::Index first(std::size_t j) const { return static_cast<Eigen::Index>(j) * rows; }
 };
-
-/// The layout of `segments` without outputs.
-RowLayout lay_out(const std::vector<Segment>& segments);
 
 struct Linearisation {
   RowLayout layout;

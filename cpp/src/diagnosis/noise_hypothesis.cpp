@@ -42,7 +42,7 @@ NoiseModels fit_noise_models(const RowLayout& layout, const VectorXd& residual) 
   NoiseModels noise;
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     noise.push_back(
-        fit_noise(rows_of(layout, residual, j), layout.segments, {.max_order = order}).model);
+        fit_noise(rows_of(layout, residual, j), layout.runs, {.max_order = order}).model);
   }
   return noise;
 }
@@ -58,7 +58,7 @@ NoiseModels forget_colour(NoiseModels noise) {
 
 void whiten(const RowLayout& layout, const NoiseModels& noise, MatrixXd& columns) {
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    Whitener(noise[j], layout.segments).apply(columns.middleRows(layout.first(j), layout.rows));
+    Whitener(noise[j], layout.runs).apply(columns.middleRows(layout.first(j), layout.rows));
   }
 }
 
@@ -95,7 +95,7 @@ Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain, bo
     if (afresh && is_coloured(noise_[j])) starts.push_back(forget_colour({noise_[j]}).front());
     double least = std::numeric_limits<double>::infinity();
     for (const NoiseModel& start : starts) {
-      const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.segments,
+      const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.runs,
                                      {.start = start, .least_gain = least_gain});
       if (!(fit.minus_two_log_likelihood < least)) continue;
       least = fit.minus_two_log_likelihood;

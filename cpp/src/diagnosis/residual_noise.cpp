@@ -11,15 +11,15 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Correlations of rows `lag` apart, within segments, about the mean.
-VectorXd autocorrelation(const VectorXd& e, const std::vector<Segment>& segments, Index lags) {
+/// Correlations of rows `lag` apart, within runs, about the mean.
+VectorXd autocorrelation(const VectorXd& e, const std::vector<Segment>& runs, Index lags) {
   const VectorXd centred = e.array() - e.mean();
   VectorXd correlation = VectorXd::Zero(lags);
   for (Index lag = 1; lag <= lags; ++lag) {
-    for (const Segment& segment : segments) {
-      const Index pairs = static_cast<Index>(segment.rows()) - lag;
+    for (const Segment& run : runs) {
+      const Index pairs = static_cast<Index>(run.rows()) - lag;
       if (pairs <= 0) continue;
-      const auto first = static_cast<Index>(segment.first);
+      const auto first = static_cast<Index>(run.first);
       correlation[lag - 1] +=
           centred.segment(first, pairs).dot(centred.segment(first + lag, pairs));
     }
@@ -44,7 +44,7 @@ std::vector<ResidualNoise> describe_residual(const NullHypothesis& null) {
                         .ljung_box_p = not_a_number,
                         .noise = null.best.noise[j]};
     if (layout.rows > 2 * lags) {
-      const VectorXd r = autocorrelation(e, layout.segments, lags);
+      const VectorXd r = autocorrelation(e, layout.runs, lags);
       double Q = 0.0;
       for (Index k = 1; k <= lags; ++k) {
         Q += r[k - 1] * r[k - 1] / (rows - static_cast<double>(k));

@@ -89,13 +89,12 @@ std::string unit_of_slope(const Variable& output, const Tables& tables, const st
 }
 
 /// x' Sigma x of each column of X (rows x channels), Sigma the covariance of a residual's noise.
-VectorXd spread_of(const MatrixXd& X, const VectorXd& residual,
-                   const std::vector<Segment>& segments) {
+VectorXd spread_of(const MatrixXd& X, const VectorXd& residual, const std::vector<Segment>& runs) {
   const NoiseModel noise =
-      find_residual_noise({residual.data(), static_cast<std::size_t>(residual.size())}, segments)
+      find_residual_noise({residual.data(), static_cast<std::size_t>(residual.size())}, runs)
           .value_or(NoiseModel{.sigma = residual.norm() /
                                         std::sqrt(static_cast<double>(residual.size()))});
-  return covariance_product(noise, segments, X).diagonal();
+  return covariance_product(noise, runs, X).diagonal();
 }
 
 }  // namespace
@@ -104,7 +103,7 @@ std::vector<ChannelMisfit> compare_channels(const Record& record, const Tables& 
                                             const MatrixXd& residuals, ThreadPool& pool) {
   if (residuals.rows() < fewest_rows) return {};
   const std::vector<Channel> channels = read_channels(record, tables);
-  const std::vector<Segment> segments = join_segments(record.segments());
+  const std::vector<Segment> runs = find_runs(record);
   const MatrixXd r = residuals.rowwise() - residuals.colwise().mean();
   const auto outputs = static_cast<std::size_t>(r.cols());
   MatrixXd X(r.rows(), static_cast<Index>(channels.size()));
@@ -118,7 +117,7 @@ std::vector<ChannelMisfit> compare_channels(const Record& record, const Tables& 
       shares.col(static_cast<Index>(task)) = smooth_shares(channels[task], r);
     } else {
       const auto j = static_cast<Index>(task - channels.size());
-      spreads.col(j) = spread_of(X, r.col(j), segments);
+      spreads.col(j) = spread_of(X, r.col(j), runs);
     }
   });
   std::vector<ChannelMisfit> result;

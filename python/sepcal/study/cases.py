@@ -103,6 +103,13 @@ PAIRS = (
     (CASES[36], CASES[30]),  # scale by temperature and throttle
 )
 
+PROXIED = CASES[29]  # by the battery's voltage
+UNLOGGED = (
+    CASES[6],  # flaps that are set from time to time
+    CASES[11],
+    CASES[32],  # a current that comes and goes like noise
+)
+
 INVISIBLE = (
     Case("five-hole", "mounting_error", (0.02, 0.03)),
     Case("magnetometer", "attitude_bias", (0.02, -0.02)),

@@ -20,6 +20,8 @@ from sepcal.study.cases import (
     NOISES,
     PAIRS,
     PROBES,
+    PROXIED,
+    UNLOGGED,
     Case,
     calibrate,
     factor_for,
@@ -81,10 +83,9 @@ def _tasks(options: StudyOptions) -> Iterable[tuple[str, tuple[Any, ...]]]:
         yield from (("pairs", (pair, factors, seed)) for seed in seeds)
     for case in INVISIBLE:
         yield from (("invisible", (case, seed)) for seed in seeds)
-    current = CASES[29]
-    factor = factor_for(current, 10.0)
-    yield from (("proxy", (current, factor, seed)) for seed in seeds)
-    for case in (CASES[7], CASES[31], CASES[32]):
+    factor = factor_for(PROXIED, 10.0)
+    yield from (("proxy", (PROXIED, factor, seed)) for seed in seeds)
+    for case in UNLOGGED:
         factor = factor_for(case, 20.0)
         yield from (("unlogged", (case, factor, seed)) for seed in seeds)
     yield from (("slow", (seed,)) for seed in seeds)
@@ -224,9 +225,9 @@ def _proxy(case: Case, factor: float, seed: int) -> Row:
 
 
 def _unlogged(case: Case, factor: float, seed: int) -> Row:
-    """The driver, and what drives with it, are not in the log."""
+    """The driver is not in the log."""
     flight = fly(case.probe, {case.effect: case.sizes(factor)}, seed, case.rows)
-    gone = {"throttle", "current_a", "panel_current_a"}
+    gone = {"flap", "throttle", "current_a", "panel_current_a"}
     columns = {header: values for header, values in flight.items() if header not in gone}
     bare = Flight(columns, maneuver=flight.maneuvers)
     diagnosis = calibrate(case.probe, bare).diagnose()
