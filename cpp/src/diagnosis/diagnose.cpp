@@ -24,6 +24,8 @@ constexpr std::size_t most_paired = 10;
 constexpr std::size_t most_families = 12;
 constexpr std::size_t most_compared = 3;  // with the residual, not by their columns alone
 constexpr std::size_t most_confirmed = 3;
+constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
+constexpr int few_simulations = 39;
 constexpr std::size_t most_simulated = 3;  // the others are corrected as the worst of these
 constexpr std::size_t most_pairs_tested = 5;
 
@@ -219,8 +221,10 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
     tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
     Inflation inflation = worst;
     if (i < most_simulated) {
-      inflation =
-          simulate_inflation(room_, null_, *significant[i], options_.simulations, seed, pool_);
+      const bool beyond_doubt = significant[i]->log10_p < doubtless;
+      const int simulations =
+          beyond_doubt ? std::min(few_simulations, options_.simulations) : options_.simulations;
+      inflation = simulate_inflation(room_, null_, *significant[i], simulations, seed, pool_);
       worst = {std::max(worst.median, inflation.median),
                std::max(worst.ninetieth, inflation.ninetieth)};
     }
