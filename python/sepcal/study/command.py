@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from sepcal._core import Error
-from sepcal.study.hidden_effects import StudyOptions, hidden_effects
+from sepcal.study.experiments import StudyOptions, hidden_effects
 from sepcal.study.write_up import write_up
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from sepcal._core import Error
-from sepcal.study.hidden_effects import StudyOptions
+from sepcal.study.experiments import StudyOptions
 
 Row = dict[str, Any]
 
