@@ -30,16 +30,6 @@ double white_likelihood(const VectorXd& e, const std::vector<Segment>& segments,
 
 }  // namespace
 
-std::vector<Segment> join_segments(const std::vector<Segment>& segments) {
-  std::vector<Segment> joined;
-  std::size_t row = 0;
-  for (const Segment& segment : segments) {
-    joined.push_back({segment.label, row, row + segment.rows()});
-    row += segment.rows();
-  }
-  return joined;
-}
-
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
                                               const std::vector<Segment>& segments) {
   constexpr Index fewest_rows = 30;

@@ -16,9 +16,6 @@
 
 namespace sepcal {
 
-/// The segments one after another, as gather_rows() lays their rows out.
-std::vector<Segment> join_segments(const std::vector<Segment>& segments);
-
 /// The noise of an output's residual `e`, or nothing where there is none to tell: fewer than 30
 /// rows, or a residual of zeros. White where nothing else is better by BIC.
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,

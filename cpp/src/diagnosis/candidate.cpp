@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coloured_covariance.hpp"
 #include "driven_rows.hpp"
+#include "parts_of_record.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/measurements.hpp"

@@ -8,6 +8,7 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/tails.hpp"
+#include "parts_of_record.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -17,55 +18,23 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-struct Window {
-  std::string name;
-  std::vector<Segment> stretches;
-};
-
 /// By label where there are a few, else even windows of at least ten correlation times.
-std::vector<Window> cut_windows(const CandidateRoom& room, double correlation) {
+std::vector<Part> cut_windows(const CandidateRoom& room, double correlation) {
   constexpr std::size_t fewest = 3;
   constexpr std::size_t most = 20;
   const RowLayout& layout = room.fit().layout;
-  std::vector<Window> windows;
-  for (const Segment& segment : layout.segments) {
-    const auto same = std::ranges::find(windows, segment.label, &Window::name);
-    if (same == windows.end()) {
-      windows.push_back({segment.label, {segment}});
-    } else {
-      same->stretches.push_back(segment);
-    }
-  }
+  std::vector<Part> windows = parts_by_label(layout.segments);
   if (windows.size() >= fewest && windows.size() <= most) return windows;
-  windows.clear();
-  const auto length = static_cast<std::size_t>(layout.rows);
-  const double wanted = std::floor(static_cast<double>(length) / (10.0 * correlation));
-  const auto count = static_cast<std::size_t>(std::clamp(wanted, 4.0, static_cast<double>(most)));
-  std::vector<double> time;
-  if (room.record().has("time")) {
-    const auto column = room.record().column("time");
-    for (const Segment& segment : room.rows()) {
-      time.insert(time.end(), column.begin() + static_cast<std::ptrdiff_t>(segment.first),
-                  column.begin() + static_cast<std::ptrdiff_t>(segment.last));
-    }
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t first = length * i / count;
-    const std::size_t last = length * (i + 1) / count;
-    if (first == last) continue;
-    const auto name = [&](std::size_t row) {
-      std::string text = time.empty() ? std::to_string(row) : std::to_string(time[row]);
-      if (text.find('.') != std::string::npos) text.resize(text.find('.') + 2);
-      return text;
-    };
-    windows.push_back({name(first) + ":" + name(last - 1), {{"", first, last}}});
-  }
-  return windows;
+  const double wanted = std::floor(static_cast<double>(layout.rows) / (10.0 * correlation));
+  const double count = std::clamp(wanted, 4.0, static_cast<double>(most));
+  Record rows = room.record();
+  rows.cut(room.rows());
+  return parts_by_time(layout.segments, gather_time(rows), static_cast<std::size_t>(count));
 }
 
 /// Each column restricted to each window.
 MatrixXd by_window(const RowLayout& layout, const MatrixXd& columns,
-                   const std::vector<Window>& windows) {
+                   const std::vector<Part>& windows) {
   const auto count = static_cast<Index>(windows.size());
   MatrixXd parts = MatrixXd::Zero(layout.count(), columns.cols() * count);
   for (Index k = 0; k < columns.cols(); ++k) {
@@ -89,7 +58,7 @@ struct Offsets {
 };
 
 std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
-                                  const NullHypothesis& null, const std::vector<Window>& windows) {
+                                  const NullHypothesis& null, const std::vector<Part>& windows) {
   const RowLayout& layout = room.fit().layout;
   std::vector<Offsets> sets;
   const auto add = [&](const std::string& where, const MatrixXd& columns) {
@@ -120,7 +89,7 @@ std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
 std::vector<std::pair<std::string, double>> describe_windows(const RowLayout& layout,
                                                              const NullHypothesis& null,
                                                              const Offsets& offsets,
-                                                             const std::vector<Window>& windows) {
+                                                             const std::vector<Part>& windows) {
   std::vector<std::pair<std::string, double>> described;
   const auto count = static_cast<Index>(windows.size());
   for (Index w = 0; w < count; ++w) {
@@ -155,7 +124,7 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
                            const DiagnosisOptions& options, ThreadPool& pool) {
   const RowLayout& layout = room.fit().layout;
   const VectorXd residual = remove_span(null.basis, room.fit().residual);
-  const std::vector<Window> windows = cut_windows(room, correlation_rows(layout, residual));
+  const std::vector<Part> windows = cut_windows(room, correlation_rows(layout, residual));
   const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
   std::vector<LikelihoodRatio> ratios(sets.size());
   pool.for_each(sets.size(),

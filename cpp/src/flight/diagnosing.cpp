@@ -8,6 +8,7 @@
 
 #include "diagnosed_flight.hpp"
 #include "effect_candidates.hpp"
+#include "misfits.hpp"
 #include "parameter_values.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
@@ -46,11 +47,12 @@ std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Flight
   return names;
 }
 
-/// Among effects that the flight can't tell apart, by p either, the one of the catalogue comes
-/// first: the wind goes with the height and not, as it does as well, with the temperature.
+/// Among effects that the flight can't tell apart, and that explain as much as surely, the one of
+/// the catalogue comes first: the wind goes with the height and not, as it does as well, with the
+/// temperature.
 void prefer_catalogued(std::string_view model, std::vector<EffectFinding>& effects) {
   if (effects.empty() || effects.front().status != FindingStatus::found) return;
-  constexpr double margin = 0.05;  // of log10 p
+  constexpr double margin = 0.05;  // of log10 p, and of what the error falls by
   const EffectFinding first = effects.front();
   const auto is_catalogued = [&](const EffectFinding& effect) {
     return std::ranges::find(effect_catalogue(model), effect.name, &CataloguedEffect::name) !=
@@ -60,9 +62,24 @@ void prefer_catalogued(std::string_view model, std::vector<EffectFinding>& effec
   const auto preferred = std::ranges::find_if(effects, [&](const EffectFinding& effect) {
     return effect.status == FindingStatus::found && is_catalogued(effect) &&
            effect.log10_p < (1.0 - margin) * first.log10_p &&
+           effect.predicted_drop > (1.0 - margin) * first.predicted_drop &&
            std::ranges::find(first.family, effect.name) != first.family.end();
   });
   if (preferred != effects.end()) std::rotate(effects.begin(), preferred, preferred + 1);
+}
+
+/// The misfit of the fitted rows, part by part.
+std::vector<Misfit> find_where(const DiagnosedFit& fitted) {
+  Record rows = fitted.record;
+  std::vector<EffectSetting> settings = fitted.effects;
+  const auto model =
+      compose(fitted.model, make_effects(fitted.kit, *fitted.model, settings, rows), rows);
+  rows.cut(fitted.rows);
+  const Measurements measurements(*model, rows);
+  ThreadPool pool(1);
+  const Sweep sweep(*model, measurements, pool);
+  return measure_parts(rows, fitted.model->tables().outputs,
+                       sweep.residuals(fitted.fit.xi1(), fitted.fit.xi2()));
 }
 
 FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const Flight& flight,
@@ -82,7 +99,20 @@ FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const 
   for (const Segment& segment : fitted.rows) used += segment.rows();
   result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
   result.missing_channels = list_missing_channels(result.model, flight);
+  result.where = find_where(fitted);
   return result;
+}
+
+/// Errors name the flight.
+template <class Task>
+FlightDiagnosis name_errors(const Flight& flight, Task task) {
+  try {
+    return task();
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    if (what.starts_with(flight.name())) throw;
+    throw Error(fmt::format("{}: {}", flight.name(), what));
+  }
 }
 
 /// What the effect adds to every output at the calibration's estimates (rows x n_z, of the whole
@@ -180,21 +210,16 @@ DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& record,
 
 FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
                          const OwnEffects& own, const DiagnosisOptions& options) {
-  try {
-    const Ground ground = prepare_ground(calibration, flight, own);
-    FlightDiagnosis result = run(calibration, ground, flight, options);
-    result.where = compare(calibration, flight).where;
-    return result;
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    if (what.starts_with(flight.name())) throw;
-    throw Error(fmt::format("{}: {}", flight.name(), what));
-  }
+  return name_errors(flight, [&] {
+    return run(calibration, prepare_ground(calibration, flight, own), flight, options);
+  });
 }
 
-FlightDiagnosis diagnose_with(const HiddenEffect& injected, const Calibration& calibration,
-                              const Flight& flight, const OwnEffects& own,
-                              const DiagnosisOptions& options) {
+namespace {
+
+FlightDiagnosis inject(const HiddenEffect& injected, const Calibration& calibration,
+                       const Flight& flight, const OwnEffects& own,
+                       const DiagnosisOptions& options) {
   Ground ground = prepare_ground(calibration, flight, own);
   Injection injection;
   const MatrixXd added = added_outputs(calibration, ground, injected, injection);
@@ -223,6 +248,14 @@ FlightDiagnosis diagnose_with(const HiddenEffect& injected, const Calibration& c
   }
   result.injection = std::move(injection);
   return result;
+}
+
+}  // namespace
+
+FlightDiagnosis diagnose_with(const HiddenEffect& injected, const Calibration& calibration,
+                              const Flight& flight, const OwnEffects& own,
+                              const DiagnosisOptions& options) {
+  return name_errors(flight, [&] { return inject(injected, calibration, flight, own, options); });
 }
 
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
