@@ -127,6 +127,18 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("of a straight line and a spline the line comes first, until the spline explains more") {
+  for (const bool straight : {true, false}) {
+    CAPTURE(straight);
+    Bench bench;
+    const VectorXd height = bench.add("height", VectorXd::LinSpaced(rows, -1.0, 1.0));
+    const VectorXd wind = straight ? VectorXd(4.0 * height) : VectorXd(4.0 * height.array().cube());
+    const Diagnosis diagnosis = bench.diagnose(wind, {"c[spline(height,6)]", "c[height]"});
+    CHECK(diagnosis.effects.front().name == (straight ? "c[height]" : "c[spline(height,6)]"));
+    CHECK(diagnosis.effects.front().status == FindingStatus::found);
+  }
+}
+
 TEST_CASE("two effects that only show together are found as a pair") {
   Bench bench;
   const VectorXd common = draw_noise("white", rows, bench.draws);

@@ -29,6 +29,11 @@ constexpr int few_simulations = 39;
 constexpr std::size_t most_simulated = 3;  // the others are corrected as the worst of these
 constexpr std::size_t most_pairs_tested = 5;
 
+const Trial& trial_of(const std::vector<Trial>& trials, const EffectFinding& finding) {
+  return *std::ranges::find_if(
+      trials, [&](const Trial& trial) { return trial.candidate.name == finding.name; });
+}
+
 class Recipe {
  public:
   Recipe(const DiagnosedFit& fitted, const DiagnosisOptions& options)
@@ -48,6 +53,7 @@ class Recipe {
   std::vector<EffectFinding> judge(Trials& trials, double tests);
   void try_pairs(const std::vector<EffectFinding>& singles);
   EffectFinding describe(const Trial& trial) const;
+  void prefer_simplest(const Trials& trials, std::vector<EffectFinding>& findings) const;
   void find_families(const Trials& trials, std::vector<EffectFinding>& findings);
   void tell(std::string_view task, double fraction) const {
     if (options_.progress) options_.progress(task, fraction);
@@ -152,14 +158,29 @@ EffectFinding Recipe::describe(const Trial& trial) const {
   return finding;
 }
 
+/// The first of those found gives way to one with fewer columns beyond which it explains nothing:
+/// of a straight line and a spline, the line.
+void Recipe::prefer_simplest(const Trials& trials, std::vector<EffectFinding>& findings) const {
+  if (findings.empty() || findings.front().status != FindingStatus::found) return;
+  const Trial& first = trial_of(trials, findings.front());
+  const Family family(room_, null_, first, options_.family_correlation);
+  std::size_t simplest = 0;
+  int freedom = first.freedom;
+  for (std::size_t i = 1; i < findings.size() && findings[i].status == FindingStatus::found; ++i) {
+    const Trial& other = trial_of(trials, findings[i]);
+    if (other.freedom >= freedom || !family.is_enough(other)) continue;
+    simplest = i;
+    freedom = other.freedom;
+  }
+  const auto begin = findings.begin();
+  const auto chosen = begin + static_cast<std::ptrdiff_t>(simplest);
+  std::rotate(begin, chosen, chosen + 1);
+}
+
 void Recipe::find_families(const Trials& trials, std::vector<EffectFinding>& findings) {
-  const auto trial_of = [&](const EffectFinding& finding) -> const Trial& {
-    return *std::ranges::find_if(
-        trials, [&](const Trial& trial) { return trial.candidate.name == finding.name; });
-  };
   const double threshold = std::log10(options_.significance / static_cast<double>(findings.size()));
   for (std::size_t a = 0; a < std::min(most_families, findings.size()); ++a) {
-    const Trial& first = trial_of(findings[a]);
+    const Trial& first = trial_of(trials, findings[a]);
     if (!first.visible) continue;
     std::optional<Family> family;
     if (a < most_compared && first.tested) {
@@ -167,7 +188,7 @@ void Recipe::find_families(const Trials& trials, std::vector<EffectFinding>& fin
     }
     std::vector<char> belongs(findings.size(), 0);
     pool_.for_each(findings.size(), [&](std::size_t b) {
-      const Trial& other = trial_of(findings[b]);
+      const Trial& other = trial_of(trials, findings[b]);
       if (b == a || !other.visible) return;
       belongs[b] = are_alike(first, other, options_.family_correlation) ||
                    (family && (family->is_proxy(other, threshold) || family->is_rival(other)));
@@ -260,6 +281,7 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
     if (a.status != b.status) return a.status < b.status;
     return a.log10_p < b.log10_p;
   });
+  prefer_simplest(trials, findings);
   find_families(trials, findings);
   return findings;
 }

@@ -70,15 +70,27 @@ bool Family::is_proxy(const Trial& other, double threshold) const {
   return more < (1.0 - correlation_ * correlation_) * alone;
 }
 
+Family::Drops Family::drops_with(const Trial& other) const {
+  const MatrixXd white = whiten_beside(beyond_tangent(other));
+  Drops drops;
+  drops.first = explained(white_basis_, white_residual_);
+  drops.other = explained(orthonormal_basis(white), white_residual_);
+  drops.both = drops.first + explained(orthonormal_basis(remove_span(white_basis_, white)),
+                                       remove_span(white_basis_, white_residual_));
+  return drops;
+}
+
 bool Family::is_rival(const Trial& other) const {
   if (!other.tested) return false;
-  const MatrixXd white = whiten_beside(beyond_tangent(other));
-  const double first = explained(white_basis_, white_residual_);
-  const double alone = explained(orthonormal_basis(white), white_residual_);
-  const double both = first + explained(orthonormal_basis(remove_span(white_basis_, white)),
-                                        remove_span(white_basis_, white_residual_));
-  return log10_tail(alone, other) < significant && log10_tail(both - first, other) > significant &&
-         log10_tail(both - alone, first_) > significant;
+  const Drops drops = drops_with(other);
+  return log10_tail(drops.other, other) < significant &&
+         log10_tail(drops.both - drops.first, other) > significant &&
+         log10_tail(drops.both - drops.other, first_) > significant;
+}
+
+bool Family::is_enough(const Trial& other) const {
+  const Drops drops = drops_with(other);
+  return log10_tail(drops.both - drops.other, first_) > significant;
 }
 
 }  // namespace sepcal

@@ -31,7 +31,18 @@ class Family {
   /// is too small here to say which it is.
   bool is_rival(const Trial& other) const;
 
+  /// The first explains nothing significant beyond `other`, which is tested as well.
+  bool is_enough(const Trial& other) const;
+
  private:
+  /// What the residual falls by, in squares of the noise beside the first.
+  struct Drops {
+    double first = 0.0;
+    double other = 0.0;
+    double both = 0.0;
+  };
+  Drops drops_with(const Trial& other) const;
+
   Eigen::MatrixXd beyond_tangent(const Trial& trial) const;
   Eigen::MatrixXd whiten_beside(const Eigen::MatrixXd& columns) const;
 
