@@ -23,12 +23,13 @@ std::string percent(double fraction) {
   return std::isnan(fraction) ? "-" : fmt::format("{:.1f} %", 100.0 * fraction);
 }
 
+std::string probability(double p) {
+  if (std::isnan(p)) return "-";
+  return p >= 1e-99 ? fmt::format("{:.2g}", p) : "<1e-99";
+}
+
 std::string probability(const EffectFinding& effect) {
-  if (effect.status == FindingStatus::cannot_be_seen) return "-";
-  if (effect.p_adjusted > 0 && effect.p_adjusted >= 1e-99) {
-    return fmt::format("{:.2g}", effect.p_adjusted);
-  }
-  return "<1e-99";
+  return effect.status == FindingStatus::cannot_be_seen ? "-" : probability(effect.p_adjusted);
 }
 
 std::string_view in_words(const EffectFinding& effect) {
@@ -100,6 +101,7 @@ std::string best_effect(const FlightDiagnosis& result, const std::string& app,
     }
     text += '\n';
   }
+  if (result.injection) return text;  // there is nothing to add: it isn't in the log
   return text + fmt::format("\nnext: {} add {} {} '{}' -o NEXT.json\n", app, result.flight.file,
                             calibration, best.name);
 }
@@ -139,9 +141,9 @@ std::string diagnosis_table(const FlightDiagnosis& result, const std::string& ap
   }
   if (result.injection) {
     const Injection& injection = *result.injection;
-    text += fmt::format("\ninjected {}: {} (rank {}, p {:.2g})\n", injection.effect,
+    text += fmt::format("\ninjected {}: {} (rank {}, p {})\n", injection.effect,
                         injection.found ? "would have been found" : "would have been missed",
-                        injection.rank, injection.p_adjusted);
+                        injection.rank, probability(injection.p_adjusted));
   }
   return text;
 }

@@ -10,6 +10,8 @@ from typing import Any, Self
 
 from sepcal import _core
 
+SIGNIFICANT = 0.05  # p below which an effect is found, if rows held out gain as well
+
 
 @dataclass(frozen=True)
 class EffectFinding:
@@ -36,6 +38,13 @@ class EffectFinding:
     absorbed_by: dict[str, float]  # how far ignoring it shifts each parameter
     family: list[str]  # what this flight can't tell apart, itself among them
     status: str  # "found", "not_seen", "cannot_be_seen"
+
+    @property
+    def in_words(self) -> str:
+        """The status as tables show it; "not held out" is significant and yet refused."""
+        if self.status == "not_seen" and self.p_adjusted < SIGNIFICANT:
+            return "not held out"
+        return {"found": "found", "not_seen": "not seen"}.get(self.status, "can't be seen")
 
 
 @dataclass(frozen=True)
@@ -105,10 +114,12 @@ class Diagnosis:
         shown = [effect for effect in self.effects if effect.status != "cannot_be_seen"][:12]
         width = max([len("effect"), *(len(effect.name) for effect in shown)])
         lines = [self.sentence, ""]
-        lines.append(f"{'effect':<{width}}  status     p          predicted  held out  visibility")
+        lines.append(
+            f"{'effect':<{width}}  status        p          predicted  held out  visibility"
+        )
         for effect in shown:
             lines.append(
-                f"{effect.name:<{width}}  {effect.status:<9}  {effect.p_adjusted:<9.2g}  "
+                f"{effect.name:<{width}}  {effect.in_words:<12}  {effect.p_adjusted:<9.2g}  "
                 f"{_percent(effect.predicted_drop):>9}  {_percent(effect.held_out_gain):>8}  "
                 f"{effect.visibility:>10.2f}"
             )

@@ -74,6 +74,7 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
   Record rows = before.prepared.record;
   rows.cut(record.segments());
   const Promise promised = promise_of(base, next, flight, added);
+  note_other_flight(base, flight, next.notes);
   next.history = base.history;
   next.history.push_back({.effect = added,
                           .rmse_before = total_rmse(base, before, rows),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibrated_flight.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "sepcal/error.hpp"
@@ -20,6 +22,16 @@ EffectiveFlight prepare_calibrated(const Calibration& calibration, const Flight&
         "flight again");
   }
   return prepared;
+}
+
+void note_other_flight(const Calibration& calibration, const Flight& flight,
+                       std::vector<std::string>& notes) {
+  const FittedFlight& fitted = calibration.flight;
+  if (fitted.sha256.empty() || flight.sha256().empty() || fitted.sha256 == flight.sha256()) return;
+  notes.push_back(fmt::format(
+      "{}: not the flight that the calibration was fitted to, {}; the errors here are those of a "
+      "prediction",
+      flight.name(), fitted.file));
 }
 
 }  // namespace sepcal

@@ -12,4 +12,9 @@ namespace sepcal {
 /// those of its model with its effects.
 EffectiveFlight prepare_calibrated(const Calibration& calibration, const Flight& flight);
 
+/// Adds a note where the flight is another file than the calibration was fitted to: its errors are
+/// no longer those of a fit.
+void note_other_flight(const Calibration& calibration, const Flight& flight,
+                       std::vector<std::string>& notes);
+
 }  // namespace sepcal

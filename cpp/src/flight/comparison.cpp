@@ -25,6 +25,7 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
   result.notes = effective.prepared.notes;
+  note_other_flight(calibration, flight, result.notes);
   result.residuals = sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());
   result.time = gather_time(record);
   const auto& outputs = probe.model().tables().outputs;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrated_flight.hpp"
 #include "diagnosed_flight.hpp"
 #include "effect_candidates.hpp"
 #include "misfits.hpp"
@@ -90,6 +91,7 @@ FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const 
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
   result.notes = ground.prepared.notes;
+  note_other_flight(calibration, flight, result.notes);
   result.diagnosis = diagnose(fitted, candidates_for(fitted, flight), options);
   prefer_catalogued(result.model, result.diagnosis.effects);
   for (const EffectFinding& effect : result.diagnosis.effects) {
@@ -262,9 +264,11 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const Diagnosis& found = diagnosis.diagnosis;
   if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
   const std::string& unit = found.residual.front().unit;
+  const std::string injected =
+      diagnosis.injection ? fmt::format("with {} injected, ", diagnosis.injection->effect) : "";
   const std::string left =
-      fmt::format("{:.3g} {} of error are left; noise alone would leave {:.3g} {}", found.rmse,
-                  unit, found.floor, unit);
+      fmt::format("{}{:.3g} {} of error are left; noise alone would leave {:.3g} {}", injected,
+                  found.rmse, unit, found.floor, unit);
   if (found.verdict == Verdict::unexplained) {
     return fmt::format(
         "Something is missing that no candidate explains: {}; it shows as offsets of {} from "

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
+from sepcal._core import Error
 from sepcal.calibration import load
 from sepcal.flight import read_csv
 from sepcal.reporting import report
@@ -35,6 +37,9 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
 
 def run(arguments: argparse.Namespace) -> int:
     """Writes the page; returns 0. Raises sepcal.Error on bad input."""
+    folder = Path(arguments.output).parent
+    if not folder.is_dir():
+        raise Error(f"{arguments.output}: folder '{folder}' isn't there; make it first")
     flight = read_csv(arguments.flight)
     chain = [load(file) for file in arguments.calibrations]
     live = sys.stderr.isatty()

@@ -13,7 +13,6 @@ from sepcal.comparison import Comparison
 from sepcal.diagnosis import EffectFinding
 from sepcal.reporting.words import (
     MEANINGS,
-    STATUSES,
     estimate,
     number,
     percent,
@@ -119,10 +118,8 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> str:
         name = f"<b>{escape(effect.name)}</b><br><small>{escape(effect.sentence)}</small>"
         if not all(at in effect.name or at in effect.sentence for at in effect.drivers):
             name += f"<br><small>driven by {escape(', '.join(effect.drivers))}</small>"
-        status = STATUSES.get(effect.status, effect.status)
+        status = effect.in_words
         held = percent(effect.held_out_gain)
-        if effect.held_out_gain is not None and not effect.held_out_passed:
-            held += "<br><small>gate failed</small>"
         seen = number(effect.visibility, 2)
         if effect.visibility < CLOSE:
             seen = f'<span class="flag">{seen}</span>'

@@ -41,11 +41,6 @@ VERDICTS = {
     "effect_missing": "An effect is missing",
     "unexplained": "Unexplained structure",
 }
-STATUSES = {
-    "found": "found",
-    "not_seen": "not seen",
-    "cannot_be_seen": "can't be seen here",
-}
 
 
 def number(value: float | None, digits: int = 3) -> str:
