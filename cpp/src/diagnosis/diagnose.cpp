@@ -163,6 +163,7 @@ EffectFinding Recipe::describe(const Trial& trial) const {
 void Recipe::prefer_simplest(const Trials& trials, std::vector<EffectFinding>& findings) const {
   if (findings.empty() || findings.front().status != FindingStatus::found) return;
   const Trial& first = trial_of(trials, findings.front());
+  if (!first.tested) return;
   const Family family(room_, null_, first, options_.family_correlation);
   std::size_t simplest = 0;
   int freedom = first.freedom;
@@ -250,6 +251,14 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
                std::max(worst.ninetieth, inflation.ninetieth)};
     }
     inflate(inflation, *significant[i]);
+  }
+  // What was only screened is no surer than the least sure of what was tested.
+  double least_sure = -infinity;
+  for (const Trial& trial : trials) {
+    if (trial.tested) least_sure = std::max(least_sure, trial.log10_p);
+  }
+  for (Trial& trial : trials) {
+    if (trial.visible && !trial.tested) trial.log10_p = std::max(trial.log10_p, least_sure);
   }
   confirm_best(trials, threshold);
   std::vector<double> log10_p;
