@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <optional>
 
-#include "diagnosis/family.hpp"
 #include "diagnosis/omnibus.hpp"
+#include "diagnosis/ranking.hpp"
 #include "diagnosis/residual_noise.hpp"
 #include "diagnosis/tails.hpp"
 #include "diagnosis/trial.hpp"
@@ -21,18 +20,11 @@ using Eigen::Index;
 
 constexpr std::size_t most_tested = 12;  // of either screen's best
 constexpr std::size_t most_paired = 10;
-constexpr std::size_t most_families = 12;
-constexpr std::size_t most_compared = 3;  // with the residual, not by their columns alone
 constexpr std::size_t most_confirmed = 3;
 constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
 constexpr int few_simulations = 39;
 constexpr std::size_t most_simulated = 3;  // the others are corrected as the worst of these
 constexpr std::size_t most_pairs_tested = 5;
-
-const Trial& trial_of(const std::vector<Trial>& trials, const EffectFinding& finding) {
-  return *std::ranges::find_if(
-      trials, [&](const Trial& trial) { return trial.candidate.name == finding.name; });
-}
 
 class Recipe {
  public:
@@ -48,13 +40,13 @@ class Recipe {
   void screen_all(Trials& trials);
   void test_best(Trials& trials, std::size_t most);
   void hold_out_significant(Trials& trials);
+  void calibrate_significant(Trials& trials, double threshold);
   void confirm_best(Trials& trials, double threshold);
+  std::vector<EffectFinding> collect(const Trials& trials, double tests) const;
   /// `tests`: how many could have been chosen.
   std::vector<EffectFinding> judge(Trials& trials, double tests);
   void try_pairs(const std::vector<EffectFinding>& singles);
   EffectFinding describe(const Trial& trial) const;
-  void prefer_simplest(const Trials& trials, std::vector<EffectFinding>& findings) const;
-  void find_families(const Trials& trials, std::vector<EffectFinding>& findings);
   void tell(std::string_view task, double fraction) const {
     if (options_.progress) options_.progress(task, fraction);
   }
@@ -158,48 +150,6 @@ EffectFinding Recipe::describe(const Trial& trial) const {
   return finding;
 }
 
-/// The first of those found gives way to one with fewer columns beyond which it explains nothing:
-/// of a straight line and a spline, the line.
-void Recipe::prefer_simplest(const Trials& trials, std::vector<EffectFinding>& findings) const {
-  if (findings.empty() || findings.front().status != FindingStatus::found) return;
-  const Trial& first = trial_of(trials, findings.front());
-  if (!first.tested) return;
-  const Family family(room_, null_, first, options_.family_correlation);
-  std::size_t simplest = 0;
-  int freedom = first.freedom;
-  for (std::size_t i = 1; i < findings.size() && findings[i].status == FindingStatus::found; ++i) {
-    const Trial& other = trial_of(trials, findings[i]);
-    if (other.freedom >= freedom || !family.is_enough(other)) continue;
-    simplest = i;
-    freedom = other.freedom;
-  }
-  const auto begin = findings.begin();
-  const auto chosen = begin + static_cast<std::ptrdiff_t>(simplest);
-  std::rotate(begin, chosen, chosen + 1);
-}
-
-void Recipe::find_families(const Trials& trials, std::vector<EffectFinding>& findings) {
-  const double threshold = std::log10(options_.significance / static_cast<double>(findings.size()));
-  for (std::size_t a = 0; a < std::min(most_families, findings.size()); ++a) {
-    const Trial& first = trial_of(trials, findings[a]);
-    if (!first.visible) continue;
-    std::optional<Family> family;
-    if (a < most_compared && first.tested) {
-      family.emplace(room_, null_, first, options_.family_correlation);
-    }
-    std::vector<char> belongs(findings.size(), 0);
-    pool_.for_each(findings.size(), [&](std::size_t b) {
-      const Trial& other = trial_of(trials, findings[b]);
-      if (b == a || !other.visible) return;
-      belongs[b] = are_alike(first, other, options_.family_correlation) ||
-                   (family && (family->is_proxy(other, threshold) || family->is_rival(other)));
-    });
-    for (std::size_t b = 0; b < findings.size(); ++b) {
-      if (belongs[b] != 0) findings[a].family.push_back(findings[b].name);
-    }
-  }
-}
-
 void Recipe::hold_out_significant(Trials& trials) {
   const double threshold = std::log10(options_.significance);
   pool_.for_each(trials.size(), [&](std::size_t i) {
@@ -207,6 +157,38 @@ void Recipe::hold_out_significant(Trials& trials) {
       hold_out(room_, null_, trials[i]);
     }
   });
+}
+
+/// Corrects the tails of what would be significant; what was only screened is no surer than the
+/// least sure of what was tested.
+void Recipe::calibrate_significant(Trials& trials, double threshold) {
+  std::vector<Trial*> significant;
+  for (Trial& trial : trials) {
+    if (trial.tested && trial.log10_p < threshold) significant.push_back(&trial);
+  }
+  std::ranges::stable_sort(significant, {}, &Trial::log10_p);
+  Inflation worst;
+  for (std::size_t i = 0; i < significant.size(); ++i) {
+    tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
+    Inflation inflation = worst;
+    if (i < most_simulated) {
+      const bool beyond_doubt = significant[i]->log10_p < doubtless;
+      const int simulations =
+          beyond_doubt ? std::min(few_simulations, options_.simulations) : options_.simulations;
+      inflation =
+          simulate_inflation(room_, null_, *significant[i], simulations, options_.seed, pool_);
+      worst = {std::max(worst.median, inflation.median),
+               std::max(worst.ninetieth, inflation.ninetieth)};
+    }
+    inflate(inflation, *significant[i]);
+  }
+  double least_sure = -infinity;
+  for (const Trial& trial : trials) {
+    if (trial.tested) least_sure = std::max(least_sure, trial.log10_p);
+  }
+  for (Trial& trial : trials) {
+    if (trial.visible && !trial.tested) trial.log10_p = std::max(trial.log10_p, least_sure);
+  }
 }
 
 /// One step may fail an effect that bends the model: those that explain more than the best that
@@ -226,41 +208,8 @@ void Recipe::confirm_best(Trials& trials, double threshold) {
   }
 }
 
-std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
-  hold_out_significant(trials);
-  const auto visible_trials =
-      static_cast<double>(std::ranges::count(trials, true, &Trial::visible));
-  const double number = std::max({1.0, visible_trials, tests});
-  const double threshold = std::log10(options_.significance / number) + 0.3;  // about Holm's
-  const std::uint64_t seed = options_.seed;
-  std::vector<Trial*> significant;
-  for (Trial& trial : trials) {
-    if (trial.tested && trial.log10_p < threshold) significant.push_back(&trial);
-  }
-  std::ranges::stable_sort(significant, {}, &Trial::log10_p);
-  Inflation worst;
-  for (std::size_t i = 0; i < significant.size(); ++i) {
-    tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
-    Inflation inflation = worst;
-    if (i < most_simulated) {
-      const bool beyond_doubt = significant[i]->log10_p < doubtless;
-      const int simulations =
-          beyond_doubt ? std::min(few_simulations, options_.simulations) : options_.simulations;
-      inflation = simulate_inflation(room_, null_, *significant[i], simulations, seed, pool_);
-      worst = {std::max(worst.median, inflation.median),
-               std::max(worst.ninetieth, inflation.ninetieth)};
-    }
-    inflate(inflation, *significant[i]);
-  }
-  // What was only screened is no surer than the least sure of what was tested.
-  double least_sure = -infinity;
-  for (const Trial& trial : trials) {
-    if (trial.tested) least_sure = std::max(least_sure, trial.log10_p);
-  }
-  for (Trial& trial : trials) {
-    if (trial.visible && !trial.tested) trial.log10_p = std::max(trial.log10_p, least_sure);
-  }
-  confirm_best(trials, threshold);
+/// Described, with the probabilities corrected for their number and the status that follows.
+std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) const {
   std::vector<double> log10_p;
   std::vector<std::size_t> visible;
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -286,12 +235,23 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
     }
     findings.push_back(std::move(finding));
   }
-  std::ranges::stable_sort(findings, [](const EffectFinding& a, const EffectFinding& b) {
-    if (a.status != b.status) return a.status < b.status;
-    return a.log10_p < b.log10_p;
-  });
-  prefer_simplest(trials, findings);
-  find_families(trials, findings);
+  return findings;
+}
+
+std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) {
+  hold_out_significant(trials);
+  const auto visible_trials =
+      static_cast<double>(std::ranges::count(trials, true, &Trial::visible));
+  const double number = std::max({1.0, visible_trials, tests});
+  const double threshold = std::log10(options_.significance / number) + 0.3;  // about Holm's
+  calibrate_significant(trials, threshold);
+  confirm_best(trials, threshold);
+  std::vector<EffectFinding> findings = collect(trials, tests);
+  rank(findings);
+  const Comparisons among{room_, null_, trials, options_.family_correlation};
+  prefer_simplest(among, findings);
+  find_families(among, std::log10(options_.significance / static_cast<double>(findings.size())),
+                pool_, findings);
   return findings;
 }
 
