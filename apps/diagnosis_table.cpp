@@ -122,6 +122,10 @@ std::string diagnosis_table(const FlightDiagnosis& result, const std::string& ap
   std::string text =
       fmt::format("{}: {} of {} rows of {}\n{}\n\n", result.model, result.flight.rows_used,
                   result.flight.rows, result.flight.file, verdict_sentence(result));
+  if (result.status != FitStatus::converged) {
+    text += fmt::format("of a fit whose status is {}: {}\n\n", to_string(result.status),
+                        result.message);
+  }
   text += effect_rows(result);
   if (diagnosis.verdict == Verdict::effect_missing) text += best_effect(result, app, calibration);
   if (diagnosis.verdict == Verdict::unexplained) text += unexplained_rows(diagnosis.omnibus);
@@ -141,9 +145,11 @@ std::string diagnosis_table(const FlightDiagnosis& result, const std::string& ap
   }
   if (result.injection) {
     const Injection& injection = *result.injection;
-    text += fmt::format("\ninjected {}: {} (rank {}, p {})\n", injection.effect,
-                        injection.found ? "would have been found" : "would have been missed",
-                        injection.rank, probability(injection.p_adjusted));
+    text += fmt::format("\ninjected {}: ", injection.effect);
+    text += injection.rank == 0 ? "cannot be seen in this flight\n"
+                                : fmt::format("would have been {} (rank {}, p {})\n",
+                                              injection.found ? "found" : "missed", injection.rank,
+                                              probability(injection.p_adjusted));
   }
   return text;
 }

@@ -119,7 +119,8 @@ class Diagnosis:
         )
         for effect in shown:
             lines.append(
-                f"{effect.name:<{width}}  {effect.in_words:<12}  {effect.p_adjusted:<9.2g}  "
+                f"{effect.name:<{width}}  {effect.in_words:<12}  "
+                f"{_probability(effect.p_adjusted):<9}  "
                 f"{_percent(effect.predicted_drop):>9}  {_percent(effect.held_out_gain):>8}  "
                 f"{effect.visibility:>10.2f}"
             )
@@ -130,6 +131,10 @@ class Diagnosis:
 
     def __repr__(self) -> str:
         return f"<Diagnosis\n{self}>"
+
+
+def _probability(p: float) -> str:
+    return f"{p:.2g}" if p >= 1e-99 else "<1e-99"
 
 
 def _percent(fraction: float | None) -> str:

@@ -3,8 +3,6 @@
 
 namespace sepcal {
 
-using Eigen::MatrixXd;
-
 Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads) {
   ThreadPool pool(threads);
@@ -16,9 +14,9 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
   const auto shape = shapes.find(trial.candidate.shape.parameter);
   if (shape != shapes.end()) trial.shape = shape->second;
   const NullHypothesis null{.fit = &fit, .basis = orthonormal_basis(fit.tangent)};
-  const MatrixXd G = room.columns(trial.candidate, trial.shape);
-  const MatrixXd added = orthonormal_basis(remove_span(null.basis, G));
-  promised.predicted_drop = predict_drop(null, added);
+  const Projection added = project_trial(room, null, trial, trial.shape);
+  if (added.visible() == 0) return promised;  // whatever it explained would be chance
+  promised.predicted_drop = predict_drop(null, added.basis);
   hold_out(room, null, trial);
   confirm(room, pool, trial);
   if (!trial.held_out.judged) return promised;

@@ -30,13 +30,13 @@ void keep_estimate(const Projection& added, const VectorXd& of_basis, const Matr
   trial.freedom = static_cast<int>(added.visible());
 }
 
+}  // namespace
+
 Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
                          double shape) {
   return project(null.basis, room.columns(trial.candidate, shape),
                  room.varying_columns(trial.candidate, shape), trial.least_visibility);
 }
-
-}  // namespace
 
 double log10_scan(const Trial& trial) {
   return std::log10(static_cast<double>(trial.candidate.shape.values.size()));

@@ -46,6 +46,10 @@ struct Trial {
   Eigen::MatrixXd thinned_basis = {};  // orthonormal, of some rows of G_perp
 };
 
+/// The trial's columns at a shape, beside the tangent.
+Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
+                         double shape);
+
 /// log10 of the number of shapes tried, by which the best one's probability is multiplied.
 double log10_scan(const Trial& trial);
 
