@@ -211,7 +211,10 @@ def test_the_command(small: Path) -> None:
         (("report", "flight.csv", "none.json"), ("sepcal report: ", "none.json")),
         (("report", "flight.csv", "flight.csv"), ("sepcal report: ", "flight.csv")),
         (("report", "flight.csv"), ("sepcal report: ", "CAL.json", "--help")),
-        (("report", "flight.csv", "base.json", "-o", "no/r.html"), ("no/r.html", "can't be")),
+        (
+            ("report", "flight.csv", "base.json", "-o", "no/r.html"),
+            ("no/r.html", "folder 'no' isn't there"),
+        ),
         (("report", "flight.csv", "base.json", "-o", "."), ("is a folder",)),
         (("frobnicate",), ("sepcal: ", "frobnicate")),
         ((), ("sepcal: ", "COMMAND")),
