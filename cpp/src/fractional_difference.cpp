@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index near_rows = 2 * Exponentials::count;
+constexpr Index near_rows = Index{2} * Exponentials::count;
 // Trapezoids in ln(lambda) converge like e^{-pi^2 / step}: 2e-11 here.
 constexpr double step = 0.4;
 
