@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace sepcal {
 
@@ -18,12 +19,15 @@ std::vector<Segment> join_segments(const std::vector<Segment>& segments) {
 }
 
 std::vector<double> gather_time(const Record& record) {
-  std::vector<double> time;
-  const bool timed = record.has("time");
+  std::vector<double> time(record.rows());
+  if (!record.has("time")) {
+    std::iota(time.begin(), time.end(), 0.0);
+    return time;
+  }
+  const auto column = record.column("time");
+  auto to = time.begin();
   for (const Segment& segment : record.segments()) {
-    for (std::size_t row = segment.first; row < segment.last; ++row) {
-      time.push_back(timed ? record.column("time")[row] : static_cast<double>(time.size()));
-    }
+    to = std::ranges::copy(column.subspan(segment.first, segment.rows()), to).out;
   }
   return time;
 }

@@ -31,7 +31,7 @@ class Family {
   /// is too small here to say which it is.
   bool is_rival(const Trial& other) const;
 
-  /// The first explains nothing significant beyond `other`, which is tested as well.
+  /// The first explains nothing significant beyond `other`.
   bool is_enough(const Trial& other) const;
 
  private:
