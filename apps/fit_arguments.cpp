@@ -2,6 +2,7 @@
 #include "fit_arguments.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 
@@ -38,15 +39,28 @@ Interval parse_interval(const std::string& name, const std::string& text) {
   return {parse_value(option, ends[0]), parse_value(option, ends[1])};
 }
 
-template <class Choice>
-Choice choose(const std::string& option, const std::string& text,
-              const std::vector<std::pair<std::string, Choice>>& choices) {
-  std::string known;
-  for (const auto& [name, choice] : choices) {
-    if (name == text) return choice;
-    known += (known.empty() ? "" : ", ") + name;
+template <NamedChoice T>
+void add_choice(CLI::App& fit, const std::string& name, std::string& text,
+                const std::string& description) {
+  fit.add_option(name, text,
+                 fmt::format("{}: {}", description, fmt::join(ChoiceNames<T>::names, ", ")))
+      ->type_name("HOW")
+      ->capture_default_str();
+}
+
+std::map<std::string, Normal> parse_normals(const std::vector<std::string>& texts) {
+  std::map<std::string, Normal> normals;
+  for (const std::string& text : texts) {
+    const auto [name, value] = parse_assignment("--know", text, "NAME=MEAN:SD");
+    refuse_repeated("--know", normals, name);
+    const std::vector<std::string> numbers = split(value, ':');
+    if (numbers.size() != 2) {
+      throw Error(fmt::format("--know {}: write it as NAME=MEAN:SD", text));
+    }
+    const std::string option = "--know " + name;
+    normals[name] = {parse_value(option, numbers[0]), parse_value(option, numbers[1])};
   }
-  throw Error(fmt::format("{} {} is unknown; known: {}", option, text, known));
+  return normals;
 }
 
 }  // namespace
@@ -62,15 +76,22 @@ void FitArguments::add_to(CLI::App& fit) {
   add_repeated(fit, "--bounds", bounds_, "NAME=LO,HI", "bounds in the parameter's unit");
   add_repeated(fit, "--fix", fixed_, "NAME=VALUE", "holds a parameter at a value");
   add_repeated(fit, "--free", options_.free, "NAME", "frees a parameter that is held by default");
+  add_repeated(fit, "--know", knowledge_, "NAME=MEAN:SD",
+               "what is known of a parameter beforehand");
   add_repeated(fit, "--noise", noise_, "OUTPUT=SD",
                "holds an output's noise at a standard deviation");
   add_whole_number(fit, "--samples", engine.samples, "samples of stage one");
-  fit.add_option("--sampling", sampling_, "uniform or low_discrepancy")
-      ->type_name("HOW")
-      ->capture_default_str();
+  add_choice<Sampling>(fit, "--sampling", sampling_, "how samples are spread");
+  add_choice<Search>(fit, "--search", search_, "how stage one looks for minima");
   add_whole_number(fit, "--seed", engine.seed, "seed of the samples");
-  fit.add_option("--second-stage", second_stage_, "joint, projected or auto")
-      ->type_name("HOW")
+  add_choice<SecondStage>(fit, "--second-stage", second_stage_, "what stage two is over");
+  add_choice<ProjectedJacobian>(fit, "--jacobian", jacobian_, "of a projected stage two");
+  add_choice<Loss>(fit, "--loss", loss_,
+                   "what a residual costs; huber and cauchy forgive outliers");
+  fit.add_option("--loss-width", engine.loss_width,
+                 "where the loss begins to forgive, in noise standard deviations; 0: 1.345 for "
+                 "huber, 2.385 for cauchy")
+      ->type_name("K")
       ->capture_default_str();
   fit.add_option("--noise-tolerance", engine.noise_tolerance,
                  "relative change of R at which R and the parameters have settled")
@@ -105,13 +126,12 @@ CalibrationOptions FitArguments::resolve() const {
     refuse_repeated("--noise", engine.noise, name);
     engine.noise[name] = parse_value("--noise " + name, value);
   }
-  engine.second_stage = choose<SecondStage>("--second-stage", second_stage_,
-                                            {{"auto", SecondStage::automatic},
-                                             {"joint", SecondStage::joint},
-                                             {"projected", SecondStage::projected}});
-  engine.sampling = choose<Sampling>(
-      "--sampling", sampling_,
-      {{"uniform", Sampling::uniform}, {"low_discrepancy", Sampling::low_discrepancy}});
+  engine.knowledge = parse_normals(knowledge_);
+  engine.second_stage = choice_of<SecondStage>("--second-stage", second_stage_);
+  engine.jacobian = choice_of<ProjectedJacobian>("--jacobian", jacobian_);
+  engine.loss = choice_of<Loss>("--loss", loss_);
+  engine.search = choice_of<Search>("--search", search_);
+  engine.sampling = choice_of<Sampling>("--sampling", sampling_);
   return options;
 }
 

@@ -24,8 +24,12 @@ class FitArguments {
   std::vector<std::string> bounds_;
   std::vector<std::string> fixed_;
   std::vector<std::string> noise_;
-  std::string second_stage_ = "auto";
-  std::string sampling_ = "uniform";
+  std::vector<std::string> knowledge_;
+  std::string search_ = std::string(to_string(Search::sampling));
+  std::string sampling_ = std::string(to_string(Sampling::uniform));
+  std::string second_stage_ = std::string(to_string(SecondStage::automatic));
+  std::string jacobian_ = std::string(to_string(ProjectedJacobian::kaufman));
+  std::string loss_ = std::string(to_string(Loss::squares));
   CalibrationOptions options_;  // what needs no more than CLI11's reading
 };
 

@@ -42,6 +42,12 @@ TEST_CASE("the defaults are those of the documentation") {
   CHECK(options.noise_tolerance < 0.05);  // much tighter than the paper's
   CHECK(options.bounds.empty());
   CHECK(options.start.empty());
+  CHECK(options.search == sepcal::Search::sampling);
+  CHECK(options.jacobian == sepcal::ProjectedJacobian::kaufman);
+  CHECK(options.loss == sepcal::Loss::squares);
+  CHECK(options.loss_width == 0.0);
+  CHECK(options.knowledge.empty());
+  CHECK_FALSE(options.screens.has_value());
 }
 
 TEST_CASE("an unknown name is refused with the names that there are") {
@@ -51,6 +57,8 @@ TEST_CASE("an unknown name is refused with the names that there are") {
                 "no parameter 'w_x'; the model has: lambda_va");
   check_refused([](FitOptions& o) { o.noise = {{"vx", 1}}; },
                 "no output 'vx'; the model has: vn, ve, vd");
+  check_refused([](FitOptions& o) { o.knowledge = {{"w_x", {}}}; },
+                "no parameter 'w_x'; the model has: lambda_va");
   check_refused([](FitOptions& o) { o.priors = {{"w_x", {}}}; },
                 "'w_x'; the model has: lambda_alpha");
   check_refused([](FitOptions& o) { o.priors = {{"w_n", {}}}; },

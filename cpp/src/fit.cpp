@@ -196,17 +196,6 @@ std::string_view to_string(FitStatus status) {
   }
 }
 
-std::string_view to_string(SecondStage method) {
-  switch (method) {
-    case SecondStage::joint:
-      return "joint";
-    case SecondStage::projected:
-      return "projected";
-    default:
-      return "auto";
-  }
-}
-
 const Parameter& Fit::operator[](std::string_view name) const {
   const auto at = std::ranges::find(parameters, name, &Parameter::name);
   if (at != parameters.end()) return *at;

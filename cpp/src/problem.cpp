@@ -66,6 +66,17 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
     std::vector<Variable> nonlinear = model.tables().nonlinear;
     find(nonlinear, name, "nonlinear parameter (only these are sampled)");
   }
+  for (const auto& [name, normal] : options.knowledge) {
+    find(all, name, "parameter");
+    const double sd = normal.standard_deviation;
+    if (!std::isfinite(normal.mean) || !(sd > 0) || !std::isfinite(sd)) {
+      throw Error("what is known of '" + name +
+                  "' must be a finite mean and a positive standard deviation");
+    }
+    if (options.fixed.contains(name)) {
+      throw Error("'" + name + "' is fixed, so that what is known of it has no part; drop one");
+    }
+  }
   for (const auto& [name, value] : options.fixed) {
     const Variable& parameter = find(all, name, "parameter");
     if (!std::isfinite(value) || value < parameter.lower || value > parameter.upper) {
@@ -106,6 +117,9 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
   check_at_least("iterations", options.iterations, 1);
   check_at_least("noise_iterations", options.noise_iterations, 1);
   check_at_least("threads", options.threads, 0);
+  if (!(options.loss_width >= 0) || !std::isfinite(options.loss_width)) {
+    throw Error("loss_width must be positive, or 0 for the loss's own");
+  }
   if (!(options.noise_tolerance > 0)) throw Error("noise_tolerance must be positive");
 }
 

@@ -38,9 +38,8 @@ def fit(
             DataFrame. There "time" [s] and "maneuver" (labels) are optional and cut the record at
             gaps and changes of label; other columns are ignored but by effects. C-contiguous
             float64 arrays are not copied.
-        **options: effects, bounds, fixed, noise, priors, stage_one, stage_two, samples, sampling,
-            seed, second_stage, noise_tolerance, noise_iterations, iterations, descents,
-            coloured_errors, threads, free, drop_invalid; FitOptions says what each is.
+        **options: effects, bounds, fixed, noise, knowledge, loss, start, search, samples and more;
+            FitOptions says what each is.
 
     Returns:
         A Calibration for a Flight, else a Fit. Non-convergence and what the data do not determine

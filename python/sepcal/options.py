@@ -20,7 +20,17 @@ class FitOptions(TypedDict, total=False):
             of the model's [the model's].
         fixed: Parameters held at a value and not estimated [none].
         noise: Noise standard deviation of every output; without it R is estimated, Eqs. 24-26.
-        priors: (mean, standard deviation) of nonlinear parameters, for drawing samples [none].
+        knowledge: (mean, standard deviation) of parameters, linear or nonlinear, that is known
+            beforehand: as much as one more measurement of each [none].
+        start: Nonlinear parameters where stage two starts; then nothing is sampled, and those not
+            named start from the middle of their bounds [none].
+        search: How stage one looks for minima: among samples, or by NLopt's global search, which
+            asks for the profile cost at most `samples` times, "global" ["sampling"].
+        priors: (mean, standard deviation) of nonlinear parameters, for drawing samples; the fit
+            does not know them [none].
+        screens: Evaluates Eqs. 17 and 18 at every sample, and uses only those with ratios of at
+            most t_1 and t_2 within l_2, and, with convex, positive second derivatives: any of
+            {"t_1", "t_2", "l_2", "convex"} [not evaluated].
         stage_one: Segments that stage one uses, "wind_circle_1,510.9:530": labels, or spans of time
             in s [all].
         stage_two: The same of stage two [all].
@@ -29,6 +39,12 @@ class FitOptions(TypedDict, total=False):
         seed: The same seed gives the same result, on any number of threads [0].
         second_stage: Over all parameters, over xi2 with xi1 solved inside, or as stage one finds a
             unique minimum or not (Step 5) ["auto"].
+        jacobian: Of a projected stage two: Kaufman's, or Golub and Pereyra's, "golub_pereyra"
+            ["kaufman"].
+        loss: What a whitened residual costs: "squares", or "huber" or "cauchy", which forgive
+            outliers and make stage two joint ["squares"].
+        loss_width: Where the loss begins to forgive, in standard deviations of the noise [1.345 for
+            huber, 2.385 for cauchy].
         noise_tolerance: R and the parameters alternate until every relative change of R is below
             this, Eq. 26 [1e-10; the paper's is 0.05].
         noise_iterations: At most so many alternations [100].
@@ -45,6 +61,10 @@ class FitOptions(TypedDict, total=False):
     bounds: Mapping[str, tuple[float | None, float | None]] | None
     fixed: Mapping[str, float] | None
     noise: Mapping[str, float] | None
+    knowledge: Mapping[str, tuple[float, float]] | None
+    start: Mapping[str, float] | None
+    search: Literal["sampling", "global"] | str | None
+    screens: Mapping[str, float | bool] | None
     priors: Mapping[str, tuple[float, float]] | None
     stage_one: str | None
     stage_two: str | None
@@ -52,6 +72,9 @@ class FitOptions(TypedDict, total=False):
     sampling: Literal["uniform", "low_discrepancy"] | None
     seed: int | None
     second_stage: Literal["auto", "joint", "projected"] | str | None
+    jacobian: Literal["kaufman", "golub_pereyra"] | str | None
+    loss: Literal["squares", "huber", "cauchy"] | str | None
+    loss_width: float | None
     noise_tolerance: float | None
     noise_iterations: int | None
     iterations: int | None

@@ -23,9 +23,6 @@ enum class FitStatus { converged, not_converged, not_identifiable };
 /// "converged", "not_converged", "not_identifiable".
 std::string_view to_string(FitStatus status);
 
-/// "joint", "projected", "auto".
-std::string_view to_string(SecondStage method);
-
 struct Parameter {
   std::string name;
   std::string unit;

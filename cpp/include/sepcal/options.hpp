@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "sepcal/choices.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal {
@@ -17,28 +19,27 @@ struct Interval {
   double upper = infinity;
 };
 
-/// A normal prior of a nonlinear parameter, for drawing samples (the paper's N(0, 2^2)).
+/// A normal distribution, in the parameter's unit.
 struct Normal {
   double mean = 0.0;
   double standard_deviation = 1.0;
 };
 
-/// How stage one spreads its samples of xi2 within the bounds.
-enum class Sampling {
-  uniform,          // independent draws; normal where options.priors names the parameter
-  low_discrepancy,  // a Halton sequence, shifted at random: fills the box more evenly
-};
-
-enum class SecondStage {
-  automatic,  // the paper's Step 5: projected where stage one saw a unique minimum or a start was
-              // given, else joint
-  joint,      // over (xi1, xi2)
-  projected,  // over xi2, xi1 solved inside (variable projection)
-};
-
 /// Hears what is being done and how far it is, a fraction within [0, 1]; from any thread, one call
 /// at a time.
 using FitProgress = std::function<void(std::string_view task, double fraction)>;
+
+/// The paper's conditions on a sample of xi2 (Eqs. 17, 18): those that break one are not used.
+struct Screens {
+  double t_1 = infinity;  // at most |dA/dxi2| l_2 / |A|, Eq. 17
+  double t_2 = infinity;  // at most |db/dxi2| l_2 / |b|; met where b is zero throughout
+  /// l_2, how far the solution may lie from a sample; 0: as far as the farthest corner of the
+  /// bounds.
+  double l_2 = 0.0;
+  /// Eq. 18 rejects too. Its sums of second derivatives change sign with the sign of a column, so
+  /// that it is no more than reported unless asked for.
+  bool convex = false;
+};
 
 struct FitOptions {
   /// Bounds in the parameters' units, instead of the model's. Parameters not named keep the
@@ -48,15 +49,24 @@ struct FitOptions {
   std::map<std::string, double> fixed = {};
   /// Noise standard deviation of every output; empty: R is estimated (Eqs. 24-26).
   std::map<std::string, double> noise = {};
+  /// What is known of parameters beforehand, linear or nonlinear: each adds the square of (x -
+  /// mean) / standard_deviation to the cost, as one more measurement would (a row of the factor).
+  std::map<std::string, Normal> knowledge = {};
 
   /// Segments that each stage uses, as in Record::select(); empty: all.
   std::string stage_one_segments = {};
   std::string stage_two_segments = {};
 
-  /// Samples of xi2 in stage one; 0: none, stage two starts from the middle of the bounds.
+  Search search = Search::sampling;
+  /// Samples of xi2 in stage one; 0: none, stage two starts from the middle of the bounds. Of a
+  /// global search: how often it may ask for the profile cost.
   int samples = 500;
   Sampling sampling = Sampling::uniform;
+  /// Priors of nonlinear parameters for drawing samples (the paper's N(0, 2^2)); they take no part
+  /// in the fit, as `knowledge` does.
   std::map<std::string, Normal> priors = {};
+  /// Unset: Eqs. 17 and 18 are not evaluated.
+  std::optional<Screens> screens = {};
   std::uint64_t seed = 0;
   /// Where stage two starts, by nonlinear parameter: then stage one samples nothing. Those not
   /// named start from the middle of their bounds.
@@ -68,6 +78,12 @@ struct FitOptions {
   int descents = 8;
 
   SecondStage second_stage = SecondStage::automatic;
+  ProjectedJacobian jacobian = ProjectedJacobian::kaufman;
+  /// A loss that forgives outliers makes stage two joint: xi1 is then no linear least squares.
+  Loss loss = Loss::squares;
+  /// k of the loss, in standard deviations of the noise; 0: 1.345 for huber, 2.385 for cauchy, with
+  /// which normal noise costs 5 % of the efficiency of squares.
+  double loss_width = 0.0;
   /// R and the parameters alternate until every |r_jj - r_jj before| / r_jj before is below this
   /// (Eq. 26; the paper's is 0.05), at most noise_iterations times.
   double noise_tolerance = 1e-10;

@@ -7,6 +7,7 @@
 #include "sepcal/model.hpp"              // four tables and one function
 #include "sepcal/record.hpp"             // measured samples
 #include "sepcal/fit.hpp"                // the two-stage estimator
+#include "sepcal/choices.hpp"            // what options choose among, by name
 #include "sepcal/options.hpp"            // every choice of a fit
 #include "sepcal/stage_one.hpp"          // sampling xi2
 #include "sepcal/identifiability.hpp"    // what a record does not determine

@@ -15,29 +15,6 @@ namespace {
 
 using Options = CalibrationOptions;
 
-template <class Choice>
-struct Named {
-  std::string_view name;
-  Choice choice;
-};
-
-constexpr std::array samplings{Named<Sampling>{"uniform", Sampling::uniform},
-                               Named<Sampling>{"low_discrepancy", Sampling::low_discrepancy}};
-constexpr std::array second_stages{Named<SecondStage>{"auto", SecondStage::automatic},
-                                   Named<SecondStage>{"joint", SecondStage::joint},
-                                   Named<SecondStage>{"projected", SecondStage::projected}};
-
-/// Throws Error for a name that is none of them.
-template <class Table>
-auto choose(const std::string& option, const Table& table, const std::string& name) {
-  std::string known;
-  for (const auto& entry : table) {
-    if (entry.name == name) return entry.choice;
-    known += (known.empty() ? "'" : ", '") + std::string(entry.name) + "'";
-  }
-  throw Error(option + " '" + name + "' is unknown; known: " + known);
-}
-
 /// {name: (lower, upper)}; None: open on that side.
 using Bounds = std::map<std::string, std::pair<std::optional<double>, std::optional<double>>>;
 
@@ -49,11 +26,43 @@ void set_bounds(Options& options, const Bounds& bounds) {
 }
 
 /// {name: (mean, standard deviation)}.
-void set_priors(Options& options, const std::map<std::string, std::pair<double, double>>& priors) {
-  options.fit.priors.clear();
-  for (const auto& [name, normal] : priors) {
-    options.fit.priors[name] = {normal.first, normal.second};
+template <auto Member, class Class>
+void define_normals(Class& options, const char* name) {
+  using Normals = std::map<std::string, std::pair<double, double>>;
+  options.def_property(name, nullptr, [](Options& self, const Normals& normals) {
+    (self.fit.*Member).clear();
+    for (const auto& [parameter, normal] : normals) {
+      (self.fit.*Member)[parameter] = {normal.first, normal.second};
+    }
+  });
+}
+
+/// One of a choice's names.
+template <auto Member, class Class>
+void define_named(Class& options, const std::string& name) {
+  using Choice = std::remove_cvref_t<decltype(std::declval<FitOptions&>().*Member)>;
+  options.def_property(name.c_str(), nullptr, [name](Options& self, const std::string& choice) {
+    self.fit.*Member = choice_of<Choice>(name, choice);
+  });
+}
+
+/// {t_1, t_2, l_2, convex}, any of them. Throws Error for another name.
+void set_screens(Options& options, const std::map<std::string, double>& values) {
+  Screens screens;
+  for (const auto& [name, value] : values) {
+    if (name == "t_1") {
+      screens.t_1 = value;
+    } else if (name == "t_2") {
+      screens.t_2 = value;
+    } else if (name == "l_2") {
+      screens.l_2 = value;
+    } else if (name == "convex") {
+      screens.convex = value != 0.0;
+    } else {
+      throw Error("screens have no '" + name + "'; they have: t_1, t_2, l_2, convex");
+    }
   }
+  options.fit.screens = screens;
 }
 
 /// Names, aliases, and several joined by '+'.
@@ -80,13 +89,16 @@ void define_options(py::module_& module) {
   options.def(py::init<>());
   options.def_property("effects", nullptr, &set_effects);
   options.def_property("bounds", nullptr, &set_bounds);
-  options.def_property("priors", nullptr, &set_priors);
-  options.def_property("sampling", nullptr, [](Options& self, const std::string& name) {
-    self.fit.sampling = choose("sampling", samplings, name);
-  });
-  options.def_property("second_stage", nullptr, [](Options& self, const std::string& name) {
-    self.fit.second_stage = choose("second_stage", second_stages, name);
-  });
+  options.def_property("screens", nullptr, &set_screens);
+  define_normals<&FitOptions::priors>(options, "priors");
+  define_normals<&FitOptions::knowledge>(options, "knowledge");
+  define_named<&FitOptions::search>(options, "search");
+  define_named<&FitOptions::sampling>(options, "sampling");
+  define_named<&FitOptions::second_stage>(options, "second_stage");
+  define_named<&FitOptions::jacobian>(options, "jacobian");
+  define_named<&FitOptions::loss>(options, "loss");
+  define_choice<&FitOptions::loss_width>(options, "loss_width");
+  define_choice<&FitOptions::start>(options, "start");
   define_choice<&FitOptions::fixed>(options, "fixed");
   define_choice<&FitOptions::noise>(options, "noise");
   define_choice<&FitOptions::stage_one_segments>(options, "stage_one");

@@ -175,7 +175,8 @@ Calibration read(const Json& root) {
   fit.iterations = whole_number<int>(root.at("iterations"));
   fit.rows = calibration.flight.rows_used;
   fit.stage_one = read_stage_one(root.at("stage_one"), fit);
-  fit.method = second_stage_of(root.at("stage_two").at("method").get<std::string>());
+  fit.method = choice_of<SecondStage>("stage_two.method",
+                                      root.at("stage_two").at("method").get<std::string>());
   fit.noise_iterations = whole_number<int>(root.at("stage_two").at("r_iterations"));
   calibration.history = read_history(root.at("history"));
   return calibration;

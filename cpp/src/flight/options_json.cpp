@@ -9,15 +9,51 @@
 namespace sepcal {
 namespace {
 
-constexpr const char* to_string(Sampling sampling) {
-  return sampling == Sampling::uniform ? "uniform" : "low_discrepancy";
+/// {name: [mean, standard deviation]}.
+Json write_normals(const std::map<std::string, Normal>& normals) {
+  Json object = Json::object();
+  for (const auto& [name, normal] : normals) {
+    object[name] = {normal.mean, normal.standard_deviation};
+  }
+  return object;
 }
 
-Sampling sampling_of(const std::string& name) {
-  for (const Sampling sampling : {Sampling::uniform, Sampling::low_discrepancy}) {
-    if (to_string(sampling) == name) return sampling;
+std::map<std::string, Normal> read_normals(const Json& object) {
+  std::map<std::string, Normal> normals;
+  for (const auto& [name, normal] : entries_of(object)) {
+    normals[name] = {normal.at(0).get<double>(), normal.at(1).get<double>()};
   }
-  throw Error("sampling '" + name + "' is unknown");
+  return normals;
+}
+
+template <class Choice>
+void read_choice(const Json& options, const char* name, Choice& choice) {
+  choice = choice_of<Choice>(name, options.at(name).get<std::string>());
+}
+
+Json write_screens(const Screens& screens) {
+  return {{"t_1", number(screens.t_1)},
+          {"t_2", number(screens.t_2)},
+          {"l_2", screens.l_2},
+          {"convex", screens.convex}};
+}
+
+Screens read_screens(const Json& object) {
+  return {.t_1 = number_or(object.at("t_1"), infinity),
+          .t_2 = number_or(object.at("t_2"), infinity),
+          .l_2 = object.at("l_2").get<double>(),
+          .convex = object.at("convex").get<bool>()};
+}
+
+/// What the options of earlier versions lack; that keeps its default.
+void read_later_options(const Json& options, FitOptions& fit) {
+  if (!options.contains("loss")) return;
+  fit.knowledge = read_normals(options.at("knowledge"));
+  read_choice(options, "search", fit.search);
+  if (options.contains("screens")) fit.screens = read_screens(options.at("screens"));
+  read_choice(options, "jacobian", fit.jacobian);
+  read_choice(options, "loss", fit.loss);
+  fit.loss_width = options.at("loss_width").get<double>();
 }
 
 Json write_effect(const EffectSetting& setting) {
@@ -67,15 +103,18 @@ Json write_options(const Calibration& calibration) {
   options["fix"] = fit.fixed;
   options["free"] = calibration.options.free;
   options["noise"] = fit.noise;
+  options["knowledge"] = write_normals(fit.knowledge);
+  options["search"] = to_string(fit.search);
   options["samples"] = fit.samples;
   options["sampling"] = to_string(fit.sampling);
-  options["priors"] = Json::object();
-  for (const auto& [name, prior] : fit.priors) {
-    options["priors"][name] = {prior.mean, prior.standard_deviation};
-  }
+  options["priors"] = write_normals(fit.priors);
+  if (fit.screens) options["screens"] = write_screens(*fit.screens);
   options["seed"] = fit.seed;
   options["descents"] = fit.descents;
   options["second_stage"] = to_string(fit.second_stage);
+  options["jacobian"] = to_string(fit.jacobian);
+  options["loss"] = to_string(fit.loss);
+  options["loss_width"] = fit.loss_width;
   options["noise_tolerance"] = fit.noise_tolerance;
   options["noise_iterations"] = fit.noise_iterations;
   options["iterations"] = fit.iterations;
@@ -83,14 +122,6 @@ Json write_options(const Calibration& calibration) {
   options["threads"] = fit.threads;
   options["drop_invalid"] = calibration.options.drop_invalid;
   return options;
-}
-
-SecondStage second_stage_of(const std::string& name) {
-  for (const SecondStage method :
-       {SecondStage::automatic, SecondStage::joint, SecondStage::projected}) {
-    if (to_string(method) == name) return method;
-  }
-  throw Error("second_stage '" + name + "' is unknown");
 }
 
 CalibrationOptions read_options(const Json& options) {
@@ -109,18 +140,17 @@ CalibrationOptions read_options(const Json& options) {
   result.free = options.at("free").get<std::vector<std::string>>();
   fit.noise = options.at("noise").get<std::map<std::string, double>>();
   fit.samples = whole_number<int>(options.at("samples"));
-  fit.sampling = sampling_of(options.at("sampling").get<std::string>());
-  for (const auto& [name, prior] : entries_of(options.at("priors"))) {
-    fit.priors[name] = {prior.at(0).get<double>(), prior.at(1).get<double>()};
-  }
+  read_choice(options, "sampling", fit.sampling);
+  fit.priors = read_normals(options.at("priors"));
   fit.seed = whole_number<std::uint64_t>(options.at("seed"));
   fit.descents = whole_number<int>(options.at("descents"));
-  fit.second_stage = second_stage_of(options.at("second_stage").get<std::string>());
+  read_choice(options, "second_stage", fit.second_stage);
   fit.noise_tolerance = options.at("noise_tolerance").get<double>();
   fit.noise_iterations = whole_number<int>(options.at("noise_iterations"));
   fit.iterations = whole_number<int>(options.at("iterations"));
   fit.coloured_errors = options.at("coloured_errors").get<bool>();
   fit.threads = whole_number<int>(options.at("threads"));
+  read_later_options(options, fit);
   result.drop_invalid = options.at("drop_invalid").get<bool>();
   return result;
 }

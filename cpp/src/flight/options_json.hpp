@@ -17,7 +17,4 @@ Json write_options(const Calibration& calibration);
 CalibrationOptions read_options(const Json& options);
 std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options);
 
-/// "auto", "joint", "projected". Throws Error for anything else.
-SecondStage second_stage_of(const std::string& name);
-
 }  // namespace sepcal
