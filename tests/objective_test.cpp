@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/SVD>
+#include <cmath>
 
 #include "dense_reference.hpp"
 #include "sepcal/static_model.hpp"
@@ -121,6 +122,115 @@ void check_projected(const Simulated& simulated) {
   CHECK((jacobian.transpose() * jacobian - hessian).norm() < 1e-8 * hessian.norm());
 }
 
+/// Golub and Pereyra's Jacobian against differences of the projected residual.
+void check_golub_pereyra(const Simulated& simulated) {
+  const Index n_z = simulated.model->tables().n_z();
+  const sepcal::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::ThreadPool pool(1);
+  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
+  const VectorXd noise = deviations(n_z);
+  ProjectedObjective objective(sweep, noise.cwiseInverse(), {},
+                               sepcal::ProjectedJacobian::golub_pereyra);
+  ProjectedObjective kaufman(sweep, noise.cwiseInverse());
+  const VectorXd xi2 = 0.7 * simulated.xi2;
+  VectorXd residual;
+  MatrixXd jacobian;
+  MatrixXd without;
+  REQUIRE(kaufman.linearise(xi2, residual, without));
+  REQUIRE(objective.linearise(xi2, residual, jacobian));
+
+  const VectorXd r = projected_residual(simulated, xi2);
+  MatrixXd J(r.size(), xi2.size());
+  for (Index k = 0; k < xi2.size(); ++k) {
+    const auto slope = [&](double step) -> VectorXd {
+      const VectorXd aside = step * VectorXd::Unit(xi2.size(), k);
+      return (projected_residual(simulated, xi2 + aside) -
+              projected_residual(simulated, xi2 - aside)) /
+             (2.0 * step);
+    };
+    J.col(k) = (4.0 * slope(5e-4) - slope(1e-3)) / 3.0;
+  }
+  const MatrixXd hessian = J.transpose() * J;
+  CHECK((jacobian.transpose() * jacobian - hessian).norm() < 1e-8 * hessian.norm());
+  const VectorXd gradient = J.transpose() * r;
+  CHECK((jacobian.transpose() * residual - gradient).norm() < 1e-7 * gradient.norm());
+  // Off the minimum the difference is not small: a test that Kaufman's would pass shows nothing.
+  CHECK((without.transpose() * without - hessian).norm() > 1e-5 * hessian.norm());
+}
+
+/// Knowledge of one linear and one nonlinear parameter, as two more dense rows.
+void check_with_knowledge(const Simulated& simulated) {
+  const Index n_1 = simulated.xi1.size();
+  const Index n = n_1 + simulated.xi2.size();
+  const Index n_z = simulated.model->tables().n_z();
+  const sepcal::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::ThreadPool pool(1);
+  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
+  sepcal::Prior prior{VectorXd::Zero(n), VectorXd::Zero(n)};
+  prior.mean[0] = 0.3;
+  prior.weight[0] = 50.0;
+  prior.mean[n_1] = 0.1;
+  prior.weight[n_1] = 80.0;
+  const VectorXd weights = deviations(n_z).cwiseInverse();
+  VectorXd x(n);
+  x << 1.1 * simulated.xi1, 0.7 * simulated.xi2;
+  JointObjective joint(sweep, weights, {prior});
+  JointObjective bare(sweep, weights);
+  const double expected =
+      bare.square(x) + std::pow(50.0 * (x[0] - 0.3), 2) + std::pow(80.0 * (x[n_1] - 0.1), 2);
+  VectorXd residual;
+  MatrixXd jacobian;
+  REQUIRE(joint.linearise(x, residual, jacobian));
+  CHECK(joint.square(x) == Approx(expected).epsilon(1e-12));
+  CHECK(residual.squaredNorm() == Approx(expected).epsilon(1e-12));
+
+  // Projected: the least of the joint cost over xi1, with the gradient of just that.
+  ProjectedObjective projected(sweep, weights, {prior});
+  const VectorXd xi2 = x.tail(n - n_1);
+  VectorXd best(n);
+  best << projected.linear_estimate(xi2), xi2;
+  REQUIRE(joint.linearise(best, residual, jacobian));
+  const VectorXd gradient = jacobian.transpose() * residual;
+  CHECK(gradient.head(n_1).norm() < 1e-8 * (1.0 + gradient.tail(n - n_1).norm()));
+  CHECK(projected.square(xi2) == Approx(joint.square(best)).epsilon(1e-11));
+  REQUIRE(projected.linearise(xi2, residual, jacobian));
+  CHECK(residual.squaredNorm() == Approx(joint.square(best)).epsilon(1e-11));
+  CHECK((jacobian.transpose() * residual - gradient.tail(n - n_1)).norm() < 1e-8 * gradient.norm());
+}
+
+/// A loss: the sum of rho, its gradient, and the weighted rows' Gauss-Newton matrix.
+void check_loss(const Simulated& simulated, sepcal::Loss kind) {
+  const Index n_1 = simulated.xi1.size();
+  const Index n_z = simulated.model->tables().n_z();
+  const sepcal::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::ThreadPool pool(1);
+  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
+  const sepcal::RobustLoss loss(kind, 0.0);
+  const VectorXd noise = 0.1 * deviations(n_z);  // many rows past the width
+  JointObjective objective(sweep, noise.cwiseInverse(), {}, loss);
+  VectorXd x(n_1 + simulated.xi2.size());
+  x << 1.1 * simulated.xi1, 0.7 * simulated.xi2;
+  const MatrixXd dense =
+      sepcal::test::whiten(sepcal::test::dense_rows(*simulated.model, simulated.record, x.head(n_1),
+                                                    x.tail(simulated.xi2.size())),
+                           noise);
+  const MatrixXd J = -dense.leftCols(x.size());
+  const VectorXd s = dense.rightCols<1>();
+  const double sum = s.unaryExpr([&](double each) { return loss.cost(each); }).sum();
+  const VectorXd w = s.unaryExpr([&](double each) { return loss.weight(each); });
+  REQUIRE(w.minCoeff() < 0.9);
+
+  VectorXd residual;
+  MatrixXd jacobian;
+  REQUIRE(objective.linearise(x, residual, jacobian));
+  CHECK(objective.square(x) == Approx(sum).epsilon(1e-12));
+  CHECK(residual.squaredNorm() == Approx(sum).epsilon(1e-12));
+  const VectorXd gradient = J.transpose() * w.cwiseProduct(s);
+  CHECK((jacobian.transpose() * residual - gradient).norm() < 1e-9 * gradient.norm());
+  const MatrixXd hessian = J.transpose() * w.asDiagonal() * J;
+  CHECK((jacobian.transpose() * jacobian - hessian).norm() < 1e-9 * hessian.norm());
+}
+
 }  // namespace
 
 TEST_CASE("joint: cost, gradient and Gauss-Newton matrix are those of all rows") {
@@ -134,6 +244,30 @@ TEST_CASE("projected: cost, gradient and Kaufman's matrix are those of all rows"
   for (const Simulated& simulated : sepcal::test::simulate_all(300)) {
     CAPTURE(simulated.name);
     check_projected(simulated);
+  }
+}
+
+TEST_CASE("projected: Golub and Pereyra's Jacobian is that of the projected residual") {
+  for (const Simulated& simulated : sepcal::test::simulate_all(300)) {
+    CAPTURE(simulated.name);
+    check_golub_pereyra(simulated);
+  }
+  check_golub_pereyra({"twice", sepcal::block_model(Twice{}), Eigen::Vector3d(1, 0.5, 0.2),
+                       VectorXd::Constant(1, 0.3), sepcal::test::simulate_scalar_1(200).record});
+}
+
+TEST_CASE("what is known beforehand is one more measurement") {
+  for (const Simulated& simulated : sepcal::test::simulate_all(300)) {
+    CAPTURE(simulated.name);
+    check_with_knowledge(simulated);
+  }
+}
+
+TEST_CASE("joint: a loss keeps its true cost and gradient on the compressed problem") {
+  for (const Simulated& simulated : sepcal::test::simulate_all(300)) {
+    CAPTURE(simulated.name);
+    check_loss(simulated, sepcal::Loss::huber);
+    check_loss(simulated, sepcal::Loss::cauchy);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "coloured_covariance.hpp"
+#include "covariance.hpp"
 #include "plausibility.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/error.hpp"
@@ -28,41 +28,15 @@ std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values)
   return result;
 }
 
-/// (R' R)^-1 by way of R^-1; NaN throughout where R is singular.
-MatrixXd inverse_of_square(const MatrixXd& R) {
-  const Index n = R.cols();
-  if ((R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any()) {
-    return MatrixXd::Constant(n, n, undefined);
-  }
-  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
-  return inverse * inverse.transpose();
-}
-
-/// The free parameters whose estimate has a distribution: those not held by a bound.
-std::vector<Index> inner(const std::vector<bool>& at_bound) {
-  std::vector<Index> indices;
-  for (std::size_t k = 0; k < at_bound.size(); ++k) {
-    if (!at_bound[k]) indices.push_back(static_cast<Index>(k));
-  }
-  return indices;
-}
-
-/// The factor of a selection of columns.
-MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
-  TriangularFactor factor(static_cast<int>(columns.size()));
-  MatrixXd rows = R(Eigen::all, columns);
-  factor.absorb(rows);
-  return factor.matrix();
-}
-
-/// Cost J of Eq. 6 from the factors at the solution.
-double cost(const std::vector<TriangularFactor>& factors, const VectorXd& noise, double rows) {
+/// Cost J of Eq. 6 from the factors at the solution, with what is known beforehand.
+double cost(const Problem& problem, const StageTwo& two, double rows) {
   double J = 0.0;
-  for (Index j = 0; j < noise.size(); ++j) {
-    const MatrixXd& T = factors[static_cast<std::size_t>(j)].matrix();
-    J +=
-        0.5 * T.col(T.cols() - 1).squaredNorm() / (noise[j] * noise[j]) + rows * std::log(noise[j]);
+  for (Index j = 0; j < two.noise.size(); ++j) {
+    const MatrixXd& T = two.factors[static_cast<std::size_t>(j)].matrix();
+    const double noise = two.noise[j];
+    J += 0.5 * T.col(T.cols() - 1).squaredNorm() / (noise * noise) + rows * std::log(noise);
   }
+  for (const Prior& prior : problem.knowledge()) J += 0.5 * prior.square(two.x);
   return J;
 }
 
@@ -85,8 +59,7 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
 
 /// Spreads the free parameters' estimate and covariances over all of the model's parameters.
 void fill_parameters(Fit& result, const BlockModel& model, const Problem& problem,
-                     const StageTwo& two, const MatrixXd& covariance, const MatrixXd& white,
-                     const std::vector<Index>& inside) {
+                     const StageTwo& two, const Covariances& covariances) {
   const std::vector<Variable> all = model.tables().parameters();
   const auto n = static_cast<Index>(all.size());
   result.n_1 = model.tables().n_1();
@@ -108,9 +81,9 @@ void fill_parameters(Fit& result, const BlockModel& model, const Problem& proble
     result.parameters.push_back(std::move(parameter));
   }
   std::vector<Index> places;
-  for (const Index k : inside) places.push_back(place[static_cast<std::size_t>(k)]);
-  result.covariance = spread(covariance, places, n);
-  result.covariance_white = spread(white, places, n);
+  for (const Index k : covariances.inside) places.push_back(place[static_cast<std::size_t>(k)]);
+  result.covariance = spread(covariances.coloured, places, n);
+  result.covariance_white = spread(covariances.white, places, n);
   result.correlation = correlation_of(result.covariance);
   for (Index k = 0; k < n; ++k) {
     Parameter& parameter = result.parameters[static_cast<std::size_t>(k)];
@@ -123,8 +96,8 @@ void fill_parameters(Fit& result, const BlockModel& model, const Problem& proble
 /// it is exchanged for others, they are as open as it is unless two of its standard errors, not
 /// one, fit into half the width.
 Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& names,
-                      const VectorXd& scale, const std::vector<bool>& at_bound,
-                      double noise_factor) {
+                      const VectorXd& scale, const std::vector<bool>& at_bound) {
+  constexpr double noise_factor = 1.0;  // the tangent's rows are over the noise that was judged
   Identifiability plain = identify(tangent, names, scale, noise_factor);
   if (std::ranges::find(at_bound, true) == at_bound.end()) return plain;
   VectorXd halved = scale;
@@ -139,39 +112,24 @@ Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& n
 
 void describe(Fit& result, const BlockModel& model, const Problem& problem,
               const Measurements& measurements, const StageTwo& two, ThreadPool& pool) {
-  const auto n = static_cast<Index>(problem.parameters().size());
   const auto rows = static_cast<double>(measurements.rows());
-  const auto count = rows * static_cast<double>(model.tables().n_z());
-  const bool noise_given = problem.noise().size() > 0;
-
-  const TriangularFactor factor = combine(two.factors, two.noise.cwiseInverse());
-  const std::vector<Index> inside = inner(two.at_bound);
-  const MatrixXd R = select_columns(factor.matrix().leftCols(n), inside);
-  const double freedom = count - static_cast<double>(n);
-  const double inflation = noise_given ? 1.0 : freedom > 0 ? count / freedom : undefined;
-  const MatrixXd white = inverse_of_square(R) * inflation;
-  const bool coloured = problem.options().coloured_errors;
   const Sweep sweep(problem.model(), measurements, pool);
-  fill_parameters(
-      result, model, problem, two,
-      coloured ? find_coloured_covariance(sweep, two, inside, R, white, noise_given) : white, white,
-      inside);
+  const Covariances covariances = find_covariances(problem, sweep, two);
+  fill_parameters(result, model, problem, two, covariances);
 
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
   for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
-  const MatrixXd tangent = factor.matrix().topLeftCorner(n, n);
-  const double noise_factor = std::isnan(inflation) ? 1.0 : std::sqrt(inflation);
   const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
-  result.identifiability = judge(tangent, names, scale, two.at_bound, noise_factor);
+  result.identifiability = judge(covariances.tangent, names, scale, two.at_bound);
 
-  VectorXd rmse(two.noise.size());
-  for (Index j = 0; j < rmse.size(); ++j) {
-    rmse[j] = two.factors[static_cast<std::size_t>(j)].matrix().col(n).norm() / std::sqrt(rows);
-  }
+  const Index n_1 = problem.model().tables().n_1();
+  const Index n_2 = problem.model().tables().n_2();
+  const VectorXd rmse =
+      (sweep.squared_residuals(two.x.head(n_1), two.x.tail(n_2)) / rows).cwiseSqrt();
   result.rmse = by_output(model.tables(), rmse);
   result.noise = by_output(model.tables(), two.noise);
-  result.cost = cost(two.factors, two.noise, rows);
+  result.cost = cost(problem, two, rows);
   result.method = two.method;
   result.iterations = two.iterations;
   result.noise_iterations = two.noise_iterations;

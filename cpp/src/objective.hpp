@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "loss.hpp"
 #include "plausibility.hpp"
 #include "sweep.hpp"
 
@@ -17,9 +18,10 @@ namespace sepcal {
 
 class Objective {
  public:
-  /// `weights` (n_z): 1 / noise standard deviation of each output.
-  Objective(const Sweep& sweep, Eigen::VectorXd weights)
-      : sweep_(sweep), weights_(std::move(weights)) {}
+  /// `weights` (n_z): 1 / noise standard deviation of each output. `priors`: over (xi1, xi2), each
+  /// adds its square and its rows.
+  Objective(const Sweep& sweep, Eigen::VectorXd weights, std::vector<Prior> priors = {})
+      : sweep_(sweep), weights_(std::move(weights)), priors_(std::move(priors)) {}
   Objective(const Objective&) = delete;
   Objective& operator=(const Objective&) = delete;
   virtual ~Objective() = default;
@@ -38,32 +40,41 @@ class Objective {
  protected:
   const Sweep& sweep_;
   Eigen::VectorXd weights_;
+  std::vector<Prior> priors_;
 };
 
-/// x = (xi1, xi2), Eq. 20's left-hand side, and what is known of x beforehand, if anything.
+/// x = (xi1, xi2), Eq. 20's left-hand side. With a loss, the sum of rho instead of squares, and
+/// rows weighted by sqrt(w) behind the factor: its gradient is exact, and so is the cost, by one
+/// more row of what rho exceeds the weighted squares by.
 class JointObjective final : public Objective {
  public:
-  JointObjective(const Sweep& sweep, Eigen::VectorXd weights, std::optional<Prior> prior = {})
-      : Objective(sweep, std::move(weights)), prior_(std::move(prior)) {}
+  JointObjective(const Sweep& sweep, Eigen::VectorXd weights, std::vector<Prior> priors = {},
+                 std::optional<RobustLoss> loss = {})
+      : Objective(sweep, std::move(weights), std::move(priors)), loss_(loss) {}
   int parameters() const override { return residuals() - 1; }
   double square(const Eigen::VectorXd& x) override;
   bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                  Eigen::MatrixXd& jacobian) override;
 
-  /// One factor of [A | D | r] an output, not whitened, of the point linearised last.
+  /// One factor of [A | D | r] an output, not whitened, without priors, of the point linearised
+  /// last.
   const std::vector<TriangularFactor>& factors() const { return factors_; }
 
  private:
-  std::optional<Prior> prior_;
+  std::optional<RobustLoss> loss_;
   std::vector<TriangularFactor> factors_;
 };
 
-/// x = xi2, Eq. 20's right-hand side, with Kaufman's Jacobian: the D-D block of the factor of
-/// [A D r] at xi1hat(xi2) is the projected Jacobian's R factor. A singular A loses only what it
+/// x = xi2, Eq. 20's right-hand side. Kaufman's Jacobian: the D-D block of the factor of [A D r] at
+/// xi1hat(xi2) is the projected Jacobian's R factor. Golub and Pereyra's has n_1 rows more, R_AA^-T
+/// G with G_j = sum_k (dA_k/dxi2_j)' r_k, in which the residual is zero: the derivative of the
+/// projector acting on r (SIAM J. Numer. Anal. 10 (1973), Eq. 4.8). A singular A loses only what it
 /// does not see: the rows U_perp' R_AD join, and the pseudo-inverse stands for the inverse.
 class ProjectedObjective final : public Objective {
  public:
-  using Objective::Objective;
+  ProjectedObjective(const Sweep& sweep, Eigen::VectorXd weights, std::vector<Prior> priors = {},
+                     ProjectedJacobian jacobian = ProjectedJacobian::kaufman)
+      : Objective(sweep, std::move(weights), std::move(priors)), jacobian_(jacobian) {}
   int parameters() const override { return sweep_.tables().n_2(); }
   double square(const Eigen::VectorXd& x) override;
   bool linearise(const Eigen::VectorXd& x, Eigen::VectorXd& residual,
@@ -76,6 +87,7 @@ class ProjectedObjective final : public Objective {
   /// The whitened factor of [A | z - b]; kept for the point asked for last.
   const TriangularFactor& linear_factor(const Eigen::VectorXd& xi2);
 
+  ProjectedJacobian jacobian_;
   Eigen::VectorXd at_;
   TriangularFactor factor_{0};
 };

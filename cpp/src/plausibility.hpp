@@ -27,6 +27,10 @@ struct Prior {
     return (mean - x).cwiseProduct(weight).squaredNorm();
   }
 
+  /// Of the first and of the last parameters alone.
+  Prior head(Eigen::Index count) const { return {mean.head(count), weight.head(count)}; }
+  Prior tail(Eigen::Index count) const { return {mean.tail(count), weight.tail(count)}; }
+
   /// Merges the rows [diag(weight) | weight (mean - x)] into a whitened factor of [A | D | r].
   void join(TriangularFactor& factor, const Eigen::VectorXd& x) const;
 };

@@ -133,6 +133,19 @@ Box Problem::nonlinear_box() const {
   return box_of(parameters_, static_cast<std::size_t>(model().tables().n_1()));
 }
 
+std::vector<Prior> Problem::knowledge() const {
+  if (options_.knowledge.empty()) return {};
+  const auto n = static_cast<Index>(parameters_.size());
+  Prior prior{VectorXd::Zero(n), VectorXd::Zero(n)};
+  for (Index k = 0; k < n; ++k) {
+    const auto known = options_.knowledge.find(parameters_[static_cast<std::size_t>(k)].name);
+    if (known == options_.knowledge.end()) continue;
+    prior.mean[k] = known->second.mean;
+    prior.weight[k] = 1.0 / known->second.standard_deviation;
+  }
+  return {prior};
+}
+
 void Problem::check_measurements(std::size_t rows) const {
   const std::size_t outputs = model().tables().outputs.size();
   if (rows * outputs >= parameters_.size()) return;

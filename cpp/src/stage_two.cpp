@@ -37,32 +37,61 @@ class Alternation {
         sweep_(sweep),
         box_(problem.box()),
         scale_(VectorXd::Ones(box_.lower.size())),
-        result_(result) {}
+        priors_(problem.knowledge()),
+        result_(result) {
+    const FitOptions& options = problem.options();
+    if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
+  }
+
+  /// The noise of the residuals at x, each output's own, with its floor.
+  VectorXd estimate_noise() const {
+    const VectorXd estimate =
+        loss_ ? scales() : VectorXd((squares(result_.factors) / rows()).cwiseSqrt());
+    return with_floor(estimate);
+  }
+
+  VectorXd with_floor(const VectorXd& noise) const {
+    VectorXd raised = noise;
+    for (Index j = 0; j < noise.size(); ++j) raised[j] = std::max(noise[j], noise_floor(j));
+    return raised;
+  }
+
+  /// By the loss's own scale, which outliers don't raise.
+  VectorXd scales() const {
+    const MatrixXd residuals = sweep_.residuals(xi1(), xi2());
+    VectorXd noise(residuals.cols());
+    for (Index j = 0; j < noise.size(); ++j) noise[j] = loss_->scale(residuals.col(j));
+    return noise;
+  }
+
+  bool forgives() const { return loss_.has_value(); }
 
   /// Where the record leaves a combination of parameters open at the start, nothing in it would
   /// keep them from running away: a loose prior does, and the fit is joint.
   void hold_what_is_open() {
     const auto factors = sweep_.tangent_factors(xi1(), xi2());
-    const TriangularFactor factor = combine(factors, weights());
+    const TriangularFactor factor = whiten(factors);
     if (!factor.all_finite()) return;
     const Index n = result_.x.size();
     const std::vector<Variable>& parameters = problem_.parameters();
     scale_ = plausible_scale(parameters, factors, sweep_.measurements());
     if (!leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) return;
-    prior_ = loose_prior(parameters, scale_);
+    const Prior loose = loose_prior(parameters, scale_);
+    priors_.push_back(loose);
     result_.method = SecondStage::joint;
-    result_.x.head(sweep_.tables().n_1()) = box_.clip(prior_->mean).head(sweep_.tables().n_1());
+    result_.x.head(sweep_.tables().n_1()) = box_.clip(loose.mean).head(sweep_.tables().n_1());
   }
 
   /// Drops the prior where the solution turns out to determine everything; whether it did.
   bool release_what_is_determined() {
-    if (!prior_) return false;
-    const TriangularFactor factor = combine(result_.factors, weights());
+    const auto known = problem_.knowledge().size();
+    if (priors_.size() == known) return false;
+    const TriangularFactor factor = whiten(result_.factors);
     const Index n = result_.x.size();
     if (!factor.all_finite() || leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) {
       return false;
     }
-    prior_.reset();
+    priors_.resize(known);
     return true;
   }
 
@@ -70,7 +99,7 @@ class Alternation {
   void descend() {
     if (result_.method == SecondStage::projected && descend_projected()) return;
     result_.method = SecondStage::joint;
-    JointObjective objective(sweep_, weights(), prior_);
+    JointObjective objective(sweep_, weights(), priors_, loss_);
     const Descent descent =
         minimise(objective, result_.x, box_, {.iterations = problem_.options().iterations});
     result_.iterations += descent.iterations;
@@ -79,7 +108,7 @@ class Alternation {
 
   /// Takes x to the last digit at the present R; false, with x as it was, where no minimum is near.
   bool refine() {
-    JointObjective objective(sweep_, weights(), prior_);
+    JointObjective objective(sweep_, weights(), priors_, loss_);
     const Refinement refinement = sepcal::refine(objective, result_.x, box_, scale_);
     result_.x = refinement.x;
     result_.at_bound = refinement.at_bound;
@@ -98,33 +127,34 @@ class Alternation {
 
   /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
   double update_noise() {
-    const auto rows = static_cast<double>(sweep_.measurements().rows());
-    const VectorXd sums = squares(result_.factors);
-    double change = 0.0;
-    for (Index j = 0; j < sums.size(); ++j) {
-      const double next = std::max(std::sqrt(sums[j] / rows), noise_floor(j));
-      const double ratio = next / result_.noise[j];
-      change = std::max(change, std::abs(ratio * ratio - 1.0));
-      result_.noise[j] = next;
-    }
-    return change;
-  }
-
-  /// Keeps a noise-free output from sending J to minus infinity.
-  double noise_floor(Index j) const {
-    const auto rows = static_cast<double>(sweep_.measurements().rows());
-    const double square = sweep_.measurements().output_square(static_cast<int>(j)) / rows;
-    return std::max(1e-12 * std::sqrt(square), std::sqrt(std::numeric_limits<double>::min()));
+    const VectorXd next = estimate_noise();
+    const VectorXd ratios = next.cwiseQuotient(result_.noise);
+    result_.noise = next;
+    return (ratios.array().square() - 1.0).abs().maxCoeff();
   }
 
  private:
   VectorXd xi1() const { return result_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return result_.x.tail(sweep_.tables().n_2()); }
   VectorXd weights() const { return result_.noise.cwiseInverse(); }
+  double rows() const { return static_cast<double>(sweep_.measurements().rows()); }
+
+  /// One factor of all outputs, with what is known beforehand.
+  TriangularFactor whiten(const std::vector<TriangularFactor>& factors) const {
+    TriangularFactor factor = combine(factors, weights());
+    for (const Prior& known : problem_.knowledge()) known.join(factor, result_.x);
+    return factor;
+  }
+
+  /// Keeps a noise-free output from sending J to minus infinity.
+  double noise_floor(Index j) const {
+    const double square = sweep_.measurements().output_square(static_cast<int>(j)) / rows();
+    return std::max(1e-12 * std::sqrt(square), std::sqrt(std::numeric_limits<double>::min()));
+  }
 
   /// False where a linear parameter left its bounds, which the inner problem does not know.
   bool descend_projected() {
-    ProjectedObjective objective(sweep_, weights());
+    ProjectedObjective objective(sweep_, weights(), priors_, problem_.options().jacobian);
     const Descent descent = minimise(objective, xi2(), problem_.nonlinear_box(),
                                      {.iterations = problem_.options().iterations});
     result_.iterations += descent.iterations;
@@ -151,9 +181,10 @@ class Alternation {
   const Problem& problem_;
   const Sweep& sweep_;
   Box box_;
-  VectorXd scale_;  // plausible length of each parameter
+  VectorXd scale_;             // plausible length of each parameter
+  std::vector<Prior> priors_;  // what is known, and what holds open combinations for a while
+  std::optional<RobustLoss> loss_;
   StageTwo& result_;
-  std::optional<Prior> prior_;
 };
 
 struct Outcome {
@@ -207,12 +238,12 @@ StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
   result.x << start.xi1, start.xi2;
   result.x = problem.box().clip(result.x);
   result.noise = noise_given ? problem.noise() : start.noise;
+  if (options.loss != Loss::squares) result.method = SecondStage::joint;
 
   Alternation alternation(problem, sweep, result);
   if (!noise_given) {
-    for (Index j = 0; j < result.noise.size(); ++j) {
-      result.noise[j] = std::max(result.noise[j], alternation.noise_floor(j));
-    }
+    result.noise =
+        alternation.with_floor(alternation.forgives() ? alternation.scales() : start.noise);
   }
   alternation.hold_what_is_open();
   Outcome outcome = alternate(alternation, result, options, noise_given);

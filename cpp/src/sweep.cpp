@@ -2,6 +2,7 @@
 #include "sweep.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 namespace sepcal {
@@ -96,6 +97,77 @@ std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
   return merge_in_order(parts, n_z, columns);
 }
 
+std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, const VectorXd& xi2,
+                                                       const RobustLoss& loss,
+                                                       const VectorXd& weights) const {
+  const int columns = tables().n_1() + tables().n_2() + 1;
+  const int n_z = tables().n_z();
+  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
+  MatrixXd excesses = MatrixXd::Zero(n_z, static_cast<Index>(parts.size()));
+  for_each_block(
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        const Index N = rows_of(range);
+        rows.resize(n_z * N, columns);
+        fill_tangent(block, range, xi1, xi2, carry, rows);
+        for (Index row = 0; row < rows.rows(); ++row) {
+          const Index j = row / N;
+          const double s = weights[j] * rows(row, columns - 1);
+          const double w = loss.weight(s);
+          excesses(j, static_cast<Index>(c)) += std::max(0.0, loss.cost(s) - w * s * s);
+          rows.row(row) *= std::sqrt(w);
+        }
+        absorb_by_output(rows, N, parts[c]);
+      });
+  Factors factors = merge_in_order(parts, n_z, columns);
+  for (int j = 0; j < n_z; ++j) {
+    MatrixXd excess = MatrixXd::Zero(1, columns);
+    excess(0, columns - 1) = std::sqrt(excesses.row(j).sum()) / weights[j];
+    factors[static_cast<std::size_t>(j)].absorb(excess);
+  }
+  return factors;
+}
+
+std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd& xi2) const {
+  const Index n_1 = tables().n_1();
+  const Index n_2 = tables().n_2();
+  const Index n_z = tables().n_z();
+  std::vector<VectorXd> points{xi1, VectorXd::Zero(n_1)};
+  for (Index p = 0; p < n_1; ++p) points.push_back(VectorXd::Unit(n_1, p));
+  const auto& chunks = measurements_.chunks();
+  std::vector<MatrixXd> parts(chunks.size(), MatrixXd::Zero(n_1, n_z * n_2));
+  pool_.for_each(chunks.size(), [&](std::size_t c) {
+    std::vector<std::unique_ptr<Carry>> carries;  // each tangent is a pass of its own
+    for (std::size_t k = 0; k < points.size(); ++k) carries.push_back(model_.new_carry());
+    std::vector<const double*> pointers;
+    for (const Measurements::Range& range : chunks[c]) {
+      const Index N = rows_of(range);
+      const Block block = measurements_.block(range, pointers);
+      std::vector<MatrixXd> tangents;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        MatrixXd rows(n_z * N, n_1 + n_2 + 1);
+        fill_tangent(block, range, points[k], xi2, carries[k].get(), rows);
+        tangents.push_back(rows.rightCols(n_2 + 1));
+      }
+      const VectorXd r = tangents[0].col(n_2);
+      for (Index p = 0; p < n_1; ++p) {
+        const MatrixXd slope =
+            (tangents[static_cast<std::size_t>(p) + 2] - tangents[1]).leftCols(n_2);
+        for (Index j = 0; j < n_z; ++j) {
+          parts[c].row(p).segment(j * n_2, n_2) +=
+              r.segment(j * N, N).transpose() * slope.middleRows(j * N, N);
+        }
+      }
+    }
+  });
+  std::vector<MatrixXd> products(static_cast<std::size_t>(n_z), MatrixXd::Zero(n_1, n_2));
+  for (const MatrixXd& part : parts) {
+    for (Index j = 0; j < n_z; ++j) {
+      products[static_cast<std::size_t>(j)] += part.middleCols(j * n_2, n_2);
+    }
+  }
+  return products;
+}
+
 std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
   const int columns = tables().n_1() + tables().n_2() + 1;
   const int n_z = tables().n_z();
@@ -126,15 +198,30 @@ MatrixXd Sweep::block_residuals(const Block& block, const Measurements::Range& r
   return r.reshaped(rows_of(range), tables().n_z());
 }
 
-VectorXd Sweep::squared_residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+VectorXd Sweep::sum_residuals(const VectorXd& xi1, const VectorXd& xi2,
+                              const std::function<VectorXd(const MatrixXd&)>& of_block) const {
   const auto chunks = static_cast<Index>(measurements_.chunks().size());
   MatrixXd parts = MatrixXd::Zero(tables().n_z(), chunks);
   for_each_block(
       [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-        const MatrixXd r = block_residuals(block, range, xi1, xi2, carry, rows);
-        parts.col(static_cast<Index>(c)) += r.colwise().squaredNorm().transpose();
+        parts.col(static_cast<Index>(c)) +=
+            of_block(block_residuals(block, range, xi1, xi2, carry, rows));
       });
   return parts.rowwise().sum();
+}
+
+VectorXd Sweep::squared_residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+  return sum_residuals(xi1, xi2, [](const MatrixXd& r) -> VectorXd {
+    return r.colwise().squaredNorm().transpose();
+  });
+}
+
+VectorXd Sweep::losses(const VectorXd& xi1, const VectorXd& xi2, const RobustLoss& loss,
+                       const VectorXd& weights) const {
+  return sum_residuals(xi1, xi2, [&](const MatrixXd& r) -> VectorXd {
+    const MatrixXd s = r * weights.asDiagonal();
+    return s.unaryExpr([&](double each) { return loss.cost(each); }).colwise().sum().transpose();
+  });
 }
 
 MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {

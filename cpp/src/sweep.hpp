@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "loss.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/measurements.hpp"
 #include "sepcal/triangular_factor.hpp"
@@ -32,6 +33,18 @@ class Sweep {
   std::vector<TriangularFactor> tangent_factors(const Eigen::VectorXd& xi1,
                                                 const Eigen::VectorXd& xi2) const;
 
+  /// The same of rows multiplied by sqrt(w(s)), s = weights_j r, and of one row more, whose
+  /// residual makes the square of the last column sum rho(s) / weights_j^2: still not whitened.
+  std::vector<TriangularFactor> forgiving_factors(const Eigen::VectorXd& xi1,
+                                                  const Eigen::VectorXd& xi2,
+                                                  const RobustLoss& loss,
+                                                  const Eigen::VectorXd& weights) const;
+
+  /// G by output (n_z, each n_1 x n_2), not whitened: G_pi = sum of r dA_p/dxi2_i over the rows, r
+  /// at (xi1, xi2). D is affine in xi1, so that n_1 + 1 more tangents give it, of any model.
+  std::vector<Eigen::MatrixXd> slope_products(const Eigen::VectorXd& xi1,
+                                              const Eigen::VectorXd& xi2) const;
+
   /// [A | D | r] at (xi1, xi2) of every selected row, output by output (n_z matrices of rows() rows
   /// in the record's order): what depends on the order of rows, which a factor forgets.
   std::vector<Eigen::MatrixXd> tangent_rows(const Eigen::VectorXd& xi1,
@@ -39,6 +52,10 @@ class Sweep {
 
   /// Sum of r^2 by output (n_z).
   Eigen::VectorXd squared_residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
+
+  /// Sum of rho(weights_j r) by output (n_z).
+  Eigen::VectorXd losses(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                         const RobustLoss& loss, const Eigen::VectorXd& weights) const;
 
   /// r of every selected row, in the record's order: rows() x n_z.
   Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
@@ -55,6 +72,11 @@ class Sweep {
 
   /// Visits every block, a chunk's blocks in order; `rows` is scratch of the chunk's own.
   void for_each_block(const Visit& visit) const;
+
+  /// Sums over the rows by output (n_z) of what `of_block` makes of a block's r (rows x n_z).
+  Eigen::VectorXd sum_residuals(
+      const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+      const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& of_block) const;
 
   /// A block's rows, (n_z * rows) x (n_1 + 1): [A | z - b].
   void fill_linear(const Block& block, const Measurements::Range& range, const double* xi2,

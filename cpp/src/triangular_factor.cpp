@@ -145,6 +145,14 @@ TriangularSolution solve_triangular(const MatrixXd& R, const VectorXd& q) {
   return solution;
 }
 
+MatrixXd generalised_inverse(const MatrixXd& R) {
+  MatrixXd inverse(R.cols(), R.cols());
+  for (Index k = 0; k < R.cols(); ++k) {
+    inverse.col(k) = solve_triangular(R, VectorXd::Unit(R.cols(), k)).x;
+  }
+  return inverse;
+}
+
 double remaining_square(const TriangularFactor& factor) {
   const MatrixXd& T = factor.matrix();
   const Index n = T.cols() - 1;

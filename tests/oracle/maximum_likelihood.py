@@ -94,6 +94,62 @@ def fit_with_noise(model: Model, record: Record, start: ArrayLike) -> Estimate:
     raise RuntimeError(f"R did not settle; the last noise is {noise}")
 
 
+@dataclass(frozen=True)
+class RobustEstimate:
+    """The minimum of sum rho(s) at a fixed R, s the whitened residual."""
+
+    values: Array  # (n,)
+    covariance: Array  # the sandwich, times M / (M - n), (n, n)
+    cost: float  # half the sum of rho, and N ln |R| / 2
+
+
+def fit_with_loss(
+    model: Model, record: Record, noise: ArrayLike, start: ArrayLike, loss: str, width: float
+) -> RobustEstimate:
+    """Minimises sum rho(s) by SciPy's trf, then by Newton's method, rho in SciPy's own form.
+
+    Raises RuntimeError where Newton's steps do not settle below 1e-10 standard errors.
+    """
+    deviation = np.asarray(noise, dtype=float)[:, np.newaxis]
+    measured = model.measured(record)
+
+    def residual(xi: Array) -> Array:
+        return ((measured - model.predict(record, xi)) / deviation).ravel()
+
+    def jacobian(xi: Array) -> Array:
+        return -(model.jacobian(record, xi) / deviation[..., np.newaxis]).reshape(-1, xi.size)
+
+    tolerance = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15}
+    found = least_squares(
+        residual, np.asarray(start, float), jac=jacobian, loss=loss, f_scale=width, **tolerance
+    )
+    xi = found.x
+    for _ in range(100):
+        s, J = residual(xi), jacobian(xi)
+        psi, slope = _influence(s, loss, width)
+        gradient = J.T @ psi
+        bread = np.linalg.inv(J.T @ (slope[:, np.newaxis] * J))
+        step = -bread @ gradient
+        xi = xi + step
+        covariance = bread @ (J.T @ (psi[:, np.newaxis] ** 2 * J)) @ bread
+        if np.all(np.abs(step) < 1e-10 * np.sqrt(np.diag(covariance))):
+            break
+    else:
+        raise RuntimeError(f"Newton's steps did not settle; the last one is {step}")
+    cost = least_squares(residual, xi, jac=jacobian, loss=loss, f_scale=width, max_nfev=1).cost
+    logarithms = float(measured.shape[1] * np.sum(np.log(deviation)))
+    freedom = s.size / (s.size - xi.size)
+    return RobustEstimate(xi, covariance * freedom, cost + logarithms)
+
+
+def _influence(s: Array, loss: str, width: float) -> tuple[Array, Array]:
+    """Psi = d rho / ds / 2 and its slope."""
+    if loss == "huber":
+        return np.clip(s, -width, width), (np.abs(s) <= width).astype(float)
+    u = (s / width) ** 2
+    return s / (1 + u), (1 - u) / (1 + u) ** 2
+
+
 def _invert_gram(r: Array) -> Array:
     """inv(R' R) of an upper triangular R, without forming R' R."""
     inverse = solve_triangular(r, np.eye(r.shape[0]))

@@ -121,7 +121,8 @@ def test_defaults_are_carried(bench: Bench):
         "free": [], "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0,
         "descents": 8, "second_stage": "auto", "noise_tolerance": 1e-10, "noise_iterations": 100,
         "knowledge": {}, "search": "sampling", "jacobian": "kaufman", "loss": "squares",
-        "loss_width": 0.0, "iterations": 200, "coloured_errors": True, "threads": 0, "drop_invalid": False,
+        "loss_width": 0.0, "iterations": 200, "coloured_errors": True,
+        "threads": 0, "drop_invalid": False,
     }  # fmt: skip
 
 

@@ -13,7 +13,12 @@ import sepcal
 from oracle.cases import CASE_NAMES, K_ALPHA, K_BETA, LEVER_ARM, Case, state_case
 from oracle.closed_form import fit_field_map, fit_scalar_example_1
 from oracle.magnetometer import compose
-from oracle.maximum_likelihood import Estimate, fit_at_fixed_noise, fit_with_noise
+from oracle.maximum_likelihood import (
+    Estimate,
+    fit_at_fixed_noise,
+    fit_with_loss,
+    fit_with_noise,
+)
 from oracle.model import Array
 
 MODELS = {
@@ -116,6 +121,33 @@ def test_estimated_noise(case: Case, second_stage: str) -> None:
     assert_allclose([fit.noise[name] for name in case.model.outputs], expected.noise, rtol=1e-6)
     white = [fit.parameters[name].standard_error_white for name in case.model.parameters]
     assert_allclose(white, standard_errors, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("loss", "width"), [("huber", 1.345), ("cauchy", 2.385), ("cauchy", 1.1)])
+def test_losses(case: Case, loss: str, width: float) -> None:
+    """The minimum of SciPy's own loss, f_scale being the width, on a record with outliers."""
+    record = {name: np.array(column, dtype=float) for name, column in case.record.items()}
+    for deviation, name in zip(case.noise, case.model.outputs, strict=True):
+        record[name][3::25] += 12.0 * deviation
+        record[name][14::25] -= 9.0 * deviation
+    expected = fit_with_loss(case.model, record, case.noise, case.truth, loss, width)
+    fit = sepcal.fit(
+        MODELS[case.name],
+        record,
+        bounds=case.bounds,
+        noise=case.noise_by_output,
+        loss=loss,
+        loss_width=width,
+        coloured_errors=False,
+    )
+    assert fit.status == "converged", fit.message
+    assert fit.method == "joint"
+    standard_errors = np.sqrt(np.diag(expected.covariance))
+    assert_values_agree(fit.values, expected.values, standard_errors)
+    scale = np.outer(standard_errors, standard_errors)
+    assert_allclose(fit.covariance_white / scale, expected.covariance / scale, rtol=0, atol=1e-6)
+    assert_allclose(fit.covariance, fit.covariance_white)
+    assert fit.cost == pytest.approx(expected.cost, rel=1e-12)
 
 
 @pytest.mark.parametrize("second_stage", ["joint", "projected"])

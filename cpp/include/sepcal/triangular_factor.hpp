@@ -58,6 +58,10 @@ struct TriangularSolution {
 /// are zero.
 TriangularSolution solve_triangular(const Eigen::MatrixXd& R, const Eigen::VectorXd& q);
 
+/// The linear map behind solve_triangular(R, q).x, n x n: R's inverse, or one that gives the
+/// solution of least norm in columns scaled to unit length.
+Eigen::MatrixXd generalised_inverse(const Eigen::MatrixXd& R);
+
 /// min over x of |last column - other columns x|^2 of the rows behind a factor.
 double remaining_square(const TriangularFactor& factor);
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <optional>
 
-#include "coloured_covariance.hpp"
+#include "residual_colour.hpp"
 #include "named_driver.hpp"
 #include "sepcal/natural_spline.hpp"
 

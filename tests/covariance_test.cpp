@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Standard errors on coloured residuals, against closed forms with dense matrices of their own.
-#include "coloured_covariance.hpp"
+#include "covariance.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "noises.hpp"
+#include "residual_colour.hpp"
 #include "sepcal/fit.hpp"
 #include "small_models.hpp"
 

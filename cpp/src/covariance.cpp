@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "covariance.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "loss.hpp"
+#include "residual_colour.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+MatrixXd nothing(Index k) { return MatrixXd::Constant(k, k, undefined); }
+
+/// (R' R)^-1 by way of R^-1; NaN throughout where R is singular.
+MatrixXd inverse_of_square(const MatrixXd& R) {
+  const Index n = R.cols();
+  if ((R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any()) {
+    return nothing(n);
+  }
+  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
+  return inverse * inverse.transpose();
+}
+
+/// The free parameters whose estimate has a distribution: those not held by a bound.
+std::vector<Index> find_inside(const std::vector<bool>& at_bound) {
+  std::vector<Index> indices;
+  for (std::size_t k = 0; k < at_bound.size(); ++k) {
+    if (!at_bound[k]) indices.push_back(static_cast<Index>(k));
+  }
+  return indices;
+}
+
+/// The factor of a selection of columns.
+MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
+  TriangularFactor factor(static_cast<int>(columns.size()));
+  MatrixXd rows = R(Eigen::all, columns);
+  factor.absorb(rows);
+  return factor.matrix();
+}
+
+/// Rows over `noise`, those of what is known among them: n x n.
+MatrixXd whiten(const Problem& problem, const StageTwo& two, const VectorXd& noise) {
+  TriangularFactor factor = combine(two.factors, noise.cwiseInverse());
+  for (const Prior& prior : problem.knowledge()) prior.join(factor, two.x);
+  return factor.matrix().topLeftCorner(two.x.size(), two.x.size());
+}
+
+/// Parameters that the measurements had to pay for: all of them, less the share of each that was
+/// known beforehand.
+double count_spent(const Problem& problem, const StageTwo& two, const std::vector<Index>& inside) {
+  auto spent = static_cast<double>(two.x.size());
+  for (const Prior& prior : problem.knowledge()) {
+    const MatrixXd R = select_columns(whiten(problem, two, two.noise), inside);
+    const VectorXd shares =
+        inverse_of_square(R).diagonal().cwiseProduct(prior.weight(inside).cwiseAbs2());
+    if (shares.allFinite()) spent -= shares.sum();
+  }
+  return spent;
+}
+
+/// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
+class Sandwich {
+ public:
+  /// `judged` (n_z): the noise behind R (k x k). `ratio`: M / (M - p).
+  Sandwich(const Problem& problem, const Sweep& sweep, const StageTwo& two, MatrixXd R,
+           VectorXd judged, double ratio)
+      : problem_(problem),
+        sweep_(sweep),
+        two_(two),
+        R_(std::move(R)),
+        judged_(std::move(judged)),
+        ratio_(ratio),
+        residuals_(sweep.residuals(xi1(), xi2())) {
+    const FitOptions& options = problem.options();
+    if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
+    if (loss_) {
+      for (Index j = 0; j < residuals_.cols(); ++j) {
+        for (double& r : residuals_.col(j)) {
+          r = two_.noise[j] * loss_->influence(r / two_.noise[j]);
+        }
+      }
+    }
+  }
+
+  bool is_finite() const { return residuals_.allFinite() && R_.allFinite(); }
+
+  /// Gives each output's residual its noise model; whether any is coloured.
+  bool find_colours() {
+    const bool noise_given = problem_.noise().size() > 0;
+    const std::vector<Segment>& runs = sweep_.measurements().runs();
+    colours_.resize(static_cast<std::size_t>(residuals_.cols()));
+    sweep_.pool().for_each(colours_.size(), [&](std::size_t j) {
+      const auto e = residuals_.col(static_cast<Index>(j));
+      // An estimated R above its own residual stands at its floor: what is left is rounding.
+      const double rms = e.norm() / std::sqrt(static_cast<double>(e.size()));
+      if (!loss_ && !noise_given && rms < 0.99 * two_.noise[static_cast<Index>(j)]) return;
+      colours_[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, runs);
+    });
+    return std::ranges::any_of(colours_, [](const std::optional<NoiseModel>& colour) {
+      return colour && (colour->d != 0.0 || colour->order() != 0);
+    });
+  }
+
+  /// The covariance (k x k), of white residuals before find_colours() was asked.
+  MatrixXd covariance(const std::vector<Index>& inside) const {
+    const Index k = R_.cols();
+    const auto outputs = static_cast<std::size_t>(residuals_.cols());
+    std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
+    std::vector<MatrixXd> breads(outputs);
+    std::vector<MatrixXd> fillings(outputs);
+    sweep_.pool().for_each(outputs, [&](std::size_t j) {
+      MatrixXd Q = tangents[j](Eigen::all, inside) / judged_[static_cast<Index>(j)];
+      const VectorXd r = tangents[j].rightCols<1>();
+      tangents[j].resize(0, 0);
+      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
+      breads[j] = Q.transpose() * (loss_ ? MatrixXd(slopes(r, j).asDiagonal() * Q) : Q);
+      fillings[j] = filling(Q, j);
+    });
+    MatrixXd bread = MatrixXd::Zero(k, k);
+    MatrixXd middle = MatrixXd::Zero(k, k);
+    for (std::size_t j = 0; j < outputs; ++j) {
+      bread += breads[j];
+      middle += fillings[j];
+    }
+    for (const Prior& prior : problem_.knowledge()) {
+      MatrixXd W = prior.weight(inside).asDiagonal();
+      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
+      bread += W.transpose() * W;
+      middle += W.transpose() * W;
+    }
+    const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(
+        loss_ ? MatrixXd(bread.inverse()) : MatrixXd(MatrixXd::Identity(k, k)));
+    const MatrixXd covariance = inverse * middle * inverse.transpose();
+    return 0.5 * (covariance + covariance.transpose());
+  }
+
+ private:
+  VectorXd xi1() const { return two_.x.head(sweep_.tables().n_1()); }
+  VectorXd xi2() const { return two_.x.tail(sweep_.tables().n_2()); }
+
+  VectorXd slopes(const VectorXd& r, std::size_t j) const {
+    const double noise = two_.noise[static_cast<Index>(j)];
+    return r.unaryExpr([&](double each) { return loss_->slope(each / noise); });
+  }
+
+  /// Q' Sigma_j Q over the judged noise: by the colour, by the residuals' own squares where a loss
+  /// leaves no other measure, or by the noise itself.
+  MatrixXd filling(const MatrixXd& Q, std::size_t j) const {
+    const double judged = judged_[static_cast<Index>(j)];
+    const bool known = !colours_.empty() && colours_[j].has_value();
+    const bool white = !known || (colours_[j]->d == 0.0 && colours_[j]->order() == 0);
+    if (loss_ && white) {
+      const VectorXd s = residuals_.col(static_cast<Index>(j)) / judged;
+      return ratio_ * Q.transpose() * s.cwiseAbs2().asDiagonal() * Q;
+    }
+    if (!known) return Q.transpose() * Q;
+    NoiseModel colour = *colours_[j];
+    colour.sigma /= judged;
+    return ratio_ * covariance_product(colour, sweep_.measurements().runs(), Q);
+  }
+
+  const Problem& problem_;
+  const Sweep& sweep_;
+  const StageTwo& two_;
+  MatrixXd R_;
+  VectorXd judged_;
+  double ratio_;
+  MatrixXd residuals_;  // rows x n_z; with a loss, noise_j psi(r / noise_j)
+  std::optional<RobustLoss> loss_;
+  std::vector<std::optional<NoiseModel>> colours_;
+};
+
+}  // namespace
+
+Covariances find_covariances(const Problem& problem, const Sweep& sweep, const StageTwo& two) {
+  const bool noise_given = problem.noise().size() > 0;
+  const FitOptions& options = problem.options();
+  Covariances result;
+  result.inside = find_inside(two.at_bound);
+  const auto k = static_cast<Index>(result.inside.size());
+  const auto count = static_cast<double>(sweep.measurements().rows()) * sweep.tables().n_z();
+  const double freedom = count - count_spent(problem, two, result.inside);
+  const double ratio = freedom > 0.0 ? count / freedom : undefined;
+  const double inflation = noise_given ? 1.0 : ratio;
+
+  const VectorXd judged = two.noise * std::sqrt(freedom > 0.0 ? inflation : 1.0);
+  result.tangent = whiten(problem, two, judged);
+  const MatrixXd R = select_columns(result.tangent, result.inside);
+  result.white = std::isnan(inflation) ? nothing(k) : inverse_of_square(R);
+  result.coloured = result.white;
+  const bool forgiving = options.loss != Loss::squares;
+  if (k == 0 || std::isnan(ratio) || !result.white.allFinite()) return result;
+  if (!forgiving && !options.coloured_errors) return result;
+
+  Sandwich sandwich(problem, sweep, two, R, judged, ratio);
+  if (!sandwich.is_finite()) return result;
+  if (forgiving) result.coloured = result.white = sandwich.covariance(result.inside);
+  if (!options.coloured_errors || !(sandwich.find_colours() || noise_given)) return result;
+  const MatrixXd coloured = sandwich.covariance(result.inside);
+  if (coloured.allFinite()) result.coloured = coloured;
+  return result;
+}
+
+}  // namespace sepcal
