@@ -134,6 +134,8 @@ def test_options_are_carried(pitot: Bench):
         *("--free", "w_e", "--samples", "60", "--sampling", "low_discrepancy", "--seed", "7"),
         *("--second-stage", "joint", "--noise", "vn=0.15", "--noise", "ve=0.15"),
         *("--noise", "vd=0.2", "--noise-tolerance", "0.05", "--threads", "1", "-o", "next.json"),
+        *("--know", "b_va=0.1:2", "--loss", "huber", "--loss-width", "1.5"),
+        *("--jacobian", "golub_pereyra"),
     )
     assert fitted.code == 0, fitted.err
     assert fitted.result["options"] | {
@@ -141,6 +143,8 @@ def test_options_are_carried(pitot: Bench):
         "bounds": {"eps_phi": [-0.2, 0.15], "w_n": [-9, 9]}, "fix": {"w_d": 0.3}, "free": ["w_e"],
         "samples": 60, "sampling": "low_discrepancy", "seed": 7, "second_stage": "joint",
         "noise": {"vd": 0.2, "ve": 0.15, "vn": 0.15}, "noise_tolerance": 0.05, "threads": 1,
+        "knowledge": {"b_va": [0.1, 2]}, "loss": "huber", "loss_width": 1.5,
+        "jacobian": "golub_pereyra",
     } == fitted.result["options"]  # fmt: skip
     assert fitted.result["noise"] == {"vn": 0.15, "ve": 0.15, "vd": 0.2}
     assert fitted.result["stage_two"]["method"] == "joint"
