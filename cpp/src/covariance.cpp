@@ -68,6 +68,8 @@ double count_spent(const Problem& problem, const StageTwo& two, const std::vecto
   return spent;
 }
 
+bool is_coloured(const NoiseModel& noise) { return noise.d != 0.0 || noise.order() != 0; }
+
 /// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
 class Sandwich {
  public:
@@ -107,7 +109,7 @@ class Sandwich {
       colours_[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, runs);
     });
     return std::ranges::any_of(colours_, [](const std::optional<NoiseModel>& colour) {
-      return colour && (colour->d != 0.0 || colour->order() != 0);
+      return colour && is_coloured(*colour);
     });
   }
 
@@ -157,16 +159,15 @@ class Sandwich {
   /// leaves no other measure, or by the noise itself.
   MatrixXd filling(const MatrixXd& Q, std::size_t j) const {
     const double judged = judged_[static_cast<Index>(j)];
-    const bool known = !colours_.empty() && colours_[j].has_value();
-    const bool white = !known || (colours_[j]->d == 0.0 && colours_[j]->order() == 0);
-    if (loss_ && white) {
+    std::optional<NoiseModel> colour;
+    if (!colours_.empty()) colour = colours_[j];
+    if (loss_ && !(colour && is_coloured(*colour))) {
       const VectorXd s = residuals_.col(static_cast<Index>(j)) / judged;
       return ratio_ * Q.transpose() * s.cwiseAbs2().asDiagonal() * Q;
     }
-    if (!known) return Q.transpose() * Q;
-    NoiseModel colour = *colours_[j];
-    colour.sigma /= judged;
-    return ratio_ * covariance_product(colour, sweep_.measurements().runs(), Q);
+    if (!colour) return Q.transpose() * Q;
+    colour->sigma /= judged;
+    return ratio_ * covariance_product(*colour, sweep_.measurements().runs(), Q);
   }
 
   const Problem& problem_;

@@ -76,12 +76,12 @@ bool ProjectedObjective::linearise(const VectorXd& xi2, VectorXd& residual, Matr
   // Rows orthogonal to A's columns: n_2 + 1 below A's, and those that a singular A does not reach.
   const MatrixXd R_AA = T.topLeftCorner(n_1, n_1);
   const MatrixXd unseen = solve_triangular(R_AA, VectorXd::Zero(n_1)).unseen;
-  const MatrixXd beside_A = unseen * unseen.transpose();
+  const MatrixXd outside = unseen * unseen.transpose();
   residual.resize(residuals());
   jacobian = MatrixXd::Zero(residuals(), n_2);
-  residual << T.col(n_1 + n_2).tail(n_2 + 1), beside_A * T.col(n_1 + n_2).head(n_1);
+  residual << T.col(n_1 + n_2).tail(n_2 + 1), outside * T.col(n_1 + n_2).head(n_1);
   jacobian.topRows(n_2) = -T.block(n_1, n_1, n_2, n_2);
-  jacobian.bottomRows(n_1) = -beside_A * T.block(0, n_1, n_1, n_2);
+  jacobian.bottomRows(n_1) = -outside * T.block(0, n_1, n_1, n_2);
   if (jacobian_ == ProjectedJacobian::golub_pereyra) {
     const std::vector<MatrixXd> by_output = sweep_.slope_products(x.head(n_1), xi2);
     MatrixXd G = MatrixXd::Zero(n_1, n_2);

@@ -132,7 +132,7 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
   const Index n_2 = tables().n_2();
   const Index n_z = tables().n_z();
   std::vector<VectorXd> points{xi1, VectorXd::Zero(n_1)};
-  for (Index p = 0; p < n_1; ++p) points.push_back(VectorXd::Unit(n_1, p));
+  for (Index p = 0; p < n_1; ++p) points.emplace_back(VectorXd::Unit(n_1, p));
   const auto& chunks = measurements_.chunks();
   std::vector<MatrixXd> parts(chunks.size(), MatrixXd::Zero(n_1, n_z * n_2));
   pool_.for_each(chunks.size(), [&](std::size_t c) {
@@ -146,7 +146,7 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
       for (std::size_t k = 0; k < points.size(); ++k) {
         MatrixXd rows(n_z * N, n_1 + n_2 + 1);
         fill_tangent(block, range, points[k], xi2, carries[k].get(), rows);
-        tangents.push_back(rows.rightCols(n_2 + 1));
+        tangents.emplace_back(rows.rightCols(n_2 + 1));
       }
       const VectorXd r = tangents[0].col(n_2);
       for (Index p = 0; p < n_1; ++p) {
