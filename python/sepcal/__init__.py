@@ -27,12 +27,16 @@ from sepcal.models import (
     ScalarExample1,
     ScalarExample2,
 )
+from sepcal.monte_carlo_results import MonteCarlo, ParameterStudy
 from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.reporting import report
 from sepcal.results import Combination, EffectSetting, Fit, LocalMinimum, Parameter, StageOne
+from sepcal.running_trials import monte_carlo, stream_trials
+from sepcal.simulated_trial import SimulatedTrial
 from sepcal.simulation import SimulatedFlight, simulate
+from sepcal.trials import Estimates, Failure, TrialRecord
 
 __all__ = [
     "Applied",
@@ -47,6 +51,8 @@ __all__ = [
     "EffectFinding",
     "EffectSetting",
     "Error",
+    "Estimates",
+    "Failure",
     "Fit",
     "FitOptions",
     "FiveHoleProbe",
@@ -57,20 +63,26 @@ __all__ = [
     "Magnetometer",
     "Misfit",
     "Model",
+    "MonteCarlo",
     "OwnModel",
     "Parameter",
+    "ParameterStudy",
     "PitotStatic",
     "ScalarExample1",
     "ScalarExample2",
     "SeparableModel",
     "SimulatedFlight",
+    "SimulatedTrial",
     "StageOne",
+    "TrialRecord",
     "Window",
     "__version__",
     "effects",
     "fit",
     "load",
+    "monte_carlo",
     "read_csv",
     "report",
     "simulate",
+    "stream_trials",
 ]

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The models, z = A(u, xi2) xi1 + b(u, xi2) + v: names, units and bounds of their tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -92,6 +94,10 @@ class Model:
         """The outputs to take from data: all but one that is a constant and not there."""
         there = set(data)
         return [name for name in self.outputs if name in there or name not in self._constant]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        make: Callable[..., Model] = type(self)
+        return partial(make, **self._settings()), ()
 
     def __repr__(self) -> str:
         settings = ", ".join(f"{name}={value!r}" for name, value in self._settings().items())

@@ -130,6 +130,9 @@ class OwnModel(Model):
     def _owner(self) -> str:
         return type(self.definition).__name__
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return OwnModel, (self.definition,)
+
     def __repr__(self) -> str:
         return f"OwnModel({self.definition!r})"
 

@@ -46,6 +46,36 @@ std::vector<std::string> maneuvers(const Flight& flight) {
   return {flight.maneuvers().begin(), flight.maneuvers().end()};
 }
 
+/// [(header, values, first cell that is no number or None), ...]
+using PickledColumns =
+    std::vector<std::tuple<std::string, Array, std::optional<std::pair<std::size_t, std::string>>>>;
+using PickledFlight =
+    std::tuple<std::string, std::string, PickledColumns, std::vector<std::string>>;
+
+/// All that a flight is, so that another process says and writes the same of it.
+PickledFlight pickled(const Flight& flight) {
+  PickledColumns columns;
+  for (const auto& [header, values, owner, first_text] : flight.columns()) {
+    std::optional<std::pair<std::size_t, std::string>> text;
+    if (first_text) text.emplace(first_text->row, first_text->text);
+    columns.emplace_back(header, read_only_array(values, owner), std::move(text));
+  }
+  return {flight.name(), flight.sha256(), std::move(columns), maneuvers(flight)};
+}
+
+Flight unpickled(const PickledFlight& state) {
+  const auto& [name, sha256, columns, labels] = state;
+  Flight flight(name, sha256);
+  for (const auto& [header, values, text] : columns) {
+    std::optional<Flight::Cell> first_text;
+    if (text) first_text = Flight::Cell{text->first, text->second};
+    auto [span, owner] = view_array(values);
+    flight.view(header, span, std::move(owner), std::move(first_text));
+  }
+  if (!labels.empty()) flight.label(labels);
+  return flight;
+}
+
 void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
       .def(py::init<std::string>())
@@ -58,7 +88,8 @@ void define_flights(py::module_& module) {
       .def_property_readonly("sha256", &Flight::sha256)
       .def_property_readonly("rows", &Flight::rows)
       .def_property_readonly("headers", &headers)
-      .def_property_readonly("maneuvers", &maneuvers);
+      .def_property_readonly("maneuvers", &maneuvers)
+      .def(py::pickle(&pickled, &unpickled));
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
 }
 

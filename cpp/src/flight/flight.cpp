@@ -34,7 +34,7 @@ Flight& Flight::add(std::string header, std::vector<double> values) {
 }
 
 Flight& Flight::view(std::string header, std::span<const double> values,
-                     std::shared_ptr<const void> owner) {
+                     std::shared_ptr<const void> owner, std::optional<Cell> first_text) {
   if (header.empty()) throw Error(name_ + ": a column has no name");
   if (header == maneuver) {
     throw Error(name_ + ": column 'maneuver' is for labels, a text a row, not for numbers");
@@ -43,7 +43,7 @@ Flight& Flight::view(std::string header, std::span<const double> values,
     throw Error(fmt::format("{}: column '{}' is there twice; rename or delete one", name_, header));
   }
   check_length(header, values.size());
-  columns_.push_back({std::move(header), values, std::move(owner), std::nullopt});
+  columns_.push_back({std::move(header), values, std::move(owner), std::move(first_text)});
   return *this;
 }
 
@@ -111,12 +111,11 @@ Flight read_csv(const std::string& file, const Progress& progress) {
       }
     }
   }
-  Flight flight(file);
-  flight.sha256_ = reader.sha256();
+  Flight flight(file, reader.sha256());
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (i == maneuver_at) continue;
-    flight.add(header[i], std::move(columns[i].values));
-    flight.columns_.back().first_text = std::move(columns[i].first_text);
+    const auto owned = std::make_shared<const std::vector<double>>(std::move(columns[i].values));
+    flight.view(header[i], *owned, owned, std::move(columns[i].first_text));
   }
   if (maneuver_at < header.size()) flight.label(std::move(labels));
   return flight;

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from sepcal._core import Error
+from sepcal.progress import progress_bar
 from sepcal.study.experiments import StudyOptions, hidden_effects
 from sepcal.study.write_up import write_up
 
@@ -41,17 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
         first_seed=arguments.first_seed,
         processes=arguments.processes,
     )
-    shown = sys.stderr.isatty()
-
-    def tell(fraction: float) -> None:
-        if shown:
-            filled = round(40 * fraction)
-            sys.stderr.write(f"\r[{'#' * filled}{'.' * (40 - filled)}] {100 * fraction:3.0f} %")
-            sys.stderr.flush()
-
-    rows = hidden_effects(options, tell)
-    if shown:
-        sys.stderr.write("\n")
+    with progress_bar() as tell:
+        rows = hidden_effects(options, tell)
     write_up(rows, options, arguments.output)
     print(f"wrote {arguments.output} and {arguments.output.with_suffix('.svg')}")
     return 0

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from sepcal._core import Error
+from sepcal.intervals import upper_limit
 from sepcal.study.experiments import StudyOptions
 
 Row = dict[str, Any]
@@ -33,23 +33,6 @@ def write_up(rows: dict[str, list[Row]], options: StudyOptions, file: Path) -> N
         _draw(rows["power"], picture)
     except OSError as error:
         raise Error(f"{file} can't be written: {error.strerror}") from error
-
-
-def upper_limit(events: int, trials: int, confidence: float = 0.99) -> float:
-    """Clopper & Pearson's one-sided upper limit of a rate, by bisection."""
-    if events >= trials:
-        return 1.0
-
-    def at_most(rate: float) -> float:
-        return math.fsum(
-            math.comb(trials, k) * rate**k * (1.0 - rate) ** (trials - k) for k in range(events + 1)
-        )
-
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if at_most(middle) > 1.0 - confidence else (low, middle)
-    return high
 
 
 def _table(head: Sequence[str], body: Iterable[Sequence[str]]) -> str:

@@ -31,8 +31,10 @@ class Flight {
     std::optional<Cell> first_text;     // read from a file: the first cell that is no number
   };
 
-  /// An empty table. `name` opens its error messages.
-  explicit Flight(std::string name = "flight") : name_(std::move(name)) {}
+  /// An empty table. `name` opens its error messages; `sha256` is that of the file which the table
+  /// was read from, empty for arrays.
+  explicit Flight(std::string name = "flight", std::string sha256 = {})
+      : name_(std::move(name)), sha256_(std::move(sha256)) {}
 
   /// Adds a column that the flight owns. Throws Error for an empty name, a name used twice,
   /// "maneuver" (which holds labels) and another length than the columns before.
@@ -40,7 +42,8 @@ class Flight {
 
   /// Adds a column without copying it; `owner` keeps the memory alive (or the caller does).
   Flight& view(std::string header, std::span<const double> values,
-               std::shared_ptr<const void> owner = nullptr);
+               std::shared_ptr<const void> owner = nullptr,
+               std::optional<Cell> first_text = std::nullopt);
 
   /// Sets a label a row. Throws Error for a second set and for another length than the columns'.
   Flight& label(std::vector<std::string> maneuvers);
@@ -67,8 +70,6 @@ class Flight {
   std::string list_columns() const;
 
  private:
-  friend Flight read_csv(const std::string& file, const Progress& progress);
-
   bool from_file() const { return !sha256_.empty(); }
   void check_length(std::string_view header, std::size_t length);
 

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many trials of a method, each with random numbers of its own: here, in processes, on a cluster.
+
+probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5)
+trial = sepcal.SimulatedTrial(probe, simulation={"rows": 400})
+print(sepcal.monte_carlo(trial, trials=1000, executor=ProcessPoolExecutor))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from contextlib import closing, contextmanager
+
+import numpy as np
+
+from sepcal._core import Error
+from sepcal.executors import Executors, stream
+from sepcal.monte_carlo_results import MonteCarlo
+from sepcal.progress import progress_bar
+from sepcal.trials import TrialFunction, TrialRecord, TrialRun, takes_index
+
+Progress = Callable[[int, int], None]
+
+
+def monte_carlo(
+    trial: TrialFunction,
+    trials: int | Iterable[int] = 1000,
+    *,
+    seed: int = 0,
+    truth: Mapping[str, float] | None = None,
+    executor: Executors = None,
+    progress: bool | Progress | None = None,
+    batch: int = 1,
+    keep_fits: bool = False,
+) -> MonteCarlo:
+    """Runs a trial many times and gathers what came of it.
+
+    Trial i has the generator default_rng(SeedSequence(seed, spawn_key=(i,))): the same numbers on
+    any executor, with any number of workers and of trials. What a trial raises is kept as the
+    `failure` of its record, and so is the death of its worker, in three attempts.
+
+    Args:
+        trial: trial(rng) or trial(rng, index), two arguments without defaults, with a
+            numpy.random.Generator. It gives a Fit or Calibration; (fit, truth), the truth by
+            parameter; a mapping of numbers and arrays by name; or anything else. Fits in it take
+            threads=1: the executor's workers are the threads. On processes and clusters it must
+            pickle, as must what it gives: define it with def at the top of a module.
+        trials: How many, or their indices: range(1000, 2000) goes on where 1,000 ended.
+        seed: Of the study, not negative.
+        truth: The parameters' true values by name, where the trials don't give them.
+        executor: A concurrent.futures.Executor, left open; a function that makes one, as
+            ProcessPoolExecutor does, which is also replaced where a dying worker breaks it; None:
+            one trial after the other, here.
+        progress: A bar on standard error, None: where that is a terminal; or a function of the
+            numbers of trials done and in all.
+        batch: Trials a task; more than one where a trial takes less than some ten milliseconds.
+        keep_fits: The records hold whole fits, with covariance and samples, instead of Estimates.
+
+    Returns:
+        A MonteCarlo, its records in order of their indices.
+
+    Raises:
+        Error: An argument is out of range; the executor broke and can't be replaced; the trial
+            can't be sent to it.
+        KeyboardInterrupt: As ever; pending trials are cancelled. stream_trials() lets one keep what
+            was done.
+    """
+    indices = _to_indices(trials)
+    records: list[TrialRecord] = []
+    streamed = stream_trials(
+        trial, indices, seed=seed, executor=executor, batch=batch, keep_fits=keep_fits
+    )
+    with closing(streamed), _told(progress) as tell:
+        for record in streamed:
+            records.append(record)
+            tell(len(records), len(indices))
+    return MonteCarlo(records, truth)
+
+
+def stream_trials(
+    trial: TrialFunction,
+    trials: int | Iterable[int] = 1000,
+    *,
+    seed: int = 0,
+    executor: Executors = None,
+    batch: int = 1,
+    keep_fits: bool = False,
+) -> Generator[TrialRecord, None, None]:
+    """Yields the records of monte_carlo() as the trials complete, in any order.
+
+    MonteCarlo(records) makes a study of them, of those there are. Close it, or leave the loop, and
+    pending trials are cancelled. Arguments and errors are those of monte_carlo().
+    """
+    indices = _to_indices(trials)
+    if seed < 0:
+        raise Error(f"seed={seed} must not be negative")
+    if not callable(trial):
+        raise Error(f"the trial is a {type(trial).__name__}; give a function, trial(rng)")
+    run = TrialRun(trial, takes_index(trial), seed, keep_fits)
+    return _records(stream(run, indices, executor, batch=batch, lost=run.lost))
+
+
+def _records(
+    streamed: Generator[tuple[int, TrialRecord], None, None],
+) -> Generator[TrialRecord, None, None]:
+    try:
+        for _, record in streamed:
+            yield record
+    finally:
+        streamed.close()
+
+
+def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
+    """Raises Error for no trials, an index twice or a negative one."""
+    if isinstance(trials, int | np.integer):
+        if trials < 1:
+            raise Error(f"trials={trials} must be at least 1")
+        return range(int(trials))
+    indices = trials if isinstance(trials, range) else list(trials)
+    if len(indices) == 0 or min(indices) < 0 or len(set(indices)) < len(indices):
+        raise Error("trials are a number or indices, 0 and above, each once: range(1000, 2000)")
+    return indices
+
+
+@contextmanager
+def _told(progress: bool | Progress | None) -> Iterator[Progress]:
+    """What to call after each trial."""
+    if callable(progress):
+        yield progress
+        return
+    with progress_bar(progress) as tell:
+        yield lambda done, total: tell(done / total)

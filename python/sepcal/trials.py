@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One trial of a Monte Carlo study: its seed, what is kept of it, and what is kept of a failure."""
+
+from __future__ import annotations
+
+import inspect
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.random import Generator, SeedSequence, default_rng
+
+from sepcal.columns import Array
+from sepcal.executors import describe
+from sepcal.results import Fit
+
+TrialFunction: TypeAlias = Callable[[Generator], Any] | Callable[[Generator, int], Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Estimates:
+    """What a study keeps of a fit."""
+
+    names: tuple[str, ...]  # n parameters
+    values: Array  # (n,)
+    standard_errors: Array  # (n,); NaN where undefined
+    degrees_of_freedom: int  # measurements less parameters estimated; 0 where unknown
+    status: str  # of the fit; empty for plain numbers
+    message: str
+    truth: Array | None = None  # (n,), where the trial gave it; NaN for what it doesn't name
+
+    @classmethod
+    def of_fit(cls, fit: Fit, truth: Mapping[str, float] | None = None) -> Estimates:
+        """The fit without covariance and samples."""
+        parameters = fit.parameters.values()
+        estimated = sum(not parameter.fixed for parameter in parameters)
+        return cls(
+            names=fit.names,
+            values=fit.values,
+            standard_errors=np.array([parameter.standard_error for parameter in parameters]),
+            degrees_of_freedom=fit.rows * len(fit.rmse) - estimated,
+            status=fit.status,
+            message=fit.message,
+            truth=None if truth is None else in_order(truth, fit.names),
+        )
+
+
+@dataclass(frozen=True)
+class Failure:
+    """How a trial failed."""
+
+    type: str  # of the exception, with its module: "sepcal.Error"
+    message: str
+    traceback: str
+
+
+@dataclass(frozen=True, eq=False)
+class TrialRecord:
+    """One trial. Its generator is default_rng(SeedSequence(seed, spawn_key=(index,)))."""
+
+    index: int
+    seed: int  # of the study
+    value: Any  # what the trial gave, a Fit as Estimates; None where it failed
+    failure: Failure | None
+    seconds: float  # that it took
+
+    @property
+    def rng(self) -> Generator:
+        """The trial's generator anew, to run it again: trial(record.rng)."""
+        return spawn(self.seed, self.index)
+
+
+@dataclass(frozen=True)
+class TrialRun:
+    """From an index to a record: what runs on the workers."""
+
+    trial: TrialFunction
+    takes_index: bool
+    seed: int
+    keep_fits: bool
+
+    def __call__(self, index: int) -> TrialRecord:
+        """Runs the trial; its exceptions become a Failure."""
+        rng, begun = spawn(self.seed, index), time.perf_counter()
+        try:
+            value = self.trial(*((rng, index) if self.takes_index else (rng,)))
+            kept = value if self.keep_fits else without_bulk(value)
+        except (Exception, SystemExit) as error:
+            failure = Failure(_name(error), str(error), traceback.format_exc())
+            return TrialRecord(index, self.seed, None, failure, time.perf_counter() - begun)
+        return TrialRecord(index, self.seed, kept, None, time.perf_counter() - begun)
+
+    def lost(self, index: int, error: BaseException) -> TrialRecord:
+        """Stands for a trial whose workers died."""
+        message = f"its worker died in every attempt; the last: {describe(error)}"
+        return TrialRecord(index, self.seed, None, Failure(_name(error), message, ""), 0.0)
+
+
+def spawn(seed: int, index: int) -> Generator:
+    """The generator of a trial, the same as of SeedSequence(seed).spawn(...)[index]."""
+    return default_rng(SeedSequence(seed, spawn_key=(index,)))
+
+
+def takes_index(trial: TrialFunction) -> bool:
+    """Is it trial(rng, index), two arguments without defaults, or trial(rng)?"""
+    try:
+        parameters = inspect.signature(trial).parameters.values()
+    except (TypeError, ValueError):
+        return False
+    places = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(one.kind in places and one.default is one.empty for one in parameters) > 1
+
+
+def without_bulk(value: object) -> object:
+    """Estimates in place of a Fit or (Fit, truth); anything else as it is."""
+    match value:
+        case Fit():
+            return Estimates.of_fit(value)
+        case (Fit() as fit, Mapping() as truth):
+            return Estimates.of_fit(fit, truth)
+    return value
+
+
+def in_order(truth: Mapping[str, float], names: tuple[str, ...]) -> Array:
+    """The truth of these names, (n,); NaN where it isn't known."""
+    return np.array([truth.get(name, np.nan) for name in names], dtype=np.float64)
+
+
+def _name(error: BaseException) -> str:
+    kind = type(error)
+    return kind.__name__ if kind.__module__ == "builtins" else f"{kind.__module__}.{kind.__name__}"

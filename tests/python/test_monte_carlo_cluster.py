@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""monte_carlo() on a Dask cluster: as many workers as you like, and some of them die."""
+
+import os
+import signal
+import threading
+from itertools import islice
+
+import pytest
+from distributed import Client, KilledWorker, LocalCluster
+
+import sepcal
+from sepcal.executors import gather, stream
+from trial_functions import TRUTH, SlowTrial, die_on_third, fit_scalar, square, wait_and_square
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Two workers, each a process of one thread, that a nanny starts anew when they die."""
+    with LocalCluster(
+        processes=True, n_workers=2, threads_per_worker=1, dashboard_address=None
+    ) as made:
+        yield made
+
+
+@pytest.fixture
+def client(cluster):
+    cluster.scale(2)
+    with Client(cluster) as made:
+        made.wait_for_workers(2)
+        yield made
+
+
+@pytest.fixture
+def impatient(cluster, client):
+    """The client of a scheduler that calls a task off when its worker dies: KilledWorker."""
+    patience = cluster.scheduler.allowed_failures
+    cluster.scheduler.allowed_failures = 0
+    yield client
+    cluster.scheduler.allowed_failures = patience
+
+
+def check_same(study, expected):
+    """Bit for bit, and nothing is lost."""
+    assert study.failed == []
+    assert [record.index for record in study.trials] == [record.index for record in expected.trials]
+    assert study.estimates.tobytes() == expected.estimates.tobytes()
+    assert study.standard_errors.tobytes() == expected.standard_errors.tobytes()
+    assert str(study) == str(expected)
+
+
+def test_the_number_of_workers_does_not_matter(cluster, client):
+    expected = sepcal.monte_carlo(fit_scalar, 12, seed=5, truth=TRUTH)
+    for workers, batch in ((1, 1), (2, 1), (3, 4)):
+        cluster.scale(workers)
+        client.wait_for_workers(workers)
+        study = sepcal.monte_carlo(
+            fit_scalar, 12, seed=5, truth=TRUTH, executor=client.get_executor(), batch=batch
+        )
+        check_same(study, expected)
+
+
+def kill_a_worker_on_the_way(cluster, client, folder, trials=40):
+    """SIGKILL to one of two workers while both are at work; gives the processes that worked."""
+    killed = []
+
+    def kill(done, _):
+        if done == 5:
+            killed.append(next(iter(cluster.workers.values())).pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    (folder / "cluster").mkdir()
+    (folder / "serial").mkdir()
+    study = sepcal.monte_carlo(
+        SlowTrial(folder / "cluster"),
+        trials,
+        seed=5,
+        executor=client.get_executor(),
+        progress=kill,
+    )
+    check_same(study, sepcal.monte_carlo(SlowTrial(folder / "serial"), trials, seed=5))
+    runs = [path.name.split("-") for path in (folder / "cluster").iterdir()]
+    assert {int(index) for index, _ in runs} == set(range(trials))
+    assert str(killed[0]) in {pid for _, pid in runs}
+    assert len({pid for _, pid in runs}) >= 2
+
+
+def test_a_worker_that_is_killed_loses_nothing(cluster, client, tmp_path):
+    kill_a_worker_on_the_way(cluster, client, tmp_path)
+
+
+def test_work_that_dask_gives_up_is_submitted_again(cluster, impatient, tmp_path):
+    kill_a_worker_on_the_way(cluster, impatient, tmp_path)
+
+
+def test_an_item_that_kills_its_workers_takes_no_other_with_it(impatient):
+    executor = impatient.get_executor()
+    results = dict(stream(die_on_third, range(8), executor, lost=lambda item, error: error))
+    assert isinstance(results.pop(3), KilledWorker)
+    assert results == {number: number for number in range(8) if number != 3}
+    with pytest.raises(sepcal.Error, match=r"item \d was lost in 1 attempt \(KilledWorker"):
+        gather(die_on_third, range(8), executor, attempts=1)
+
+
+def test_a_trial_that_kills_its_workers_is_on_record(impatient):
+    def trial(rng, index):
+        return {"index": die_on_third(index)}
+
+    study = sepcal.monte_carlo(trial, 5, executor=impatient.get_executor())
+    (lost,) = study.failed
+    assert (lost.index, lost.failure.type) == (3, "distributed.scheduler.KilledWorker")
+    assert "its worker died in every attempt" in lost.failure.message
+    assert study["index"].tolist() == [0, 1, 2, 4]
+
+
+def test_leaving_early_cancels_what_is_pending(client):
+    executor = client.get_executor()
+    results = stream(wait_and_square, range(500), executor)
+    assert len(list(islice(results, 3))) == 3
+    results.close()
+    assert gather(square, range(5), executor) == [0, 1, 4, 9, 16]  # and doesn't wait for 500
+
+
+def test_what_cannot_be_sent(client):
+    lock = threading.Lock()
+    with pytest.raises(sepcal.Error, match="can't be sent"):
+        gather(lambda number: (lock, number), range(3), client.get_executor())
+
+
+def test_a_client_that_is_closed(cluster):
+    with Client(cluster) as short:
+        executor = short.get_executor()
+    with pytest.raises(sepcal.Error, match="the executor broke and takes no more work"):
+        gather(square, range(3), executor)
+    with pytest.raises(sepcal.Error, match=r"client.get_executor\(\)"):
+        gather(square, range(3), short)
