@@ -16,6 +16,7 @@ from queue import SimpleQueue
 from typing import Generic, TypeAlias, TypeVar
 
 from sepcal._core import Error
+from sepcal.dask_executor import with_sure_futures
 from sepcal.remote_call import Answer, call_all, raise_again
 
 Item = TypeVar("Item")
@@ -132,7 +133,8 @@ class _Pool:
     def __init__(self, executor: Executor | Callable[[], Executor]) -> None:
         self._make = None if isinstance(executor, Executor) else executor
         self._breaks = 0
-        self.executor = executor if isinstance(executor, Executor) else executor()
+        made = executor if isinstance(executor, Executor) else executor()
+        self.executor = with_sure_futures(made)
 
     def is_well(self) -> None:
         """It gave a result."""
@@ -155,7 +157,7 @@ class _Pool:
                 f"({describe(error)}); try the function without an executor"
             ) from error
         broken.shutdown(wait=False)
-        self.executor = self._make()
+        self.executor = with_sure_futures(self._make())
 
     def close(self) -> None:
         """Shuts down what it made."""

@@ -14,18 +14,21 @@ from sepcal.executors import gather, stream
 from trial_functions import TRUTH, SlowTrial, die_on_third, fit_scalar, square, wait_and_square
 
 
+def start(workers):
+    """Workers that are processes of one thread; a nanny starts them anew when they die."""
+    return LocalCluster(
+        processes=True, n_workers=workers, threads_per_worker=1, dashboard_address=None
+    )
+
+
 @pytest.fixture(scope="module")
 def cluster():
-    """Two workers, each a process of one thread, that a nanny starts anew when they die."""
-    with LocalCluster(
-        processes=True, n_workers=2, threads_per_worker=1, dashboard_address=None
-    ) as made:
+    with start(2) as made:
         yield made
 
 
 @pytest.fixture
 def client(cluster):
-    cluster.scale(2)
     with Client(cluster) as made:
         made.wait_for_workers(2)
         yield made
@@ -49,15 +52,16 @@ def check_same(study, expected):
     assert str(study) == str(expected)
 
 
-def test_the_number_of_workers_does_not_matter(cluster, client):
+def test_the_number_of_workers_does_not_matter():
     expected = sepcal.monte_carlo(fit_scalar, 12, seed=5, truth=TRUTH)
-    for workers, batch in ((1, 1), (2, 1), (3, 4)):
-        cluster.scale(workers)
-        client.wait_for_workers(workers)
-        study = sepcal.monte_carlo(
-            fit_scalar, 12, seed=5, truth=TRUTH, executor=client.get_executor(), batch=batch
-        )
-        check_same(study, expected)
+    with start(1) as cluster, Client(cluster) as client:
+        for workers, batch in ((1, 1), (2, 1), (3, 4)):
+            cluster.scale(workers)
+            client.wait_for_workers(workers)
+            study = sepcal.monte_carlo(
+                fit_scalar, 12, seed=5, truth=TRUTH, executor=client.get_executor(), batch=batch
+            )
+            check_same(study, expected)
 
 
 def kill_a_worker_on_the_way(cluster, client, folder, trials=40):
@@ -134,3 +138,12 @@ def test_a_client_that_is_closed(cluster):
         gather(square, range(3), executor)
     with pytest.raises(sepcal.Error, match=r"client.get_executor\(\)"):
         gather(square, range(3), short)
+
+
+def test_a_client_that_closes_on_the_way(cluster):
+    short = Client(cluster)
+    results = stream(wait_and_square, range(100), short.get_executor(), pending=10)
+    next(results)
+    short.close()
+    with pytest.raises(sepcal.Error, match="the executor broke and takes no more work"):
+        list(results)
