@@ -68,6 +68,19 @@ TEST_CASE("arrays go in with and without a copy") {
   CHECK(Flight().list_columns() == "the flight has: none");
 }
 
+TEST_CASE("a table that another process read keeps its file and its text") {
+  const std::vector<double> speeds{1.0, std::nan("")};
+  Flight flight("log.csv", std::string(64, 'a'));
+  flight.view("vn_mps", speeds, nullptr, Flight::Cell{1, "n/a"});
+  CHECK(flight.sha256() == std::string(64, 'a'));
+  CHECK(flight.locate(1) == "log.csv line 3");
+  CHECK(flight.list_columns() ==
+        "the file has: vn_mps, and no comma in its header; is this a CSV file?");
+  REQUIRE(flight.find("vn_mps")->first_text.has_value());
+  CHECK(flight.find("vn_mps")->first_text->row == 1);
+  CHECK(flight.find("vn_mps")->first_text->text == "n/a");
+}
+
 TEST_CASE("arrays that don't fit are refused") {
   Flight flight("log");
   flight.add("time_s", {0, 1});

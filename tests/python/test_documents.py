@@ -11,11 +11,13 @@ import math
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import sepcal
 from oracle.magnetometer import Magnetometer, compose, soft_iron
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,7 +36,7 @@ BLOCKS = [
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
 TYPED = [block["text"] for block in BLOCKS if block["language"] == "sh"]
 PRINTED = [block for block in BLOCKS if block["mark"].startswith("output of examples/")]
-SHELL_EXAMPLES = sorted({block["mark"].removeprefix("output of examples/") for block in PRINTED})
+SHOWN_EXAMPLES = sorted({block["mark"].removeprefix("output of examples/") for block in PRINTED})
 
 # How many lines of an example a document promises at most.
 PROMISES = {"07_own_model.py": 15, "08_own_effect.py": 6, "09_own_effect.cpp": 11}
@@ -45,10 +47,11 @@ PROBE = ["--k-alpha", "4.5", "--k-beta", "4.5", "--lever-arm", "0.35,0,-0.02"]
 def run(*command, cwd=None):
     """What a command prints; the apps are found, and a failure shows what it said."""
     path = f"{APPS}{os.pathsep}{os.environ['PATH']}"
+    modules = f"{Path(sepcal.__file__).parents[1]}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"
     done = subprocess.run(
         [str(word) for word in command],
         cwd=cwd,
-        env={**os.environ, "PATH": path},
+        env={**os.environ, "PATH": path, "PYTHONPATH": modules},
         capture_output=True,
         text=True,
         check=False,
@@ -151,15 +154,16 @@ def test_readme_table_is_what_the_fit_prints(tmp_path):
 
 @pytest.fixture(scope="session")
 def ran(tmp_path_factory):
-    """Folder and output of each shell example whose output a document shows."""
+    """Folder and output of each example whose output a document shows."""
     done = {}
-    for name in SHELL_EXAMPLES:
-        folder = tmp_path_factory.mktemp(name.removesuffix(".sh"))
-        done[name] = (folder, run("bash", EXAMPLES / name, cwd=folder))
+    for name in SHOWN_EXAMPLES:
+        folder = tmp_path_factory.mktemp(Path(name).stem)
+        runs = "bash" if name.endswith(".sh") else sys.executable
+        done[name] = (folder, run(runs, EXAMPLES / name, cwd=folder))
     return done
 
 
-@pytest.mark.parametrize("name", SHELL_EXAMPLES)
+@pytest.mark.parametrize("name", SHOWN_EXAMPLES)
 def test_shown_output_is_what_the_example_prints(name, ran):
     printed = ran[name][1].splitlines()
     shown = [block["text"] for block in PRINTED if block["mark"] == f"output of examples/{name}"]
