@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Time of a Monte Carlo study against executor and workers, as a Markdown table.
 
-    .venv/bin/python scripts/parts/executor_times.py --trials 200 --workers 1,2
+    PYTHONPATH=build/python .venv/bin/python scripts/parts/executor_times.py --trials 200 --workers 1,2
 
-Every study must equal the serial one, to the last bit. Workers are started before the clock is.
+Every study must equal the serial one, to the last bit, and is timed next to it. Workers are started
+before the clock is.
 """
 
 from __future__ import annotations
@@ -64,8 +65,7 @@ def measure(trial: Callable[[Generator], object], trials: int, workers: list[int
         study = sepcal.monte_carlo(trial, trials, executor=executor, progress=False)
         return time.perf_counter() - begun, study
 
-    serial, expected = run(None)
-    print(f"| none | 1 | {serial:.1f} | {1e3 * serial / trials:.1f} | 1.00 |")
+    expected = run(None)[1]
     for name, make in EXECUTORS.items():
         for count in workers:
             with make(count) as executor:  # type: ignore[attr-defined]
@@ -74,9 +74,9 @@ def measure(trial: Callable[[Generator], object], trials: int, workers: list[int
                 seconds, study = run(executor)
             if study.estimates.tobytes() != expected.estimates.tobytes():
                 sys.exit(f"{name} with {count} workers differ from the serial study")
-            per_trial = 1e3 * seconds / trials
-            ratio = serial / seconds
-            print(f"| {name} | {count} | {seconds:.1f} | {per_trial:.1f} | {ratio:.2f} |")
+            serial = run(None)[0]
+            times = f"{1e3 * serial / trials:.1f} | {1e3 * seconds / trials:.1f}"
+            print(f"| {name} | {count} | {times} | {serial / seconds:.2f} |", flush=True)
 
 
 def main() -> None:
@@ -88,7 +88,7 @@ def main() -> None:
     workers = [int(count) for count in arguments.workers.split(",")]
     for name, trial in TRIALS.items():
         print(f"\n{name}, {arguments.trials} trials\n")
-        print("| executor | workers | s | ms a trial | serial time / time |")
+        print("| executor | workers | ms a trial, serial | ms a trial | ratio |")
         print("|---|---|---|---|---|")
         measure(trial, arguments.trials, workers)
 
