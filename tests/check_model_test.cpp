@@ -89,6 +89,22 @@ struct NotFiniteBelowZero : Sound {
   }
 };
 
+/// z = s log(b) u, without bounds: finite for b > 0 alone.
+struct Logarithm {
+  static constexpr std::array inputs{sepcal::Quantity{"u", "1"}};
+  static constexpr std::array outputs{sepcal::Quantity{"z", "1"}};
+  static constexpr std::array linear{sepcal::Quantity{"s", "1"}};
+  static constexpr std::array nonlinear{sepcal::Quantity{"b", "1"}};
+  template <class U, class X>
+  sepcal::Affine<X, 1, 1> at(const sepcal::Vec<U, 1>& u, const sepcal::Vec<X, 1>& xi2) const {
+    using std::log;
+    sepcal::Affine<X, 1, 1> z;
+    z.A << log(xi2[0]) * u[0];
+    z.b << X(0.0);
+    return z;
+  }
+};
+
 Record make_record(double lowest = 0.1) {
   sepcal::test::Draws draws(51);
   Record record;
@@ -133,6 +149,16 @@ TEST_CASE("a parameter of small natural size is no reason to doubt its derivativ
   Record record;
   record.add("u", draws.uniform_column(20, 5e4, 1e5)).add("z", draws.uniform_column(20, -1, 1));
   CHECK_NOTHROW(check_model(sepcal::test::SmallParameter{}, record));
+}
+
+TEST_CASE("an unbounded parameter is tried at its start, however small that is") {
+  CHECK_THROWS_WITH_AS(check_model(Logarithm{}, make_record()), Contains("set every entry"), Error);
+  for (const double start : {1e-9, 1e-3, 2.0, 1e6}) {
+    CAPTURE(start);
+    CHECK_NOTHROW(check_model(Logarithm{}, make_record(), {{"b", start}}));
+  }
+  CHECK_THROWS_WITH_AS(check_model(Logarithm{}, make_record(), {{"b", -1.0}}),
+                       Contains("or start elsewhere"), Error);
 }
 
 TEST_CASE("a record without rows, or without a column, is an error") {

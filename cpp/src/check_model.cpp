@@ -24,9 +24,10 @@ constexpr int points_tried = 3;
 constexpr double derivative_tolerance = 1e-4;  // relative to the largest entry of the column's row
 constexpr double difference_step = 1e-5;       // times half the bounds' width, else size or 1
 
-/// Points of xi2: the nominal one and draws where the bounds are finite.
-MatrixXd points_to_try(const Tables& tables) {
+/// Points of xi2: the start or the nominal one, and draws where the bounds are finite.
+MatrixXd points_to_try(const Tables& tables, const std::map<std::string, double>& start) {
   FitOptions options;
+  options.start = start;
   options.samples = points_tried - 1;
   const VectorXd nominal = nominal_point(tables.nonlinear, options);
   MatrixXd points = nominal.replicate(1, points_tried);
@@ -87,7 +88,7 @@ struct Seen {
   Index rows = 0;
 };
 
-void check_entries_set(const Tables& tables, const std::vector<Seen>& seen) {
+void check_entries_set(const Tables& tables, const std::vector<Seen>& seen, bool started) {
   for (Index column = 0; column <= tables.n_1(); ++column) {
     for (Index j = 0; j < tables.n_z(); ++j) {
       const bool ever = std::ranges::any_of(seen, [&](const Seen& at) {
@@ -96,7 +97,8 @@ void check_entries_set(const Tables& tables, const std::vector<Seen>& seen) {
       if (ever) continue;
       throw Error(
           "the model's " + entry_name(tables, j, column) +
-          " is not a finite number at any sample tried; set every entry of A and b in at()");
+          " is not a finite number at any sample tried; set every entry of A and b in at()" +
+          (started ? ", or start elsewhere" : ""));
     }
   }
 }
@@ -113,32 +115,45 @@ void check_same(const Tables& tables, const MatrixXd& once, const MatrixXd& agai
   }
 }
 
+/// Lengths over which the differences of a parameter are taken. How small an unbounded one is meant
+/// to be only its start tells: its size is tried where 1 is too far.
+std::vector<double> steps_to_try(const Variable& parameter, double value) {
+  const double width = 0.5 * (parameter.upper - parameter.lower);
+  const double size = std::abs(value);
+  if (std::isfinite(width)) return {difference_step * width};
+  if (size == 0.0 || size >= 1.0) return {difference_step * std::max(1.0, size)};
+  return {difference_step, difference_step * size};
+}
+
+/// Central differences of the outputs at xi1 = 1 with respect to xi2[k].
+VectorXd differentiate(const Trial& trial, const VectorXd& xi2, Index k, double step) {
+  VectorXd above = xi2;
+  VectorXd below = xi2;
+  above[k] += step;
+  below[k] -= step;
+  return (trial.values(above) - trial.values(below)).rowwise().sum() / (above[k] - below[k]);
+}
+
 void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd& xi2, Index rows) {
   const Index n_1 = tables.n_1();
   const VectorXd xi1 = VectorXd::Ones(n_1);
   const MatrixXd tangent = trial.tangent(xi2, xi1);
   if (!tangent.allFinite()) return;
-  VectorXd contrast(n_1 + 1);
-  contrast.setOnes();
   const double smallest_scale = 1e-6 * trial.values(xi2).cwiseAbs().maxCoeff();
   for (Index k = 0; k < tables.n_2(); ++k) {
     const Variable& parameter = tables.nonlinear[static_cast<std::size_t>(k)];
-    const double width = 0.5 * (parameter.upper - parameter.lower);
-    const double step =
-        difference_step * (std::isfinite(width) ? width : std::max(1.0, std::abs(xi2[k])));
-    VectorXd above = xi2;
-    VectorXd below = xi2;
-    above[k] += step;
-    below[k] -= step;
-    const VectorXd numeric =
-        (trial.values(above) - trial.values(below)) * contrast / (above[k] - below[k]);
     const VectorXd given = tangent.col(n_1 + k);
-    if (!numeric.allFinite()) continue;
-    const double scale =
-        std::max({numeric.cwiseAbs().maxCoeff(), given.cwiseAbs().maxCoeff(), smallest_scale});
+    VectorXd numeric;
     Index row = 0;
-    const double difference = (numeric - given).cwiseAbs().maxCoeff(&row);
-    if (difference <= derivative_tolerance * scale) continue;
+    const auto steps = steps_to_try(parameter, xi2[k]);
+    const bool agree = std::ranges::any_of(steps, [&](double step) {
+      numeric = differentiate(trial, xi2, k, step);
+      const double scale =
+          std::max({numeric.cwiseAbs().maxCoeff(), given.cwiseAbs().maxCoeff(), smallest_scale});
+      const double difference = (numeric - given).cwiseAbs().maxCoeff(&row);
+      return !numeric.allFinite() || difference <= derivative_tolerance * scale;
+    });
+    if (agree) continue;
     throw Error("the model's derivative of output '" +
                 tables.outputs[static_cast<std::size_t>(row / rows)].name + "' with respect to '" +
                 parameter.name + "' is not that of its values (at() gives " +
@@ -149,13 +164,14 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
 
 }  // namespace
 
-void check_model(const BlockModel& model, const Record& record) {
+void check_model(const BlockModel& model, const Record& record,
+                 const std::map<std::string, double>& start) {
   const Measurements measurements(model, record);
   if (measurements.chunks().empty()) {
     throw Error("the record has no rows; a model can't be tried on it");
   }
   const Tables& tables = model.tables();
-  const MatrixXd points = points_to_try(tables);
+  const MatrixXd points = points_to_try(tables, start);
   std::vector<Seen> seen;
   for (const Measurements::Range& range : ranges_to_try(measurements)) {
     std::vector<const double*> pointers;
@@ -168,7 +184,7 @@ void check_model(const BlockModel& model, const Record& record) {
       check_derivatives(trial, tables, points.col(i), rows);
     }
   }
-  check_entries_set(tables, seen);
+  check_entries_set(tables, seen, !start.empty());
 }
 
 }  // namespace sepcal

@@ -176,7 +176,7 @@ Fit fit(const BlockModel& model, const Record& record, const FitOptions& options
   const Record second = record.select(options.stage_two_segments);
   const Measurements measurements(problem.model(), second);
   problem.check_measurements(measurements.rows());
-  check_model(problem.model(), second);
+  check_model(problem.model(), second, options.start);
 
   Fit result;
   result.stage_one = run_stage_one(problem, record, pool);

@@ -22,8 +22,6 @@ class FitOptions(TypedDict, total=False):
         noise: Noise standard deviation of every output; without it R is estimated, Eqs. 24-26.
         knowledge: (mean, standard deviation) of parameters, linear or nonlinear, that is known
             beforehand: as much as one more measurement of each [none].
-        start: Nonlinear parameters where stage two starts; then nothing is sampled, and those not
-            named start from the middle of their bounds [none].
         search: How stage one looks for minima: among samples, or by NLopt's global search, which
             asks for the profile cost at most `samples` times, "global" ["sampling"].
         priors: (mean, standard deviation) of nonlinear parameters, for drawing samples; the fit
@@ -36,9 +34,12 @@ class FitOptions(TypedDict, total=False):
         stage_two: The same of stage two [all].
         samples: Samples of xi2 in stage one [500]; 0: none.
         sampling: Independent draws or a shifted Halton sequence ["uniform"].
+        start: Where stage two starts, by nonlinear parameter; then nothing is sampled. Those not
+            named start from the middle of their bounds, or from zero without [sampling finds it].
         seed: The same seed gives the same result, on any number of threads [0].
         second_stage: Over all parameters, over xi2 with xi1 solved inside, or as stage one finds a
-            unique minimum or not (Step 5) ["auto"].
+            unique minimum or not (Step 5); from a start the latter, and the former if it fails
+            ["auto"].
         jacobian: Of a projected stage two: Kaufman's, or Golub and Pereyra's, "golub_pereyra"
             ["kaufman"].
         loss: What a whitened residual costs: "squares", or "huber" or "cauchy", which forgive
@@ -62,7 +63,6 @@ class FitOptions(TypedDict, total=False):
     fixed: Mapping[str, float] | None
     noise: Mapping[str, float] | None
     knowledge: Mapping[str, tuple[float, float]] | None
-    start: Mapping[str, float] | None
     search: Literal["sampling", "global"] | str | None
     screens: Mapping[str, float | bool] | None
     priors: Mapping[str, tuple[float, float]] | None
@@ -70,6 +70,7 @@ class FitOptions(TypedDict, total=False):
     stage_two: str | None
     samples: int | None
     sampling: Literal["uniform", "low_discrepancy"] | None
+    start: Mapping[str, float] | None
     seed: int | None
     second_stage: Literal["auto", "joint", "projected"] | str | None
     jacobian: Literal["kaufman", "golub_pereyra"] | str | None

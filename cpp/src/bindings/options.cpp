@@ -98,12 +98,12 @@ void define_options(py::module_& module) {
   define_named<&FitOptions::jacobian>(options, "jacobian");
   define_named<&FitOptions::loss>(options, "loss");
   define_choice<&FitOptions::loss_width>(options, "loss_width");
-  define_choice<&FitOptions::start>(options, "start");
   define_choice<&FitOptions::fixed>(options, "fixed");
   define_choice<&FitOptions::noise>(options, "noise");
   define_choice<&FitOptions::stage_one_segments>(options, "stage_one");
   define_choice<&FitOptions::stage_two_segments>(options, "stage_two");
   define_choice<&FitOptions::samples>(options, "samples");
+  define_choice<&FitOptions::start>(options, "start");
   define_choice<&FitOptions::seed>(options, "seed");
   define_choice<&FitOptions::descents>(options, "descents");
   define_choice<&FitOptions::noise_tolerance>(options, "noise_tolerance");
