@@ -8,6 +8,7 @@
 #include "dense_reference.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
+#include "small_models.hpp"
 
 using doctest::Approx;
 using Eigen::Index;
@@ -171,6 +172,19 @@ TEST_CASE("a minimisation that is cut short on a hard start is a status, not an 
   CHECK(result.status == FitStatus::not_converged);
   CHECK(result.message.find("the minimisation did not converge") != std::string::npos);
   CHECK(result.values().allFinite());
+}
+
+TEST_CASE("of residuals below the floor of the noise the standard errors are the residuals' own") {
+  // z = s u + c with residuals of 4e-14, exact in binary: s^2 and the errors follow by hand.
+  const double e = std::ldexp(1.0, -45);
+  sepcal::Record record;
+  record.add("u", {0, 1, 2, 3}).add("z", {1 + e, 2 - e, 3 - e, 4 + e});
+  const Fit result = sepcal::fit(sepcal::test::Line{}, record, quick());
+  CHECK(result.status == FitStatus::converged);
+  CHECK(result.noise[0].value > 10.0 * e);  // it stands at its floor
+  const double variance = 4 * e * e / 2;    // SSE / (M - n): the pattern is orthogonal to 1 and u
+  CHECK(result["s"].standard_error_white == Approx(std::sqrt(variance / 5)).epsilon(1e-2));
+  CHECK(result["c"].standard_error_white == Approx(std::sqrt(0.7 * variance)).epsilon(1e-2));
 }
 
 TEST_CASE("progress of both stages lies within [0, 1]") {

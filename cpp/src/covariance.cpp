@@ -70,6 +70,22 @@ double count_spent(const Problem& problem, const StageTwo& two, const std::vecto
 
 bool is_coloured(const NoiseModel& noise) { return noise.d != 0.0 || noise.order() != 0; }
 
+/// The noise that residuals are judged to have, by output: two.noise where it was given, else with
+/// M / (M - p), and less where it stands at its floor above the residual. There, at 1e-12 of the
+/// output, a thousandth of it is the rounding of the measurements.
+VectorXd judge_noise(const Problem& problem, const StageTwo& two, double rows, double ratio) {
+  constexpr double rounding = 1e-6;  // of the floor's variance
+  if (problem.noise().size() > 0) return two.noise;
+  VectorXd judged = two.noise * std::sqrt(ratio);
+  if (problem.options().loss != Loss::squares) return judged;
+  for (Index j = 0; j < judged.size(); ++j) {
+    const MatrixXd& T = two.factors[static_cast<std::size_t>(j)].matrix();
+    const double share = T.rightCols<1>().squaredNorm() / (rows * two.noise[j] * two.noise[j]);
+    judged[j] *= std::sqrt(std::clamp(share, rounding, 1.0));
+  }
+  return judged;
+}
+
 /// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
 class Sandwich {
  public:
@@ -189,15 +205,15 @@ Covariances find_covariances(const Problem& problem, const Sweep& sweep, const S
   Covariances result;
   result.inside = find_inside(two.at_bound);
   const auto k = static_cast<Index>(result.inside.size());
-  const auto count = static_cast<double>(sweep.measurements().rows()) * sweep.tables().n_z();
+  const auto rows = static_cast<double>(sweep.measurements().rows());
+  const double count = rows * sweep.tables().n_z();
   const double freedom = count - count_spent(problem, two, result.inside);
   const double ratio = freedom > 0.0 ? count / freedom : undefined;
-  const double inflation = noise_given ? 1.0 : ratio;
 
-  const VectorXd judged = two.noise * std::sqrt(freedom > 0.0 ? inflation : 1.0);
+  const VectorXd judged = judge_noise(problem, two, rows, freedom > 0.0 ? ratio : 1.0);
   result.tangent = whiten(problem, two, judged);
   const MatrixXd R = select_columns(result.tangent, result.inside);
-  result.white = std::isnan(inflation) ? nothing(k) : inverse_of_square(R);
+  result.white = noise_given || freedom > 0.0 ? inverse_of_square(R) : nothing(k);
   result.coloured = result.white;
   const bool forgiving = options.loss != Loss::squares;
   if (k == 0 || std::isnan(ratio) || !result.white.allFinite()) return result;
