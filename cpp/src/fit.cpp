@@ -28,18 +28,6 @@ std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values)
   return result;
 }
 
-/// Cost J of Eq. 6 from the factors at the solution, with what is known beforehand.
-double cost(const Problem& problem, const StageTwo& two, double rows) {
-  double J = 0.0;
-  for (Index j = 0; j < two.noise.size(); ++j) {
-    const MatrixXd& T = two.factors[static_cast<std::size_t>(j)].matrix();
-    const double noise = two.noise[j];
-    J += 0.5 * T.col(T.cols() - 1).squaredNorm() / (noise * noise) + rows * std::log(noise);
-  }
-  for (const Prior& prior : problem.knowledge()) J += 0.5 * prior.square(two.x);
-  return J;
-}
-
 /// A covariance of some of n parameters among all of them, NaN for the others.
 MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {
   MatrixXd all = MatrixXd::Constant(n, n, undefined);

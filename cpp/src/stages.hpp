@@ -30,6 +30,12 @@ struct StageTwo {
   std::string message;
 };
 
+/// Sum of squared residuals by output, off factors of [A | D | r] (n_z).
+Eigen::VectorXd squares(const std::vector<TriangularFactor>& factors);
+
+/// J of Eq. 6 at `two`, without its constant, with what is known beforehand.
+double cost(const Problem& problem, const StageTwo& two, double rows);
+
 /// Step 5, from where stage one ended.
 StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
                        const StageOne& start, ThreadPool& pool);

@@ -27,7 +27,8 @@ enum class Sampling {
 
 enum class SecondStage {
   automatic,  // the paper's Step 5: projected where stage one saw a unique minimum or a start was
-              // given, else joint
+              // given, else joint. Where projected does not converge, or from a given start ends
+              // where the record leaves something open, joint from the same start
   joint,      // over (xi1, xi2)
   projected,  // over xi2, xi1 solved inside (variable projection)
 };

@@ -69,7 +69,8 @@ struct FitOptions {
   std::optional<Screens> screens = {};
   std::uint64_t seed = 0;
   /// Where stage two starts, by nonlinear parameter: then stage one samples nothing. Those not
-  /// named start from the middle of their bounds.
+  /// named start from the middle of their bounds, or from zero without. Where the first descent
+  /// from here fails, others follow (see docs/method.md).
   std::map<std::string, double> start = {};
   /// Nonlinear parameters that stage one does not sample but holds at these values, where stage two
   /// starts with them: corrections that begin at zero.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "attempts.hpp"
+
+#include <cmath>
+#include <tuple>
+
+namespace sepcal {
+namespace {
+
+// First radii. One over them is Marquardt's damping of columns of unit length.
+constexpr double gauss_newton = 1e4;  // the first step is all but Gauss-Newton's
+constexpr double customary = 1e3;     // a damping of 0.001, the customary first one
+constexpr double short_steps = 10.0;
+constexpr double within_the_basin = 0.1;  // a fraction of Gauss-Newton's, as in stage one
+
+}  // namespace
+
+std::vector<Attempt> list_attempts(const FitOptions& options, const StageOne& start) {
+  if (options.loss != Loss::squares && options.second_stage != SecondStage::joint) {
+    FitOptions joint = options;
+    joint.second_stage = SecondStage::joint;
+    return list_attempts(joint, start);
+  }
+  const bool automatic = options.second_stage == SecondStage::automatic;
+  const bool separable = start.xi1.size() > 0;
+  if (options.start.empty()) {
+    if (!automatic) return {{options.second_stage}};
+    if (!start.unique_minimum) return {{SecondStage::joint}};
+    return {{SecondStage::projected}, {SecondStage::joint}};
+  }
+  const SecondStage method = !automatic  ? options.second_stage
+                             : separable ? SecondStage::projected
+                                         : SecondStage::joint;
+  return {{method, customary, false},
+          {automatic ? SecondStage::joint : method, gauss_newton, true},
+          {method, short_steps, false},
+          {method, within_the_basin, false}};
+}
+
+bool is_enough(const Ending& ending, bool start_given) {
+  return ending.converged && !(start_given && ending.open);
+}
+
+bool is_better(const Ending& next, const Ending& best) {
+  const auto merits = [](const Ending& ending) {
+    return std::tuple(ending.converged, !ending.open, ending.held);
+  };
+  if (merits(next) != merits(best)) return merits(next) > merits(best);
+  return next.cost < best.cost;
+}
+
+bool agree(const Ending& one, const Ending& other) {
+  constexpr double one_standard_error = 0.5;  // of J
+  return one.converged && other.converged && std::abs(one.cost - other.cost) <= one_standard_error;
+}
+
+}  // namespace sepcal
