@@ -47,7 +47,7 @@ one residual block a sample and DENSE_QR. They stop at tolerances of 1e-15 (Cere
 they ended.
 
 Digits are -log10 of the relative error, the least over the parameters, 11 at most. A set counts
-as solved where the program says that it converged and all parameters have 4 digits; the aim are
+as solved where the program says that it converged and all parameters have 4 digits; the aim is
 8, and 6 on the higher level.
 """
 
