@@ -15,12 +15,38 @@ using Eigen::VectorXd;
 
 enum class Side { free, lower, upper };
 
+class DenseLeastSquares final : public LeastSquares {
+ public:
+  DenseLeastSquares(const MatrixXd& R, const VectorXd& q)
+      : R_(R), q_(q), lengths_(R.colwise().norm()) {}
+
+  VectorXd lengths() const override { return lengths_; }
+
+  VectorXd pull(const VectorXd& x) const override { return R_.transpose() * (q_ - R_ * x); }
+
+  VectorXd minimise_over(const std::vector<Index>& free, VectorXd x) const override {
+    x(free).setZero();
+    VectorXd lengths = lengths_(free);
+    for (double& length : lengths) length = length > 0 ? length : 1.0;
+    const MatrixXd columns = R_(Eigen::all, free) * lengths.cwiseInverse().asDiagonal();
+    const VectorXd left = q_ - R_ * x;
+    x(free) = columns.completeOrthogonalDecomposition().solve(left).cwiseQuotient(lengths);
+    return x;
+  }
+
+ private:
+  const MatrixXd& R_;
+  const VectorXd& q_;
+  VectorXd lengths_;
+};
+
 class ActiveSet {
  public:
-  ActiveSet(const MatrixXd& R, const VectorXd& q, const Box& box)
-      : R_(R), q_(q), box_(box), x_(VectorXd::Zero(R.cols())), lengths_(R.colwise().norm()) {
+  ActiveSet(const LeastSquares& problem, const Box& box)
+      : problem_(problem), box_(box), lengths_(problem.lengths()) {
+    x_ = VectorXd::Zero(lengths_.size());
     // What begins on a bound and is pushed against it stays there for now.
-    const VectorXd pull = R.transpose() * q;
+    const VectorXd pull = problem.pull(x_);
     for (Index k = 0; k < x_.size(); ++k) {
       sides_.push_back(box.lower[k] >= 0.0 && pull[k] <= 0   ? Side::lower
                        : box.upper[k] <= 0.0 && pull[k] >= 0 ? Side::upper
@@ -56,15 +82,7 @@ class ActiveSet {
     for (std::size_t k = 0; k < sides_.size(); ++k) {
       if (sides_[k] == Side::free) free.push_back(static_cast<Index>(k));
     }
-    VectorXd target = x_;
-    if (free.empty()) return target;
-    target(free).setZero();
-    VectorXd lengths = lengths_(free);
-    for (double& length : lengths) length = length > 0 ? length : 1.0;
-    const MatrixXd columns = R_(Eigen::all, free) * lengths.cwiseInverse().asDiagonal();
-    const VectorXd left = q_ - R_ * target;
-    target(free) = columns.completeOrthogonalDecomposition().solve(left).cwiseQuotient(lengths);
-    return target;
+    return free.empty() ? x_ : problem_.minimise_over(free, x_);
   }
 
   /// Goes towards `target` up to the first bound; which one, or -1 where none is in the way.
@@ -92,7 +110,7 @@ class ActiveSet {
 
   /// The parameter that pulls hardest off its bound; -1 where none does.
   Index strongest_pull() const {
-    const VectorXd pull = R_.transpose() * (q_ - R_ * x_);
+    const VectorXd pull = problem_.pull(x_);
     Index strongest = -1;
     double strength = 0.0;
     for (Index k = 0; k < x_.size(); ++k) {
@@ -109,18 +127,21 @@ class ActiveSet {
 
   Side& side(Index k) { return sides_[static_cast<std::size_t>(k)]; }
 
-  const MatrixXd& R_;
-  const VectorXd& q_;
+  const LeastSquares& problem_;
   const Box& box_;
-  VectorXd x_;
   VectorXd lengths_;
+  VectorXd x_;
   std::vector<Side> sides_;
 };
 
 }  // namespace
 
+BoundedSolution solve_bounded(const LeastSquares& problem, const Box& box) {
+  return ActiveSet(problem, box).solve();
+}
+
 BoundedSolution solve_bounded(const MatrixXd& R, const VectorXd& q, const Box& box) {
-  return ActiveSet(R, q, box).solve();
+  return solve_bounded(DenseLeastSquares(R, q), box);
 }
 
 }  // namespace sepcal

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "loss.hpp"
 #include "residual_colour.hpp"
@@ -114,50 +115,34 @@ class Sandwich {
 
   /// Gives each output's residual its noise model; whether any is coloured.
   bool find_colours() {
-    const bool noise_given = problem_.noise().size() > 0;
-    const std::vector<Segment>& runs = sweep_.measurements().runs();
-    colours_.resize(static_cast<std::size_t>(residuals_.cols()));
-    sweep_.pool().for_each(colours_.size(), [&](std::size_t j) {
-      const auto e = residuals_.col(static_cast<Index>(j));
-      // An estimated R above its own residual stands at its floor: what is left is rounding.
-      const double rms = e.norm() / std::sqrt(static_cast<double>(e.size()));
-      if (!loss_ && !noise_given && rms < 0.99 * two_.noise[static_cast<Index>(j)]) return;
-      colours_[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, runs);
-    });
+    // An estimated R above its own residual stands at its floor: what is left is rounding.
+    const bool may_be_rounding = !loss_ && problem_.noise().size() == 0;
+    colours_ = find_output_noise(residuals_, sweep_.measurements().runs(),
+                                 (may_be_rounding ? 0.99 : 0.0) * two_.noise, sweep_.pool());
     return std::ranges::any_of(colours_, [](const std::optional<NoiseModel>& colour) {
       return colour && is_coloured(*colour);
     });
   }
 
-  /// The covariance (k x k), of white residuals before find_colours() was asked.
+  /// The covariance (k x k); with a loss, of white residuals before find_colours() was asked.
   MatrixXd covariance(const std::vector<Index>& inside) const {
     const Index k = R_.cols();
-    const auto outputs = static_cast<std::size_t>(residuals_.cols());
-    std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
-    std::vector<MatrixXd> breads(outputs);
-    std::vector<MatrixXd> fillings(outputs);
-    sweep_.pool().for_each(outputs, [&](std::size_t j) {
-      MatrixXd Q = tangents[j](Eigen::all, inside) / judged_[static_cast<Index>(j)];
-      const VectorXd r = tangents[j].rightCols<1>();
-      tangents[j].resize(0, 0);
-      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
-      breads[j] = Q.transpose() * (loss_ ? MatrixXd(slopes(r, j).asDiagonal() * Q) : Q);
-      fillings[j] = filling(Q, j);
-    });
-    MatrixXd bread = MatrixXd::Zero(k, k);
+    MatrixXd bread = MatrixXd::Identity(k, k);
     MatrixXd middle = MatrixXd::Zero(k, k);
-    for (std::size_t j = 0; j < outputs; ++j) {
-      bread += breads[j];
-      middle += fillings[j];
+    std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
+    if (loss_) {
+      weigh_each_row(std::move(tangents), inside, bread, middle);
+    } else {
+      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs(), ratio_, true};
+      middle = find_score_covariance(std::move(tangents), noise, inside, R_, sweep_.pool());
     }
     for (const Prior& prior : problem_.knowledge()) {
       MatrixXd W = prior.weight(inside).asDiagonal();
       R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
-      bread += W.transpose() * W;
       middle += W.transpose() * W;
+      if (loss_) bread += W.transpose() * W;
     }
-    const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(
-        loss_ ? MatrixXd(bread.inverse()) : MatrixXd(MatrixXd::Identity(k, k)));
+    const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(MatrixXd(bread.inverse()));
     const MatrixXd covariance = inverse * middle * inverse.transpose();
     return 0.5 * (covariance + covariance.transpose());
   }
@@ -166,24 +151,34 @@ class Sandwich {
   VectorXd xi1() const { return two_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return two_.x.tail(sweep_.tables().n_2()); }
 
-  VectorXd slopes(const VectorXd& r, std::size_t j) const {
-    const double noise = two_.noise[static_cast<Index>(j)];
-    return r.unaryExpr([&](double each) { return loss_->slope(each / noise); });
-  }
-
-  /// Q' Sigma_j Q over the judged noise: by the colour, by the residuals' own squares where a loss
-  /// leaves no other measure, or by the noise itself.
-  MatrixXd filling(const MatrixXd& Q, std::size_t j) const {
-    const double judged = judged_[static_cast<Index>(j)];
-    std::optional<NoiseModel> colour;
-    if (!colours_.empty()) colour = colours_[j];
-    if (loss_ && !(colour && is_coloured(*colour))) {
-      const VectorXd s = residuals_.col(static_cast<Index>(j)) / judged;
-      return ratio_ * Q.transpose() * s.cwiseAbs2().asDiagonal() * Q;
+  /// With a loss each row has its own slope of psi, and white rows their own square.
+  void weigh_each_row(std::vector<MatrixXd> tangents, const std::vector<Index>& inside,
+                      MatrixXd& bread, MatrixXd& middle) const {
+    std::vector<MatrixXd> breads(tangents.size());
+    std::vector<MatrixXd> middles(tangents.size());
+    sweep_.pool().for_each(tangents.size(), [&](std::size_t j) {
+      const double noise = two_.noise[static_cast<Index>(j)];
+      const double judged = judged_[static_cast<Index>(j)];
+      MatrixXd Q = tangents[j](Eigen::all, inside) / judged;
+      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
+      const VectorXd slopes =
+          tangents[j].rightCols<1>().unaryExpr([&](double r) { return loss_->slope(r / noise); });
+      breads[j] = Q.transpose() * slopes.asDiagonal() * Q;
+      std::optional<NoiseModel> colour;
+      if (!colours_.empty()) colour = colours_[j];
+      if (colour && is_coloured(*colour)) {
+        colour->sigma /= judged;
+        middles[j] = ratio_ * covariance_product(*colour, sweep_.measurements().runs(), Q);
+      } else {
+        const VectorXd s = residuals_.col(static_cast<Index>(j)) / judged;
+        middles[j] = ratio_ * Q.transpose() * s.cwiseAbs2().asDiagonal() * Q;
+      }
+    });
+    bread.setZero();
+    for (std::size_t j = 0; j < breads.size(); ++j) {
+      bread += breads[j];
+      middle += middles[j];
     }
-    if (!colour) return Q.transpose() * Q;
-    colour->sigma /= judged;
-    return ratio_ * covariance_product(*colour, sweep_.measurements().runs(), Q);
   }
 
   const Problem& problem_;

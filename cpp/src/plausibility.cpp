@@ -16,6 +16,11 @@ VectorXd plausible_scale(const std::vector<Variable>& parameters,
   for (std::size_t j = 0; j < factors.size(); ++j) {
     z_square += measurements.output_square(static_cast<int>(j));
   }
+  return plausible_scale(parameters, factors, z_square);
+}
+
+VectorXd plausible_scale(const std::vector<Variable>& parameters,
+                         const std::vector<TriangularFactor>& factors, double z_square) {
   VectorXd scale(static_cast<Index>(parameters.size()));
   for (Index k = 0; k < scale.size(); ++k) {
     const Variable& parameter = parameters[static_cast<std::size_t>(k)];

@@ -17,6 +17,10 @@ Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
                                 const std::vector<TriangularFactor>& factors,
                                 const Measurements& measurements);
 
+/// The same where `z_square` is the sum of z^2 over all outputs.
+Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
+                                const std::vector<TriangularFactor>& factors, double z_square);
+
 /// Independent normal knowledge of the parameters: each is one row of the factor.
 struct Prior {
   Eigen::VectorXd mean;    // n

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bounded_least_squares.hpp"
+#include "step_length.hpp"
 
 namespace sepcal {
 namespace {
@@ -15,10 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int most_steps = 60;
-constexpr double smallest_step = 1e-12;  // standard errors, times 1 + |r|
-constexpr double passable_step = 1e-3;
-constexpr double smallest_relative_step = 1e-14;  // of the plausible lengths
-constexpr double passable_relative_step = 1e-9;
 
 /// Which parameters lie on a bound that `pull`, the negative gradient, pushes them against.
 std::vector<bool> held_by_bounds(const VectorXd& x, const VectorXd& pull, const Box& box) {
@@ -29,23 +26,6 @@ std::vector<bool> held_by_bounds(const VectorXd& x, const VectorXd& pull, const 
   }
   return held;
 }
-
-/// A step's verdict: how long it is, in standard errors and in plausible lengths.
-struct Length {
-  double size = 0.0;
-  double relative = 0.0;
-  double residual = 0.0;
-
-  Length(const MatrixXd& jacobian, const VectorXd& step, const VectorXd& scale, const VectorXd& r)
-      : size((jacobian * step).stableNorm()),
-        relative(step.cwiseQuotient(scale).cwiseAbs().maxCoeff()),
-        residual(r.stableNorm()) {}
-
-  bool is_last_digit() const {
-    return size <= smallest_step * (1.0 + residual) || relative <= smallest_relative_step;
-  }
-  bool is_passable() const { return size <= passable_step || relative <= passable_relative_step; }
-};
 
 /// The Hessian of half the sum of squares: differences of its exact gradient, over steps of a
 /// hundredth of what the record can tell apart. Empty where the model is not finite.
@@ -89,7 +69,7 @@ bool refine_by_curvature(Objective& objective, Refinement& result, const Box& bo
     const VectorXd inner = factor.solve(VectorXd(-gradient(free)));
     step(free) = inner;
     const VectorXd next = box.clip(result.x + step);
-    const Length length(jacobian, step, scale, residual);
+    const StepLength length((jacobian * step).stableNorm(), step, scale, residual.stableNorm());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) return true;
     if (!(length.size < before)) return false;
     before = length.size;
@@ -111,7 +91,8 @@ Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
     if (!objective.linearise(result.x, residual, jacobian)) break;
     const BoundedSolution step =
         solve_bounded(-jacobian, residual, {box.lower - result.x, box.upper - result.x});
-    const Length length(jacobian, step.x, scale, residual);
+    const StepLength length((jacobian * step.x).stableNorm(), step.x, scale,
+                            residual.stableNorm());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
       for (Index k = 0; k < start.size(); ++k) {

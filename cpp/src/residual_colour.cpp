@@ -45,4 +45,39 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
   return coloured < plain ? fit.model : white;
 }
 
+std::vector<std::optional<NoiseModel>> find_output_noise(const MatrixXd& residuals,
+                                                         const std::vector<Segment>& runs,
+                                                         const VectorXd& rounding,
+                                                         ThreadPool& pool) {
+  std::vector<std::optional<NoiseModel>> models(static_cast<std::size_t>(residuals.cols()));
+  pool.for_each(models.size(), [&](std::size_t j) {
+    const auto e = residuals.col(static_cast<Index>(j));
+    const double rms = e.norm() / std::sqrt(static_cast<double>(e.size()));
+    if (rms < rounding[static_cast<Index>(j)]) return;
+    models[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, runs);
+  });
+  return models;
+}
+
+MatrixXd find_score_covariance(std::vector<MatrixXd> tangents, const ScoreNoise& noise,
+                               const std::vector<Index>& columns, const MatrixXd& K,
+                               ThreadPool& pool) {
+  std::vector<MatrixXd> parts(tangents.size());
+  pool.for_each(parts.size(), [&](std::size_t j) {
+    const double deviation = noise.deviations[static_cast<Index>(j)];
+    MatrixXd Q = tangents[j](Eigen::all, columns) / deviation;  // whitened, then in K's coordinates
+    tangents[j].resize(0, 0);
+    K.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
+    if (std::optional<NoiseModel> model = noise.models[j]) {
+      model->sigma /= deviation;
+      parts[j] = noise.inflation * covariance_product(*model, noise.runs, Q);
+    } else {
+      parts[j] = (noise.given ? 1.0 : noise.inflation) * Q.transpose() * Q;
+    }
+  });
+  MatrixXd sum = MatrixXd::Zero(K.cols(), K.cols());
+  for (const MatrixXd& part : parts) sum += part;
+  return sum;
+}
+
 }  // namespace sepcal
