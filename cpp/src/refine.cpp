@@ -91,8 +91,7 @@ Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
     if (!objective.linearise(result.x, residual, jacobian)) break;
     const BoundedSolution step =
         solve_bounded(-jacobian, residual, {box.lower - result.x, box.upper - result.x});
-    const StepLength length((jacobian * step.x).stableNorm(), step.x, scale,
-                            residual.stableNorm());
+    const StepLength length((jacobian * step.x).stableNorm(), step.x, scale, residual.stableNorm());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
       for (Index k = 0; k < start.size(); ++k) {

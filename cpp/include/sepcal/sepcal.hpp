@@ -9,6 +9,7 @@
 #include "sepcal/fit.hpp"                // the two-stage estimator
 #include "sepcal/choices.hpp"            // what options choose among, by name
 #include "sepcal/options.hpp"            // every choice of a fit
+#include "sepcal/fit_many.hpp"           // many flights, jointly
 #include "sepcal/stage_one.hpp"          // sampling xi2
 #include "sepcal/identifiability.hpp"    // what a record does not determine
 #include "sepcal/check_model.hpp"        // what a concept can't check

@@ -13,6 +13,10 @@ double log10_gamma_tail(double shape, double x);
 /// log10 of the probability that chi-squared with `freedom` degrees exceeds x.
 double log10_chi_squared_tail(double x, double freedom);
 
+/// log10 of the probability that Fisher's F with k and `freedom` degrees exceeds x, to about ten
+/// digits however small it is.
+double log10_f_tail(double x, double k, double freedom);
+
 /// What chi-squared with `freedom` degrees exceeds with that probability, above 1e-300.
 double chi_squared_point(double probability, double freedom);
 

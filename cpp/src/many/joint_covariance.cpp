@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "many/joint_covariance.hpp"
+
+#include <limits>
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+bool is_singular(const MatrixXd& R) {
+  return !R.allFinite() ||
+         (R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any();
+}
+
+MatrixXd undefined(Index n) {
+  return MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
+}
+
+/// R^-1 M R^-T, symmetric to the last bit.
+MatrixXd sandwich(const MatrixXd& R, const MatrixXd& M) {
+  const auto upper = R.triangularView<Eigen::Upper>();
+  const MatrixXd half = upper.solve(M);
+  const MatrixXd whole = upper.solve(half.transpose());
+  return 0.5 * (whole + whole.transpose());
+}
+
+JudgedFlight judge_flight(const JointProblem& joint, const JointStage& stage,
+                          const TriangularFactor& block, Index flight) {
+  JudgedFlight judged{{}, {{}, {}, {}, TriangularFactor(1)}, {}};
+  Index own = 0;
+  for (Index k = 0; k < joint.layout.own + joint.layout.shared; ++k) {
+    const bool is_own = k < joint.layout.own;
+    const Index place = is_own ? flight * joint.layout.own + k
+                               : joint.layout.flights * joint.layout.own + k - joint.layout.own;
+    if (stage.at_bound[static_cast<std::size_t>(place)]) continue;
+    judged.columns.push_back(k);
+    own += is_own ? 1 : 0;
+  }
+  std::vector<Index> columns = judged.columns;
+  columns.push_back(block.columns() - 1);
+  judged.share = eliminate_own(block.matrix()(Eigen::all, columns), own);
+  return judged;
+}
+
+void ask_for_middles(JointCovariance& result, const JointProblem& joint, const JointStage& stage,
+                     const ManyObjective& objective, Fleet& fleet) {
+  VectorXd rounding = VectorXd::Zero(stage.noise.size());
+  for (Index j = 0; j < rounding.size() && !joint.noise_given(); ++j) {
+    rounding[j] = 2.0 * joint.noise_floor(j);
+  }
+  std::vector<ScoreQuestion> questions;
+  std::vector<std::size_t> asked;
+  for (Index i = 0; i < joint.layout.flights; ++i) {
+    const JudgedFlight& judged = result.flights[static_cast<std::size_t>(i)];
+    if (is_singular(judged.share.own)) continue;
+    asked.push_back(static_cast<std::size_t>(i));
+    questions.push_back({objective.flight(i), joint.layout.point(stage.x, i), stage.noise, rounding,
+                         judged.columns, beside_others(judged.share, result.joint)});
+  }
+  const std::vector<MatrixXd> middles = fleet.score_covariances(questions);
+  for (std::size_t q = 0; q < asked.size(); ++q) result.flights[asked[q]].middle = middles[q];
+}
+
+}  // namespace
+
+MatrixXd JointCovariance::contribution(Index flight) const {
+  const Index k = joint.cols();
+  MatrixXd B = flights[static_cast<std::size_t>(flight)].share.shared.matrix().topLeftCorner(k, k);
+  joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(B);
+  return B;
+}
+
+MatrixXd JointCovariance::shared_middle(Index flight) const {
+  const MatrixXd& middle = flights[static_cast<std::size_t>(flight)].middle;
+  if (middle.size() > 0) return middle.bottomRightCorner(joint.cols(), joint.cols());
+  const MatrixXd B = contribution(flight);
+  return inflation * B.transpose() * B;
+}
+
+MatrixXd JointCovariance::shared_white() const {
+  if (singular) return undefined(joint.cols());
+  return sandwich(joint, inflation * MatrixXd::Identity(joint.cols(), joint.cols()));
+}
+
+MatrixXd JointCovariance::shared_coloured() const {
+  return singular ? undefined(joint.cols()) : sandwich(joint, middle_sum);
+}
+
+MatrixXd JointCovariance::own_white(Index flight) const {
+  const Share& share = flights[static_cast<std::size_t>(flight)].share;
+  const Index n_own = share.own.cols();
+  if (singular || is_singular(share.own)) return undefined(n_own);
+  MatrixXd through = share.cross;  // what the shared parameters' error adds
+  joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(through);
+  return sandwich(share.own,
+                  inflation * (MatrixXd::Identity(n_own, n_own) + through * through.transpose()));
+}
+
+MatrixXd JointCovariance::own_coloured(Index flight) const {
+  const JudgedFlight& judged = flights[static_cast<std::size_t>(flight)];
+  const Share& share = judged.share;
+  const Index n_own = share.own.cols();
+  if (singular || is_singular(share.own)) return undefined(n_own);
+  MatrixXd through = share.cross;
+  joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(through);
+  MatrixXd own = inflation * MatrixXd::Identity(n_own, n_own);
+  MatrixXd mixed = MatrixXd::Zero(n_own, joint.cols());
+  if (judged.middle.size() > 0) {
+    own = judged.middle.topLeftCorner(n_own, n_own);
+    mixed = judged.middle.topRightCorner(n_own, joint.cols());
+  }
+  const MatrixXd crossed = mixed * through.transpose();
+  return sandwich(share.own,
+                  own + through * middle_sum * through.transpose() - crossed - crossed.transpose());
+}
+
+JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
+                                      const ManyObjective& objective, Fleet& fleet) {
+  JointCovariance result;
+  const std::vector<TriangularFactor> blocks = objective.data_blocks();
+  std::vector<Share> shares;
+  for (Index i = 0; i < joint.layout.flights; ++i) {
+    result.flights.push_back(judge_flight(joint, stage, blocks[static_cast<std::size_t>(i)], i));
+    shares.push_back(result.flights.back().share);
+  }
+  for (const Index column : result.flights.front().columns) {
+    if (column >= joint.layout.own) result.shared.push_back(column - joint.layout.own);
+  }
+  // Own parameters at their bounds differ from flight to flight, the shared ones don't.
+  const auto k = static_cast<Index>(result.shared.size());
+  result.joint = merge_shared(shares).matrix().topLeftCorner(k, k);
+  result.singular = is_singular(result.joint);
+  const double measurements = joint.rows * static_cast<double>(stage.noise.size());
+  const double freedom = measurements - static_cast<double>(joint.layout.size());
+  if (!joint.noise_given()) {
+    result.inflation =
+        freedom > 0 ? measurements / freedom : std::numeric_limits<double>::quiet_NaN();
+  }
+  if (result.singular) return result;
+  if (joint.problem.options().coloured_errors)
+    ask_for_middles(result, joint, stage, objective, fleet);
+  result.middle_sum = MatrixXd::Zero(k, k);
+  for (Index i = 0; i < joint.layout.flights; ++i) result.middle_sum += result.shared_middle(i);
+  return result;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stage two of many flights: descent, last digits and R in turn, as stage_two.cpp does for one.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "many/many_objective.hpp"
+#include "problem.hpp"
+
+namespace sepcal {
+
+/// The joint fit's question, complete.
+struct JointProblem {
+  const Problem& problem;
+  const Split& parting;
+  Layout layout;
+  Box box;                              // of all flights' parameters
+  std::vector<FlightStart> starts;      // of the flights that take part
+  double rows = 0.0;                    // of all flights
+  Eigen::VectorXd output_squares = {};  // n_z, over all flights
+
+  bool noise_given() const { return problem.noise().size() > 0; }
+
+  /// Below it the noise of output j is rounding.
+  double noise_floor(Eigen::Index j) const;
+};
+
+struct JointStage {
+  Eigen::VectorXd x;
+  Eigen::VectorXd noise;
+  std::vector<bool> at_bound;
+  bool converged = false;
+  int iterations = 0;
+  int noise_iterations = 0;
+  std::string message;
+};
+
+/// Plausible lengths of all flights' parameters, off the factors at the objective's point.
+Eigen::VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objective);
+
+/// From the flights' own fits; the objective ends linearised at the solution, without priors.
+JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective);
+
+}  // namespace sepcal

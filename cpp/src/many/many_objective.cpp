@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "many/many_objective.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sepcal {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void ManyObjective::weigh(const VectorXd& weights) {
+  weights_ = weights;
+  combine_blocks();
+}
+
+void ManyObjective::hold(std::vector<Prior> priors) {
+  priors_ = std::move(priors);
+  combine_blocks();
+}
+
+bool ManyObjective::linearise(const VectorXd& x) {
+  if (at_.size() != x.size() || at_ != x) {
+    std::vector<FlightPoint> points;
+    for (Index i = 0; i < layout_.flights; ++i) points.push_back({flight(i), layout_.point(x, i)});
+    factors_ = fleet_.linearise(points);
+    at_ = x;
+    ++passes_;
+    combine_blocks();
+  }
+  return std::ranges::all_of(blocks_,
+                             [](const TriangularFactor& block) { return block.all_finite(); });
+}
+
+std::vector<TriangularFactor> ManyObjective::data_blocks() const {
+  std::vector<TriangularFactor> blocks;
+  for (const auto& factors : factors_) blocks.push_back(combine(factors, weights_));
+  return blocks;
+}
+
+void ManyObjective::combine_blocks() {
+  blocks_ = data_blocks();
+  if (blocks_.empty()) return;
+  for (std::size_t i = 0; i < priors_.size(); ++i) {
+    priors_[i].join(blocks_[i], layout_.point(at_, static_cast<Index>(i)));
+  }
+}
+
+VectorXd ManyObjective::squares(Index i) const {
+  const std::vector<TriangularFactor>& factors = factors_[static_cast<std::size_t>(i)];
+  VectorXd sums(static_cast<Index>(factors.size()));
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    const MatrixXd& T = factors[j].matrix();
+    sums[static_cast<Index>(j)] = T.col(T.cols() - 1).squaredNorm();
+  }
+  return sums;
+}
+
+double ManyObjective::square() const {
+  double sum = 0.0;
+  for (const TriangularFactor& block : blocks_) {
+    sum += block.matrix().col(block.columns() - 1).squaredNorm();
+  }
+  return sum;
+}
+
+}  // namespace sepcal
