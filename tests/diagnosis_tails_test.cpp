@@ -100,6 +100,27 @@ TEST_CASE("the tail of a gamma variable on either side of where series and fract
   }
 }
 
+TEST_CASE("the tail of Fisher's F, against scipy.stats.f.logsf") {
+  struct Fisher {
+    double x;
+    double k;
+    double freedom;
+    double log10_p;
+  };
+  for (const auto& [x, k, freedom, expected] :
+       {Fisher{0.3, 2.0, 10.0, -0.126529326324}, Fisher{1.0, 1.0, 3.0, -0.407820777956},
+        Fisher{4.0, 7.0, 500.0, -3.54558228615}, Fisher{60.0, 7.0, 600.0, -64.415355354},
+        Fisher{3000.0, 3.0, 40.0, -46.3721059289}, Fisher{1.5, 30.0, 4.5, -0.43984161106},
+        Fisher{0.99, 7.0, 60000.0, -0.360298192549}, Fisher{40.0, 7.0, 60000.0, -55.8132770548}}) {
+    CAPTURE(x);
+    CAPTURE(k);
+    CHECK(log10_f_tail(x, k, freedom) == Approx(expected).epsilon(1e-9));
+  }
+  // Many degrees of freedom: chi-squared over k.
+  CHECK(log10_f_tail(5.0, 4.0, 1e9) == Approx(log10_chi_squared_tail(20.0, 4.0)).epsilon(1e-6));
+  CHECK(log10_f_tail(0.0, 2.0, 5.0) == 0.0);
+}
+
 TEST_CASE("the ends of the axis") {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   CHECK(log10_gamma_tail(2.0, 0.0) == 0.0);

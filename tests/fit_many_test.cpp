@@ -5,7 +5,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sepcal/error.hpp"
 #include "simulated_records.hpp"
@@ -128,6 +131,12 @@ ManyOptions wind_a_flight() {
 void check_same(const Parameter& found, const Parameter& expected) {
   CAPTURE(found.name);
   CHECK(found.at_bound == expected.at_bound);
+  CHECK(found.fixed == expected.fixed);
+  if (expected.fixed) {
+    CHECK(found.value == expected.value);
+    CHECK(std::isnan(found.standard_error));
+    return;
+  }
   const double scale = expected.at_bound ? 1e-9 : expected.standard_error_white;
   CHECK(std::abs(found.value - expected.value) <= 1e-9 * scale + 1e-15);
   if (expected.at_bound) {
@@ -232,19 +241,31 @@ TEST_CASE("a nonlinear parameter may be the flight's own, and all may be shared"
 }
 
 TEST_CASE("one flight is fit(), its errors for coloured residuals too") {
-  Simulation simulation{.rows = {600}, .correlation = 0.8};
-  const Flights flights = simulate(simulation);
-  ManyOptions options = wind_a_flight();
-  const Fit alone = fit(probe, flights.front().second, options.fit);
-  const ManyFit joint = fit_many(probe, flights, options);
-  REQUIRE(alone["lambda_va"].standard_error > 1.2 * alone["lambda_va"].standard_error_white);
+  // Slow drivers, to which it matters that neighbouring residuals correlate.
+  Draws draws(4);
+  std::vector<double> eta;
+  std::vector<double> z;
+  double e = draws.normal();
+  for (int k = 0; k < 800; ++k) {
+    eta.push_back(0.02 * k);
+    z.push_back(1.3 * std::cos(eta.back() + 0.2) - 0.4 + 0.1 * e);
+    e = 0.8 * e + 0.6 * draws.normal();
+  }
+  Record record;
+  record.add("eta", eta).add("z", z);
+  ManyOptions options;
+  options.own = {"c"};
+  options.fit.threads = 1;
+  const Fit alone = fit(ScalarExample1{}, record, options.fit);
+  const ManyFit joint = fit_many(ScalarExample1{}, {{"wave", record}}, options);
+  REQUIRE(alone["a"].standard_error > 1.5 * alone["a"].standard_error_white);
   const auto check = [&](const Parameter& parameter) {
     check_same(parameter, alone[parameter.name]);
     CHECK(parameter.standard_error == Approx(alone[parameter.name].standard_error).epsilon(1e-3));
   };
   for (const Parameter& parameter : joint.shared) check(parameter);
   for (const Parameter& parameter : joint.flights.front().own) check(parameter);
-  CHECK(joint.correlation(0, 1) == Approx(alone.correlation(0, 1)).epsilon(1e-3));
+  CHECK(joint.correlation(0, 1) == Approx(alone.correlation(0, 2)).epsilon(1e-3));
   CHECK(std::isnan(joint.flights.front().departure.p));
   CHECK(joint.flights.front().departure.combinations == 0);
 }
@@ -266,14 +287,15 @@ TEST_CASE("the order of the flights is irrelevant to rounding") {
 
 TEST_CASE("a flight that tells of some parameters only joins, and is tested on what it tells") {
   Flights flights = simulate({});
-  // Level and straight: of the shared parameters it can't tell the flow angles' scales.
+  // At one airspeed and without flow angles: it can't tell lambda_va from b_va, nor the scales.
   Flights poor = simulate({.rows = {50}, .seed = 9});
   Record straight;
   for (const std::string& name : poor.front().second.names()) {
     const auto column = poor.front().second.column(name);
-    const bool constant = name == "dpa" || name == "dpb" || name == "pt";
     std::vector<double> values(column.begin(), column.end());
-    if (constant) std::ranges::fill(values, name == "pt" ? 95300.0 : 0.0);
+    if (name == "dpa" || name == "dpb") std::ranges::fill(values, 0.0);
+    if (name == "pt") std::ranges::fill(values, 95300.0);
+    if (name == "rho") std::ranges::fill(values, 1.15);
     straight.add(name, values);
   }
   flights.emplace_back("straight", straight);
@@ -304,12 +326,12 @@ TEST_CASE("what all flights leave open is named") {
   }
   const ManyFit joint = fit_many(probe, flights, wind_a_flight());
   CHECK(joint.status == FitStatus::not_identifiable);
-  CHECK(joint.message == Contains("lambda_va"));
-  CHECK(joint.message == Contains("b_va"));
+  CHECK(joint.message.find("lambda_va") != std::string::npos);
+  CHECK(joint.message.find("b_va") != std::string::npos);
 }
 
 TEST_CASE("a departed flight is found, by its name and by what departed") {
-  const Flights flights = simulate({.rows = {300, 300, 300, 300, 300, 300}, .departure = 0.03});
+  const Flights flights = simulate({.rows = {300, 300, 300, 300, 300, 300}, .departure = 0.009});
   const ManyFit joint = fit_many(probe, flights, wind_a_flight());
   for (const FlightFit& flight : joint.flights) {
     CAPTURE(flight.name);
@@ -319,13 +341,13 @@ TEST_CASE("a departed flight is found, by its name and by what departed") {
       continue;
     }
     CHECK(departure.combinations == 7);
-    CHECK(departure.p_holm < 1e-3);
-    CHECK(departure.p_white_holm < 1e-3);
+    CHECK(departure.p_holm < 0.01);
+    CHECK(departure.p_white_holm < 0.01);
     const VectorXd sizes = departure.difference.cwiseQuotient(departure.standard_error).cwiseAbs();
     Index largest = 0;
     sizes.maxCoeff(&largest);
     CHECK(joint.shared[static_cast<std::size_t>(largest)].name == "lambda_va");
-    CHECK(std::abs(departure.difference[0] - 0.03) < 3.0 * departure.standard_error[0]);
+    CHECK(std::abs(departure.difference[0] - 0.009) < 3.0 * departure.standard_error[0]);
   }
 }
 
@@ -388,7 +410,7 @@ TEST_CASE("a flight that can't be used is named, or left out and listed") {
   const ManyFit joint = fit_many(probe, flights, options);
   REQUIRE(joint.left_out.size() == 1);
   CHECK(joint.left_out[0].name == "flight 1");
-  CHECK(joint.left_out[0].reason == Contains("'ve'"));
+  CHECK(joint.left_out[0].reason.find("'ve'") != std::string::npos);
   CHECK(joint.flights.size() == 2);
   CHECK(joint.flights[1].name == "flight 2");
 

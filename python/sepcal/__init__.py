@@ -19,6 +19,8 @@ from sepcal.comparison import ChannelMisfit, Comparison, Misfit, Window
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
+from sepcal.many import fit_many
+from sepcal.many_results import Departure, FlightFit, ManyFit
 from sepcal.models import (
     FiveHoleProbe,
     Magnetometer,
@@ -45,6 +47,7 @@ __all__ = [
     "ChannelMisfit",
     "Combination",
     "Comparison",
+    "Departure",
     "Derived",
     "Diagnosis",
     "Effect",
@@ -57,10 +60,12 @@ __all__ = [
     "FitOptions",
     "FiveHoleProbe",
     "Flight",
+    "FlightFit",
     "HistoryEntry",
     "Injection",
     "LocalMinimum",
     "Magnetometer",
+    "ManyFit",
     "Misfit",
     "Model",
     "MonteCarlo",
@@ -79,6 +84,7 @@ __all__ = [
     "__version__",
     "effects",
     "fit",
+    "fit_many",
     "load",
     "monte_carlo",
     "read_csv",

@@ -129,6 +129,44 @@ class AppliedDescription(TypedDict):
     headers: list[str]
     notes: list[str]
 
+class DepartureDescription(TypedDict):
+    combinations: int
+    statistic: float
+    p: float
+    p_holm: float
+    p_white: float
+    p_white_holm: float
+    difference: dict[str, float]
+    standard_error: dict[str, float]
+
+class FlightFitDescription(TypedDict):
+    name: str
+    own: list[ParameterDescription]
+    rmse: dict[str, float]
+    rows: int
+    alone: str
+    message: str
+    departure: DepartureDescription
+
+class ManyFitDescription(TypedDict):
+    status: str
+    message: str
+    shared: list[ParameterDescription]
+    covariance: Array
+    correlation: Array
+    covariance_white: Array
+    flights: list[FlightFitDescription]
+    left_out: dict[str, str]
+    noise: dict[str, float]
+    rmse: dict[str, float]
+    cost: float
+    unobservable: list[CombinationDescription]
+    weak: list[CombinationDescription]
+    iterations: int
+    noise_iterations: int
+    passes: int
+    rows: int
+
 # Name, port, unit, and the function of the columns (N,) and n_z.
 OwnEffect: TypeAlias = tuple[
     str, str | None, str, Callable[[dict[str, Array], int], Array | list[tuple[str, Array]]]
@@ -237,3 +275,34 @@ def simulate(
     seed: int,
     /,
 ) -> tuple[Flight, dict[str, float], list[str]]: ...
+
+# A flight's (status or None, message, x, noise, stacked factors, sums of z^2, rows).
+Start: TypeAlias = tuple[str | None, str, Array, Array, Array, Array, int]
+
+class PreparedFlight:
+    def start(self) -> Start: ...
+    def linearise(self, x: Array, /) -> Array: ...
+    def score_covariance(
+        self, question: tuple[Array, Array, Array, list[int], Array], /
+    ) -> Array: ...
+
+def prepare_flight(
+    model: Model, flight: Flight, options: Options, own: list[str], /
+) -> PreparedFlight: ...
+def prepare_columns(
+    model: Model,
+    columns: dict[str, Array],
+    labels: list[str],
+    options: Options,
+    own: list[str],
+    /,
+) -> PreparedFlight: ...
+def fit_many(
+    model: Model,
+    names: list[str],
+    options: Options,
+    own: list[str],
+    leave_out: bool,
+    visit: Callable[[str, list[tuple[int, object]]], list[object]],
+    /,
+) -> ManyFitDescription: ...

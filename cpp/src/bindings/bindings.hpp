@@ -29,11 +29,15 @@ struct Model {
 
 /// Keys as the fields of sepcal.Fit; its parts are dictionaries in turn.
 py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects);
+py::list describe(const std::vector<Parameter>& parameters);
+py::list describe(const std::vector<Combination>& combinations);
+py::dict describe(const std::vector<OutputValue>& values);
 
 void define_options(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
 void define_flight(py::module_& module);
+void define_many(py::module_& module);
 void define_simulation(py::module_& module);
 
 }  // namespace sepcal::bindings

@@ -28,5 +28,6 @@ PYBIND11_MODULE(_core, module) {
   define_effects(module);
   define_engine(module);
   define_flight(module);
+  define_many(module);
   define_simulation(module);
 }

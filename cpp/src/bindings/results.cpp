@@ -8,7 +8,6 @@
 #include "bindings.hpp"
 
 namespace sepcal::bindings {
-namespace {
 
 using namespace py::literals;
 
@@ -40,6 +39,8 @@ py::dict describe(const std::vector<OutputValue>& values) {
   for (const OutputValue& value : values) dictionary[py::str(value.name)] = value.value;
   return dictionary;
 }
+
+namespace {
 
 /// {name: value} of the parameters that stage one samples: nonlinear and not fixed.
 py::dict describe_point(const Fit& fit, const Eigen::VectorXd& xi2) {

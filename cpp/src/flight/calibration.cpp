@@ -9,6 +9,7 @@
 #include <optional>
 #include <ranges>
 
+#include "held_options.hpp"
 #include "option_spelling.hpp"
 #include "parameter_values.hpp"
 #include "sepcal/composition.hpp"
@@ -29,35 +30,6 @@ void check_rows(const BlockModel& model, const CalibrationOptions& options, cons
   throw Error(
       fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or {} some",
                   flight.name(), rows, parameters, spell_option("fix")));
-}
-
-void check_freed(const Probe& probe, const CalibrationOptions& options) {
-  const std::vector<Variable> parameters = probe.model().tables().parameters();
-  for (const std::string& name : options.free) {
-    if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) {
-      throw Error(
-          fmt::format("{} {}: there is no such parameter; the model has: {}", spell_option("free"),
-                      name, fmt::join(parameters | std::views::transform(&Variable::name), ", ")));
-    }
-    if (options.fit.fixed.contains(name)) {
-      throw Error(fmt::format("{1} {0} and {2} {0} contradict each other; keep one", name,
-                              spell_option("free"), spell_option("fix")));
-    }
-  }
-}
-
-/// The options with what the probe holds unless it is freed. Throws Error for bounds of a parameter
-/// that is held.
-CalibrationOptions hold(const Probe& probe, CalibrationOptions options) {
-  for (const auto& [name, value] : probe.held()) {
-    if (std::ranges::find(options.free, name) != options.free.end()) continue;
-    if (options.fit.bounds.contains(name) && !options.fit.fixed.contains(name)) {
-      throw Error(fmt::format("{2} {0}: it is held at {1} unless {3} {0} frees it; add that", name,
-                              value, spell_option("bounds"), spell_option("free")));
-    }
-    options.fit.fixed.emplace(name, value);
-  }
-  return options;
 }
 
 /// Rows that a stage's segments select; messages say of which flight and option.
@@ -168,7 +140,6 @@ Calibration calibrate_prepared(std::shared_ptr<const Probe> probe, CalibrationOp
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
-  check_freed(*probe, options);
   CalibrationOptions held = hold(*probe, options);
   const EffectiveFlight effective = prepare_with_effects(
       *probe, flight, held.effects, options.own_effects, options.drop_invalid, options.fit.bounds);
@@ -182,7 +153,6 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                       const CalibrationOptions& options) {
-  check_freed(*probe, options);
   CalibrationOptions held = hold(*probe, options);
   const EffectiveFlight effective =
       with_effects(*probe, with_constant_outputs(*probe, record), held.effects, options.own_effects,

@@ -23,9 +23,8 @@ std::vector<Share> own_shares(const std::vector<FlightStart>& starts, Index n_ow
 }
 
 std::vector<bool> find_usable(const std::vector<FlightStart>& starts) {
-  const bool none_converged = std::ranges::all_of(starts, [](const FlightStart& start) {
-    return start.status == FitStatus::not_converged;
-  });
+  const bool none_converged = std::ranges::all_of(
+      starts, [](const FlightStart& start) { return start.status == FitStatus::not_converged; });
   std::vector<bool> usable;
   for (const FlightStart& start : starts) {
     usable.push_back(none_converged || start.status != FitStatus::not_converged);

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The test of departure as a statistic: uniform where nothing departs, in white noise and in noise
+// whose neighbours correlate, and sharp where something does.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "noises.hpp"
+#include "sepcal/fit_many.hpp"
+#include "sepcal/models/scalar_examples.hpp"
+
+using namespace sepcal;
+using sepcal::test::Draws;
+
+namespace {
+
+struct Fleets {
+  double correlation = 0.0;  // of neighbouring residuals
+  Eigen::Index rows = 400;   // of a flight
+  double departure = 0.0;    // of a, in standard errors of flight 3's own estimate
+  double loud = 1.0;         // flight 3's noise is so many times that of the others
+  int fleets = 60;
+  std::uint64_t seed = 1;
+};
+
+constexpr int flights_each = 8;
+
+/// First-order noise of unit variance, drawn without the library.
+Eigen::VectorXd draw(double correlation, Eigen::Index rows, Draws& draws) {
+  Eigen::VectorXd e(rows);
+  double last = draws.normal();
+  for (double& value : e) {
+    value = last;
+    last = correlation * last + std::sqrt(1.0 - correlation * correlation) * draws.normal();
+  }
+  return e;
+}
+
+/// z = (1 + a) cos(eta + b) + c with a and b shared, c the flight's own.
+ManyFit fly(const Fleets& fleets, int fleet) {
+  Draws draws(10'000 * fleets.seed + static_cast<std::uint64_t>(fleet));
+  std::vector<std::pair<std::string, Record>> flights;
+  for (int i = 0; i < flights_each; ++i) {
+    std::vector<double> eta;
+    std::vector<double> z;
+    const double sigma = 0.1 * (i == 3 ? fleets.loud : 1.0);
+    const Eigen::VectorXd e = sigma * draw(fleets.correlation, fleets.rows, draws);
+    const double c = draws.normal();
+    // eta turns evenly: the standard error of a alone is sigma sqrt(2 / rows) in white noise.
+    const double size =
+        fleets.departure * sigma * std::sqrt(2.0 / static_cast<double>(fleets.rows));
+    const double a = 0.3 + (i == 3 ? size : 0.0);
+    for (Eigen::Index k = 0; k < fleets.rows; ++k) {
+      eta.push_back(0.05 * static_cast<double>(k) + 0.3 * i);
+      z.push_back((1.0 + a) * std::cos(eta.back() + 0.2) + c + e[k]);
+    }
+    Record record;
+    record.add("eta", eta).add("z", z);
+    flights.emplace_back("flight " + std::to_string(i), std::move(record));
+  }
+  ManyOptions options;
+  options.own = {"c"};
+  options.fit.threads = 1;
+  options.fit.samples = 20;
+  return fit_many(ScalarExample1{}, std::move(flights), options);
+}
+
+struct Probabilities {
+  std::vector<double> coloured;
+  std::vector<double> white;
+  int found = 0;         // fleets in which flight 3 departs at 1 %, by Holm
+  int false_alarms = 0;  // fleets in which another one does
+};
+
+Probabilities study(const Fleets& fleets) {
+  Probabilities result;
+  for (int fleet = 0; fleet < fleets.fleets; ++fleet) {
+    const ManyFit fit = fly(fleets, fleet);
+    REQUIRE(fit.status == FitStatus::converged);
+    bool another = false;
+    for (int i = 0; i < flights_each; ++i) {
+      const Departure& departure = fit.flights[static_cast<std::size_t>(i)].departure;
+      CHECK(departure.combinations == 2);
+      result.coloured.push_back(departure.p);
+      result.white.push_back(departure.p_white);
+      const bool departs = departure.p_holm < 0.01;
+      if (i == 3) {
+        result.found += departs ? 1 : 0;
+      } else {
+        another = another || departs;
+      }
+    }
+    result.false_alarms += another ? 1 : 0;
+  }
+  return result;
+}
+
+double share_below(const std::vector<double>& p, double level) {
+  return static_cast<double>(std::ranges::count_if(p, [&](double one) { return one < level; })) /
+         static_cast<double>(p.size());
+}
+
+/// Kolmogorov's distance from the uniform distribution, times sqrt(N): above 1.63 in 1 of 100.
+double distance(std::vector<double> p) {
+  std::ranges::sort(p);
+  const auto n = static_cast<double>(p.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto at = static_cast<double>(i);
+    largest = std::max({largest, (at + 1.0) / n - p[i], p[i] - at / n});
+  }
+  return std::sqrt(n) * largest;
+}
+
+}  // namespace
+
+TEST_CASE("in white noise both probabilities are uniform where nothing departs") {
+  const Probabilities p = study({});
+  MESSAGE("white noise: " << share_below(p.coloured, 0.05) << " below 0.05, white "
+                          << share_below(p.white, 0.05) << ", distances " << distance(p.coloured)
+                          << ", " << distance(p.white));
+  CHECK(distance(p.white) < 1.63);
+  CHECK(distance(p.coloured) < 1.63);
+  // 480 of them: 0.05 +- 3 sqrt(0.05 0.95 / 480).
+  CHECK(share_below(p.white, 0.05) < 0.08);
+  CHECK(share_below(p.coloured, 0.05) < 0.08);
+}
+
+TEST_CASE("in correlated noise only the coloured one is") {
+  const Probabilities p = study({.correlation = 0.7, .rows = 1000});
+  MESSAGE("AR(0.7): " << share_below(p.coloured, 0.05) << " below 0.05, white "
+                      << share_below(p.white, 0.05) << ", distance " << distance(p.coloured));
+  CHECK(share_below(p.coloured, 0.05) < 0.09);
+  CHECK(distance(p.coloured) < 1.95);  // 1 of 1000
+  CHECK(share_below(p.white, 0.05) > 0.2);
+}
+
+TEST_CASE("a flight that is three times as loud as the others does not depart for that") {
+  const Probabilities p = study({.loud = 3.0});
+  CHECK(p.found <= 3);
+  CHECK(p.false_alarms <= 3);
+  CHECK(share_below(p.coloured, 0.05) < 0.08);
+}
+
+TEST_CASE("a departure of six standard errors is found in nearly every fleet, and nothing else") {
+  const Probabilities p = study({.departure = 6.0, .seed = 2});
+  MESSAGE("six sigma: found in " << p.found << " of 60 fleets, " << p.false_alarms
+                                 << " with another");
+  CHECK(p.found >= 54);
+  CHECK(p.false_alarms <= 4);
+}
