@@ -70,7 +70,8 @@ def test_files_flights_and_columns_give_the_same(tmp_path):
     loaded = {name: sepcal.read_csv(name) for name in names}
     check_same(sepcal.fit_many(PROBE, loaded, own=WIND), expected)
     check_same(sepcal.fit_many(PROBE, list(loaded.values()), own=WIND), expected)
-    in_memory = dict(zip(names, (simulate_flight(i) for i in range(4)), strict=True))
+    arrays = [sepcal.Flight(dict(simulate_flight(i))) for i in range(4)]
+    in_memory = dict(zip(names, arrays, strict=True))
     check_same(sepcal.fit_many(PROBE, in_memory, own=WIND, threads=1), expected)
     assert not many_workers.PREPARED._flights
 
