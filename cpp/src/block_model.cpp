@@ -35,4 +35,11 @@ void BlockModel::input_tangent(const Block& block, const double* xi2, const doub
   differentiate_by_inputs(predict, block, inputs, columns);
 }
 
+bool BlockModel::add_second_derivatives(
+    const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
+    Eigen::Ref<Eigen::MatrixXd> /*sum*/) const {
+  return false;
+}
+
 }  // namespace sepcal

@@ -69,4 +69,16 @@ void FixedModel::input_tangent(const Block& block, const double* xi2, const doub
   model_.input_tangent(block, values_of(whole_2), values_of(whole_1), inputs, columns);
 }
 
+bool FixedModel::add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                                        Eigen::Ref<MatrixXd> sum) const {
+  const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
+  const VectorXd whole_2 = fill_in(xi2_, free_2_, xi2);
+  MatrixXd whole = MatrixXd::Zero(xi2_.size(), xi2_.size());
+  if (!model_.add_second_derivatives(block, values_of(whole_2), values_of(whole_1), whole)) {
+    return false;
+  }
+  sum += whole(free_2_, free_2_);
+  return true;
+}
+
 }  // namespace sepcal

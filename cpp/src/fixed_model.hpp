@@ -23,6 +23,9 @@ class FixedModel final : public BlockModel {
                      std::span<const int> inputs,
                      Eigen::Ref<Eigen::MatrixXd> columns) const override;
 
+  bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                              Eigen::Ref<Eigen::MatrixXd> sum) const override;
+
   std::unique_ptr<Carry> new_carry() const override { return model_.new_carry(); }
 
  private:

@@ -29,6 +29,15 @@ void check_at_least(const std::string& option, int value, int least) {
               std::to_string(least));
 }
 
+void check_screens(const Screens& screens) {
+  if (!(screens.t_1 > 0) || !(screens.t_2 > 0)) {
+    throw Error("the screens' t_1 and t_2 must be positive");
+  }
+  if (!(screens.l_2 >= 0) || !std::isfinite(screens.l_2)) {
+    throw Error("the screens' l_2 must be positive, or 0 for the farthest corner of the bounds");
+  }
+}
+
 Box box_of(const std::vector<Variable>& parameters, std::size_t first) {
   const auto n = static_cast<Index>(parameters.size() - first);
   Box box{VectorXd(n), VectorXd(n)};
@@ -120,6 +129,7 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
   if (!(options.loss_width >= 0) || !std::isfinite(options.loss_width)) {
     throw Error("loss_width must be positive, or 0 for the loss's own");
   }
+  if (options.screens) check_screens(*options.screens);
   if (!(options.noise_tolerance > 0)) throw Error("noise_tolerance must be positive");
 }
 

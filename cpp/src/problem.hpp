@@ -16,7 +16,7 @@ namespace sepcal {
 
 /// Throws Error for a name in bounds, priors, fixed or noise that the model doesn't have, an
 /// interval that is empty, a fixed value outside its bounds, noise that is not positive or is not
-/// given for every output.
+/// given for every output, screens without a positive threshold.
 class Problem {
  public:
   Problem(const BlockModel& model, const FitOptions& options);

@@ -66,6 +66,12 @@ class BlockModel {
                              std::span<const int> inputs,
                              Eigen::Ref<Eigen::MatrixXd> columns) const;
 
+  /// Adds to `sum`, n_2 x n_2, the second derivatives by xi2 of A xi1 + b, summed over the block's
+  /// rows and all outputs, what Eq. 18 asks for. False, and nothing added, where the model doesn't
+  /// know them: they then come from differences of the tangent.
+  virtual bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                                      Eigen::Ref<Eigen::MatrixXd> sum) const;
+
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.
   virtual std::unique_ptr<Carry> new_carry() const { return nullptr; }

@@ -69,4 +69,13 @@ constexpr bool has_dual_inputs() {
   return false;
 }
 
+/// A model whose at() also takes a NestedDual (nested_dual.hpp) for xi2 says `static constexpr bool
+/// nested_duals = true`: its second derivatives, which the paper's screens ask for, are then exact;
+/// else they are differences of the first.
+template <class M>
+constexpr bool has_nested_duals() {
+  if constexpr (requires { M::nested_duals; }) return M::nested_duals;
+  return false;
+}
+
 }  // namespace sepcal

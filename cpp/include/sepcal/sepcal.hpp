@@ -15,6 +15,7 @@
 #include "sepcal/check_model.hpp"        // what a concept can't check
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist
+#include "sepcal/nested_dual.hpp"        // second derivatives
 #include "sepcal/measurements.hpp"       // a record as a model sees it
 #include "sepcal/natural_spline.hpp"     // smooth functions
 #include "sepcal/driver.hpp"             // what drives an effect

@@ -12,6 +12,7 @@
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/model.hpp"
+#include "sepcal/nested_dual.hpp"
 
 namespace sepcal {
 
@@ -69,6 +70,16 @@ class StaticModel final : public BlockModel {
     }
   }
 
+  bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                              Eigen::Ref<Eigen::MatrixXd> sum) const override {
+    if constexpr (n_2 > 0 && has_nested_duals<M>()) {
+      add_bends(block, xi2, xi1, sum);
+      return true;
+    } else {
+      return BlockModel::add_second_derivatives(block, xi2, xi1, sum);
+    }
+  }
+
  private:
   static constexpr int n_u = Sizes<M>::n_u;
   static constexpr int n_z = Sizes<M>::n_z;
@@ -109,6 +120,23 @@ class StaticModel final : public BlockModel {
         }
         for (int i = 0; i < n_2; ++i) rows(at, n_1 + i) = tangent[i];
         rows(at, n_1 + n_2) = b[j].a;
+      }
+    }
+  }
+
+  void add_bends(const Block& block, const double* xi2, const double* xi1,
+                 Eigen::Ref<Eigen::MatrixXd> sum) const {
+    using Dual = NestedDual<n_2>;
+    Vec<Dual, n_2> x;
+    for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[i], i);
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      const auto [A, b] = model_.at(sample(block, row), x);
+      for (int j = 0; j < n_z; ++j) {
+        Dual z = b[j];
+        for (int k = 0; k < n_1; ++k) z += xi1[k] * A(j, k);
+        for (int i = 0; i < n_2; ++i) {
+          for (int k = 0; k < n_2; ++k) sum(i, k) += z.bend(i, k);
+        }
       }
     }
   }

@@ -3,6 +3,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 
 #include "bindings.hpp"
@@ -52,6 +53,13 @@ py::dict describe_point(const Fit& fit, const Eigen::VectorXd& xi2) {
   return point;
 }
 
+py::object describe(const std::optional<ScreenResults>& screens) {
+  if (!screens) return py::none();
+  return py::dict("ratio_a"_a = screens->ratio_a, "ratio_b"_a = screens->ratio_b,
+                  "curvature_a"_a = screens->curvature_a, "curvature_b"_a = screens->curvature_b,
+                  "accepted"_a = screens->accepted);
+}
+
 py::dict describe_stage_one(const Fit& fit) {
   const StageOne& stage_one = fit.stage_one;
   py::list minima;
@@ -59,11 +67,11 @@ py::dict describe_stage_one(const Fit& fit) {
     minima.append(
         py::dict("xi2"_a = describe_point(fit, minimum.xi2), "trace_r"_a = minimum.trace_r));
   }
-  return py::dict("samples"_a = Eigen::MatrixXd(stage_one.samples.transpose()),
-                  "trace_r"_a = stage_one.trace_r, "best"_a = describe_point(fit, stage_one.best),
-                  "best_trace_r"_a = stage_one.best_trace_r, "minima"_a = minima,
-                  "unique_minimum"_a = stage_one.unique_minimum,
-                  "flat_directions"_a = stage_one.flat_directions);
+  return py::dict(
+      "samples"_a = Eigen::MatrixXd(stage_one.samples.transpose()), "trace_r"_a = stage_one.trace_r,
+      "best"_a = describe_point(fit, stage_one.best), "best_trace_r"_a = stage_one.best_trace_r,
+      "minima"_a = minima, "unique_minimum"_a = stage_one.unique_minimum,
+      "flat_directions"_a = stage_one.flat_directions, "screens"_a = describe(stage_one.screens));
 }
 
 /// Keys as the fields of sepcal.EffectSetting.

@@ -33,6 +33,7 @@ struct AttitudeIndependentMagnetometer {
                                         Quantity{"n_y", "uT"},
                                         Quantity{"n_z", "uT"}};
   static constexpr bool dual_inputs = true;
+  static constexpr bool nested_duals = true;
 
   double field_strength;
   double noise = 0.0;

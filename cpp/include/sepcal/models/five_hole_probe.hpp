@@ -37,6 +37,7 @@ struct FiveHoleProbe {
                                         Quantity{"b_beta", "rad", -ten_degrees, ten_degrees},
                                         Quantity{"eps_phi", "rad", -0.2618, 0.2618}};
   static constexpr bool dual_inputs = true;
+  static constexpr bool nested_duals = true;
 
   double k_alpha;
   double k_beta;

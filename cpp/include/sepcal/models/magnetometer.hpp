@@ -24,6 +24,7 @@ struct Magnetometer {
       Quantity{"eta_z", "rad", -0.5, 0.5},  Quantity{"alpha_xy", "1", -0.5, 0.5},
       Quantity{"alpha_xz", "1", -0.5, 0.5}, Quantity{"alpha_yz", "1", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
+  static constexpr bool nested_duals = true;
 
   template <class U, class X>
   Affine<X, 3, 6> at(const Vec<U, 3>& h, const Vec<X, 6>& xi2) const {

@@ -16,6 +16,7 @@ struct ScalarExample1 {
   static constexpr std::array linear{Quantity{"a", "1"}, Quantity{"c", "1"}};
   static constexpr std::array nonlinear{Quantity{"b", "rad", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
+  static constexpr bool nested_duals = true;
 
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 1>& u, const Vec<X, 1>& xi2) const {
@@ -37,6 +38,7 @@ struct ScalarExample2 {
   static constexpr std::array nonlinear{Quantity{"b", "1", -0.5, 0.5},
                                         Quantity{"c", "rad", -1.0, 1.0}};
   static constexpr bool dual_inputs = true;
+  static constexpr bool nested_duals = true;
 
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 1>& u, const Vec<X, 2>& xi2) const {
