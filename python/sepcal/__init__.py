@@ -34,7 +34,15 @@ from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.reporting import report
-from sepcal.results import Combination, EffectSetting, Fit, LocalMinimum, Parameter, StageOne
+from sepcal.results import (
+    Combination,
+    EffectSetting,
+    Fit,
+    LocalMinimum,
+    Parameter,
+    ScreenResults,
+    StageOne,
+)
 from sepcal.running_trials import monte_carlo, stream_trials
 from sepcal.simulated_trial import SimulatedTrial
 from sepcal.simulation import SimulatedFlight, simulate
@@ -75,6 +83,7 @@ __all__ = [
     "PitotStatic",
     "ScalarExample1",
     "ScalarExample2",
+    "ScreenResults",
     "SeparableModel",
     "SimulatedFlight",
     "SimulatedTrial",

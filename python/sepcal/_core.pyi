@@ -3,6 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import TypeAlias, TypedDict
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sepcal.columns import Array
 
 __version__: str
@@ -29,6 +32,13 @@ class MinimumDescription(TypedDict):
     xi2: dict[str, float]
     trace_r: float
 
+class ScreensDescription(TypedDict):
+    ratio_a: Array
+    ratio_b: Array
+    curvature_a: Array
+    curvature_b: Array
+    accepted: NDArray[np.bool_]
+
 class StageOneDescription(TypedDict):
     samples: Array
     trace_r: Array
@@ -37,6 +47,7 @@ class StageOneDescription(TypedDict):
     minima: list[MinimumDescription]
     unique_minimum: bool
     flat_directions: list[str]
+    screens: ScreensDescription | None
 
 class EffectSettingDescription(TypedDict):
     name: str

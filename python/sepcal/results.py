@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sepcal import _core
 from sepcal.columns import Array
@@ -59,8 +60,19 @@ class LocalMinimum:
 
 
 @dataclass(frozen=True, eq=False)
+class ScreenResults:
+    """Eqs. 17 and 18 at every sample, each (S,); norms are Frobenius', over the whole record."""
+
+    ratio_a: Array  # |dA/dxi2| l_2 / |A|
+    ratio_b: Array  # |db/dxi2| l_2 / |b|; zero where b does not depend on xi2
+    curvature_a: Array  # smallest eigenvalue of the sum of A's second derivatives
+    curvature_b: Array  # the same of b
+    accepted: NDArray[np.bool_]  # False: the sample was not used
+
+
+@dataclass(frozen=True, eq=False)
 class StageOne:
-    """Samples of xi2 and Tr[R] at each (Eqs. 16, 19, Steps 2-4).
+    """Samples of xi2 and Tr[R] at each (Eqs. 16, 19, Steps 2-4); of a global search, all it tried.
 
     Fixed parameters have no part in it. The samples are not kept in a calibration's JSON.
     """
@@ -72,6 +84,7 @@ class StageOne:
     minima: list[LocalMinimum]  # distinct ones, lowest first
     unique_minimum: bool  # one minimum and no flat direction
     flat_directions: list[str]  # in words: a valley of Tr[R] and no point (Fig. 6)
+    screens: ScreenResults | None  # where fit() was asked for them
 
 
 @dataclass(frozen=True)
@@ -170,7 +183,11 @@ def to_fields(described: _core.FitDescription) -> dict[str, Any]:
         "weak": [Combination(**entry) for entry in described["weak"]],
         "effects": [EffectSetting(**entry) for entry in described["effects"]],
         "stage_one": StageOne(
-            **{**stage_one, "minima": [LocalMinimum(**at) for at in stage_one["minima"]]}
+            **{
+                **stage_one,
+                "minima": [LocalMinimum(**at) for at in stage_one["minima"]],
+                "screens": stage_one["screens"] and ScreenResults(**stage_one["screens"]),
+            }
         ),
     }
     return {**described, **fields}
