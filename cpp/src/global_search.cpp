@@ -180,7 +180,9 @@ Descent descend(Objective& objective, const VectorXd& start, const Box& box,
   Descent descent;
   descent.x = box.clip(start);
   int evaluations = 0;
-  for (double reach = first_reach; reach < 4.0; reach *= 2.0) {
+  constexpr int most_tries = 7;  // the last reaches over the whole box
+  double reach = first_reach;
+  for (int i = 0; i < most_tries; ++i, reach *= 2.0) {
     const VectorXd from = descent.x;
     descent = descend_within(objective, from, box, widths, reach);
     evaluations += descent.iterations;

@@ -190,9 +190,8 @@ std::string at_least(double value) {
 
 }  // namespace
 
-ScreenResults screen(const Problem& problem, const Measurements& measurements,
-                     const MatrixXd& samples, ThreadPool& pool) {
-  const Screens& screens = *problem.options().screens;
+ScreenResults screen(const Problem& problem, const Screens& screens,
+                     const Measurements& measurements, const MatrixXd& samples, ThreadPool& pool) {
   check_reach(screens, problem.nonlinear());
   const Tangents tangents(problem.model(), measurements);
   const VectorXd widths = half_widths(problem);

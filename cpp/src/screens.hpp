@@ -19,8 +19,9 @@ namespace sepcal {
 
 /// Eqs. 17 and 18 at every column of `samples` (n_2 x S). Throws Error for a parameter without
 /// bounds where l_2 is to follow from them.
-ScreenResults screen(const Problem& problem, const Measurements& measurements,
-                     const Eigen::MatrixXd& samples, ThreadPool& pool);
+ScreenResults screen(const Problem& problem, const Screens& screens,
+                     const Measurements& measurements, const Eigen::MatrixXd& samples,
+                     ThreadPool& pool);
 
 /// Throws Error where every sample with a finite Tr[R] was rejected, with the thresholds that would
 /// let one pass.

@@ -114,7 +114,7 @@ VectorXd choose_best(const Problem& problem, const Measurements& measurements, T
   }
   VectorXd usable = result.trace_r;
   if (const auto& screens = problem.options().screens) {
-    result.screens = screen(problem, measurements, result.samples, pool);
+    result.screens = screen(problem, *screens, measurements, result.samples, pool);
     check_some_accepted(*screens, *result.screens, result.trace_r);
     usable = result.screens->accepted.select(usable, infinity);
   }
