@@ -117,7 +117,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
       (sweep.squared_residuals(two.x.head(n_1), two.x.tail(n_2)) / rows).cwiseSqrt();
   result.rmse = by_output(model.tables(), rmse);
   result.noise = by_output(model.tables(), two.noise);
-  result.cost = cost(problem, two, rows);
+  result.cost = find_cost(problem, two, rows);
   result.method = two.method;
   result.iterations = two.iterations;
   result.noise_iterations = two.noise_iterations;

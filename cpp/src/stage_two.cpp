@@ -82,7 +82,7 @@ Ending try_once(const Problem& problem, const Sweep& sweep, const StageOne& star
   }
   const auto rows = static_cast<double>(sweep.measurements().rows());
   return {result.converged, alternation.ends_open(), alternation.holds(),
-          cost(problem, result, rows)};
+          find_cost(problem, result, rows)};
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ VectorXd squares(const std::vector<TriangularFactor>& factors) {
   return sums;
 }
 
-double cost(const Problem& problem, const StageTwo& two, double rows) {
+double find_cost(const Problem& problem, const StageTwo& two, double rows) {
   const VectorXd sums = squares(two.factors).cwiseQuotient(two.noise.cwiseAbs2());
   double J = 0.5 * sums.sum() + rows * two.noise.array().log().sum();
   for (const Prior& prior : problem.knowledge()) J += 0.5 * prior.square(two.x);

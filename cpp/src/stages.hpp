@@ -34,7 +34,7 @@ struct StageTwo {
 Eigen::VectorXd squares(const std::vector<TriangularFactor>& factors);
 
 /// J of Eq. 6 at `two`, without its constant, with what is known beforehand.
-double cost(const Problem& problem, const StageTwo& two, double rows);
+double find_cost(const Problem& problem, const StageTwo& two, double rows);
 
 /// Step 5, from where stage one ended.
 StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,

@@ -14,7 +14,7 @@ import numpy as np
 
 from sepcal._core import Error
 from sepcal.columns import Array
-from sepcal.intervals import binomial_limits, student_quantile
+from sepcal.quantiles import binomial_limits, student_quantile
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
 
 MOST_FAILURES_SHOWN = 3

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from sepcal._core import Error
-from sepcal.intervals import upper_limit
+from sepcal.quantiles import upper_limit
 from sepcal.study.experiments import StudyOptions
 
 Row = dict[str, Any]

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import beta
 from scipy.stats import t as student_t
 
-from sepcal.intervals import binomial_limits, student_quantile, upper_limit
+from sepcal.quantiles import binomial_limits, student_quantile, upper_limit
 
 
 @pytest.mark.parametrize("freedom", [1, 2, 3, 5, 12, 97, 590, 30_000, 3_000_000])
