@@ -10,6 +10,7 @@
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/named_effects.hpp"
 
@@ -32,6 +33,13 @@ py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects);
 py::list describe(const std::vector<Parameter>& parameters);
 py::list describe(const std::vector<Combination>& combinations);
 py::dict describe(const std::vector<OutputValue>& values);
+
+/// Intervals by both kinds and predictions: for fits on columns, functions of the module; for
+/// calibrations, what their class has as methods.
+void define_intervals(py::module_& module);
+py::dict find_intervals(const Calibration& calibration, const Flight& flight, double level,
+                        const std::vector<std::string>& names);
+py::dict predict(const Calibration& calibration, const Flight& flight, double level);
 
 void define_options(py::module_& module);
 void define_effects(py::module_& module);

@@ -273,6 +273,8 @@ void define_flight(py::module_& module) {
              if (injected) hidden = HiddenEffect{injected->first, injected->second};
              return diagnose_on(self, flight, own, hidden, simulations, seed);
            })
+      .def("intervals", &bindings::find_intervals)
+      .def("predict", &bindings::predict)
       .def("add", &add_to)
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)

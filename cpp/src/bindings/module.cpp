@@ -29,5 +29,6 @@ PYBIND11_MODULE(_core, module) {
   define_engine(module);
   define_flight(module);
   define_many(module);
+  define_intervals(module);
   define_simulation(module);
 }
