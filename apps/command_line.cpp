@@ -61,6 +61,15 @@ void add_simulate_options(CLI::App& simulate, Arguments& arguments, Instrument& 
   simulation.add_to(simulate);
 }
 
+void add_interval_options(CLI::App& intervals, Arguments& arguments) {
+  intervals
+      .add_option("--level", arguments.level,
+                  "how often an interval should hold the true value [0.95]")
+      ->type_name("LEVEL");
+  add_file(intervals, "-o,--output", arguments.output, "writes the intervals there")
+      ->type_name("I.json");
+}
+
 void add_diagnose_options(CLI::App& diagnose, Arguments& arguments) {
   add_file(diagnose, "-o,--output", arguments.output, "writes the diagnosis there")
       ->type_name("D.json");
@@ -128,6 +137,14 @@ int run(Instrument& instrument, int argc, char** argv) {
   add_drop_invalid(compare);
   add_json(compare);
 
+  CLI::App& intervals =
+      *cli.add_subcommand("intervals", "says how far each parameter may lie, by the likelihood");
+  add_flight(intervals);
+  add_calibration(intervals);
+  add_interval_options(intervals, arguments);
+  add_drop_invalid(intervals);
+  add_json(intervals);
+
   CLI::App& diagnose = *cli.add_subcommand("diagnose", "names the physical effect that is missing");
   add_flight(diagnose);
   add_calibration(diagnose);
@@ -168,6 +185,7 @@ int run(Instrument& instrument, int argc, char** argv) {
     const Verbs verbs(instrument, arguments);
     if (fit.parsed()) return verbs.fit(fit_arguments.resolve());
     if (compare.parsed()) return verbs.compare();
+    if (intervals.parsed()) return verbs.intervals();
     if (add.parsed()) return verbs.add();
     if (apply.parsed()) return verbs.apply();
     if (simulate.parsed()) return verbs.simulate(simulation.resolve());

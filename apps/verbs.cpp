@@ -9,6 +9,7 @@
 
 #include "diagnosis_table.hpp"
 #include "flight/text_file.hpp"
+#include "interval_table.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
@@ -16,6 +17,7 @@
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/diagnosing.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "tables.hpp"
 
@@ -110,6 +112,27 @@ int Verbs::compare() const {
   print_notes(comparison.notes);
   print(arguments_.json ? to_json(comparison) : comparison_table(comparison, calibration));
   return 0;
+}
+
+int Verbs::intervals() const {
+  std::optional<OutputFile> output;
+  if (!arguments_.output.empty()) {
+    check_not_input(arguments_.output, arguments_.flight);
+    check_not_input(arguments_.output, arguments_.calibration);
+    output.emplace(arguments_.output);
+  }
+  const Calibration base = read_base();
+  const FlightIntervals intervals =
+      find_intervals(base, read_flight(), {.level = arguments_.level});
+  print_notes(intervals.notes);
+  const std::string json = to_json(intervals);
+  if (output) {
+    output->write(json);
+    output->commit();
+  }
+  print(arguments_.json ? json : interval_table(intervals));
+  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  return exit_code(intervals.status);
 }
 
 int Verbs::diagnose() const {

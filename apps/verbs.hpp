@@ -17,6 +17,7 @@ struct Arguments {
   std::string truth;
   std::string effect;
   std::string inject;  // "E=SIZE", or empty
+  double level = 0.95;
   bool json = false;
   bool drop_invalid = false;  // of a later verb: whatever the calibration says
 };
@@ -31,6 +32,7 @@ class Verbs {
 
   int fit(CalibrationOptions options) const;
   int compare() const;
+  int intervals() const;
   int diagnose() const;
   int add() const;
   int apply() const;

@@ -131,16 +131,6 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
 
 }  // namespace
 
-double find_cost(const Problem& /*problem*/, const StageTwo& two, double rows) {
-  double J = 0.0;
-  for (Index j = 0; j < two.noise.size(); ++j) {
-    const MatrixXd& T = two.factors[static_cast<std::size_t>(j)].matrix();
-    const double noise = two.noise[j];
-    J += 0.5 * T.col(T.cols() - 1).squaredNorm() / (noise * noise) + rows * std::log(noise);
-  }
-  return J;
-}
-
 std::string_view to_string(FitStatus status) {
   switch (status) {
     case FitStatus::converged:

@@ -84,16 +84,19 @@ class Profiles {
  public:
   Profiles(const BlockModel& model, const Measurements& measurements, const Problem& problem,
            const Fit& fit, double level, ThreadPool& pool)
-      : model_(model), measurements_(measurements), problem_(problem), fit_(fit) {
+      : model_(model),
+        measurements_(measurements),
+        problem_(problem),
+        fit_(fit),
+        count_(static_cast<double>(measurements.rows()) *
+               static_cast<double>(problem.model().tables().n_z())),
+        noise_given_(problem.noise().size() > 0) {
     const VectorXd x = free_values(problem, fit);
     StageOne start;
     start.xi1 = x.head(problem.model().tables().n_1());
     start.xi2 = x.tail(problem.model().tables().n_2());
     start.noise = noise_of(problem, fit);
     const auto n = static_cast<double>(x.size());
-    count_ = static_cast<double>(measurements.rows()) *
-             static_cast<double>(problem.model().tables().n_z());
-    noise_given_ = problem.noise().size() > 0;
     freedom_ = noise_given_ ? infinity : count_ - n;
     reach_ = noise_given_ ? normal_reach(level) : student_reach(level, freedom_);
     const auto found = find_minimum(problem, measurements, start, pool);
@@ -164,10 +167,10 @@ class Profiles {
   ProfileMinimum minimum_;
   MatrixXd factor_;  // whitened, [A | D | r]
   VectorXd scale_;   // plausible lengths
-  double count_ = 0.0;
+  double count_;     // M
   double freedom_ = 0.0;
   double reach_ = 0.0;
-  bool noise_given_ = false;
+  bool noise_given_;
   bool converged_ = false;
 };
 

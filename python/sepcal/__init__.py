@@ -19,6 +19,13 @@ from sepcal.comparison import ChannelMisfit, Comparison, Misfit, Window
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
+from sepcal.intervals import (
+    Intervals,
+    ParameterInterval,
+    Prediction,
+    predict,
+    profile_intervals,
+)
 from sepcal.many import fit_many
 from sepcal.many_results import Departure, FlightFit, ManyFit
 from sepcal.models import (
@@ -71,6 +78,7 @@ __all__ = [
     "FlightFit",
     "HistoryEntry",
     "Injection",
+    "Intervals",
     "LocalMinimum",
     "Magnetometer",
     "ManyFit",
@@ -79,8 +87,10 @@ __all__ = [
     "MonteCarlo",
     "OwnModel",
     "Parameter",
+    "ParameterInterval",
     "ParameterStudy",
     "PitotStatic",
+    "Prediction",
     "ScalarExample1",
     "ScalarExample2",
     "ScreenResults",
@@ -96,6 +106,8 @@ __all__ = [
     "fit_many",
     "load",
     "monte_carlo",
+    "predict",
+    "profile_intervals",
     "read_csv",
     "report",
     "simulate",

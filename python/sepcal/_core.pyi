@@ -134,6 +134,28 @@ class ComparisonDescription(TypedDict):
     notes: list[str]
     json: str
 
+class IntervalDescription(TypedDict):
+    name: str
+    value: float
+    unit: str
+    gaussian: tuple[float, float]
+    profile: tuple[float, float]
+    ends: tuple[str, str]
+    message: str
+
+class IntervalsDescription(TypedDict):
+    level: float
+    parameters: dict[str, IntervalDescription]
+    notes: list[str]
+    json: str
+
+class PredictionDescription(TypedDict, total=False):
+    value: Array
+    standard_error: Array
+    measurement_error: Array
+    quantile: float
+    time: Array  # of a flight
+
 class AppliedDescription(TypedDict):
     rows: int
     rows_left_empty: int
@@ -177,6 +199,16 @@ class ManyFitDescription(TypedDict):
     noise_iterations: int
     passes: int
     rows: int
+
+# The fields of sepcal.EffectSetting.
+Setting: TypeAlias = tuple[
+    str,
+    float | None,
+    Sequence[float],
+    Sequence[str],
+    tuple[float, float] | None,
+    float | None,
+]
 
 # Name, port, unit, and the function of the columns (N,) and n_z.
 OwnEffect: TypeAlias = tuple[
@@ -241,6 +273,10 @@ class Calibration:
         seed: int,
         /,
     ) -> dict[str, object]: ...
+    def intervals(
+        self, flight: Flight, level: float, names: Sequence[str], /
+    ) -> IntervalsDescription: ...
+    def predict(self, flight: Flight, level: float, /) -> PredictionDescription: ...
     def add(self, flight: Flight, effect: str, own: Sequence[OwnEffect], /) -> Calibration: ...
     def apply(self, flight: Flight, /) -> dict[str, Array]: ...
     def apply_to_file(self, file: str, output: str, /) -> AppliedDescription: ...
@@ -269,6 +305,29 @@ def fit(
 def calibrate(
     model: Model, flight: Flight, options: Options, own: Sequence[OwnEffect], /
 ) -> Calibration: ...
+def profile_intervals(
+    model: Model,
+    columns: dict[str, Array],
+    labels: list[str],
+    options: Options,
+    own: Sequence[OwnEffect],
+    fit: dict[str, object],
+    settings: Sequence[Setting],
+    level: float,
+    names: Sequence[str],
+    /,
+) -> IntervalsDescription: ...
+def predict(
+    model: Model,
+    columns: dict[str, Array],
+    labels: list[str],
+    options: Options,
+    own: Sequence[OwnEffect],
+    fit: dict[str, object],
+    settings: Sequence[Setting],
+    level: float,
+    /,
+) -> PredictionDescription: ...
 def parse_calibration(json: str, source: str, own: Sequence[OwnEffect], /) -> Calibration: ...
 def read_calibration(file: str, own: Sequence[OwnEffect], /) -> Calibration: ...
 def effects(probe: str, /) -> list[CataloguedEffectDescription]: ...

@@ -14,6 +14,7 @@ from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
+from sepcal.intervals import Intervals, Prediction
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit, to_fields
 
@@ -148,6 +149,36 @@ class Calibration(Fit):
         own = [effect] if isinstance(effect, Effect) else []
         core = self.core.add(flight._core, name, to_core_effects(own))
         return type(self)._of(core, flight, [*self.own_effects, *own])
+
+    def intervals(
+        self,
+        flight: Flight | None = None,
+        *,
+        level: float = 0.95,
+        names: Sequence[str] | None = None,
+    ) -> Intervals:
+        """Gaussian and profile-likelihood intervals of the parameters, side by side.
+
+        Args:
+            flight: That was fitted; to be given where the calibration was loaded.
+            level: How often an interval should hold the true value.
+            names: Parameters [all that are free].
+
+        Raises:
+            Error: Another flight, a parameter that there isn't or that is fixed, a level outside
+                (0, 1).
+        """
+        chosen = self._or_fitted(flight, "intervals(")
+        return Intervals._of(self.core.intervals(chosen._core, level, list(names or ())))
+
+    def predict(self, flight: Flight | None = None, *, level: float = 0.95) -> Prediction:
+        """The calibrated model on a flight, by default the fitted one, with its bands.
+
+        Raises:
+            Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+        """
+        chosen = self._or_fitted(flight, "predict(")
+        return Prediction._of(self.core.predict(chosen._core, level))
 
     def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
         """A flight. Raises Error, which shows how to call again, where there is none."""

@@ -109,3 +109,17 @@ def test_app_compares_as_python_does(
     calibration.save(base)
     printed = run(BUILD / "apps" / setup.app, "compare", flight, base, "--json")
     assert json.loads(printed) == calibration.compare().to_dict()
+
+
+def test_app_finds_the_intervals_that_python_finds(
+    setup: Setup, flight: Path, calibration: sepcal.Calibration, tmp_path: Path
+) -> None:
+    """The same text, on another number of threads, from the file or as it was fitted."""
+    base, output = tmp_path / "base.json", tmp_path / "intervals.json"
+    calibration.save(base)
+    printed = run(
+        BUILD / "apps" / setup.app, "intervals", flight, base, "--level", "0.9", "-o", output,
+        "--json",
+    )  # fmt: skip
+    assert printed == output.read_text() == calibration.intervals(level=0.9).to_json()
+    assert sepcal.load(base).intervals(sepcal.read_csv(flight), level=0.9).to_json() == printed

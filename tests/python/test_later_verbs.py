@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.stats import t as student_t
 
 from apps import Bench, Log, parse_json, values_of
 from oracle.five_hole_probe import FiveHoleProbe, rotate_to_navigation
@@ -292,3 +293,37 @@ def test_effects(bench: Bench):
         assert list(effect) == ["model", "name", "equation", "drivers", "unit"]
         assert all(effect.values())
         assert f"\n{effect['name']} " in table.out
+
+
+def test_intervals(bench: Bench):
+    """Close to the Gaussian ones, which SciPy makes of the calibration."""
+    printed = bench.run("intervals", "flight.csv", "base.json", "-o", "i.json", "--json")
+    assert printed.code == 0
+    assert (bench.folder / "i.json").read_text() == printed.out
+    result = printed.result
+    assert list(result) == [
+        "schema_version", "model", "inputs", "status", "message", "level", "parameters",
+    ]  # fmt: skip
+    estimates = bench.base["parameters"]
+    measured = result["inputs"]["rows_used"] * len(bench.model.outputs)
+    reach = student_t.ppf(0.975, measured - len(estimates))
+    for name, at in result["parameters"].items():
+        half = reach * estimates[name]["standard_error"]
+        value = estimates[name]["value"]
+        assert at["gaussian"] == pytest.approx([value - half, value + half], rel=1e-9)
+        assert at["profile"] == pytest.approx(at["gaussian"], abs=0.1 * half)
+        assert at["ends"] == ["crossed", "crossed"]
+    table = bench.run("intervals", "flight.csv", "base.json", "--level", "0.5")
+    assert "50 % Gaussian" in table.out
+    assert all(name in table.out for name in estimates)
+
+
+def test_intervals_of_another_flight_or_an_impossible_level_are_refused(bench: Bench):
+    simulate_second_flight(bench)
+    other = bench.run("intervals", "second.csv", "base.json", "-o", "i.json")
+    assert other.code == 2
+    assert "not the flight that the calibration was fitted to, flight.csv" in other.err
+    level = bench.run("intervals", "flight.csv", "base.json", "--level", "95", "-o", "i.json")
+    assert level.code == 2
+    assert "between 0 and 1" in level.err
+    assert not (bench.folder / "i.json").exists()

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interval_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sepcal::app {
+namespace {
+
+std::string end_of(double value) { return std::isnan(value) ? "-" : fmt::format("{:.6g}", value); }
+
+/// What ends the profile interval on a side, where it isn't the data.
+std::string_view remark_on(IntervalEnd end) {
+  switch (end) {
+    case IntervalEnd::bound:
+      return "its bound ends it";
+    case IntervalEnd::open:
+      return "open";
+    case IntervalEnd::failed:
+      return "could not be found";
+    default:
+      return "";
+  }
+}
+
+std::string remark_on(const ProfileInterval& interval) {
+  std::string text;
+  const auto add = [&](std::string_view side, std::string_view what) {
+    if (!what.empty()) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", side, what);
+  };
+  add("lower", remark_on(interval.lower_end));
+  add("upper", remark_on(interval.upper_end));
+  return text;
+}
+
+}  // namespace
+
+std::string interval_table(const FlightIntervals& intervals) {
+  std::string text = fmt::format("{}: {} of {} rows of {}\nstatus: {}{}{}\n\n", intervals.model,
+                                 intervals.flight.rows_used, intervals.flight.rows,
+                                 intervals.flight.file, to_string(intervals.status),
+                                 intervals.message.empty() ? "" : ": ", intervals.message);
+  std::size_t name = 14;
+  std::size_t unit = 5;
+  for (const ProfileInterval& interval : intervals.parameters) {
+    name = std::max(name, interval.name.size());
+    unit = std::max(unit, interval.unit.size());
+  }
+  const auto trimmed = [](const std::string& row) {
+    return row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
+  };
+  const double percent = 100.0 * intervals.level;
+  text += trimmed(fmt::format("{:<{}} {:>13} {:>27} {:>27}  unit", "parameter", name, "value",
+                              fmt::format("{:g} % Gaussian", percent),
+                              fmt::format("{:g} % profile", percent)));
+  std::string messages;
+  for (const ProfileInterval& interval : intervals.parameters) {
+    text += trimmed(fmt::format("{:<{}} {:>13} {:>13} {:>13} {:>13} {:>13}  {:<{}} {}",
+                                interval.name, name, end_of(interval.value),
+                                end_of(interval.gaussian.lower), end_of(interval.gaussian.upper),
+                                end_of(interval.profile.lower), end_of(interval.profile.upper),
+                                interval.unit, unit, remark_on(interval)));
+    if (!interval.message.empty()) {
+      messages += fmt::format("{}: {}\n", interval.name, interval.message);
+    }
+  }
+  return messages.empty() ? text : text + "\n" + messages;
+}
+
+}  // namespace sepcal::app
