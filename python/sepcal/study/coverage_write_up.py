@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The coverage of intervals as a Markdown table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from sepcal._core import Error
+from sepcal.study.coverage import Coverage, CoverageOptions
+
+LEVEL = 0.95
+
+
+def write_coverage(rows: Sequence[Coverage], options: CoverageOptions, file: Path) -> None:
+    """Writes `file`. Raises Error where it can't be written."""
+    try:
+        file.write_text(f"{_head(options)}\n\n{_table(rows)}\n", encoding="utf-8")
+    except OSError as error:
+        raise Error(f"{file} can't be written: {error.strerror}") from error
+
+
+def expected_range(seeds: int, level: float = LEVEL, confidence: float = 0.99) -> tuple[int, int]:
+    """How often intervals of that level hold the truth in so many draws, with that confidence.
+
+    The central range of the binomial distribution, summed from its logarithms.
+    """
+    logarithms = [
+        math.lgamma(seeds + 1)
+        - math.lgamma(k + 1)
+        - math.lgamma(seeds - k + 1)
+        + k * math.log(level)
+        + (seeds - k) * math.log1p(-level)
+        for k in range(seeds + 1)
+    ]
+    tail = 0.5 * (1.0 - confidence)
+    below = 0.0
+    lowest = 0
+    while below + math.exp(logarithms[lowest]) <= tail:
+        below += math.exp(logarithms[lowest])
+        lowest += 1
+    above = 0.0
+    highest = seeds
+    while above + math.exp(logarithms[highest]) <= tail:
+        above += math.exp(logarithms[highest])
+        highest -= 1
+    return lowest, highest
+
+
+def _head(options: CoverageOptions) -> str:
+    lowest, highest = (100 * k / options.seeds for k in expected_range(options.seeds))
+    return f"""# Intervals: how often they hold the truth
+
+Written by
+
+    python -m sepcal study intervals --seeds {options.seeds} -o docs/intervals.md
+
+Every record is drawn from its seed (they count from {options.first_seed}) and fitted, the noise
+unknown; both 95 % intervals of every parameter are found. Of {options.seeds} intervals that are
+right, {lowest:.1f} to {highest:.1f} % hold the truth (99 % binomial limits; wider for fewer draws);
+what lies outside is bold. "None": how often there is no Gaussian interval, as the estimate is at
+its bound; its coverage is that of the others, in brackets of all draws. "Bound" and "open": how
+often the bound ends the profile interval on a side, and how often nothing does. "Failed": how often
+a side could not be found, which counts as a miss. The length is the median."""
+
+
+def _share(part: int, whole: int) -> str:
+    return f"{100 * part / whole:.1f}" if whole else "-"
+
+
+def _coverage(holds: int, given: int) -> str:
+    """Per cent, bold outside the binomial limits."""
+    if not given:
+        return "-"
+    lowest, highest = expected_range(given)
+    share = _share(holds, given)
+    return share if lowest <= holds <= highest else f"**{share}**"
+
+
+def _table(rows: Sequence[Coverage]) -> str:
+    head = [
+        "case",
+        "draws",
+        "parameter",
+        "Gaussian holds it",
+        "none",
+        "length",
+        "profile holds it",
+        "bound",
+        "open",
+        "failed",
+        "length",
+    ]
+    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
+    before = ""
+    for row in rows:
+        gaussian = _coverage(row.gaussian_holds, row.gaussian_given)
+        if row.gaussian_given < row.seeds:
+            gaussian += f" ({_share(row.gaussian_holds, row.seeds)})"
+        cells = [
+            row.case if row.case != before else "",
+            str(row.seeds) if row.case != before else "",
+            f"`{row.parameter}`",
+            gaussian,
+            _share(row.seeds - row.gaussian_given, row.seeds),
+            f"{row.gaussian_length:.3g}",
+            _coverage(row.profile_holds, row.seeds),
+            _share(row.bound, row.seeds),
+            _share(row.open, row.seeds),
+            _share(row.seeds - row.profile_given, row.seeds),
+            f"{row.profile_length:.3g}",
+        ]
+        before = row.case
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n\nAll but draws and lengths in per cent of the draws."
