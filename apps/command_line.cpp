@@ -122,6 +122,14 @@ int run(Instrument& instrument, int argc, char** argv) {
     verb.add_flag("--drop-invalid", arguments.drop_invalid,
                   "drops rows with a cell that is no number, whatever the calibration's fit did");
   };
+  const auto add_later_verb = [&](const char* name, const char* what) -> CLI::App& {
+    CLI::App& verb = *cli.add_subcommand(name, what);
+    add_flight(verb);
+    add_calibration(verb);
+    add_drop_invalid(verb);
+    add_json(verb);
+    return verb;
+  };
 
   CLI::App& fit = *cli.add_subcommand("fit", "fits the model to a flight");
   add_flight(fit);
@@ -131,40 +139,16 @@ int run(Instrument& instrument, int argc, char** argv) {
   fit_arguments.add_to(fit);
   add_json(fit);
 
-  CLI::App& compare = *cli.add_subcommand("compare", "shows where the model fails");
-  add_flight(compare);
-  add_calibration(compare);
-  add_drop_invalid(compare);
-  add_json(compare);
-
+  CLI::App& compare = add_later_verb("compare", "shows where the model fails");
   CLI::App& intervals =
-      *cli.add_subcommand("intervals", "says how far each parameter may lie, by the likelihood");
-  add_flight(intervals);
-  add_calibration(intervals);
+      add_later_verb("intervals", "says how far each parameter may lie, by the likelihood");
   add_interval_options(intervals, arguments);
-  add_drop_invalid(intervals);
-  add_json(intervals);
-
-  CLI::App& diagnose = *cli.add_subcommand("diagnose", "names the physical effect that is missing");
-  add_flight(diagnose);
-  add_calibration(diagnose);
+  CLI::App& diagnose = add_later_verb("diagnose", "names the physical effect that is missing");
   add_diagnose_options(diagnose, arguments);
-  add_drop_invalid(diagnose);
-  add_json(diagnose);
-
-  CLI::App& add = *cli.add_subcommand("add", "adds a physical effect and fits again");
-  add_flight(add);
-  add_calibration(add);
+  CLI::App& add = add_later_verb("add", "adds a physical effect and fits again");
   add_adding_options(add, arguments);
-  add_drop_invalid(add);
-  add_json(add);
-
-  CLI::App& apply = *cli.add_subcommand("apply", "adds the calibrated readings to a log");
-  add_flight(apply);
-  add_calibration(apply);
+  CLI::App& apply = add_later_verb("apply", "adds the calibrated readings to a log");
   add_applying_options(apply, arguments);
-  add_drop_invalid(apply);
-  add_json(apply);
 
   CLI::App& simulate = *cli.add_subcommand("simulate", "makes a flight whose truth is known");
   add_simulate_options(simulate, arguments, instrument, simulation);
