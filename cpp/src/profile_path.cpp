@@ -149,10 +149,11 @@ StageOne ProfilePath::start_of(const ProfilePoint& start, bool held) const {
   return one;
 }
 
-std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoint& start) {
+std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoint& start,
+                                               SecondStage method) {
   const std::string& name = problem_.parameters()[static_cast<std::size_t>(k_)].name;
   const double value = at(distance);
-  FitOptions options = refit_options(problem_, minimum_.two.method);
+  FitOptions options = refit_options(problem_, method);
   ProfilePoint from = start;
   from.x[k_] = value;
   // A parameter that is alone can't be held, as nothing would be left to fit: two bounds a few
@@ -184,9 +185,31 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
   return point;
 }
 
+ProfilePoint ProfilePath::predict(double distance) const {
+  const ProfilePoint& first = nearest(distance);
+  ProfilePoint predicted = first;
+  const ProfilePoint* second = nullptr;
+  for (const ProfilePoint& point : points_) {
+    if (point.distance == first.distance) continue;
+    if (second == nullptr ||
+        std::abs(point.distance - distance) < std::abs(second->distance - distance)) {
+      second = &point;
+    }
+  }
+  if (second != nullptr) {
+    const double share = (distance - first.distance) / (first.distance - second->distance);
+    predicted.x += share * (first.x - second->x);
+  }
+  return predicted;
+}
+
 std::optional<ProfilePoint> ProfilePath::evaluate(double distance) {
-  std::optional<ProfilePoint> point = refit(distance, nearest(distance));
-  if (!point && nearest(distance).distance > 0) point = refit(distance, points_.front());
+  const SecondStage method = minimum_.two.method;
+  const SecondStage other =
+      method == SecondStage::joint ? SecondStage::projected : SecondStage::joint;
+  std::optional<ProfilePoint> point = refit(distance, predict(distance), method);
+  if (!point) point = refit(distance, nearest(distance), other);
+  if (!point) point = refit(distance, nearest(distance), method);
   if (point) points_.push_back(*point);
   return point;
 }

@@ -63,7 +63,9 @@ class ProfilePath {
 
   /// Nothing where the others can't be fitted.
   std::optional<ProfilePoint> evaluate(double distance);
-  std::optional<ProfilePoint> refit(double distance, const ProfilePoint& start);
+  std::optional<ProfilePoint> refit(double distance, const ProfilePoint& start, SecondStage method);
+  /// On the line through the two nearest points.
+  ProfilePoint predict(double distance) const;
   StageOne start_of(const ProfilePoint& start, bool held) const;
   const ProfilePoint& nearest(double distance) const;
 
