@@ -165,6 +165,17 @@ TEST_CASE("UTF-8 is taken, other encodings are refused") {
   CHECK_MESSAGE(refuse("a,b\n\xB5T,1\n").find("0xb5 (byte 4") != std::string::npos, "Latin-1");
   CHECK_MESSAGE(refuse("a\n\xE2\x82\n").find("0xe2 (byte 2") != std::string::npos, "cut short");
   CHECK_MESSAGE(refuse("a\n\xE2(\xAC\n").find("0xe2 (byte 2") != std::string::npos, "broken");
+  CHECK_MESSAGE(refuse("a\n\xED\xA0\x80\n").find("0xed (byte 2") != std::string::npos, "surrogate");
+  CHECK_MESSAGE(refuse("a\n\xE0\x80\xAF\n").find("0xe0 (byte 2") != std::string::npos, "overlong");
+  CHECK_MESSAGE(refuse("a\n\xF4\x90\x80\x80\n").find("0xf4 (byte 2") != std::string::npos,
+                "above U+10FFFF");
+}
+
+TEST_CASE("a name with a tab or a line separator in it is quoted in one line") {
+  CHECK(refuse("\"a\tb\",\"a\tb\",c\n1,2,3\n") ==
+        "flight.csv line 1: column 'a\\tb' is there twice; rename or delete one");
+  CHECK(refuse("x\xE2\x80\xA8,x\xE2\x80\xA8\n1,2\n") ==
+        "flight.csv line 1: column 'x\\xe2\\x80\\xa8' is there twice; rename or delete one");
 }
 
 TEST_CASE("other separators are named") {

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace sepcal {
 
 /// Bad input or misuse. what() is one line that names the culprit and the way out.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// A message may quote what a file holds: control characters, line ends among them, and bytes
+  /// that are not UTF-8 become escapes like "\n" and "\x1b".
+  explicit Error(const std::string& message);
 };
 
 }  // namespace sepcal

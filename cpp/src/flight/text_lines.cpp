@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "sepcal/error.hpp"
+#include "utf8.hpp"
 
 namespace sepcal {
 namespace {
@@ -29,20 +30,11 @@ constexpr std::array<unsigned char, 256> byte_classes = [] {
   return classes;
 }();
 
-/// Index of the first byte that is not UTF-8 (RFC 3629), or text.size(). Overlong forms and
-/// surrogates pass: a flight log needs no more than to be printable again.
+/// Index of the first byte that is not UTF-8, or text.size().
 std::size_t find_invalid_utf8(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[at]);
-    std::size_t length = 1;
-    if (lead >= 0x80) {
-      if (lead < 0xC2 || lead > 0xF4) return at;
-      length = lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-      if (at + length > text.size()) return at;
-      for (std::size_t i = 1; i < length; ++i) {
-        if ((static_cast<unsigned char>(text[at + i]) & 0xC0U) != 0x80U) return at;
-      }
-    }
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return at;
     at += length;
   }
   return text.size();
