@@ -163,7 +163,7 @@ TEST_CASE("a calibration of another app or schema is refused") {
   check_refused([&] { parse_calibration(text, "mag.json", "sepcal-pitot"); },
                 {"mag.json", "magnetometer", "use sepcal-mag"});
   const std::string key = "\"schema_version\": 1";
-  for (const char* version : {"0", "2", "\"1\"", "null", "[1]"}) {
+  for (const char* version : {"0", "2", "\"1\"", "null"}) {
     const std::string other = replaced(text, key, std::string("\"schema_version\": ") + version);
     check_refused([&] { parse_calibration(other, "mag.json"); },
                   {"mag.json", version, "reads version 1", "fit the flight again"});

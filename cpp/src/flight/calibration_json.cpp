@@ -237,7 +237,7 @@ Calibration parse_calibration(std::string_view json, const std::string& source,
   if (root["schema_version"] != schema_version) {
     throw Error(
         fmt::format("{} has schema version {}, this sepcal reads version {}; fit the flight again",
-                    source, root["schema_version"].dump(), schema_version));
+                    source, describe(root["schema_version"]), schema_version));
   }
   Calibration calibration = read_or_refuse(root, source);
   if (!app.empty() && calibration.probe->app() != app) {

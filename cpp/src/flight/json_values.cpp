@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "utf8.hpp"
+
 namespace sepcal {
 
 using Eigen::Index;
@@ -15,6 +17,17 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 double number_or(const Json& value, double missing) {
   return value.is_null() ? missing : value.get<double>();
+}
+
+/// No dump of what is nested: that takes stack by the level, and a file may have a million.
+std::string describe(const Json& value) {
+  constexpr std::size_t longest = 60;
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "an object";
+  const std::string text = value.dump();
+  std::size_t end = 0;
+  while (end < std::min(text.size(), longest)) end += utf8_length(text, end);
+  return end < text.size() ? text.substr(0, end) + "..." : text;
 }
 
 Json by_name(const std::vector<OutputValue>& values) {

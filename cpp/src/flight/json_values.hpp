@@ -24,6 +24,9 @@ Json number(double value);
 /// The number, or `missing` for null. Throws Json::exception for anything else.
 double number_or(const Json& value, double missing);
 
+/// What a message says of a value: itself, cut where it is long, or "a list", "an object".
+std::string describe(const Json& value);
+
 /// {"vn": 0.15, ...}
 Json by_name(const std::vector<OutputValue>& values);
 
@@ -39,7 +42,7 @@ T whole_number(const Json& value) {
   if (value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>())) {
     return static_cast<T>(value.get<std::int64_t>());
   }
-  throw Error(value.dump() + " stands where a whole number should");
+  throw Error(describe(value) + " stands where a whole number should");
 }
 
 /// The entries of an object, and the elements of a list. Throw Json::exception for anything else.

@@ -107,7 +107,7 @@ void read_truth(std::string_view json, std::string_view model, Outputs outputs,
             fmt::format("'{}' is unknown; known: model, parameters, options, noise, effects", key));
       } else if (value != model) {
         throw Error(fmt::format("it is for the model {}; use the other app, or another --probe",
-                                value.dump()));
+                                describe(value)));
       }
     }
   } catch (const Json::exception&) {
