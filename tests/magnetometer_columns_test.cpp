@@ -144,3 +144,29 @@ TEST_CASE("applying a magnetometer calibration needs its readings only") {
   CHECK(readings.record.length() == 5);
   CHECK(readings.valid == std::vector<bool>{true, true, true, false, true});
 }
+
+TEST_CASE("a number that its unit's conversion makes infinite is none") {
+  Log log = make_magnetometer_log();
+  log.rename("mx_ut", "mx_gauss")["mx_gauss"][2] = 1e308;  // 1 gauss is 100 uT
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()),
+                       Contains("log row 2: column 'mx_gauss' holds 1e+308, too large to convert"),
+                       Error);
+  const auto prepared = sepcal::prepare_attitude_independent(log.build(), true);
+  CHECK(prepared.rows_used() == 4);
+  log.rename("mx_gauss", "mx_ut");
+  CHECK(sepcal::prepare_attitude_independent(log.build()).rows_used() == 5);
+  for (const char* rate : {"p_degps", "q_degps", "r_degps"}) log[rate].assign(5, 1.0);
+  log["q_degps"][1] = -1e308;
+  const auto without_rates = sepcal::prepare_attitude_independent(log.build());
+  CHECK_FALSE(without_rates.record.has("q"));
+  CHECK(mentions(without_rates.notes, "column 'q_degps' is not used: holds -1e+308, too large"));
+}
+
+TEST_CASE("times that differ as logged and are one in seconds do not increase") {
+  Log log = make_magnetometer_log();
+  // A double of this size tells quarters of a microsecond apart, and in seconds only halves.
+  log.rename("time_s", "time_us")["time_us"] = {0, 2200000000000000.25, 2200000000000000.50, 2.3e15,
+                                                2.4e15};
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()),
+                       Contains("log row 2: time_us repeats at"), Error);
+}

@@ -147,3 +147,13 @@ TEST_CASE("applying a calibration needs the reading alone") {
   log["rho_kgpm3"][2] = not_a_number;
   CHECK(read_pitot_static(log.build()).record.column("rho")[3] == 1.1);
 }
+
+TEST_CASE("readings of which no airspeed can be computed name their row") {
+  Log log = make_pressure_log();
+  log["rho_kgpm3"].assign(10, 1.225);
+  log["dp_pa"][6] = 1e300;
+  log["rho_kgpm3"][6] = 1e-300;
+  CHECK_THROWS_WITH_AS(prepare_pitot_static(log.build()),
+                       Contains("log row 6: airspeed is computed from this row's readings as inf"),
+                       Error);
+}

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "headers.hpp"
+#include "invalid_cells.hpp"
 #include "option_spelling.hpp"
 #include "plausible_readings.hpp"
 #include "sepcal/error.hpp"
@@ -90,9 +91,10 @@ void RecordBuilder::consult(Names names) {
 bool RecordBuilder::offer(Names names) {
   if (!has(names)) return false;
   for (const std::string_view name : names) {
-    const Flight::Column& column = *logged(name).column;
-    if (const std::size_t* row = find_invalid_row(column)) {
-      note(fmt::format("column '{}' is not used: {}", column.header, describe_cell(column, *row)));
+    const auto& [column, unit] = logged(name);
+    if (const std::size_t* row = find_invalid_row(rows_, *column, unit)) {
+      note(
+          fmt::format("column '{}' is not used: {}", column->header, describe_cell(*column, *row)));
       return false;
     }
   }
@@ -101,33 +103,34 @@ bool RecordBuilder::offer(Names names) {
 }
 
 void RecordBuilder::keep_valid() {
-  std::vector<const Flight::Column*> columns;
-  columns.reserve(checked_.size());
-  for (const std::string_view name : checked_) columns.push_back(logged(name).column);
-  const auto find_invalid_column = [&columns](std::size_t row) {
-    return std::ranges::find_if(
-        columns, [row](const auto* column) { return !std::isfinite(column->values[row]); });
+  std::vector<const LoggedQuantity*> quantities;
+  quantities.reserve(checked_.size());
+  for (const std::string_view name : checked_) quantities.push_back(&logged(name));
+  const auto find_invalid = [&quantities](std::size_t row) {
+    return std::ranges::find_if(quantities, [row](const LoggedQuantity* quantity) {
+      return !std::isfinite(quantity->at(row));
+    });
   };
-  keep_or_refuse([&](std::size_t row) { return find_invalid_column(row) == columns.end(); },
+  keep_or_refuse([&](std::size_t row) { return find_invalid(row) == quantities.end(); },
                  "a cell of a needed column is no finite number",
                  [&](std::size_t row) {
-                   const Flight::Column& column = **find_invalid_column(row);
+                   const Flight::Column& column = *(*find_invalid(row))->column;
                    return fmt::format("column '{}' {}, not a finite number", column.header,
                                       describe_cell(column, row));
                  });
 }
 
+/// In seconds: times that differ as they were logged may be one there.
 void RecordBuilder::check_time() const {
-  const Flight::Column& time = *logged("time").column;
+  const LoggedQuantity& time = logged("time");
   for (std::size_t i = 1; i < rows_.size(); ++i) {
-    const double before = time.values[rows_[i - 1]];
-    const double now = time.values[rows_[i]];
+    const double before = time.at(rows_[i - 1]);
+    const double now = time.at(rows_[i]);
     if (now > before) continue;
-    throw Error(
-        fmt::format("{}: {} {} at {}, after {}; time must increase: sort the rows and "
-                    "delete repeated ones",
-                    flight_.locate(rows_[i]), time.header, now == before ? "repeats" : "runs back",
-                    now, before));
+    throw Error(fmt::format(
+        "{}: {} {} at {}, after {}; time must increase: sort the rows and delete repeated ones",
+        flight_.locate(rows_[i]), time.column->header, now == before ? "repeats" : "runs back",
+        time.column->values[rows_[i]], time.column->values[rows_[i - 1]]));
   }
 }
 
@@ -189,6 +192,7 @@ ProbeRecord RecordBuilder::finish() {
   }
   note_implausible();
   take_quantities();
+  check_computed();
   take_drivers();
   std::vector<std::string> labels;
   if (!flight_.maneuvers().empty()) {
@@ -210,25 +214,6 @@ ProbeReadings RecordBuilder::finish_readings() {
   take_quantities();
   note_dropped("can't be calibrated");
   return {std::move(record_), std::move(valid), std::move(dropped_), std::move(notes_)};
-}
-
-/// The kept row in which the column first holds no finite number, or nullptr.
-const std::size_t* RecordBuilder::find_invalid_row(const Flight::Column& column) const {
-  const auto found = std::ranges::find_if_not(
-      rows_, [&column](std::size_t row) { return std::isfinite(column.values[row]); });
-  return found == rows_.end() ? nullptr : &*found;
-}
-
-/// "holds 'n/a'", "is empty" or, from arrays, "holds nan".
-std::string RecordBuilder::describe_cell(const Flight::Column& column, std::size_t row) const {
-  if (!column.first_text) return fmt::format("holds {}", column.values[row]);
-  if (column.first_text->row != row) return "holds text";
-  std::string_view text = column.first_text->text;
-  if (text.empty()) return "is empty";
-  std::size_t end = std::min<std::size_t>(text.size(), 40);
-  const auto continues = [&](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
-  while (end < text.size() && continues(text[end])) --end;  // never through a UTF-8 character
-  return fmt::format("holds '{}'", text.substr(0, end));
 }
 
 /// Takes a column's kept rows; without a copy where they are all rows and in the unit used inside.
@@ -258,6 +243,18 @@ void RecordBuilder::take_quantities() {
   }
 }
 
+/// Each reading is finite; what is computed of them need not be: 1e300 Pa at 1e-300 K.
+void RecordBuilder::check_computed() const {
+  for (const auto& [name, value] : computed_) {
+    const auto column = record_.column(name);
+    const auto bad = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
+    if (bad == column.end()) continue;
+    throw Error(fmt::format("{}: {} is computed from this row's readings as {}; check them",
+                            flight_.locate(rows_[static_cast<std::size_t>(bad - column.begin())]),
+                            name, *bad));
+  }
+}
+
 /// Whether one of the probe's quantities is read from the column, and no driver.
 bool RecordBuilder::is_quantity(const Flight::Column& column) const {
   return std::ranges::any_of(quantities_, [&](const ProbeQuantity& quantity) {
@@ -270,7 +267,7 @@ void RecordBuilder::take_drivers() {
   std::vector<std::string> refused;
   for (const Flight::Column& column : flight_.columns()) {
     if (is_quantity(column)) continue;
-    if (const std::size_t* row = find_invalid_row(column)) {
+    if (const std::size_t* row = find_invalid_row(rows_, column, nullptr)) {
       refused.push_back(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
                                     flight_.locate(*row), describe_cell(column, *row)));
     } else if (record_.has(column.header)) {

@@ -58,7 +58,8 @@ class RecordBuilder {
   /// returns whether the kept rows do. Call it after the rows were chosen.
   bool offer(Names names);
 
-  /// Throws Error for, or drops, rows in which a needed or consulted cell is no finite number.
+  /// Throws Error for, or drops, rows in which a needed or consulted cell is no finite number,
+  /// as it stands or once converted.
   void keep_valid();
 
   /// Throws Error where time does not increase from one kept row to the next.
@@ -98,10 +99,9 @@ class RecordBuilder {
   bool is_quantity(const Flight::Column& column) const;
   std::optional<Reading> find_reading(std::string_view name) const;
   void note_implausible();
-  const std::size_t* find_invalid_row(const Flight::Column& column) const;
-  std::string describe_cell(const Flight::Column& column, std::size_t row) const;
   void take(std::string name, const Flight::Column& column, const Unit* unit);
   void take_quantities();
+  void check_computed() const;
   void take_drivers();
   void note_dropped(std::string_view consequence);
 
