@@ -8,7 +8,6 @@
 #include "covariance.hpp"
 #include "plausibility.hpp"
 #include "sepcal/check_model.hpp"
-#include "sepcal/error.hpp"
 #include "stages.hpp"
 
 namespace sepcal {
@@ -130,33 +129,6 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
 }
 
 }  // namespace
-
-std::string_view to_string(FitStatus status) {
-  switch (status) {
-    case FitStatus::converged:
-      return "converged";
-    case FitStatus::not_identifiable:
-      return "not_identifiable";
-    default:
-      return "not_converged";
-  }
-}
-
-const Parameter& Fit::operator[](std::string_view name) const {
-  const auto at = std::ranges::find(parameters, name, &Parameter::name);
-  if (at != parameters.end()) return *at;
-  std::string known;
-  for (const Parameter& parameter : parameters)
-    known += (known.empty() ? "" : ", ") + parameter.name;
-  throw Error("there is no parameter '" + std::string(name) + "'; the fit has: " + known);
-}
-
-VectorXd Fit::values() const {
-  VectorXd result(static_cast<Index>(parameters.size()));
-  for (Index k = 0; k < result.size(); ++k)
-    result[k] = parameters[static_cast<std::size_t>(k)].value;
-  return result;
-}
 
 Fit fit(const BlockModel& model, const Record& record, const FitOptions& options) {
   const Problem problem(model, options);

@@ -5,9 +5,15 @@
 
 #include <algorithm>
 
+#include "parameter_values.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
+
+Eigen::VectorXd own_values(const Calibration& calibration) {
+  return in_order(calibration.probe->model().tables().parameters(),
+                  values_by_name(calibration.fit));
+}
 
 EffectiveFlight prepare_calibrated(const Calibration& calibration, const Flight& flight) {
   const CalibrationOptions& options = calibration.options;

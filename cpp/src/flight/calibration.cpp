@@ -161,11 +161,6 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                             effective);
 }
 
-Eigen::VectorXd own_values(const Calibration& calibration) {
-  return in_order(calibration.probe->model().tables().parameters(),
-                  values_by_name(calibration.fit));
-}
-
 void write_calibration(const Calibration& calibration, const std::string& file) {
   OutputFile output(file);
   output.write(to_json(calibration));
