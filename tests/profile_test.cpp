@@ -381,3 +381,49 @@ TEST_CASE("of a real probe both agree, on any number of threads") {
     CHECK(std::abs(one[k].profile.upper - one[k].gaussian.upper) < 0.02 * half);
   }
 }
+
+TEST_CASE("with a loss a linear model's profile has the width of its sandwich, outliers or not") {
+  Draws draws(77);
+  constexpr std::size_t rows = 4000;
+  std::vector<double> u = draws.uniform_column(rows, -1.0, 1.0);
+  std::vector<double> z;
+  for (std::size_t k = 0; k < rows; ++k) {
+    z.push_back(2.0 * u[k] + 1.0 + 0.5 * draws.normal());
+    if (k % 20 == 3) z.back() += k % 40 == 3 ? 15.0 : -15.0;
+  }
+  Record record;
+  record.add("u", std::move(u)).add("z", std::move(z));
+  for (const sepcal::Loss loss : {sepcal::Loss::huber, sepcal::Loss::cauchy}) {
+    CAPTURE(sepcal::to_string(loss));
+    const FitOptions options{.loss = loss};
+    const Fit fit = sepcal::fit(Line{}, record, options);
+    for (const ProfileInterval& interval :
+         sepcal::profile_intervals(Line{}, record, fit, options)) {
+      CAPTURE(interval.name);
+      const double half = z_95 * fit[interval.name].standard_error;
+      CHECK(interval.lower_end == IntervalEnd::crossed);
+      CHECK(interval.upper_end == IntervalEnd::crossed);
+      CHECK(interval.value - interval.profile.lower == Approx(half).epsilon(0.03));
+      CHECK(interval.profile.upper - interval.value == Approx(half).epsilon(0.03));
+    }
+  }
+}
+
+TEST_CASE("what is known of the profiled parameter itself narrows its interval") {
+  Draws draws(78);
+  std::vector<double> u = draws.uniform_column(30, -1.0, 1.0);
+  std::vector<double> z;
+  for (const double at : u) z.push_back(2.0 * at + 1.0 + 0.5 * draws.normal());
+  Record record;
+  record.add("u", std::move(u)).add("z", std::move(z));
+  FitOptions options;
+  options.noise = {{"z", 0.5}};
+  options.coloured_errors = false;
+  options.knowledge = {{"s", {2.0, 0.1}}};
+  const Fit fit = sepcal::fit(Line{}, record, options);
+  for (const ProfileInterval& interval : sepcal::profile_intervals(Line{}, record, fit, options)) {
+    const double half = z_95 * fit[interval.name].standard_error;  // linear, R given: exact
+    CHECK(interval.profile.lower == Approx(interval.value - half).epsilon(1e-6));
+    CHECK(interval.profile.upper == Approx(interval.value + half).epsilon(1e-6));
+  }
+}

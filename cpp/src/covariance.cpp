@@ -87,6 +87,14 @@ VectorXd judge_noise(const Problem& problem, const StageTwo& two, double rows, d
   return judged;
 }
 
+MatrixXd symmetric(const MatrixXd& square) { return 0.5 * (square + square.transpose()); }
+
+/// The sandwich, and H^-1.
+struct Slices {
+  MatrixXd covariance;
+  MatrixXd inverse_hessian;
+};
+
 /// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
 class Sandwich {
  public:
@@ -125,7 +133,7 @@ class Sandwich {
   }
 
   /// The covariance (k x k); with a loss, of white residuals before find_colours() was asked.
-  MatrixXd covariance(const std::vector<Index>& inside) const {
+  Slices covariance(const std::vector<Index>& inside) const {
     const Index k = R_.cols();
     MatrixXd bread = MatrixXd::Identity(k, k);
     MatrixXd middle = MatrixXd::Zero(k, k);
@@ -143,8 +151,10 @@ class Sandwich {
       if (loss_) bread += W.transpose() * W;
     }
     const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(MatrixXd(bread.inverse()));
-    const MatrixXd covariance = inverse * middle * inverse.transpose();
-    return 0.5 * (covariance + covariance.transpose());
+    const MatrixXd inverse_R =
+        R_.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
+    return {symmetric(inverse * middle * inverse.transpose()),
+            symmetric(inverse * inverse_R.transpose())};
   }
 
  private:
@@ -209,16 +219,20 @@ Covariances find_covariances(const Problem& problem, const Sweep& sweep, const S
   result.tangent = whiten(problem, two, judged);
   const MatrixXd R = select_columns(result.tangent, result.inside);
   result.white = noise_given || freedom > 0.0 ? inverse_of_square(R) : nothing(k);
-  result.coloured = result.white;
+  result.coloured = result.inverse_hessian = result.white;
   const bool forgiving = options.loss != Loss::squares;
   if (k == 0 || std::isnan(ratio) || !result.white.allFinite()) return result;
   if (!forgiving && !options.coloured_errors) return result;
 
   Sandwich sandwich(problem, sweep, two, R, judged, ratio);
   if (!sandwich.is_finite()) return result;
-  if (forgiving) result.coloured = result.white = sandwich.covariance(result.inside);
+  if (forgiving) {
+    const Slices slices = sandwich.covariance(result.inside);
+    result.coloured = result.white = slices.covariance;
+    result.inverse_hessian = slices.inverse_hessian;
+  }
   if (!options.coloured_errors || !(sandwich.find_colours() || noise_given)) return result;
-  const MatrixXd coloured = sandwich.covariance(result.inside);
+  const MatrixXd coloured = sandwich.covariance(result.inside).covariance;
   if (coloured.allFinite()) result.coloured = coloured;
   return result;
 }

@@ -18,6 +18,7 @@ struct Covariances {
   std::vector<Eigen::Index> inside;  // k free parameters that no bound holds
   Eigen::MatrixXd white;             // k x k, as if residuals were white
   Eigen::MatrixXd coloured;          // k x k, as each output's residual is coloured
+  Eigen::MatrixXd inverse_hessian;   // k x k, H^-1: white where there is no loss
   /// n x n, upper: the rows of all free parameters over the noise that white residuals are judged
   /// to have, and those of what is known beforehand.
   Eigen::MatrixXd tangent;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "covariance.hpp"
 #include "plausibility.hpp"
 #include "profile_path.hpp"
 #include "quantiles.hpp"
@@ -28,6 +29,11 @@ FitOptions as_fitted(FitOptions options, const Fit& fit) {
   options.noise_tolerance = std::min(options.noise_tolerance, FitOptions{}.noise_tolerance);
   options.noise_iterations = std::max(options.noise_iterations, FitOptions{}.noise_iterations);
   options.second_stage = fit.method;
+  // A loss has no likelihood: its scale stays that of the fit, and heights are those of its
+  // sandwich.
+  if (options.loss != Loss::squares && options.noise.empty()) {
+    for (const OutputValue& output : fit.noise) options.noise[output.name] = output.value;
+  }
   options.progress = {};
   return options;
 }
@@ -64,19 +70,35 @@ void check_same(const Problem& problem, const Fit& fit, const VectorXd& x, const
   }
 }
 
-/// (standard_error / standard_error_white)^2; where there is none, `otherwise`.
-double colour(const Parameter& parameter, double otherwise) {
-  const double ratio = parameter.standard_error / parameter.standard_error_white;
-  return std::isfinite(ratio) ? ratio * ratio : otherwise;
+/// How much more each of the free parameters varies than the cost's curvature says, as a ratio of
+/// variances; of a parameter without a variance, the largest of the others' and 1.
+VectorXd find_colours(const Problem& problem, const Fit& fit, const VectorXd& curvature_errors) {
+  VectorXd colours(static_cast<Index>(problem.parameters().size()));
+  double largest = 1.0;
+  for (Index k = 0; k < colours.size(); ++k) {
+    const Parameter& parameter = fit[problem.parameters()[static_cast<std::size_t>(k)].name];
+    const double ratio = parameter.standard_error / curvature_errors[k];
+    colours[k] = ratio * ratio;
+    if (std::isfinite(colours[k])) largest = std::max(largest, colours[k]);
+  }
+  return colours.unaryExpr([&](double c) { return std::isfinite(c) ? c : largest; });
 }
 
-/// The largest of all parameters and of 1.
-double largest_colour(const Fit& fit) {
-  double largest = 1.0;
-  for (const Parameter& parameter : fit.parameters) {
-    largest = std::max(largest, colour(parameter, 1.0));
+/// Standard errors by the cost's curvature alone, of the free parameters; NaN where there is none.
+/// Without a loss the white ones.
+VectorXd find_curvature_errors(const Problem& problem, const Measurements& measurements,
+                               const Fit& fit, const StageTwo& two, ThreadPool& pool) {
+  VectorXd errors = VectorXd::Constant(two.x.size(), not_a_number);
+  if (problem.options().loss != Loss::squares) {
+    const Covariances covariances =
+        find_covariances(problem, Sweep(problem.model(), measurements, pool), two);
+    errors(covariances.inside) = covariances.inverse_hessian.diagonal().cwiseSqrt();
+    return errors;
   }
-  return largest;
+  for (Index k = 0; k < errors.size(); ++k) {
+    errors[k] = fit[problem.parameters()[static_cast<std::size_t>(k)].name].standard_error_white;
+  }
+  return errors;
 }
 
 /// What all profiles of a fit share.
@@ -106,6 +128,8 @@ class Profiles {
     check_same(problem, fit, x, minimum_.two);
     scale_ = plausible_scale(problem.parameters(), minimum_.two.factors, measurements);
     factor_ = combine(minimum_.two.factors, minimum_.two.noise.cwiseInverse()).matrix();
+    colours_ = find_colours(problem, fit,
+                            find_curvature_errors(problem, measurements, fit, minimum_.two, pool));
   }
 
   ProfileInterval describe(Index k) const {
@@ -122,8 +146,7 @@ class Profiles {
   }
 
   ProfileReach reach(Index k) const {
-    const double c = colour(parameter_of(k), largest_colour(fit_));
-    const double square = c * reach_ * reach_;
+    const double square = colours_[k] * reach_ * reach_;
     const double q = noise_given_ ? square : count_ * std::log1p(square / freedom_);
     // Exact where the model is linear, white and has one output.
     const double inflation = noise_given_ ? 1.0 : count_ / freedom_;
@@ -167,7 +190,8 @@ class Profiles {
   ProfileMinimum minimum_;
   MatrixXd factor_;  // whitened, [A | D | r]
   VectorXd scale_;   // plausible lengths
-  double count_;     // M
+  VectorXd colours_;
+  double count_;  // M
   double freedom_ = 0.0;
   double reach_ = 0.0;
   bool noise_given_;

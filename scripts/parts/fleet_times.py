@@ -79,14 +79,14 @@ def main() -> None:
         print(f"{'one process, all cores':<28}{many:8.2f} s{one / many:8.2f} x")
         for workers in map(int, arguments.workers.split(",")):
             with (
-                LocalCluster(
+                LocalCluster(  # type: ignore[no-untyped-call]
                     processes=True,
                     n_workers=workers,
                     threads_per_worker=1,
                     dashboard_address=None,
                     silence_logs=logging.ERROR,
                 ) as cluster,
-                Client(cluster) as client,
+                Client(cluster) as client,  # type: ignore[no-untyped-call]
             ):
                 client.wait_for_workers(workers)
                 fit(files[:workers], client.get_executor())  # every worker has imported sepcal

@@ -138,7 +138,10 @@ def test_field_options(magnetometer: Bench, options: tuple[str, ...], words: tup
     ("arguments", "words"),
     [
         ((), ("--help",)),
-        (("calibrate",), ("'calibrate' is no verb", "fit, compare, intervals, diagnose, add", "--help")),
+        (
+            ("calibrate",),
+            ("'calibrate' is no verb", "fit, compare, intervals, diagnose, add", "--help"),
+        ),
         (("fit",), ("FLIGHT is required", "fit --help")),
         (("compare", "flight.csv"), ("CALIBRATION is required", "compare --help")),
         (("diagnose",), ("FLIGHT is required", "diagnose --help")),

@@ -6,7 +6,8 @@
 // M = rows x outputs, n free parameters, t_q and z_q the quantiles of Student and of the normal. c
 // = (standard_error / standard_error_white)^2 makes the likelihood vary as the residuals' colour
 // does (the vertical adjustment of Pace, Salvan & Sartori, Statistica Sinica 21, 2011); it stands
-// within the logarithm so that of a linear model both intervals are the same.
+// within the logarithm so that of a linear model both intervals are the same. A loss is no
+// likelihood: R stays that of the fit, and c sets the sandwich against the cost's own curvature.
 #pragma once
 
 #include <string>

@@ -9,8 +9,8 @@
 #include <map>
 #include <optional>
 
-#include "residual_colour.hpp"
 #include "named_driver.hpp"
+#include "residual_colour.hpp"
 #include "sepcal/natural_spline.hpp"
 
 namespace sepcal {

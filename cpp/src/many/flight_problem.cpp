@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "residual_colour.hpp"
 #include "many/split.hpp"
+#include "residual_colour.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sweep.hpp"
