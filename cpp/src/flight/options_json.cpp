@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options_json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <vector>
 
@@ -45,9 +47,11 @@ Screens read_screens(const Json& object) {
           .convex = object.at("convex").get<bool>()};
 }
 
-/// What the options of earlier versions lack; that keeps its default.
+/// What the options of earlier versions lack, all of it; that keeps its defaults.
 void read_later_options(const Json& options, FitOptions& fit) {
-  if (!options.contains("loss")) return;
+  constexpr std::array later{"knowledge", "search", "jacobian", "loss", "loss_width"};
+  const auto is_there = [&](const char* name) { return options.contains(name); };
+  if (std::ranges::none_of(later, is_there)) return;
   fit.knowledge = read_normals(options.at("knowledge"));
   read_choice(options, "search", fit.search);
   if (options.contains("screens")) fit.screens = read_screens(options.at("screens"));
