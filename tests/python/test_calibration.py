@@ -60,6 +60,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
     stored["fixed"] = stored.pop("fix")
     stored["effects"] = [effect["name"] for effect in stored["effects"]]
+    options["samples"] = 0  # with a start nothing is sampled
     for name, value in options.items():
         assert stored[name] == json.loads(json.dumps(value)), name
 
