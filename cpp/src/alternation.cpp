@@ -30,7 +30,7 @@ Alternation::Alternation(const Problem& problem, const Sweep& sweep, double firs
 }
 
 void Alternation::begin_noise() {
-  result_.noise = raise_to_floor(loss_ ? scales() : result_.noise);
+  result_.noise = raise_to_floor(loss_ ? scales(*loss_) : result_.noise);
 }
 
 void Alternation::look_around(bool hold) {
@@ -76,8 +76,8 @@ bool Alternation::refine() {
 }
 
 double Alternation::update_noise() {
-  const VectorXd next =
-      raise_to_floor(loss_ ? scales() : VectorXd((squares(result_.factors) / rows()).cwiseSqrt()));
+  const VectorXd next = raise_to_floor(
+      loss_ ? scales(*loss_) : VectorXd((squares(result_.factors) / rows()).cwiseSqrt()));
   const VectorXd ratios = next.cwiseQuotient(result_.noise);
   result_.noise = next;
   return (ratios.array().square() - 1.0).abs().maxCoeff();
@@ -103,10 +103,10 @@ TriangularFactor Alternation::whiten(const std::vector<TriangularFactor>& factor
   return factor;
 }
 
-VectorXd Alternation::scales() const {
+VectorXd Alternation::scales(const RobustLoss& loss) const {
   const MatrixXd residuals = sweep_.residuals(xi1(), xi2());
   VectorXd noise(residuals.cols());
-  for (Index j = 0; j < noise.size(); ++j) noise[j] = loss_->scale(residuals.col(j));
+  for (Index j = 0; j < noise.size(); ++j) noise[j] = loss.scale(residuals.col(j));
   return noise;
 }
 

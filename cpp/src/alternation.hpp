@@ -54,7 +54,7 @@ class Alternation {
   /// One factor of all outputs, with what is known beforehand.
   TriangularFactor whiten(const std::vector<TriangularFactor>& factors) const;
   /// Each output's noise by the loss's own scale.
-  Eigen::VectorXd scales() const;
+  Eigen::VectorXd scales(const RobustLoss& loss) const;
   /// Keeps a noise-free output from sending J to minus infinity.
   Eigen::VectorXd raise_to_floor(Eigen::VectorXd noise) const;
   /// False where a linear parameter left its bounds, which the inner problem does not know.

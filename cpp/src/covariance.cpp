@@ -151,10 +151,10 @@ class Sandwich {
       if (loss_) bread += W.transpose() * W;
     }
     const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(MatrixXd(bread.inverse()));
-    const MatrixXd inverse_R =
+    const MatrixXd outer =
         R_.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
     return {symmetric(inverse * middle * inverse.transpose()),
-            symmetric(inverse * inverse_R.transpose())};
+            symmetric(inverse * outer.transpose())};
   }
 
  private:

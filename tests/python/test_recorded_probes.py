@@ -4,6 +4,7 @@
 recorded.py says where they are; skipped where they are not.
 """
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -123,8 +124,9 @@ def test_a_flight_near_level_is_no_calibration(tmp_path: Path, mount: str):
     """Within 16 deg of level the strength alone determines next to nothing, and sepcal says so."""
     fitted = fit_strength(f"octocopter_{mount}_mag.csv", 53.25, tmp_path)
     assert fitted.code in (4, 5)
-    assert len(fitted.result["unobservable"]) > 3
-    assert "can't be told apart" in fitted.result["message"]
+    assert len(fitted.result["unobservable"]) >= 3
+    # Open, or where the minimisation ends without a minimum, on three bounds, weak.
+    assert re.search("can't be told apart|hard to tell apart", fitted.result["message"])
 
 
 @pytest.mark.parametrize(("strength", "code"), [(0.48, 2), (4800, 2), (100, 4)])

@@ -135,7 +135,9 @@ struct NumTraits<sepcal::NestedDual<N>> : GenericNumTraits<sepcal::NestedDual<N>
   using NonInteger = Number;
   using Nested = Number;
   using Literal = Number;
+  // NOLINTBEGIN(readability-identifier-naming): Eigen's names
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1 };
+  // NOLINTEND(readability-identifier-naming)
   static Number epsilon() { return Number(std::numeric_limits<double>::epsilon()); }
   static Number dummy_precision() { return Number(1e-12); }
   static int digits10() { return std::numeric_limits<double>::digits10; }
