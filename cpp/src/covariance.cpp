@@ -69,7 +69,6 @@ double count_spent(const Problem& problem, const StageTwo& two, const std::vecto
   return spent;
 }
 
-bool is_coloured(const NoiseModel& noise) { return noise.d != 0.0 || noise.order() != 0; }
 
 /// The noise that residuals are judged to have, by output: two.noise where it was given, else with
 /// M / (M - p), and less where it stands at its floor above the residual. There, at 1e-12 of the
@@ -128,7 +127,7 @@ class Sandwich {
     colours_ = find_output_noise(residuals_, sweep_.measurements().runs(),
                                  (may_be_rounding ? 0.99 : 0.0) * two_.noise, sweep_.pool());
     return std::ranges::any_of(colours_, [](const std::optional<NoiseModel>& colour) {
-      return colour && is_coloured(*colour);
+      return colour && !is_white(*colour);
     });
   }
 
@@ -176,7 +175,7 @@ class Sandwich {
       breads[j] = Q.transpose() * slopes.asDiagonal() * Q;
       std::optional<NoiseModel> colour;
       if (!colours_.empty()) colour = colours_[j];
-      if (colour && is_coloured(*colour)) {
+      if (colour && !is_white(*colour)) {
         colour->sigma /= judged;
         middles[j] = ratio_ * covariance_product(*colour, sweep_.measurements().runs(), Q);
       } else {
@@ -235,6 +234,21 @@ Covariances find_covariances(const Problem& problem, const Sweep& sweep, const S
   const MatrixXd coloured = sandwich.covariance(result.inside).covariance;
   if (coloured.allFinite()) result.coloured = coloured;
   return result;
+}
+
+MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {
+  MatrixXd all = nothing(n);
+  all(places, places) = covariance;
+  return all;
+}
+
+MatrixXd correlation_of(const MatrixXd& covariance) {
+  const VectorXd errors = covariance.diagonal().cwiseSqrt();
+  MatrixXd correlation = covariance.cwiseQuotient(errors * errors.transpose());
+  for (Index k = 0; k < errors.size(); ++k) {
+    if (!std::isnan(errors[k])) correlation(k, k) = 1.0;
+  }
+  return correlation;
 }
 
 }  // namespace sepcal

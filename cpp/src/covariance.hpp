@@ -30,4 +30,11 @@ struct Covariances {
 /// something is not finite.
 Covariances find_covariances(const Problem& problem, const Sweep& sweep, const StageTwo& two);
 
+/// A covariance of some of n parameters among all of them, NaN for the others.
+Eigen::MatrixXd spread(const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& places,
+                       Eigen::Index n);
+
+/// Ones on the diagonal to the last bit, but NaN for what has no variance.
+Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance);
+
 }  // namespace sepcal

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "covariance.hpp"
 #include "plausibility.hpp"
@@ -17,31 +16,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
   std::vector<OutputValue> result;
   for (Index j = 0; j < values.size(); ++j) {
     result.push_back({tables.outputs[static_cast<std::size_t>(j)].name, values[j]});
   }
   return result;
-}
-
-/// A covariance of some of n parameters among all of them, NaN for the others.
-MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {
-  MatrixXd all = MatrixXd::Constant(n, n, undefined);
-  all(places, places) = covariance;
-  return all;
-}
-
-/// Ones on the diagonal to the last bit, but NaN for what has no variance.
-MatrixXd correlation_of(const MatrixXd& covariance) {
-  const VectorXd errors = covariance.diagonal().cwiseSqrt();
-  MatrixXd correlation = covariance.cwiseQuotient(errors * errors.transpose());
-  for (Index k = 0; k < errors.size(); ++k) {
-    if (!std::isnan(errors[k])) correlation(k, k) = 1.0;
-  }
-  return correlation;
 }
 
 /// Spreads the free parameters' estimate and covariances over all of the model's parameters.
@@ -112,8 +92,11 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
 
   const Index n_1 = problem.model().tables().n_1();
   const Index n_2 = problem.model().tables().n_2();
-  const VectorXd rmse =
-      (sweep.squared_residuals(two.x.head(n_1), two.x.tail(n_2)) / rows).cwiseSqrt();
+  // The factors' rows are weighted by a loss.
+  const VectorXd sums = problem.options().loss == Loss::squares
+                            ? squares(two.factors)
+                            : sweep.squared_residuals(two.x.head(n_1), two.x.tail(n_2));
+  const VectorXd rmse = (sums / rows).cwiseSqrt();
   result.rmse = by_output(model.tables(), rmse);
   result.noise = by_output(model.tables(), two.noise);
   result.cost = find_cost(problem, two, rows);

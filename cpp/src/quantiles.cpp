@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "diagnosis/tails.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -28,28 +29,6 @@ double solve(const std::function<double(double)>& tail, double probability) {
     (tail(middle) > probability ? low : high) = middle;
   }
   return 0.5 * (low + high);
-}
-
-/// The continued fraction of the incomplete beta function (Abramowitz & Stegun 26.5.8, by Lentz).
-double beta_fraction(double a, double b, double x) {
-  constexpr double tiny = 1e-300;
-  const auto guarded = [](double value) { return std::abs(value) < tiny ? tiny : value; };
-  double c = 1.0;
-  double d = 1.0 / guarded(1.0 - (a + b) * x / (a + 1.0));
-  double h = d;
-  for (int i = 1; i < 10'000; ++i) {
-    const double m = i;
-    const double even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-    d = 1.0 / guarded(1.0 + even * d);
-    c = guarded(1.0 + even / c);
-    h *= d * c;
-    const double odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-    d = 1.0 / guarded(1.0 + odd * d);
-    c = guarded(1.0 + odd / c);
-    h *= d * c;
-    if (std::abs(d * c - 1.0) < 1e-16) break;
-  }
-  return h;
 }
 
 /// P(|T| > t) = I_x(freedom / 2, 1/2) at x = freedom / (freedom + t^2) (A&S 26.7.1).

@@ -29,6 +29,8 @@ double white_likelihood(const VectorXd& e, const std::vector<Segment>& segments,
 
 }  // namespace
 
+bool is_white(const NoiseModel& noise) { return noise.d == 0.0 && noise.order() == 0; }
+
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
                                               const std::vector<Segment>& segments) {
   constexpr Index fewest_rows = 30;
@@ -37,7 +39,7 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
   if (rows.size() < fewest_rows || !(square > 0.0)) return std::nullopt;
   const NoiseFit fit = fit_noise(e, segments);
   NoiseModel white{.sigma = std::sqrt(square / static_cast<double>(rows.size()))};
-  if (fit.model.d == 0.0 && fit.model.order() == 0) return white;
+  if (is_white(fit.model)) return white;
   const double coloured =
       criterion(fit.minus_two_log_likelihood, fit.model.order() + 2.0, fit.informative_rows);
   const double plain = criterion(white_likelihood(rows, segments, fit.model.level_is_free()), 1.0,

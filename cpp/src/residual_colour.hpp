@@ -13,6 +13,9 @@
 
 namespace sepcal {
 
+/// Whether a row tells nothing of the next.
+bool is_white(const NoiseModel& noise);
+
 /// The noise of an output's residual `e`, or nothing where there is none to tell: fewer than 30
 /// rows, or a residual of zeros. White where nothing else is better by BIC.
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,

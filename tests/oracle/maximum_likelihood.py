@@ -5,6 +5,7 @@ SciPy stops where the cost no longer falls, that is about sqrt(eps) short of the
 Gauss-Newton steps by QR then close the gap, down to the rounding of the residuals.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,8 @@ from scipy.linalg import qr, solve_triangular
 from scipy.optimize import least_squares
 
 from oracle.model import Array, Model, Record
+
+TIGHTEST = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15}
 
 
 @dataclass(frozen=True)
@@ -50,18 +53,10 @@ def fit_at_fixed_noise(
     Raises RuntimeError where SciPy gives up, or where the Gauss-Newton steps do not settle below
     1e-11 standard errors (plus the rounding of the values).
     """
-    deviation = np.asarray(noise, dtype=float)[:, np.newaxis]
-    measured = model.measured(record)
-
-    def residual(xi: Array) -> Array:
-        return ((measured - model.predict(record, xi)) / deviation).ravel()
-
-    def jacobian(xi: Array) -> Array:
-        return -(model.jacobian(record, xi) / deviation[..., np.newaxis]).reshape(-1, xi.size)
-
-    tolerance = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15}
+    deviation = np.asarray(noise, dtype=float)
+    residual, jacobian = _whiten(model, record, deviation)
     found = least_squares(
-        residual, np.asarray(start, dtype=float), jac=jacobian, method=method, **tolerance
+        residual, np.asarray(start, dtype=float), jac=jacobian, method=method, **TIGHTEST
     )
     if not found.success:
         raise RuntimeError(f"least_squares({method}) did not converge: {found.message}")
@@ -76,7 +71,7 @@ def fit_at_fixed_noise(
             break
     else:
         raise RuntimeError(f"Gauss-Newton steps did not settle; the last one is {step}")
-    return Estimate(xi, covariance, deviation[:, 0], measured - model.predict(record, xi))
+    return Estimate(xi, covariance, deviation, model.measured(record) - model.predict(record, xi))
 
 
 def fit_with_noise(model: Model, record: Record, start: ArrayLike) -> Estimate:
@@ -110,18 +105,10 @@ def fit_with_loss(
 
     Raises RuntimeError where Newton's steps do not settle below 1e-10 standard errors.
     """
-    deviation = np.asarray(noise, dtype=float)[:, np.newaxis]
-    measured = model.measured(record)
-
-    def residual(xi: Array) -> Array:
-        return ((measured - model.predict(record, xi)) / deviation).ravel()
-
-    def jacobian(xi: Array) -> Array:
-        return -(model.jacobian(record, xi) / deviation[..., np.newaxis]).reshape(-1, xi.size)
-
-    tolerance = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15}
+    deviation = np.asarray(noise, dtype=float)
+    residual, jacobian = _whiten(model, record, deviation)
     found = least_squares(
-        residual, np.asarray(start, float), jac=jacobian, loss=loss, f_scale=width, **tolerance
+        residual, np.asarray(start, float), jac=jacobian, loss=loss, f_scale=width, **TIGHTEST
     )
     xi = found.x
     for _ in range(100):
@@ -137,9 +124,25 @@ def fit_with_loss(
     else:
         raise RuntimeError(f"Newton's steps did not settle; the last one is {step}")
     cost = least_squares(residual, xi, jac=jacobian, loss=loss, f_scale=width, max_nfev=1).cost
-    logarithms = float(measured.shape[1] * np.sum(np.log(deviation)))
+    logarithms = float(s.size / deviation.size * np.sum(np.log(deviation)))
     freedom = s.size / (s.size - xi.size)
     return RobustEstimate(xi, covariance * freedom, cost + logarithms)
+
+
+def _whiten(
+    model: Model, record: Record, noise: Array
+) -> tuple[Callable[[Array], Array], Callable[[Array], Array]]:
+    """The residual over noise (n_z,), output by output in one row, and its Jacobian."""
+    deviation = noise[:, np.newaxis]
+    measured = model.measured(record)
+
+    def residual(xi: Array) -> Array:
+        return ((measured - model.predict(record, xi)) / deviation).ravel()
+
+    def jacobian(xi: Array) -> Array:
+        return -(model.jacobian(record, xi) / deviation[..., np.newaxis]).reshape(-1, xi.size)
+
+    return residual, jacobian
 
 
 def _influence(s: Array, loss: str, width: float) -> tuple[Array, Array]:

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <compare>
 #include <limits>
+#include <utility>
 
 namespace sepcal {
 
@@ -20,7 +21,7 @@ class NestedDual {
 
   NestedDual() = default;
   explicit NestedDual(double value) : jet_(Dual(value)) {}
-  explicit NestedDual(const Jet& jet) : jet_(jet) {}
+  explicit NestedDual(Jet jet) : jet_(std::move(jet)) {}
   /// The variable k at `value`.
   NestedDual(double value, int k) : jet_(Dual(value, k), k) {}
 

@@ -13,6 +13,10 @@ double log10_gamma_tail(double shape, double x);
 /// log10 of the probability that chi-squared with `freedom` degrees exceeds x.
 double log10_chi_squared_tail(double x, double freedom);
 
+/// The continued fraction of the incomplete beta function without its leading factor, for x below
+/// (a + 1) / (a + b + 2) (A&S 26.5.8, by Lentz).
+double beta_fraction(double a, double b, double x);
+
 /// log10 of the probability that Fisher's F with k and `freedom` degrees exceeds x, to about ten
 /// digits however small it is.
 double log10_f_tail(double x, double k, double freedom);

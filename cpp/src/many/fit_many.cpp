@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "covariance.hpp"
 #include "many/departure.hpp"
 #include "many/joint_covariance.hpp"
 #include "many/joint_stage.hpp"
@@ -60,22 +61,6 @@ void set_errors(std::vector<Parameter>& parameters, const std::vector<Index>& pl
     parameter.standard_error = std::sqrt(coloured(at, at));
     parameter.standard_error_white = std::sqrt(white(at, at));
   }
-}
-
-/// Among all of the model's shared parameters, NaN for the others.
-MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {
-  MatrixXd all = MatrixXd::Constant(n, n, not_a_number);
-  all(places, places) = covariance;
-  return all;
-}
-
-MatrixXd correlation_of(const MatrixXd& covariance) {
-  const VectorXd errors = covariance.diagonal().cwiseSqrt();
-  MatrixXd correlation = covariance.cwiseQuotient(errors * errors.transpose());
-  for (Index k = 0; k < errors.size(); ++k) {
-    if (!std::isnan(errors[k])) correlation(k, k) = 1.0;
-  }
-  return correlation;
 }
 
 std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
