@@ -84,7 +84,12 @@ def _read_data() -> dict:
 
 
 def fit(
-    given: NistSet, start: int, second_stage: str = "auto", iterations: int | None = None
+    given: NistSet,
+    start: int,
+    second_stage: str = "auto",
+    *,
+    iterations: int | None = None,
+    jacobian: str = "kaufman",
 ) -> sepcal.Fit:
     """A fit from one of the starts: that of xi2 alone, so that nothing is sampled."""
     n_1 = len(given.model.linear)
@@ -95,6 +100,7 @@ def fit(
         start=xi2,
         second_stage=second_stage,
         iterations=iterations,
+        jacobian=jacobian,
         coloured_errors=False,
     )
 

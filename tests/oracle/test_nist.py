@@ -72,6 +72,12 @@ def test_certified_digits(given: NistSet, start: int, second_stage: str) -> None
 
 
 @both_starts
+def test_certified_digits_with_the_whole_jacobian(given: NistSet, start: int) -> None:
+    """Golub and Pereyra's instead of Kaufman's: the same where nothing is linear."""
+    assert_certified(given, nist.fit(given, start, "projected", jacobian="golub_pereyra"))
+
+
+@both_starts
 def test_certified_digits_jointly(given: NistSet, start: int) -> None:
     """Over all parameters at once; from MGH10's far start that takes thousands of iterations."""
     if (given.name, start) == ("MGH10", 0):
@@ -85,7 +91,7 @@ def test_certified_digits_jointly(given: NistSet, start: int) -> None:
 def test_auto_falls_back_to_joint_where_projected_fails(iterations: int) -> None:
     """MGH09's far start takes projected more steps than these; joint with a prior gets there."""
     given = nist.state_set("MGH09")
-    fit = nist.fit(given, 0, "auto", iterations)
+    fit = nist.fit(given, 0, iterations=iterations)
     assert fit.method == "joint"
     assert fit.message.startswith("projected fell back to joint, because it did not converge")
     assert_certified(given, fit)
