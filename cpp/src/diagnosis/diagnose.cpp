@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "diagnosis/finding.hpp"
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/ranking.hpp"
 #include "diagnosis/residual_noise.hpp"
@@ -15,8 +16,6 @@
 
 namespace sepcal {
 namespace {
-
-using Eigen::Index;
 
 constexpr std::size_t most_tested = 12;  // of either screen's best
 constexpr std::size_t most_paired = 10;
@@ -46,7 +45,6 @@ class Recipe {
   /// `tests`: how many could have been chosen.
   std::vector<EffectFinding> judge(Trials& trials, double tests);
   void try_pairs(const std::vector<EffectFinding>& singles);
-  EffectFinding describe(const Trial& trial) const;
   void tell(std::string_view task, double fraction) const {
     if (options_.progress) options_.progress(task, fraction);
   }
@@ -56,7 +54,7 @@ class Recipe {
   ThreadPool pool_;
   CandidateRoom room_;
   NullHypothesis null_;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> tangent_;
+  Tangent tangent_;
   Trials trials_;
   Diagnosis result_;
 };
@@ -106,48 +104,6 @@ void Recipe::test_best(Trials& trials, std::size_t most) {
     const std::lock_guard lock(mutex);
     tell("testing effects", ++done / static_cast<double>(chosen.size()));
   });
-}
-
-EffectFinding Recipe::describe(const Trial& trial) const {
-  EffectFinding finding{.name = trial.candidate.name,
-                        .drivers = trial.candidate.drivers,
-                        .log10_p = trial.log10_p,
-                        .p_value = std::pow(10.0, trial.log10_p),
-                        .predicted_drop = not_a_number,
-                        .held_out_before = not_a_number,
-                        .held_out_after = not_a_number,
-                        .held_out_gain = not_a_number,
-                        .visibility = trial.visibility,
-                        .family = {trial.candidate.name}};
-  finding.status = trial.visible ? FindingStatus::not_seen : FindingStatus::cannot_be_seen;
-  for (std::size_t k = 0; k < trial.candidate.coefficients.size(); ++k) {
-    const Variable& coefficient = trial.candidate.coefficients[k];
-    const auto at = static_cast<Index>(k);
-    const bool known = trial.visible && trial.estimate.size() > at;
-    finding.coefficients.push_back({coefficient.name, coefficient.unit,
-                                    known ? trial.estimate[at] : not_a_number,
-                                    known ? std::sqrt(trial.covariance(at, at)) : not_a_number});
-  }
-  if (!trial.visible) return finding;
-  finding.predicted_drop = trial.predicted_drop;
-  if (!trial.candidate.shape.parameter.empty()) {
-    finding.shapes[trial.candidate.shape.parameter] = trial.shape;
-  }
-  if (trial.held_out.judged) {
-    finding.held_out_before = trial.held_out.before;
-    finding.held_out_after = trial.held_out.after;
-    finding.held_out_gain = trial.held_out.gain;
-    finding.held_out_passed = trial.held_out.passed;
-    finding.held_out_interleaved = trial.folds.interleaved;
-  }
-  if (trial.tested) {
-    const Eigen::VectorXd signal = room_.columns(trial.candidate, trial.shape) * trial.estimate;
-    const Eigen::VectorXd shift = tangent_.solve(signal);
-    for (Index k = 0; k < shift.size(); ++k) {
-      finding.absorbed_by[room_.fit().parameters[static_cast<std::size_t>(k)]] = shift[k];
-    }
-  }
-  return finding;
 }
 
 void Recipe::hold_out_significant(Trials& trials) {
@@ -224,7 +180,7 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   std::vector<EffectFinding> findings;
   std::size_t v = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    EffectFinding finding = describe(trials[i]);
+    EffectFinding finding = describe(room_, tangent_, trials[i]);
     if (v < visible.size() && visible[v] == i) {
       finding.p_adjusted = holm[v];
       finding.p_listed = listed[v];
@@ -317,28 +273,6 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
 }
 
 }  // namespace
-
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::adequate:
-      return "adequate";
-    case Verdict::effect_missing:
-      return "effect_missing";
-    default:
-      return "unexplained";
-  }
-}
-
-std::string_view to_string(FindingStatus status) {
-  switch (status) {
-    case FindingStatus::found:
-      return "found";
-    case FindingStatus::not_seen:
-      return "not_seen";
-    default:
-      return "cannot_be_seen";
-  }
-}
 
 Diagnosis diagnose(const DiagnosedFit& fitted, const std::vector<std::string>& candidates,
                    const DiagnosisOptions& options) {

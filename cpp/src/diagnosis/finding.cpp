@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/finding.hpp"
+
+#include <cmath>
+
+namespace sepcal {
+
+using Eigen::Index;
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return "adequate";
+    case Verdict::effect_missing:
+      return "effect_missing";
+    default:
+      return "unexplained";
+  }
+}
+
+std::string_view to_string(FindingStatus status) {
+  switch (status) {
+    case FindingStatus::found:
+      return "found";
+    case FindingStatus::not_seen:
+      return "not_seen";
+    default:
+      return "cannot_be_seen";
+  }
+}
+
+EffectFinding describe(const CandidateRoom& room, const Tangent& tangent, const Trial& trial) {
+  EffectFinding finding{.name = trial.candidate.name,
+                        .drivers = trial.candidate.drivers,
+                        .log10_p = trial.log10_p,
+                        .p_value = std::pow(10.0, trial.log10_p),
+                        .predicted_drop = not_a_number,
+                        .held_out_before = not_a_number,
+                        .held_out_after = not_a_number,
+                        .held_out_gain = not_a_number,
+                        .visibility = trial.visibility,
+                        .family = {trial.candidate.name}};
+  finding.status = trial.visible ? FindingStatus::not_seen : FindingStatus::cannot_be_seen;
+  for (std::size_t k = 0; k < trial.candidate.coefficients.size(); ++k) {
+    const Variable& coefficient = trial.candidate.coefficients[k];
+    const auto at = static_cast<Index>(k);
+    const bool known = trial.visible && trial.estimate.size() > at;
+    finding.coefficients.push_back({coefficient.name, coefficient.unit,
+                                    known ? trial.estimate[at] : not_a_number,
+                                    known ? std::sqrt(trial.covariance(at, at)) : not_a_number});
+  }
+  if (!trial.visible) return finding;
+  finding.predicted_drop = trial.predicted_drop;
+  if (!trial.candidate.shape.parameter.empty()) {
+    finding.shapes[trial.candidate.shape.parameter] = trial.shape;
+  }
+  if (trial.held_out.judged) {
+    finding.held_out_before = trial.held_out.before;
+    finding.held_out_after = trial.held_out.after;
+    finding.held_out_gain = trial.held_out.gain;
+    finding.held_out_passed = trial.held_out.passed;
+    finding.held_out_interleaved = trial.folds.interleaved;
+  }
+  if (trial.tested) {
+    const Eigen::VectorXd signal = room.columns(trial.candidate, trial.shape) * trial.estimate;
+    const Eigen::VectorXd shift = tangent.solve(signal);
+    for (Index k = 0; k < shift.size(); ++k) {
+      finding.absorbed_by[room.fit().parameters[static_cast<std::size_t>(k)]] = shift[k];
+    }
+  }
+  return finding;
+}
+
+}  // namespace sepcal

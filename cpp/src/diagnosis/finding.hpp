@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a trial says of its effect, in the words of the result.
+#pragma once
+
+#include <Eigen/QR>
+
+#include "diagnosis/trial.hpp"
+#include "sepcal/diagnosis.hpp"
+
+namespace sepcal {
+
+/// The fit's linearisation, factorised once: what an effect left out does to the parameters.
+using Tangent = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+
+/// All but what depends on the other trials: the adjusted probabilities, `found`, the family.
+EffectFinding describe(const CandidateRoom& room, const Tangent& tangent, const Trial& trial);
+
+}  // namespace sepcal
