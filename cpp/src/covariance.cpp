@@ -69,7 +69,6 @@ double count_spent(const Problem& problem, const StageTwo& two, const std::vecto
   return spent;
 }
 
-
 /// The noise that residuals are judged to have, by output: two.noise where it was given, else with
 /// M / (M - p), and less where it stands at its floor above the residual. There, at 1e-12 of the
 /// output, a thousandth of it is the rounding of the measurements.
