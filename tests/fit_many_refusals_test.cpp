@@ -48,6 +48,9 @@ TEST_CASE("misuse is refused in a line that names the culprit") {
     CHECK_THROWS_WITH_AS(fit_many(fleet_probe, flights, options), Contains(text), Error);
   };
   ManyOptions options = wind_a_flight();
+  options.fit.loss = Loss::huber;
+  refuse(options, "by least squares alone, without loss 'huber'");
+  options = wind_a_flight();
   options.own = {"wind"};
   refuse(options, "own: there is no parameter 'wind'; the model has: lambda_va");
   options.own = {"w_n", "w_n"};

@@ -63,7 +63,7 @@ TEST_CASE("a regression line's bands are the textbook's") {
     CHECK(prediction.value(i, 0) == Approx(fit["c"].value + fit["s"].value * u).epsilon(1e-12));
     CHECK(prediction.standard_error(i, 0) == Approx(std::sqrt(variance)).epsilon(1e-9));
     CHECK(prediction.measurement_error(i, 0) ==
-          Approx(std::sqrt(variance + square / n)).epsilon(1e-9));
+          Approx(std::sqrt(variance + square / (n - 2))).epsilon(1e-9));
   }
 }
 

@@ -139,7 +139,7 @@ class Sandwich {
     if (loss_) {
       weigh_each_row(std::move(tangents), inside, bread, middle);
     } else {
-      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs(), ratio_, true};
+      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs(), ratio_};
       middle = find_score_covariance(std::move(tangents), noise, inside, R_, sweep_.pool());
     }
     for (const Prior& prior : problem_.knowledge()) {

@@ -49,11 +49,25 @@ MatrixXd known_covariance(const Fit& fit) {
   return covariance;
 }
 
-double quantile_of(const Fit& fit, const FitOptions& options, double level) {
-  if (!options.noise.empty()) return normal_reach(level);
+double measurements_of(const Fit& fit) {
+  return static_cast<double>(fit.rows * fit.noise.size());
+}
+
+/// Measurements less free parameters.
+double freedom_of(const Fit& fit) {
   const auto free = std::ranges::count(fit.parameters, false, &Parameter::fixed);
-  return student_reach(
-      level, static_cast<double>(fit.rows * fit.noise.size()) - static_cast<double>(free));
+  return measurements_of(fit) - static_cast<double>(free);
+}
+
+double quantile_of(const Fit& fit, const FitOptions& options, double level) {
+  return options.noise.empty() ? student_reach(level, freedom_of(fit)) : normal_reach(level);
+}
+
+/// The variance of output j's noise: as given, or R-hat times M / (M - n), as the covariance has it.
+double variance_of(const Fit& fit, const FitOptions& options, Index j) {
+  const double noise = fit.noise[static_cast<std::size_t>(j)].value;
+  const double ratio = options.noise.empty() ? measurements_of(fit) / freedom_of(fit) : 1.0;
+  return ratio * noise * noise;
 }
 
 /// sqrt(g' C g) of every row g; a variance that rounding made negative is zero, NaN stays.
@@ -98,9 +112,9 @@ Prediction predict(const BlockModel& model, const Record& record, const Fit& fit
     }
   });
   for (Index j = 0; j < n_z; ++j) {
-    const double noise = fit.noise[static_cast<std::size_t>(j)].value;
+    const double variance = variance_of(fit, options, j);
     result.measurement_error.col(j) =
-        (result.standard_error.col(j).array().square() + noise * noise).sqrt();
+        (result.standard_error.col(j).array().square() + variance).sqrt();
   }
   return result;
 }

@@ -74,7 +74,7 @@ MatrixXd find_score_covariance(std::vector<MatrixXd> tangents, const ScoreNoise&
       model->sigma /= deviation;
       parts[j] = noise.inflation * covariance_product(*model, noise.runs, Q);
     } else {
-      parts[j] = (noise.given ? 1.0 : noise.inflation) * Q.transpose() * Q;
+      parts[j] = Q.transpose() * Q;
     }
   });
   MatrixXd sum = MatrixXd::Zero(K.cols(), K.cols());

@@ -34,7 +34,6 @@ struct ScoreNoise {
   const std::vector<std::optional<NoiseModel>>& models;
   const std::vector<Segment>& runs;
   double inflation = 1.0;  // of the models' variances, M / (M - n)
-  bool given = false;      // outputs without a model are white with `deviations` as they are
 };
 
 /// The sandwich's middle in the coordinates of an upper triangle K (k x k): the covariance K^-T

@@ -27,7 +27,8 @@ struct ManyOptions {
   /// Names of the parameters that every flight has for itself, linear or not. The others are
   /// shared.
   std::vector<std::string> own = {};
-  /// Every choice of a fit; it holds for each flight. R is common to all flights.
+  /// Every choice of a fit but a loss; it holds for each flight. R is common to all flights. What
+  /// is known of an own parameter is known of each flight's; of a shared one it counts once.
   FitOptions fit = {};
   /// A flight that can't be used is left out and listed; else it is an Error.
   bool leave_out = false;
@@ -110,7 +111,7 @@ struct FlightPoint {
 struct ScoreQuestion {
   std::size_t flight = 0;
   Eigen::VectorXd x;                  // n
-  Eigen::VectorXd noise;              // n_z, the common R's
+  Eigen::VectorXd noise;              // n_z, behind K: the common R's, as it is judged
   Eigen::VectorXd rounding;           // n_z: a smaller rms is rounding
   std::vector<Eigen::Index> columns;  // k of the n
   Eigen::MatrixXd K;                  // k x k, upper
@@ -160,7 +161,7 @@ class FlightProblem {
 };
 
 /// Fits `model` to all flights of a fleet. Throws Error for misuse: names that the model doesn't
-/// have, nothing shared, flights of one name or none; for flights that can't be used unless they
+/// have, nothing shared, flights of one name or none, a loss; for flights that can't be used unless they
 /// are left out; and what the fleet throws.
 ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options);
 

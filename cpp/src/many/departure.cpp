@@ -51,7 +51,8 @@ class Tester {
     const MatrixXd C = others.asDiagonal() * own_middle * others.asDiagonal() +
                        MatrixXd(L.asDiagonal() * their_middle * L.asDiagonal());
     const VectorXd information = L.cwiseProduct(others);
-    judge(test, flight, b.dot(C.ldlt().solve(b)), b.cwiseAbs2().cwiseQuotient(information).sum(),
+    judge(test, flight, b.dot(C.ldlt().solve(b)),
+          covariance_.ratio * b.cwiseAbs2().cwiseQuotient(information).sum(),
           static_cast<double>(both.size()));
     const MatrixXd to_difference = V * information.cwiseInverse().asDiagonal();
     fill_differences(test.departure, V, to_difference * b,
@@ -71,6 +72,7 @@ class Tester {
   }
 
  private:
+  /// `drop`: of the cost at R, twice.
   void judge(Test& test, Index flight, double statistic, double drop, double k) const {
     const auto outputs = static_cast<double>(joint_.output_squares.size());
     const double measurements = joint_.rows * outputs;
@@ -131,7 +133,7 @@ void adjust(std::vector<Test>& tests, double Test::* log10_p, double Departure::
 std::vector<Departure> find_departures(const JointProblem& joint,
                                        const JointCovariance& covariance) {
   const bool testable = joint.layout.flights > 1 && !covariance.singular &&
-                        covariance.joint.cols() > 0 && std::isfinite(covariance.inflation);
+                        covariance.joint.cols() > 0 && std::isfinite(covariance.ratio);
   std::vector<Test> tests;
   const Tester tester(joint, covariance);
   for (Index i = 0; i < joint.layout.flights; ++i) {

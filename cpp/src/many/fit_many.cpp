@@ -174,24 +174,22 @@ class Description {
     for (Index i = 0; i < joint_.layout.flights; ++i) squares += objective_.squares(i);
     result_.rmse = by_output(model_.tables(), (squares / joint_.rows).cwiseSqrt());
     result_.noise = by_output(model_.tables(), stage_.noise);
-    for (Index j = 0; j < squares.size(); ++j) {
-      result_.cost += 0.5 * squares[j] / (stage_.noise[j] * stage_.noise[j]) +
-                      joint_.rows * std::log(stage_.noise[j]);
-    }
+    result_.cost = 0.5 * objective_.square() + joint_.rows * stage_.noise.array().log().sum();
   }
 
   /// What all flights together leave open: of the shared parameters, then of each flight's own.
   /// With the columns of parameters at a bound: a bound may hold what the flights leave open.
   void judge() {
     std::vector<Share> shares;
-    for (const TriangularFactor& block : objective_.data_blocks()) {
+    for (const TriangularFactor& block : objective_.flight_blocks()) {
       shares.push_back(eliminate_own(block.matrix(), joint_.layout.own));
     }
     const Index n_shared = joint_.layout.shared;
-    const MatrixXd merged = merge_shared(shares).matrix().topLeftCorner(n_shared, n_shared);
+    TriangularFactor all = merge_shared(shares);
+    all.merge(objective_.shared_knowledge());
+    const MatrixXd merged = all.matrix().topLeftCorner(n_shared, n_shared);
     const VectorXd scale = plausible_lengths(joint_, objective_);
-    const double factor =
-        std::isnan(covariance_.inflation) ? 1.0 : std::sqrt(covariance_.inflation);
+    const double factor = std::isnan(covariance_.ratio) ? 1.0 : std::sqrt(covariance_.ratio);
     std::vector<std::string> names;
     for (const Variable& variable : variables(joint_.problem, joint_.parting)) {
       names.push_back(variable.name);
@@ -262,6 +260,11 @@ const FlightFit& ManyFit::flight(std::string_view name) const {
 
 ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options) {
   const Problem problem(model, options.fit);
+  if (options.fit.loss != Loss::squares) {
+    throw Error("many flights are fitted jointly by least squares alone, without loss '" +
+                std::string(to_string(options.fit.loss)) +
+                "'; fit each flight by itself with it, and leave out the rows that it forgives");
+  }
   const Split parting = split(problem, options.own);
   const std::vector<std::string> names = fleet.names();
   check_names(names);

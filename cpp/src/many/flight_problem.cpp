@@ -136,8 +136,7 @@ MatrixXd FlightProblem::score_covariance(const ScoreQuestion& question) const {
   const std::vector<Segment>& runs = parts_->measurements.runs();
   const auto models = find_output_noise(residuals, runs, question.rounding, parts_->pool);
   const ScoreNoise noise{question.noise, models, runs,
-                         static_cast<double>(residuals.size()) / freedom,
-                         parts_->problem.noise().size() > 0};
+                         static_cast<double>(residuals.size()) / freedom};
   MatrixXd covariance =
       find_score_covariance(std::move(tangents), noise, columns, question.K, parts_->pool);
   if (!covariance.allFinite()) return {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "many/joint_covariance.hpp"
 
-#include <limits>
+#include <cmath>
 
 namespace sepcal {
 namespace {
@@ -15,9 +15,7 @@ bool is_singular(const MatrixXd& R) {
          (R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any();
 }
 
-MatrixXd undefined(Index n) {
-  return MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
-}
+MatrixXd undefined(Index n) { return MatrixXd::Constant(n, n, not_a_number); }
 
 /// R^-1 M R^-T, symmetric to the last bit.
 MatrixXd sandwich(const MatrixXd& R, const MatrixXd& M) {
@@ -45,6 +43,20 @@ JudgedFlight judge_flight(const JointProblem& joint, const JointStage& stage,
   return judged;
 }
 
+/// Rows of what is known in the coordinates of K.
+MatrixXd known_rows(const VectorXd& weights, const MatrixXd& K) {
+  MatrixXd rows = weights.asDiagonal();
+  K.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows);
+  return rows;
+}
+
+/// Of [own | shared], the own ones alone.
+VectorXd own_weights(const JudgedFlight& judged, const ManyObjective& objective) {
+  VectorXd weights = objective.known_weights()(judged.columns);
+  weights.tail(weights.size() - judged.share.own.cols()).setZero();
+  return weights;
+}
+
 void ask_for_middles(JointCovariance& result, const JointProblem& joint, const JointStage& stage,
                      const ManyObjective& objective, Fleet& fleet) {
   VectorXd rounding = VectorXd::Zero(stage.noise.size());
@@ -57,11 +69,62 @@ void ask_for_middles(JointCovariance& result, const JointProblem& joint, const J
     const JudgedFlight& judged = result.flights[static_cast<std::size_t>(i)];
     if (is_singular(judged.share.own)) continue;
     asked.push_back(static_cast<std::size_t>(i));
-    questions.push_back({objective.flight(i), joint.layout.point(stage.x, i), stage.noise, rounding,
-                         judged.columns, beside_others(judged.share, result.joint)});
+    questions.push_back({objective.flight(i), joint.layout.point(stage.x, i),
+                         std::sqrt(result.ratio) * stage.noise, rounding, judged.columns,
+                         beside_others(judged.share, result.joint)});
   }
   const std::vector<MatrixXd> middles = fleet.score_covariances(questions);
-  for (std::size_t q = 0; q < asked.size(); ++q) result.flights[asked[q]].middle = middles[q];
+  for (std::size_t q = 0; q < asked.size(); ++q) {
+    JudgedFlight& judged = result.flights[asked[q]];
+    judged.middle = middles[q];
+    if (judged.middle.size() == 0) continue;
+    const MatrixXd known = known_rows(own_weights(judged, objective), questions[q].K);
+    judged.middle += known.transpose() * known;
+  }
+}
+
+/// The factors of the problem whitened by `noise`.
+JointCovariance factorise(const JointProblem& joint, const JointStage& stage,
+                          const ManyObjective& objective, const VectorXd& noise) {
+  JointCovariance result;
+  const std::vector<TriangularFactor> blocks = objective.flight_blocks(noise.cwiseInverse());
+  std::vector<Share> shares;
+  for (Index i = 0; i < joint.layout.flights; ++i) {
+    result.flights.push_back(judge_flight(joint, stage, blocks[static_cast<std::size_t>(i)], i));
+    shares.push_back(result.flights.back().share);
+  }
+  for (const Index column : result.flights.front().columns) {
+    if (column >= joint.layout.own) result.shared.push_back(column - joint.layout.own);
+  }
+  // Own parameters at their bounds differ from flight to flight, the shared ones don't.
+  const auto k = static_cast<Index>(result.shared.size());
+  std::vector<Index> columns = result.shared;
+  columns.push_back(joint.layout.shared);
+  MatrixXd known = objective.shared_knowledge().matrix()(Eigen::all, columns);
+  TriangularFactor all = merge_shared(shares);
+  all.absorb(known);
+  result.joint = all.matrix().topLeftCorner(k, k);
+  result.singular = is_singular(result.joint);
+  return result;
+}
+
+/// Parameters that the measurements had to pay for: all of them, less the share of each that was
+/// known beforehand.
+double count_spent(const JointCovariance& at_R, const JointProblem& joint,
+                   const ManyObjective& objective) {
+  auto spent = static_cast<double>(joint.layout.size());
+  const VectorXd& weights = objective.known_weights();
+  if (weights.isZero(0.0) || at_R.singular) return spent;
+  const auto share = [](const MatrixXd& covariance, const VectorXd& weight) {
+    const double known = covariance.diagonal().cwiseProduct(weight.cwiseAbs2()).sum();
+    return std::isfinite(known) ? known : 0.0;
+  };
+  spent -= share(at_R.shared_white(), weights.tail(joint.layout.shared)(at_R.shared));
+  for (Index i = 0; i < joint.layout.flights; ++i) {
+    const JudgedFlight& judged = at_R.flights[static_cast<std::size_t>(i)];
+    spent -= share(at_R.own_white(i), own_weights(judged, objective).head(judged.share.own.cols()));
+  }
+  return spent;
 }
 
 }  // namespace
@@ -77,36 +140,35 @@ MatrixXd JointCovariance::shared_middle(Index flight) const {
   const MatrixXd& middle = flights[static_cast<std::size_t>(flight)].middle;
   if (middle.size() > 0) return middle.bottomRightCorner(joint.cols(), joint.cols());
   const MatrixXd B = contribution(flight);
-  return inflation * B.transpose() * B;
+  return B.transpose() * B;
 }
 
 MatrixXd JointCovariance::shared_white() const {
-  if (singular) return undefined(joint.cols());
-  return sandwich(joint, inflation * MatrixXd::Identity(joint.cols(), joint.cols()));
+  if (!is_defined()) return undefined(joint.cols());
+  return sandwich(joint, MatrixXd::Identity(joint.cols(), joint.cols()));
 }
 
 MatrixXd JointCovariance::shared_coloured() const {
-  return singular ? undefined(joint.cols()) : sandwich(joint, middle_sum);
+  return is_defined() ? sandwich(joint, middle_sum) : undefined(joint.cols());
 }
 
 MatrixXd JointCovariance::own_white(Index flight) const {
   const Share& share = flights[static_cast<std::size_t>(flight)].share;
   const Index n_own = share.own.cols();
-  if (singular || is_singular(share.own)) return undefined(n_own);
+  if (!is_defined() || is_singular(share.own)) return undefined(n_own);
   MatrixXd through = share.cross;  // what the shared parameters' error adds
   joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(through);
-  return sandwich(share.own,
-                  inflation * (MatrixXd::Identity(n_own, n_own) + through * through.transpose()));
+  return sandwich(share.own, MatrixXd::Identity(n_own, n_own) + through * through.transpose());
 }
 
 MatrixXd JointCovariance::own_coloured(Index flight) const {
   const JudgedFlight& judged = flights[static_cast<std::size_t>(flight)];
   const Share& share = judged.share;
   const Index n_own = share.own.cols();
-  if (singular || is_singular(share.own)) return undefined(n_own);
+  if (!is_defined() || is_singular(share.own)) return undefined(n_own);
   MatrixXd through = share.cross;
   joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(through);
-  MatrixXd own = inflation * MatrixXd::Identity(n_own, n_own);
+  MatrixXd own = MatrixXd::Identity(n_own, n_own);
   MatrixXd mixed = MatrixXd::Zero(n_own, joint.cols());
   if (judged.middle.size() > 0) {
     own = judged.middle.topLeftCorner(n_own, n_own);
@@ -119,30 +181,21 @@ MatrixXd JointCovariance::own_coloured(Index flight) const {
 
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
                                       const ManyObjective& objective, Fleet& fleet) {
-  JointCovariance result;
-  const std::vector<TriangularFactor> blocks = objective.data_blocks();
-  std::vector<Share> shares;
-  for (Index i = 0; i < joint.layout.flights; ++i) {
-    result.flights.push_back(judge_flight(joint, stage, blocks[static_cast<std::size_t>(i)], i));
-    shares.push_back(result.flights.back().share);
-  }
-  for (const Index column : result.flights.front().columns) {
-    if (column >= joint.layout.own) result.shared.push_back(column - joint.layout.own);
-  }
-  // Own parameters at their bounds differ from flight to flight, the shared ones don't.
-  const auto k = static_cast<Index>(result.shared.size());
-  result.joint = merge_shared(shares).matrix().topLeftCorner(k, k);
-  result.singular = is_singular(result.joint);
-  const double measurements = joint.rows * static_cast<double>(stage.noise.size());
-  const double freedom = measurements - static_cast<double>(joint.layout.size());
+  JointCovariance result = factorise(joint, stage, objective, stage.noise);
   if (!joint.noise_given()) {
-    result.inflation =
-        freedom > 0 ? measurements / freedom : std::numeric_limits<double>::quiet_NaN();
+    const double measurements = joint.rows * static_cast<double>(stage.noise.size());
+    const double freedom = measurements - count_spent(result, joint, objective);
+    const double ratio = freedom > 0 ? measurements / freedom : not_a_number;
+    if (freedom > 0) result = factorise(joint, stage, objective, std::sqrt(ratio) * stage.noise);
+    result.ratio = ratio;
   }
-  if (result.singular) return result;
-  if (joint.problem.options().coloured_errors)
+  if (!result.is_defined()) return result;
+  if (joint.problem.options().coloured_errors) {
     ask_for_middles(result, joint, stage, objective, fleet);
-  result.middle_sum = MatrixXd::Zero(k, k);
+  }
+  const VectorXd weights = objective.known_weights().tail(joint.layout.shared)(result.shared);
+  const MatrixXd known = known_rows(weights, result.joint);
+  result.middle_sum = known.transpose() * known;
   for (Index i = 0; i < joint.layout.flights; ++i) result.middle_sum += result.shared_middle(i);
   return result;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "many/arrowhead.hpp"
@@ -25,8 +26,11 @@ struct JointCovariance {
   std::vector<Eigen::Index> shared;  // which of the shared parameters are left, k of them
   Eigen::MatrixXd joint;             // k x k, upper: their factor, all flights' own projected out
   bool singular = false;             // then every covariance is NaN
-  double inflation = 1.0;            // of white covariances, M / (M - n) where R was estimated
-  Eigen::MatrixXd middle_sum;        // of shared_middle() over all flights
+  double ratio = 1.0;                // of the noise judged behind all of this to R, squared:
+                                     // M / (M - n) where R was estimated; NaN: nothing is defined
+  Eigen::MatrixXd middle_sum;        // of shared_middle() over all flights, and what is known
+
+  bool is_defined() const { return !singular && !std::isnan(ratio); }
 
   /// White and as the flights' middles have it: of the shared parameters (k x k) and of a flight's
   /// own that are left.
@@ -43,8 +47,8 @@ struct JointCovariance {
   Eigen::MatrixXd contribution(Eigen::Index flight) const;
 };
 
-/// The objective stands at the solution, without priors. With FitOptions::coloured_errors the fleet
-/// is asked once more.
+/// The objective stands at the solution, where nothing holds it but what is known. With
+/// FitOptions::coloured_errors the fleet is asked once more.
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
                                       const ManyObjective& objective, Fleet& fleet);
 

@@ -28,6 +28,7 @@ class JointAlternation {
       result_.noise[j] = std::max(result_.noise[j], joint_.noise_floor(j));
     }
     objective_.weigh(result_.noise.cwiseInverse());
+    for (const Prior& prior : joint_.knowledge()) objective_.know(prior);
     result_.x = find_joint_start(objective_, joint_.starts, joint_.box);
     scale_ = plausible_lengths(joint_, objective_);
     if (leaves_something_open()) objective_.hold(loose_priors());
@@ -112,12 +113,14 @@ class JointAlternation {
 
   bool leaves_something_open() const {
     std::vector<Share> shares;
-    for (const TriangularFactor& block : objective_.data_blocks()) {
+    for (const TriangularFactor& block : objective_.flight_blocks()) {
       if (!block.all_finite()) return false;
       shares.push_back(eliminate_own(block.matrix(), joint_.layout.own));
     }
     const Index n_shared = joint_.layout.shared;
-    const MatrixXd merged = merge_shared(shares).matrix().topLeftCorner(n_shared, n_shared);
+    TriangularFactor all = merge_shared(shares);
+    all.merge(objective_.shared_knowledge());
+    const MatrixXd merged = all.matrix().topLeftCorner(n_shared, n_shared);
     for (Index i = 0; i < joint_.layout.flights; ++i) {
       const MatrixXd K = beside_others(shares[static_cast<std::size_t>(i)], merged);
       if (leaves_open(K, joint_.layout.point(scale_, i))) return true;
@@ -147,6 +150,13 @@ class JointAlternation {
 };
 
 }  // namespace
+
+std::vector<Prior> JointProblem::knowledge() const {
+  std::vector<Prior> known = problem.knowledge();
+  const std::vector<Index> order = parting.order();
+  for (Prior& prior : known) prior = {prior.mean(order), prior.weight(order)};
+  return known;
+}
 
 double JointProblem::noise_floor(Index j) const {
   return std::max(1e-12 * std::sqrt(output_squares[j] / rows),

@@ -23,6 +23,9 @@ struct JointProblem {
 
   bool noise_given() const { return problem.noise().size() > 0; }
 
+  /// What is known of [own | shared] beforehand; none or one.
+  std::vector<Prior> knowledge() const;
+
   /// Below it the noise of output j is rounding.
   double noise_floor(Eigen::Index j) const;
 };
@@ -40,7 +43,8 @@ struct JointStage {
 /// Plausible lengths of all flights' parameters, off the factors at the objective's point.
 Eigen::VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objective);
 
-/// From the flights' own fits; the objective ends linearised at the solution, without priors.
+/// From the flights' own fits; the objective ends linearised at the solution, and nothing holds it
+/// but what is known.
 JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective);
 
 }  // namespace sepcal

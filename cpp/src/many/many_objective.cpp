@@ -15,6 +15,11 @@ void ManyObjective::weigh(const VectorXd& weights) {
   combine_blocks();
 }
 
+void ManyObjective::know(const Prior& knowledge) {
+  known_ = knowledge;
+  combine_blocks();
+}
+
 void ManyObjective::hold(std::vector<Prior> priors) {
   priors_ = std::move(priors);
   combine_blocks();
@@ -33,15 +38,30 @@ bool ManyObjective::linearise(const VectorXd& x) {
                              [](const TriangularFactor& block) { return block.all_finite(); });
 }
 
-std::vector<TriangularFactor> ManyObjective::data_blocks() const {
+std::vector<TriangularFactor> ManyObjective::flight_blocks(const VectorXd& weights) const {
+  Prior own = known_;
+  own.weight.tail(layout_.shared).setZero();
   std::vector<TriangularFactor> blocks;
-  for (const auto& factors : factors_) blocks.push_back(combine(factors, weights_));
+  for (std::size_t i = 0; i < factors_.size(); ++i) {
+    blocks.push_back(combine(factors_[i], weights));
+    if (own.weight.isZero(0.0)) continue;
+    own.join(blocks.back(), layout_.point(at_, static_cast<Index>(i)));
+  }
   return blocks;
 }
 
+TriangularFactor ManyObjective::shared_knowledge() const {
+  TriangularFactor factor(static_cast<int>(layout_.shared + 1));
+  known_.tail(layout_.shared).join(factor, at_.tail(layout_.shared));
+  return factor;
+}
+
 void ManyObjective::combine_blocks() {
-  blocks_ = data_blocks();
+  blocks_ = flight_blocks();
   if (blocks_.empty()) return;
+  Prior shared = known_;
+  shared.weight.head(layout_.own).setZero();
+  if (!shared.weight.isZero(0.0)) shared.join(blocks_.front(), layout_.point(at_, 0));
   for (std::size_t i = 0; i < priors_.size(); ++i) {
     priors_[i].join(blocks_[i], layout_.point(at_, static_cast<Index>(i)));
   }

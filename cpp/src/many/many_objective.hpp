@@ -17,7 +17,11 @@ class ManyObjective {
  public:
   /// `flights`: the fleet's places of those that take part. The fleet must outlive this.
   ManyObjective(Fleet& fleet, std::vector<std::size_t> flights, const Layout& layout)
-      : fleet_(fleet), flights_(std::move(flights)), layout_(layout) {}
+      : fleet_(fleet),
+        flights_(std::move(flights)),
+        layout_(layout),
+        known_{Eigen::VectorXd::Zero(layout.own + layout.shared),
+               Eigen::VectorXd::Zero(layout.own + layout.shared)} {}
 
   const Layout& layout() const { return layout_; }
   std::size_t flight(Eigen::Index i) const { return flights_[static_cast<std::size_t>(i)]; }
@@ -25,18 +29,30 @@ class ManyObjective {
   /// 1 / noise standard deviation of each output (n_z). Needs no pass.
   void weigh(const Eigen::VectorXd& weights);
 
-  /// What is known of [own | shared] of each flight beforehand; empty: nothing.
+  /// What is known beforehand of [own | shared]: of every flight's own ones, and once of those that
+  /// are shared.
+  void know(const Prior& knowledge);
+
+  /// What holds [own | shared] of each flight for a while; empty: nothing.
   void hold(std::vector<Prior> priors);
 
   /// Goes to x; a pass over the data unless it is there already. False where a model is not finite.
   bool linearise(const Eigen::VectorXd& x);
 
-  /// At the point linearised last: a whitened factor of [own | shared | r] a flight, priors
-  /// included.
+  /// At the point linearised last: a whitened factor of [own | shared | r] a flight. Their sum is
+  /// the whole problem: what is known of shared parameters and what holds them stand in the first.
   const std::vector<TriangularFactor>& blocks() const { return blocks_; }
 
-  /// The same without priors.
-  std::vector<TriangularFactor> data_blocks() const;
+  /// What each flight has to say, whitened by `weights`: its data, and what is known of its own
+  /// parameters.
+  std::vector<TriangularFactor> flight_blocks(const Eigen::VectorXd& weights) const;
+  std::vector<TriangularFactor> flight_blocks() const { return flight_blocks(weights_); }
+
+  /// What is known of the shared parameters: the factor of [shared | r].
+  TriangularFactor shared_knowledge() const;
+
+  /// 1 / standard deviation of what is known of [own | shared], 0 where nothing is.
+  const Eigen::VectorXd& known_weights() const { return known_.weight; }
 
   /// n_z factors of each flight, not whitened.
   const std::vector<std::vector<TriangularFactor>>& factors() const { return factors_; }
@@ -44,7 +60,7 @@ class ManyObjective {
   /// Sum of squared residuals of a flight by output (n_z).
   Eigen::VectorXd squares(Eigen::Index i) const;
 
-  /// Sum of whitened squares over all flights, priors included.
+  /// Sum of whitened squares over all flights, with what is known and what holds.
   double square() const;
 
   int passes() const { return passes_; }
@@ -56,6 +72,7 @@ class ManyObjective {
   std::vector<std::size_t> flights_;
   Layout layout_;
   Eigen::VectorXd weights_;
+  Prior known_;
   std::vector<Prior> priors_;
   Eigen::VectorXd at_;
   std::vector<std::vector<TriangularFactor>> factors_;
