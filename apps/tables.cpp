@@ -71,12 +71,26 @@ std::string verdict_on_noise(const Misfit& misfit) {
                      misfit.lag_one > 0 ? "correlate" : "alternate", misfit.lag_one, limit);
 }
 
+/// Bounds, and what was known beforehand.
+std::string remark(const Calibration& calibration, const Parameter& parameter) {
+  if (is_scanned(calibration, parameter)) return "by a scan";
+  std::string text = limits(parameter);
+  const auto& knowledge = calibration.options.fit.knowledge;
+  const auto known = knowledge.find(parameter.name);
+  if (known == knowledge.end()) return text;
+  if (!text.empty()) text += "  ";
+  return text + fmt::format("known {:.6g} +- {:.2g}", known->second.mean,
+                            known->second.standard_deviation);
+}
+
 std::string stage_line(const Fit& fit, const CalibrationOptions& options) {
   const StageOne& one = fit.stage_one;
+  const std::string_view points =
+      options.fit.search == Search::global ? "points of a global search" : "samples";
   std::string text =
       options.fit.samples == 0 || !options.fit.start.empty()
           ? "stage one: nothing sampled"
-          : fmt::format("stage one: {} samples, {} local minim{}", options.fit.samples,
+          : fmt::format("stage one: {} {}, {} local minim{}", options.fit.samples, points,
                         one.minima.size(), one.minima.size() == 1 ? "um" : "a");
   for (const std::string& flat : one.flat_directions) text += ", flat along " + flat;
   return text + fmt::format("; stage two: {}, {} iteration{}, R settled in {}\n",
@@ -110,7 +124,7 @@ std::string calibration_table(const Calibration& calibration) {
     add_row(parameter.name, fmt::format("{:.6g}", parameter.value),
             defined(parameter.standard_error, "{:.2g}"),
             defined(parameter.standard_error_white, "{:.2g}"), parameter.unit,
-            is_scanned(calibration, parameter) ? "by a scan" : limits(parameter));
+            remark(calibration, parameter));
   }
   for (const Derived& derived : calibration.derived) {
     add_row(derived.name, fmt::format("{:.6g}", derived.value),

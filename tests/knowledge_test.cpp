@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -97,6 +98,41 @@ TEST_CASE("with R estimated what is known keeps its own size, and spends less of
     const MatrixXd H = data * (rows - spent) / rows + W;
     CHECK((fit.covariance - H.inverse()).norm() < 1e-7 * H.inverse().norm());
   }
+}
+
+TEST_CASE("a result far from what was known, or less sure, is said") {
+  sepcal::test::Draws draws(31);
+  std::vector<double> u = draws.uniform_column(600, -1, 1);
+  std::ranges::sort(u);  // slow, so that coloured noise matters
+  std::vector<double> z;
+  double e = 0.0;
+  for (const double x : u) {
+    e = 0.9 * e + 0.1 * draws.normal();
+    z.push_back(2.0 * x + 1.0 + e);
+  }
+  Record record;
+  record.add("u", u).add("z", z);
+  FitOptions options;
+  const Fit ignorant = sepcal::fit(Line{}, record, options);
+  const double sure = 0.5 * ignorant["s"].standard_error;
+  REQUIRE(sure > 2.0 * ignorant["s"].standard_error_white);
+
+  options.knowledge = {{"s", {ignorant["s"].value, 2.0 * ignorant["s"].standard_error}}};
+  CHECK(sepcal::fit(Line{}, record, options).message.empty());
+  options.knowledge = {{"s", {ignorant["s"].value, sure}}};
+  const Fit loud = sepcal::fit(Line{}, record, options);
+  CHECK(loud.message.find("'s' is less sure than it was known") != std::string::npos);
+  // Weighed as it says, both are as sure as their precisions' sum.
+  const double factor = ignorant["s"].standard_error / ignorant["s"].standard_error_white;
+  options.noise = {{"z", factor * ignorant.noise[0].value}};
+  const Fit weighed = sepcal::fit(Line{}, record, options);
+  CHECK(weighed.message.empty());
+  CHECK(weighed["s"].standard_error == Approx(sure / std::sqrt(1.25)).epsilon(0.05));
+
+  options.noise.clear();
+  options.knowledge = {{"s", {ignorant["s"].value + 30.0 * sure, sure}}};
+  CHECK(sepcal::fit(Line{}, record, options).message.find("far from what is known of it") !=
+        std::string::npos);
 }
 
 TEST_CASE("known for certain is fixed, hardly known is free") {

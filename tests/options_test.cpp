@@ -102,6 +102,7 @@ TEST_CASE("noise must be positive and given for every output or for none") {
 }
 
 TEST_CASE("counts and tolerances that make no sense are refused") {
+  check_refused([](FitOptions& o) { o.loss_width = 2.0; }, "loss_width is given without a loss");
   check_refused([](FitOptions& o) { o.samples = -1; }, "samples");
   check_refused([](FitOptions& o) { o.descents = 0; }, "descents");
   check_refused([](FitOptions& o) { o.noise_tolerance = 0; }, "noise_tolerance");

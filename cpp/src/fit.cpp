@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "covariance.hpp"
+#include "knowledge.hpp"
 #include "plausibility.hpp"
 #include "sepcal/check_model.hpp"
 #include "stages.hpp"
@@ -105,6 +106,8 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   result.noise_iterations = two.noise_iterations;
   result.rows = measurements.rows();
   result.message = two.message + result.identifiability.message();
+  if (!result.message.empty() && !result.message.ends_with("; ")) result.message += "; ";
+  result.message += judge_knowledge(result.parameters, problem.options());
   if (result.message.ends_with("; ")) result.message.resize(result.message.size() - 2);
   result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
                   : two.converged                              ? FitStatus::converged

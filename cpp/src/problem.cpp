@@ -129,6 +129,9 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
   if (!(options.loss_width >= 0) || !std::isfinite(options.loss_width)) {
     throw Error("loss_width must be positive, or 0 for the loss's own");
   }
+  if (options.loss_width > 0 && options.loss == Loss::squares) {
+    throw Error("loss_width is given without a loss; choose huber or cauchy, or leave it out");
+  }
   if (options.screens) check_screens(*options.screens);
   if (!(options.noise_tolerance > 0)) throw Error("noise_tolerance must be positive");
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "covariance.hpp"
+#include "knowledge.hpp"
 #include "many/departure.hpp"
 #include "many/joint_covariance.hpp"
 #include "many/joint_stage.hpp"
@@ -91,6 +92,8 @@ class Description {
     describe_noise();
     result_.message = stage_.message;
     judge();
+    if (!result_.message.empty() && !result_.message.ends_with("; ")) result_.message += "; ";
+    result_.message += judge_knowledge(result_.shared, joint_.problem.options());
     if (result_.message.ends_with("; ")) result_.message.resize(result_.message.size() - 2);
     result_.iterations = stage_.iterations;
     result_.noise_iterations = stage_.noise_iterations;
