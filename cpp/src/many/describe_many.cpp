@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "many/describe_many.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "covariance.hpp"
+#include "knowledge.hpp"
+#include "many/departure.hpp"
+#include "sepcal/identifiability.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Parameter to_parameter(const Variable& variable, double value, bool at_bound) {
+  Parameter parameter{.name = variable.name, .unit = variable.unit};
+  parameter.value = value;
+  parameter.lower = variable.lower;
+  parameter.upper = variable.upper;
+  parameter.at_bound = at_bound;
+  parameter.standard_error = parameter.standard_error_white = not_a_number;
+  return parameter;
+}
+
+void set_errors(std::vector<Parameter>& parameters, const std::vector<Index>& places,
+                const MatrixXd& coloured, const MatrixXd& white) {
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    Parameter& parameter = parameters[static_cast<std::size_t>(places[k])];
+    parameter.standard_error = std::sqrt(coloured(at, at));
+    parameter.standard_error_white = std::sqrt(white(at, at));
+  }
+}
+
+std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
+  std::vector<OutputValue> result;
+  for (Index j = 0; j < values.size(); ++j) {
+    result.push_back({tables.outputs[static_cast<std::size_t>(j)].name, values[j]});
+  }
+  return result;
+}
+
+class Description {
+ public:
+  Description(const BlockModel& model, const JointProblem& joint, const JointStage& stage,
+              const ManyObjective& objective, const JointCovariance& covariance, ManyFit& result)
+      : model_(model),
+        joint_(joint),
+        stage_(stage),
+        objective_(objective),
+        covariance_(covariance),
+        result_(result) {}
+
+  void describe(const std::vector<std::string>& names) {
+    describe_shared();
+    for (Index i = 0; i < joint_.layout.flights; ++i) {
+      describe_flight(i, names[objective_.flight(i)]);
+    }
+    describe_departures();
+    describe_noise();
+    result_.message = stage_.message;
+    judge();
+    if (!result_.message.empty() && !result_.message.ends_with("; ")) result_.message += "; ";
+    result_.message += judge_knowledge(result_.shared, joint_.problem.options());
+    if (result_.message.ends_with("; ")) result_.message.resize(result_.message.size() - 2);
+    result_.iterations = stage_.iterations;
+    result_.noise_iterations = stage_.noise_iterations;
+    result_.passes = objective_.passes();
+  }
+
+ private:
+  Index first_shared() const { return joint_.layout.flights * joint_.layout.own; }
+
+  bool at_bound(Index place) const { return stage_.at_bound[static_cast<std::size_t>(place)]; }
+
+  void describe_shared() {
+    std::vector<Index> places;  // of each free shared parameter among all shared ones
+    for (const Variable& variable : model_.tables().parameters()) {
+      const auto fixed = joint_.problem.options().fixed.find(variable.name);
+      if (fixed != joint_.problem.options().fixed.end()) {
+        Parameter parameter = to_parameter(variable, fixed->second, false);
+        parameter.fixed = true;
+        parameter.lower = parameter.upper = fixed->second;
+        result_.shared.push_back(std::move(parameter));
+        continue;
+      }
+      const std::vector<Variable>& free = joint_.problem.parameters();
+      const auto k = static_cast<Index>(std::ranges::find(free, variable.name, &Variable::name) -
+                                        free.begin());
+      const auto shared = std::ranges::find(joint_.parting.shared, k);
+      if (shared == joint_.parting.shared.end()) continue;
+      const Index place = first_shared() + (shared - joint_.parting.shared.begin());
+      places.push_back(static_cast<Index>(result_.shared.size()));
+      result_.shared.push_back(
+          to_parameter(free[static_cast<std::size_t>(k)], stage_.x[place], at_bound(place)));
+    }
+    shared_places_ = places;
+    std::vector<Index> inside;
+    for (const Index k : covariance_.shared) inside.push_back(places[static_cast<std::size_t>(k)]);
+    const auto n = static_cast<Index>(result_.shared.size());
+    result_.covariance = spread(covariance_.shared_coloured(), inside, n);
+    result_.covariance_white = spread(covariance_.shared_white(), inside, n);
+    result_.correlation = correlation_of(result_.covariance);
+    set_errors(result_.shared, inside, result_.covariance(inside, inside),
+               result_.covariance_white(inside, inside));
+  }
+
+  void describe_flight(Index i, const std::string& name) {
+    const FlightStart& start = joint_.starts[static_cast<std::size_t>(i)];
+    FlightFit flight{.name = name, .rows = start.rows, .alone = start.status};
+    flight.message = start.message;
+    std::vector<Index> inside;
+    for (Index k = 0; k < joint_.layout.own; ++k) {
+      const Index place = i * joint_.layout.own + k;
+      const auto free = static_cast<std::size_t>(joint_.parting.own[static_cast<std::size_t>(k)]);
+      flight.own.push_back(
+          to_parameter(joint_.problem.parameters()[free], stage_.x[place], at_bound(place)));
+      if (!at_bound(place)) inside.push_back(k);
+    }
+    set_errors(flight.own, inside, covariance_.own_coloured(i), covariance_.own_white(i));
+    const VectorXd rmse = (objective_.squares(i) / static_cast<double>(start.rows)).cwiseSqrt();
+    flight.rmse = by_output(model_.tables(), rmse);
+    result_.rows += start.rows;
+    result_.flights.push_back(std::move(flight));
+  }
+
+  void describe_departures() {
+    std::vector<Departure> departures = find_departures(joint_, covariance_);
+    const auto n = static_cast<Index>(result_.shared.size());
+    const auto among_all = [&](const VectorXd& values) {
+      VectorXd all = VectorXd::Constant(n, not_a_number);
+      all(shared_places_) = values;
+      return all;
+    };
+    for (std::size_t i = 0; i < departures.size(); ++i) {
+      Departure& departure = departures[i];
+      departure.difference = among_all(departure.difference);
+      departure.standard_error = among_all(departure.standard_error);
+      result_.flights[i].departure = std::move(departure);
+    }
+  }
+
+  void describe_noise() {
+    VectorXd squares = VectorXd::Zero(stage_.noise.size());
+    for (Index i = 0; i < joint_.layout.flights; ++i) squares += objective_.squares(i);
+    result_.rmse = by_output(model_.tables(), (squares / joint_.rows).cwiseSqrt());
+    result_.noise = by_output(model_.tables(), stage_.noise);
+    result_.cost = 0.5 * objective_.square() + joint_.rows * stage_.noise.array().log().sum();
+  }
+
+  /// What all flights together leave open: of the shared parameters, then of each flight's own.
+  /// With the columns of parameters at a bound: a bound may hold what the flights leave open.
+  void judge() {
+    std::vector<Share> shares;
+    for (const TriangularFactor& block : objective_.flight_blocks()) {
+      shares.push_back(eliminate_own(block.matrix(), joint_.layout.own));
+    }
+    const Index n_shared = joint_.layout.shared;
+    TriangularFactor all = merge_shared(shares);
+    all.merge(objective_.shared_knowledge());
+    const MatrixXd merged = all.matrix().topLeftCorner(n_shared, n_shared);
+    const VectorXd scale = plausible_lengths(joint_, objective_);
+    const double factor = std::isnan(covariance_.ratio) ? 1.0 : std::sqrt(covariance_.ratio);
+    std::vector<std::string> names;
+    for (const Variable& variable : variables(joint_.problem, joint_.parting)) {
+      names.push_back(variable.name);
+    }
+    const std::vector<std::string> shared(names.begin() + joint_.layout.own, names.end());
+    result_.identifiability = identify(merged, shared, scale.tail(n_shared), factor);
+    result_.message += result_.identifiability.message();
+    bool open = !result_.identifiability.unobservable.empty();
+    std::vector<std::string> open_flights;
+    std::string first;
+    for (Index i = 0; i < joint_.layout.flights && !open; ++i) {
+      const Identifiability alone =
+          identify(beside_others(shares[static_cast<std::size_t>(i)], merged), names,
+                   joint_.layout.point(scale, i), factor);
+      if (alone.unobservable.empty()) continue;
+      if (open_flights.empty()) first = alone.sentences.front();
+      open_flights.push_back(result_.flights[static_cast<std::size_t>(i)].name);
+    }
+    if (!open_flights.empty()) {
+      open = true;
+      result_.message += (result_.message.empty() || result_.message.ends_with("; ") ? "" : "; ") +
+                         ("flight '" + open_flights.front() + "': " + first);
+      if (open_flights.size() > 1) {
+        result_.message +=
+            "; the same or more in " + std::to_string(open_flights.size() - 1) + " other flights";
+      }
+    }
+    result_.status = open               ? FitStatus::not_identifiable
+                     : stage_.converged ? FitStatus::converged
+                                        : FitStatus::not_converged;
+  }
+
+  const BlockModel& model_;
+  const JointProblem& joint_;
+  const JointStage& stage_;
+  const ManyObjective& objective_;
+  const JointCovariance& covariance_;
+  ManyFit& result_;
+  std::vector<Index> shared_places_;
+};
+
+}  // namespace
+
+void describe_many(const BlockModel& model, const JointProblem& joint, const JointStage& stage,
+                   const ManyObjective& objective, const JointCovariance& covariance,
+                   const std::vector<std::string>& names, ManyFit& result) {
+  Description(model, joint, stage, objective, covariance, result).describe(names);
+}
+
+}  // namespace sepcal
