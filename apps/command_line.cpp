@@ -66,6 +66,10 @@ void add_interval_options(CLI::App& intervals, Arguments& arguments) {
       .add_option("--level", arguments.level,
                   "how often an interval should hold the true value [0.95]")
       ->type_name("LEVEL");
+  intervals
+      .add_option("--parameter", arguments.parameters, "only this one; may be given several times")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   add_file(intervals, "-o,--output", arguments.output, "writes the intervals there")
       ->type_name("I.json");
 }

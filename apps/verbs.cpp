@@ -122,8 +122,14 @@ int Verbs::intervals() const {
     output.emplace(arguments_.output);
   }
   const Calibration base = read_base();
-  const FlightIntervals intervals =
-      find_intervals(base, read_flight(), {.level = arguments_.level});
+  const Flight flight = read_flight();
+  ProgressLine line;
+  const FlightIntervals intervals = find_intervals(
+      base, flight,
+      {.level = arguments_.level,
+       .names = arguments_.parameters,
+       .progress = [&](std::string_view task, double fraction) { line.show(task, fraction); }});
+  line.clear();
   print_notes(intervals.notes);
   const std::string json = to_json(intervals);
   if (output) {

@@ -18,6 +18,7 @@ struct Arguments {
   std::string effect;
   std::string inject;  // "E=SIZE", or empty
   double level = 0.95;
+  std::vector<std::string> parameters;
   bool json = false;
   bool drop_invalid = false;  // of a later verb: whatever the calibration says
 };

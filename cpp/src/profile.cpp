@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <sstream>
 #include <utility>
 
@@ -258,11 +259,15 @@ std::vector<ProfileInterval> profile_intervals(const BlockModel& model, const Re
 
   std::vector<std::unique_ptr<ProfilePath>> paths(2 * places.size());
   std::vector<ProfilePath::End> ends(paths.size());
+  std::mutex mutex;
+  double done = 0.0;
   pool.for_each(paths.size(), [&](std::size_t i) {
     const Index k = places[i / 2];
     if (!profiles.converged()) return;
     paths[i] = profiles.path(k, i % 2 == 1);
     ends[i] = paths[i]->walk(profiles.reach(k));
+    const std::lock_guard lock(mutex);
+    if (asked.progress) asked.progress("profiling", ++done / static_cast<double>(paths.size()));
   });
 
   std::vector<ProfileInterval> intervals;

@@ -316,6 +316,13 @@ def test_intervals(bench: Bench):
     table = bench.run("intervals", "flight.csv", "base.json", "--level", "0.5")
     assert "50 % Gaussian" in table.out
     assert all(name in table.out for name in estimates)
+    chosen = list(estimates)[-2:]
+    named = [part for name in chosen for part in ("--parameter", name)]
+    only = bench.run("intervals", "flight.csv", "base.json", "--json", *named)
+    assert only.result["parameters"] == {name: result["parameters"][name] for name in chosen}
+    typo = bench.run("intervals", "flight.csv", "base.json", "--parameter", "w_x")
+    assert typo.code == 2
+    assert "'w_x'" in typo.err
 
 
 def test_intervals_of_another_flight_or_an_impossible_level_are_refused(bench: Bench):

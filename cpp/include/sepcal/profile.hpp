@@ -44,6 +44,7 @@ struct ProfileInterval {
 struct ProfileOptions {
   double level = 0.95;
   std::vector<std::string> names = {};  // empty: all that are free, in the fit's order
+  FitProgress progress = {};
 };
 
 /// Both intervals of every named parameter of `fit`. `model`, `record` and `options` are those of
