@@ -14,7 +14,7 @@ import numpy as np
 
 import sepcal
 from oracle.model import Array
-from oracle.nist_model import NistModel
+from oracle.nist_model import NistModel, ValuesAlone
 from oracle.nist_models import MODELS
 
 CERTIFIED_DIGITS = 11.0  # no estimate counts for more
@@ -90,12 +90,16 @@ def fit(
     *,
     iterations: int | None = None,
     jacobian: str = "kaufman",
+    derivatives: bool = True,
 ) -> sepcal.Fit:
-    """A fit from one of the starts: that of xi2 alone, so that nothing is sampled."""
+    """A fit from one of the starts: that of xi2 alone, so that nothing is sampled.
+
+    Without `derivatives` the model hides its own, and sepcal takes differences of at().
+    """
     n_1 = len(given.model.linear)
     xi2 = dict(zip(given.model.nonlinear, given.starts[start][n_1:].tolist(), strict=True))
     return sepcal.fit(
-        given.model,
+        given.model if derivatives else ValuesAlone(given.model),
         given.columns,
         start=xi2,
         second_stage=second_stage,

@@ -101,3 +101,12 @@ class NistModel:
                     sign[group] = of_group
                 equivalents.append((order, sign))
         return equivalents
+
+
+class ValuesAlone:
+    """The same model to sepcal.fit(), without derivatives."""
+
+    def __init__(self, model: NistModel) -> None:
+        self.inputs, self.outputs = model.inputs, model.outputs
+        self.linear, self.nonlinear = model.linear, model.nonlinear
+        self.at = model.at

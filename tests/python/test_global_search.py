@@ -12,29 +12,47 @@ from oracle.residual_sampling import estimate_linear
 
 
 def test_minima_are_those_that_scipy_descends_to() -> None:
-    """Scalar example 2 over every phase: each end of a hundred descents that lies low is listed."""
+    """Scalar example 2 over every phase: the ends below twice the lowest Tr[R], and no others.
+
+    Descents of ln Tr[R] by its exact gradient from 100 points. Those that stop on a slope, as they
+    do in narrow valleys, are no ends.
+    """
     case = state_case("scalar_2")
-    bounds = {"b": (-0.5, 0.5), "c": (-np.pi, np.pi)}
+    bounds = {"b": (-2.0, 2.0), "c": (-np.pi, np.pi)}
     stage_one = sepcal.fit(
         sepcal.ScalarExample2(), case.record, bounds=bounds, search="global", descents=30
     ).stage_one
-    found = np.array([[at.xi2["b"], at.xi2["c"]] for at in stage_one.minima])
     lower, upper = np.array(list(bounds.values())).T
-    ends = [
-        minimize(
-            lambda xi2: np.log(estimate_linear(case.model, case.record, xi2).trace_r),
+
+    def log_trace(xi2: np.ndarray) -> tuple[float, np.ndarray]:
+        estimate = estimate_linear(case.model, case.record, xi2)
+        return np.log(estimate.trace_r), estimate.gradient / estimate.trace_r
+
+    ends: list[tuple[float, np.ndarray]] = []
+    for start in np.random.default_rng(1).uniform(lower, upper, size=(100, 2)):
+        end = minimize(
+            log_trace,
             start,
+            jac=True,
             bounds=list(zip(lower, upper, strict=True)),
             method="L-BFGS-B",
+            options={"ftol": 1e-15, "gtol": 1e-8},
         )
-        for start in np.random.default_rng(1).uniform(lower, upper, size=(100, 2))
-    ]
-    lowest = min(end.fun for end in ends)
-    assert_allclose(np.log(stage_one.minima[0].trace_r), lowest, atol=1e-8)
-    deep = [end.x for end in ends if end.fun < lowest + 1e-6]
-    assert len(deep) > 0
-    for xi2 in deep:
-        assert np.min(np.linalg.norm(found - xi2, axis=1)) < 1e-3
+        slope = np.clip(end.x - end.jac, lower, upper) - end.x  # without what bounds hold
+        met = any(np.linalg.norm(end.x - xi2) < 1e-3 for _, xi2 in ends)
+        if np.linalg.norm(slope) < 1e-5 and not met:
+            ends.append((end.fun, end.x))
+    lowest = min(value for value, _ in ends)
+    deep = [(value, xi2) for value, xi2 in ends if value < lowest + np.log(2.0)]
+    found = [(np.log(at.trace_r), np.array([at.xi2["b"], at.xi2["c"]])) for at in stage_one.minima]
+    found_deep = [(value, xi2) for value, xi2 in found if value < lowest + np.log(2.0)]
+    # Two pairs half a turn apart, one of them on a bound of b, and one minimum on a bound of c.
+    assert len(deep) == len(found_deep) == 5
+    assert len({round(value, 6) for value, _ in deep}) == 3
+    for value, xi2 in deep:
+        value_found, nearest = min(found_deep, key=lambda at: np.linalg.norm(at[1] - xi2))
+        assert_allclose(nearest, xi2, atol=1e-5)
+        assert_allclose(value_found, value, atol=1e-9)
 
 
 def test_both_searches_end_in_the_same_fit() -> None:
