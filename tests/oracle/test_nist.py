@@ -91,7 +91,7 @@ def test_certified_digits_jointly(given: NistSet, start: int) -> None:
 
 
 def test_hahn1_by_differences_in_other_units() -> None:
-    """x in hundreds of kelvins: b7 is then of order 0.1, and the digits are all there."""
+    """With x in hundreds of kelvins: b7 is then of order 0.1, and the digits are all there."""
     given = nist.state_set("Hahn1")
     power = np.array([0, 1, 2, 3, 1, 2, 3])  # of x, by b1 ... b7
     for start in given.starts:
