@@ -137,7 +137,8 @@ TEST_CASE("in correlated noise only the coloured one is") {
 }
 
 // Below, the alarms of 300 fleets with other seeds stand beside each count, which is held against
-// the central 99.9 % of their binomial: with other seeds a correct build fails one in about 1,000.
+// the central 99.9 % of their binomial. Of 300 fleets a rate is itself uncertain: with other seeds
+// a correct build fails a count about once in 400.
 
 TEST_CASE("a flight that is three times as loud departs no oftener than Holm's 1 % allows") {
   // Of 300 fleets flight 3 departed in none, another one in 2: together at most 1 % by Holm.
