@@ -30,6 +30,26 @@ def fail_on_seventh(rng, index):
     return {"draw": rng.standard_normal(), "index": index, "row": np.arange(3) + index}
 
 
+class Stay:
+    """Can't be pickled."""
+
+    def __reduce__(self):
+        """Refuses."""
+        raise RuntimeError("this one stays")
+
+
+class Gone:
+    """Pickles, and can't be read again."""
+
+    def __reduce__(self):
+        """A number that is none."""
+        return int, ("gone",)
+
+
+def give_what_stays(rng, index):
+    return {2: Stay(), 4: Gone()}.get(index, rng.standard_normal())
+
+
 def square(number):
     return number * number
 

@@ -32,6 +32,8 @@ class _DaskExecutor(Executor):
         """Runs it on the cluster. Raises RuntimeError where client or executor are closed."""
         if getattr(self._executor, "_shutdown", False):
             raise RuntimeError("the executor was shut down")
+        if getattr(self._client, "status", "") in ("closing", "closed"):
+            raise RuntimeError("the client was closed")
         remote = self._client.submit(function, *arguments, **self._options)
         future: Future[Any] = Future()
 

@@ -59,7 +59,8 @@ def stream(
 
     Raises:
         Error: An argument is none of these; an item was lost in every attempt and there is no
-            `lost`; the executor broke and only its maker could replace it; something can't be sent.
+            `lost`; the executor broke or was shut down and only its maker could replace it;
+            something can't be sent.
         Exception: The function's own, as it is, with the worker's traceback as a note.
     """
     for name, value in (("batch", batch), ("pending", pending), ("attempts", attempts)):
@@ -145,6 +146,12 @@ class _Pool:
         if broken is not self.executor:
             return  # it has been
         self._breaks += 1
+        if self._make is None and _is_shut_down(error):
+            raise Error(
+                f"the executor was shut down before the work was done ({describe(error)}); use it "
+                "inside its with block, or give a function that makes an executor, "
+                "ProcessPoolExecutor itself (Dask: client.get_executor() of an open client)"
+            ) from error
         if self._make is None:
             raise Error(
                 f"the executor broke and takes no more work ({describe(error)}): a worker was "
@@ -237,6 +244,12 @@ def _is_lost(error: BaseException) -> bool:
     """Did the work go with its worker? The function's own exceptions come as answers."""
     is_common = isinstance(error, BrokenExecutor | CancelledError | OSError | EOFError)
     return is_common or type(error).__module__.startswith("distributed")
+
+
+def _is_shut_down(error: BaseException) -> bool:
+    """Did its owner close the executor? It then refuses work, where a broken one has lost some."""
+    is_refusal = isinstance(error, RuntimeError) and not isinstance(error, BrokenExecutor)
+    return is_refusal and any(word in str(error) for word in ("shutdown", "shut down", "closed"))
 
 
 def _not_sent(error: BaseException) -> Error:

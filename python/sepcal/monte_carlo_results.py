@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
@@ -48,7 +48,8 @@ class MonteCarlo:
         trials: The records in order of their indices.
 
     Raises:
-        Error: An index is there twice. Later: the trials gave no estimates, or of other parameters.
+        Error: An index is there twice; the truth names what no trial estimates. Later: the trials
+            gave no estimates, or of other parameters.
     """
 
     def __init__(
@@ -59,6 +60,7 @@ class MonteCarlo:
         indices = [record.index for record in self.trials]
         if len(set(indices)) < len(indices):
             raise Error("two records have the same index; give each trial once")
+        check_truth(truth, self.values)
 
     @property
     def failed(self) -> list[TrialRecord]:
@@ -154,14 +156,33 @@ class MonteCarlo:
             lines += _table(self.summary())
         except Error as error:
             lines.append(str(error))
-        for record in self.failed[:MOST_FAILURES_SHOWN]:
-            assert record.failure is not None
-            text = " ".join(record.failure.message.split())
-            lines.append(f"trial {record.index} failed: {record.failure.type}: {text}")
+        unsaid = self.failed[1:] if len(self.failed) == len(self) else self.failed
+        shown = unsaid[:MOST_FAILURES_SHOWN]
+        lines += [f"trial {record.index} failed: {_reason(record)}" for record in shown]
+        if more := len(unsaid) - len(shown):
+            lines.append(f"and {more} more failed; `failed` has the record of each")
         return "\n".join(lines)
 
     def __repr__(self) -> str:
         return f"<MonteCarlo: {self}>"
+
+
+def check_truth(truth: Mapping[str, float] | None, values: Sequence[Any]) -> None:
+    """Raises Error for a name in the truth that no trial estimates; passes where none estimates."""
+    try:
+        known = {name: 0 for value in values for name in _to_estimates(value).names if truth}
+    except Error:
+        return
+    for name in truth or ():
+        if known and name not in known:
+            there = ", ".join(known)
+            raise Error(f"truth: no trial estimates '{name}'; they estimate: {there}")
+
+
+def _reason(record: TrialRecord) -> str:
+    """Why the trial failed, in one line."""
+    assert record.failure is not None
+    return f"{record.failure.type}: {' '.join(record.failure.message.split())}"
 
 
 def _to_estimates(value: object) -> Estimates:
@@ -214,6 +235,9 @@ def _mean(values: Array) -> float:
 
 
 def _headline(study: MonteCarlo) -> str:
+    if study.failed and len(study.failed) == len(study):
+        count = f"all {len(study)} trials" if len(study) != 1 else "the only trial"
+        return f"{count} failed; trial {study.failed[0].index}: {_reason(study.failed[0])}"
     words = [f"{len(study)} trials" if len(study) != 1 else "1 trial"]
     kept = [without_bulk(value) for value in study.values]
     statuses = Counter(value.status for value in kept if isinstance(value, Estimates))

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
-
-import numpy as np
+from numbers import Integral
 
 from sepcal._core import Error
 from sepcal.executors import Executors, stream
-from sepcal.monte_carlo_results import MonteCarlo
+from sepcal.monte_carlo_results import MonteCarlo, check_truth
 from sepcal.progress import progress_bar
-from sepcal.trials import TrialFunction, TrialRecord, TrialRun, takes_index
+from sepcal.trials import TrialFunction, TrialRecord, TrialRun, takes_index, unseal
 
 Progress = Callable[[int, int], None]
 
@@ -37,7 +36,8 @@ def monte_carlo(
 
     Trial i has the generator default_rng(SeedSequence(seed, spawn_key=(i,))): the same numbers on
     any executor, with any number of workers and of trials. What a trial raises is kept as the
-    `failure` of its record, and so is the death of its worker, in three attempts.
+    `failure` of its record, and so is the death of its worker, in three attempts, and a result that
+    can't be pickled where it has to be: from processes and clusters.
 
     Args:
         trial: trial(rng) or trial(rng, index), two arguments without defaults, with a
@@ -60,7 +60,8 @@ def monte_carlo(
         A MonteCarlo, its records in order of their indices.
 
     Raises:
-        Error: An argument is out of range; the executor broke and can't be replaced; the trial
+        Error: An argument is out of range; the truth names what the first trial that succeeds does
+            not estimate; the executor broke or was shut down and can't be replaced; the trial
             can't be sent to it.
         KeyboardInterrupt: As ever; pending trials are cancelled. stream_trials() lets one keep what
             was done.
@@ -70,8 +71,12 @@ def monte_carlo(
     streamed = stream_trials(
         trial, indices, seed=seed, executor=executor, batch=batch, keep_fits=keep_fits
     )
+    unchecked = truth
     with closing(streamed), _told(progress) as tell:
         for record in streamed:
+            if record.failure is None:
+                check_truth(unchecked, [record.value])
+                unchecked = None
             records.append(record)
             tell(len(records), len(indices))
     return MonteCarlo(records, truth)
@@ -92,6 +97,8 @@ def stream_trials(
     pending trials are cancelled. Arguments and errors are those of monte_carlo().
     """
     indices = _to_indices(trials)
+    if not isinstance(seed, Integral):
+        raise Error(f"seed={seed!r} must be an integer")
     if seed < 0:
         raise Error(f"seed={seed} must not be negative")
     if not callable(trial):
@@ -105,20 +112,24 @@ def _records(
 ) -> Generator[TrialRecord, None, None]:
     try:
         for _, record in streamed:
-            yield record
+            yield unseal(record)
     finally:
         streamed.close()
 
 
 def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
-    """Raises Error for no trials, an index twice or a negative one."""
-    if isinstance(trials, int | np.integer):
+    """Raises Error for no trials, no integers, an index twice or a negative one."""
+    if isinstance(trials, Integral):
         if trials < 1:
             raise Error(f"trials={trials} must be at least 1")
         return range(int(trials))
+    rule = "a whole number or indices, 0 and above, each once: range(1000, 2000)"
+    if not isinstance(trials, Iterable):
+        raise Error(f"trials={trials!r} must be {rule}")
     indices = trials if isinstance(trials, range) else list(trials)
-    if len(indices) == 0 or min(indices) < 0 or len(set(indices)) < len(indices):
-        raise Error("trials are a number or indices, 0 and above, each once: range(1000, 2000)")
+    is_whole = isinstance(indices, range) or all(isinstance(one, Integral) for one in indices)
+    if not is_whole or not indices or min(indices) < 0 or len(set(indices)) < len(indices):
+        raise Error(f"trials must be {rule}")
     return indices
 
 

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import importlib.util
 import inspect
+import os
+import pickle
 import time
 import traceback
+import uuid
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,6 +22,8 @@ from sepcal.executors import describe
 from sepcal.results import Fit
 
 TrialFunction: TypeAlias = Callable[[Generator], Any] | Callable[[Generator, int], Any]
+
+IMPORT = uuid.uuid4().hex  # with the process's number, which a fork changes, it names a process
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +80,20 @@ class TrialRecord:
 
 
 @dataclass(frozen=True)
+class Sealed:
+    """A result on its way from another process, pickled where the trial ran.
+
+    So that no executor meets a result that it can't send.
+    """
+
+    pickled: bytes
+
+
+def _this_process() -> tuple[str, int]:
+    return IMPORT, os.getpid()
+
+
+@dataclass(frozen=True)
 class TrialRun:
     """From an index to a record: what runs on the workers."""
 
@@ -81,9 +101,10 @@ class TrialRun:
     takes_index: bool
     seed: int
     keep_fits: bool
+    home: tuple[str, int] = field(default_factory=_this_process)  # where the records go
 
     def __call__(self, index: int) -> TrialRecord:
-        """Runs the trial; its exceptions become a Failure."""
+        """Runs the trial; its exceptions become a Failure, as does a result that can't travel."""
         rng, begun = spawn(self.seed, index), time.perf_counter()
         try:
             value = self.trial(*((rng, index) if self.takes_index else (rng,)))
@@ -91,12 +112,46 @@ class TrialRun:
         except (Exception, SystemExit) as error:
             failure = Failure(_name(error), str(error), traceback.format_exc())
             return TrialRecord(index, self.seed, None, failure, time.perf_counter() - begun)
-        return TrialRecord(index, self.seed, kept, None, time.perf_counter() - begun)
+        record = TrialRecord(index, self.seed, kept, None, time.perf_counter() - begun)
+        return record if self.home == _this_process() else _seal(record)
 
     def lost(self, index: int, error: BaseException) -> TrialRecord:
         """Stands for a trial whose workers died."""
         message = f"its worker died in every attempt; the last: {describe(error)}"
         return TrialRecord(index, self.seed, None, Failure(_name(error), message, ""), 0.0)
+
+
+def unseal(record: TrialRecord) -> TrialRecord:
+    """The record as the trial gave it; of a failure where the result can't be read back."""
+    if not isinstance(record.value, Sealed):
+        return record
+    try:
+        return replace(record, value=pickle.loads(record.value.pickled))
+    except Exception as error:
+        return _not_sent(record, "the result can't be unpickled", error)
+
+
+def _seal(record: TrialRecord) -> TrialRecord:
+    try:
+        return replace(record, value=Sealed(_to_bytes(record.value)))
+    except Exception as error:
+        return _not_sent(record, "the result can't be pickled", error)
+
+
+def _to_bytes(value: object) -> bytes:
+    """By pickle, else by cloudpickle where it is installed, as it is with Dask."""
+    try:
+        return pickle.dumps(value, protocol=pickle.HIGHEST_PROTOCOL)
+    except Exception:
+        if importlib.util.find_spec("cloudpickle") is None:
+            raise
+        pickled: bytes = importlib.import_module("cloudpickle").dumps(value)
+        return pickled
+
+
+def _not_sent(record: TrialRecord, what: str, error: Exception) -> TrialRecord:
+    failure = Failure(_name(error), f"{what}: {describe(error)}", traceback.format_exc())
+    return replace(record, value=None, failure=failure)
 
 
 def spawn(seed: int, index: int) -> Generator:

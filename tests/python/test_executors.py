@@ -186,6 +186,24 @@ def test_a_pool_that_breaks_and_has_no_maker_is_an_error():
         gather(die_on_third, range(12), pool)
 
 
+@pytest.mark.parametrize("kind", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_a_pool_that_its_owner_shut_down(kind):
+    with kind(1) as pool:
+        pass
+    words = r"was shut down before the work was done \(RuntimeError.*inside its with block"
+    with pytest.raises(sepcal.Error, match=words):
+        gather(square, range(12), pool)
+
+
+def test_a_pool_that_its_owner_shuts_down_on_the_way():
+    pool = ThreadPoolExecutor(1)
+    results = stream(square, range(12), pool, pending=2)
+    next(results)
+    pool.shutdown()
+    with pytest.raises(sepcal.Error, match="was shut down before the work was done"):
+        list(results)
+
+
 def test_pools_that_never_work_are_given_up():
     def make():
         pool = ThreadPoolExecutor(1)

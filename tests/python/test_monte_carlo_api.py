@@ -16,7 +16,7 @@ from scipy.stats import beta
 from scipy.stats import t as student_t
 
 import sepcal
-from trial_functions import TRUTH, draw_record, fail_on_seventh, fit_scalar
+from trial_functions import TRUTH, draw_record, fail_on_seventh, fit_scalar, give_what_stays
 
 TRIALS = 24
 TUBE = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 120}, samples=20)
@@ -89,7 +89,7 @@ def test_a_failed_trial_is_on_record(executor):
 def test_a_trial_may_exit():
     study = sepcal.monte_carlo(lambda rng: sys.exit(3), 2)
     assert [record.failure.type for record in study.failed] == ["SystemExit"] * 2
-    assert "trial 0 failed: SystemExit: 3" in str(study)
+    assert str(study).startswith("all 2 trials failed; trial 0: SystemExit: 3")
 
 
 def test_statistics_by_hand(serial):
@@ -238,6 +238,81 @@ def test_numbers_and_anything_else():
         words.summary()
 
 
+def test_a_result_that_cannot_be_pickled_is_on_record():
+    study = sepcal.monte_carlo(give_what_stays, 6, executor=partial(ProcessPoolExecutor, 2))
+    assert [record.index for record in study.failed] == [2, 4]
+    stays, gone = (record.failure for record in study.failed)
+    assert (stays.type, stays.message) == (
+        "RuntimeError",
+        "the result can't be pickled: RuntimeError: this one stays",
+    )
+    assert "in __reduce__" in stays.traceback
+    assert gone.type == "ValueError"
+    assert gone.message.startswith("the result can't be unpickled: ValueError: invalid literal")
+    here = sepcal.monte_carlo(give_what_stays, 6, executor=partial(ThreadPoolExecutor, 2))
+    assert here.failed == []
+    assert study.values == [here.values[index] for index in (0, 1, 3, 5)]
+
+
+def test_a_trial_that_cannot_be_sent_is_an_error():
+    with pytest.raises(sepcal.Error, match="can't be sent"):
+        sepcal.monte_carlo(lambda rng: 1.0, 3, executor=partial(ProcessPoolExecutor, 1))
+
+
+def test_a_pool_that_was_shut_down_is_said_to_be():
+    with ThreadPoolExecutor(1) as pool:
+        pass
+    with pytest.raises(sepcal.Error, match="the executor was shut down before the work was done"):
+        sepcal.monte_carlo(fit_scalar, 3, executor=pool)
+
+
+def test_a_truth_of_other_names_is_refused_at_the_first_fit():
+    ran = []
+
+    def trial(rng, index):
+        ran.append(index)
+        if index == 0:
+            raise ValueError("not yet")
+        return fit_scalar(rng)
+
+    words = "truth: no trial estimates 'aa'; they estimate: a, c, b"
+    with pytest.raises(sepcal.Error, match=words):
+        sepcal.monte_carlo(trial, 9, truth={"aa": 2.0, "c": 1.0})
+    assert ran == [0, 1]
+    records = list(sepcal.stream_trials(trial, 2))
+    with pytest.raises(sepcal.Error, match=words):
+        sepcal.MonteCarlo(records, {"c": 1.0, "aa": 2.0})
+    assert len(sepcal.MonteCarlo(records[:1], {"aa": 2.0})) == 1
+
+
+def test_failures_are_counted_in_the_table():
+    def trial(rng, index):
+        if index < 6:
+            raise ValueError(f"no luck with {index}")
+        return 1.0
+
+    lines = str(sepcal.monte_carlo(trial, 8)).splitlines()
+    assert lines[0] == "8 trials: 6 failed"
+    assert lines[-4:] == [
+        *(f"trial {index} failed: ValueError: no luck with {index}" for index in range(3)),
+        "and 3 more failed; `failed` has the record of each",
+    ]
+    assert "more failed" not in str(sepcal.monte_carlo(trial, range(3, 8)))
+
+
+def test_a_study_that_failed_altogether_says_so_first():
+    def trial(rng, index):
+        raise ValueError(f"no luck\nwith {index}")
+
+    assert str(sepcal.monte_carlo(trial, range(3, 5))).splitlines() == [
+        "all 2 trials failed; trial 3: ValueError: no luck with 3",
+        "trial 4 failed: ValueError: no luck with 4",
+    ]
+    assert str(sepcal.monte_carlo(trial, 6)).splitlines()[-1].startswith("and 2 more failed")
+    one = str(sepcal.monte_carlo(trial, 1))
+    assert one == "the only trial failed; trial 0: ValueError: no luck with 0"
+
+
 def test_defaults_are_no_index():
     def trial(rng, rows=10, *, noise=0.3):
         return {"rows": rows, "noise": noise}
@@ -262,7 +337,11 @@ def test_studies_that_do_not_go_together():
     [
         ({"trials": 0}, "trials=0 must be at least 1"),
         ({"trials": [1, 1]}, "each once"),
-        ({"trials": []}, "a number or indices"),
+        ({"trials": []}, "a whole number or indices"),
+        ({"trials": 2.5}, "trials=2.5 must be a whole number or indices"),
+        ({"trials": [0, 1.5]}, "a whole number or indices"),
+        ({"trials": "10"}, "a whole number or indices"),
+        ({"seed": 0.5}, "seed=0.5 must be an integer"),
         ({"trials": range(-1, 4)}, "0 and above"),
         ({"seed": -1}, "seed=-1 must not be negative"),
         ({"batch": 0}, "batch=0"),

@@ -12,7 +12,15 @@ from distributed import Client, KilledWorker, LocalCluster
 
 import sepcal
 from sepcal.executors import gather, stream
-from trial_functions import TRUTH, SlowTrial, die_on_third, fit_scalar, square, wait_and_square
+from trial_functions import (
+    TRUTH,
+    SlowTrial,
+    die_on_third,
+    fit_scalar,
+    give_what_stays,
+    square,
+    wait_and_square,
+)
 
 
 def start(workers):
@@ -121,6 +129,23 @@ def test_a_trial_that_kills_its_workers_is_on_record(impatient):
     assert study["index"].tolist() == [0, 1, 2, 4]
 
 
+def test_a_result_that_cannot_be_pickled_is_on_record(client):
+    study = sepcal.monte_carlo(give_what_stays, 6, executor=client.get_executor())
+    stays, gone = study.failed
+    assert (stays.index, gone.index) == (2, 4)
+    assert stays.failure.message == "the result can't be pickled: RuntimeError: this one stays"
+    assert "can't be unpickled" in gone.failure.message
+    assert len(study.values) == 4
+
+
+def test_a_lambda_comes_back_from_dask(client):
+    def trial(rng, index):
+        return {"double": lambda: 2 * index}
+
+    study = sepcal.monte_carlo(trial, 3, executor=client.get_executor())
+    assert [value["double"]() for value in study.values] == [0, 2, 4]
+
+
 def test_leaving_early_cancels_what_is_pending(client):
     executor = client.get_executor()
     results = stream(wait_and_square, range(500), executor)
@@ -138,8 +163,9 @@ def test_what_cannot_be_sent(client):
 def test_a_client_that_is_closed(cluster):
     with Client(cluster) as short:
         executor = short.get_executor()
-    with pytest.raises(sepcal.Error, match="the executor broke and takes no more work"):
-        gather(square, range(3), executor)
+    for use in (gather, sepcal.monte_carlo):
+        with pytest.raises(sepcal.Error, match="was shut down before the work was done"):
+            use(square, range(3), executor=executor)
     with pytest.raises(sepcal.Error, match=r"client.get_executor\(\)"):
         gather(square, range(3), short)
 
@@ -149,5 +175,5 @@ def test_a_client_that_closes_on_the_way(cluster):
     results = stream(wait_and_square, range(100), short.get_executor(), pending=10)
     next(results)
     short.close()
-    with pytest.raises(sepcal.Error, match="the executor broke and takes no more work"):
+    with pytest.raises(sepcal.Error, match="was shut down before the work was done"):
         list(results)
