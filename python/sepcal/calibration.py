@@ -15,6 +15,7 @@ from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 from sepcal.intervals import Intervals, Prediction
+from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit, to_fields
 
@@ -169,7 +170,9 @@ class Calibration(Fit):
                 (0, 1).
         """
         chosen = self._or_fitted(flight, "intervals(")
-        return Intervals._of(self.core.intervals(chosen._core, level, list(names or ())))
+        return Intervals._of(
+            self.core.intervals(chosen._core, level, to_names("names", names or ()))
+        )
 
     def predict(self, flight: Flight | None = None, *, level: float = 0.95) -> Prediction:
         """The calibrated model on a flight, by default the fitted one, with its bands.
@@ -181,14 +184,14 @@ class Calibration(Fit):
         return Prediction._of(self.core.predict(chosen._core, level))
 
     def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
-        """A flight. Raises Error, which shows how to call again, where there is none."""
+        """A flight. Raises Error, which shows how to call again, for none and for anything else."""
         flight = flight if flight is not None else self.flight
         if flight is None:
             raise _core.Error(
                 "a loaded calibration has no flight; give one: "
                 f"{call}sepcal.read_csv({self.core.file!r}))"
             )
-        return flight
+        return _to_flight(flight, call)
 
     def apply(self, flight: Flight) -> dict[str, Array]:
         """The corrected readings of a flight by header, each of shape (rows,).
@@ -200,7 +203,7 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
         """
-        return self.core.apply(flight._core)
+        return self.core.apply(_to_flight(flight, "apply(")._core)
 
     def apply_to_file(self, file: Path, output: Path) -> Applied:
         """Copies a CSV log and adds the corrected columns; `output` appears whole or not at all.
@@ -226,6 +229,15 @@ class Calibration(Fit):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _parse, (self.to_json(), self.own_effects)
+
+
+def _to_flight(flight: object, call: str) -> Flight:
+    """The flight. Raises Error, which shows how to call again, for a file's name or columns."""
+    if isinstance(flight, Flight):
+        return flight
+    is_file = isinstance(flight, str | os.PathLike)
+    given = f"sepcal.read_csv({str(flight)!r})" if is_file else "sepcal.Flight(columns)"
+    raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}{given})")
 
 
 def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration:

@@ -12,7 +12,7 @@ from typing import Any, Self, Unpack
 from sepcal import _core
 from sepcal.columns import Array, Columns, take_columns, take_drivers, to_labels
 from sepcal.models import Model
-from sepcal.options import FitOptions, to_core
+from sepcal.options import FitOptions, to_core, to_names
 from sepcal.own_effect import name_effects, to_core_effects
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.results import Fit
@@ -153,7 +153,7 @@ def profile_intervals(
     model, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=True)
     described = _core.profile_intervals(
         model._core, columns, labels, core, own, _to_core(fit), _settings(fit), level,
-        list(names or ()),
+        to_names("names", names or ()),
     )  # fmt: skip
     return Intervals._of(described)
 

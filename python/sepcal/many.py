@@ -16,7 +16,7 @@ from sepcal.flight import Flight
 from sepcal.many_results import ManyFit, to_many_fit
 from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask
 from sepcal.models import Model
-from sepcal.options import FitOptions, to_core
+from sepcal.options import FitOptions, to_core, to_names
 from sepcal.own_model import OwnModel, SeparableModel
 
 Executors: TypeAlias = Executor | Callable[[], Executor] | None
@@ -67,8 +67,7 @@ def fit_many(
     threads = options.pop("threads", None) or 0
     if isinstance(model, OwnModel):
         threads = 1
-    if isinstance(own, str):
-        raise _core.Error(f"own is '{own}'; give a list of names, ['{own}']")
+    own = to_names("own", own)
     here = {name: value for name, value in options.items() if value is not None}
     core = to_core({**here, "threads": threads})
     task = Task(uuid.uuid4().hex, model, {**here, "threads": 1}, tuple(own))
@@ -76,7 +75,7 @@ def fit_many(
     maker = partial(ThreadPoolExecutor, threads or os.cpu_count()) if is_threaded else executor
     visits = _Visits(task, sources, maker)
     try:
-        described = _core.fit_many(model._core, list(sources), core, list(own), leave_out, visits)
+        described = _core.fit_many(model._core, list(sources), core, own, leave_out, visits)
     finally:
         PREPARED.forget(task.token)
     return to_many_fit(described)

@@ -7,6 +7,13 @@ from typing import Any, Literal, TypedDict
 from sepcal import _core
 from sepcal.own_effect import Effect
 
+SHAPES = {
+    "bounds": "{name: (lower, upper)}",
+    "knowledge": "{name: (mean, standard deviation)}",
+    "priors": "{name: (mean, standard deviation)}",
+}
+APP_NAMES = {"know": "knowledge", "fix": "fixed", "effect": "effects"}  # of the apps' --know, ...
+
 
 class FitOptions(TypedDict, total=False):
     """Every choice of a fit; None, like leaving it out, means the default, given in brackets.
@@ -92,13 +99,23 @@ def to_core(options: Mapping[str, Any]) -> _core.Options:
     for name, value in options.items():
         if name not in FitOptions.__annotations__:
             known = ", ".join(FitOptions.__annotations__)
-            raise TypeError(f"fit() has no option '{name}'; it has: {known}")
+            hint = f"--{name} of the apps is {APP_NAMES[name]}; " if name in APP_NAMES else ""
+            raise TypeError(f"fit() has no option '{name}'; {hint}it has: {known}")
         if value is None:
             continue
         try:
             setattr(core, name, dict(value) if isinstance(value, Mapping) else value)
         except TypeError:
+            shape = f"give {SHAPES[name]}; " if name in SHAPES else ""
             raise TypeError(
-                f"fit() can't take {name}={value!r}; help(sepcal.FitOptions) says what it takes"
+                f"fit() can't take {name}={value!r}; {shape}help(sepcal.FitOptions) says what it "
+                "takes"
             ) from None
     return core
+
+
+def to_names(argument: str, names: Sequence[str]) -> list[str]:
+    """The names. Raises Error for one alone, which would be taken letter by letter."""
+    if isinstance(names, str):
+        raise _core.Error(f"{argument} is '{names}'; give a list of names, ['{names}']")
+    return list(names)

@@ -116,7 +116,9 @@ def test_a_bad_log_is_named_or_left_out(tmp_path):
     bad = tmp_path / "bad.csv"
     bad.write_text(flights[0].read_text().replace("pt_pa", "pt_psia", 1))
     missing = tmp_path / "missing.csv"
-    with pytest.raises(sepcal.Error, match=r"flight '.*bad\.csv' can't be used: .*pt.* mend it"):
+    with pytest.raises(
+        sepcal.Error, match=r"flight '.*bad\.csv' can't be used: .*pt.* \(leave_out\)$"
+    ):
         sepcal.fit_many(PROBE, [*flights, bad], own=WIND)
     with pytest.raises(sepcal.Error, match=r"and 1 more of 6"):
         sepcal.fit_many(PROBE, [*flights, bad, missing], own=WIND)
@@ -208,6 +210,13 @@ def test_misuse_is_refused(change, text):
     arguments = {"model": sepcal.ScalarExample1(), "flights": waves(), "own": ["c"], **change}
     with pytest.raises(sepcal.Error, match=text):
         sepcal.fit_many(**arguments)
+
+
+def test_a_pool_that_was_shut_down_is_said_to_be():
+    with ThreadPoolExecutor(1) as pool:
+        pass
+    with pytest.raises(sepcal.Error, match="was shut down before the work was done"):
+        sepcal.fit_many(sepcal.ScalarExample1(), waves(), own=["c"], executor=pool)
 
 
 def test_options_that_there_are_not():

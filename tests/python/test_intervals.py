@@ -152,12 +152,29 @@ def test_a_calibrations_prediction_is_what_compare_subtracts(base, flown):
     ("arguments", "culprit"),
     [
         ({"names": ["w_x"]}, "the fit has: lambda_va"),
+        ({"names": "eps_phi"}, r"names is 'eps_phi'; give a list of names, \['eps_phi'\]"),
         ({"level": 95}, "between 0 and 1"),
     ],
 )
 def test_bad_arguments(base, arguments, culprit):
     with pytest.raises(sepcal.Error, match=culprit):
         base.intervals(**arguments)
+
+
+def test_one_name_in_place_of_names():
+    data = decay_data()
+    fit = sepcal.fit(Decay(), data)
+    with pytest.raises(sepcal.Error, match=r"names is 'k'; give a list of names, \['k'\]"):
+        sepcal.profile_intervals(Decay(), data, fit, names="k")
+
+
+@pytest.mark.parametrize("verb", ["predict", "intervals", "compare", "diagnose", "apply"])
+def test_a_file_or_columns_in_place_of_a_flight(base, verb):
+    words = rf"a str is no flight; give one: {verb}\(sepcal.read_csv\('f1.csv'\)\)"
+    with pytest.raises(sepcal.Error, match=words):
+        getattr(base, verb)("f1.csv")
+    with pytest.raises(sepcal.Error, match=rf"a dict is no flight.*{verb}\(sepcal.Flight\("):
+        getattr(base, verb)({"pt_pa": [1.0]})
 
 
 def test_another_flight_or_a_calibration_in_the_wrong_place(base, flown):

@@ -37,7 +37,7 @@ void check_left_out(const std::vector<LeftOut>& left_out, std::size_t flights, b
     text += " (and " + std::to_string(left_out.size() - 1) + " more of " + std::to_string(flights) +
             ")";
   }
-  throw Error(nothing_left ? text : text + "; mend it or leave such flights out");
+  throw Error(nothing_left ? text : text + "; mend it or leave such flights out (leave_out)");
 }
 
 Box joint_box(const Problem& problem, const Split& parting, const Layout& layout) {
