@@ -5,6 +5,8 @@ Quoted code is the examples', links and options exist, and the examples give bac
 their flight was simulated with.
 """
 
+import ast
+import builtins
 import csv
 import json
 import math
@@ -34,6 +36,10 @@ BLOCKS = [
     for match in BLOCK.finditer(document.read_text())
 ]
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
+PYTHON = [block for block in BLOCKS if block["language"] == "python"]
+WHOLE = [
+    b for b in PYTHON if b["document"] in ("intervals.md", "many-flights.md", "monte-carlo.md")
+]
 TYPED = [block["text"] for block in BLOCKS if block["language"] == "sh"]
 PRINTED = [block for block in BLOCKS if block["mark"].startswith("output of examples/")]
 SHOWN_EXAMPLES = sorted({block["mark"].removeprefix("output of examples/") for block in PRINTED})
@@ -75,6 +81,21 @@ def check_truth(base, truth):
 def test_quoted_code_stands_in_the_example(block):
     example = ROOT / block["mark"].removeprefix("from ")
     assert f"\n{block['text']}" in f"\n{example.read_text()}"
+
+
+@pytest.mark.parametrize("block", WHOLE, ids=lambda block: block["document"])
+def test_python_in_the_documents_defines_all_that_it_uses(block):
+    known = set(dir(builtins)) | {"__name__"}
+    used = set()
+    for node in ast.walk(ast.parse(block["text"])):
+        match node:
+            case ast.Name(name, ast.Load()):
+                used.add(name)
+            case ast.Name(name) | ast.arg(name) | ast.FunctionDef(name):
+                known.add(name)
+            case ast.Import(names) | ast.ImportFrom(names=names):
+                known |= {one.asname or one.name for one in names}
+    assert used - known == set()
 
 
 def test_readme_quotes_cpp_python_shell_and_a_whole_model():
@@ -119,7 +140,16 @@ def test_documents_are_plain_text_without_emojis(document):
 def test_every_option_in_the_documents_is_in_the_help():
     known = set()
     for app in ("sepcal-pitot", "sepcal-mag"):
-        for verb in ("fit", "compare", "diagnose", "add", "apply", "simulate", "effects"):
+        for verb in (
+            "fit",
+            "compare",
+            "intervals",
+            "diagnose",
+            "add",
+            "apply",
+            "simulate",
+            "effects",
+        ):
             known |= set(re.findall(r"--[a-z][a-z-]*", run(app, verb, "--help")))
     text = "\n".join(document.read_text() for document in DOCUMENTS)
     said = re.findall(r"`(--[a-z][a-z-]*)", text)

@@ -79,6 +79,10 @@ def test_the_study_does_not_depend_on_its_processes(tmp_path):
     text = file.read_text(encoding="utf-8")
     assert "--seeds 5" in text
     assert text.count("\n| a wave, 12 rows | 5 | `a` |") == 1
+    assert text.startswith("# Intervals\n\n## How often they hold the truth\n")
+    file.write_text(f"# Mine\n\n{text.partition(chr(10) * 2)[2]}and more", encoding="utf-8")
+    write_coverage(rows, one, file)
+    assert file.read_text(encoding="utf-8") == text.replace("# Intervals", "# Mine", 1)
 
 
 @pytest.mark.parametrize("seeds", [5, 200, 2000])

@@ -11,12 +11,18 @@ from sepcal._core import Error
 from sepcal.study.coverage import Coverage, CoverageOptions
 
 LEVEL = 0.95
+HEADING = "## How often they hold the truth"
 
 
 def write_coverage(rows: Sequence[Coverage], options: CoverageOptions, file: Path) -> None:
-    """Writes `file`. Raises Error where it can't be written."""
+    """Writes `file`; of one that is there what stands above the study's heading is kept.
+
+    Raises Error where it can't be written.
+    """
     try:
-        file.write_text(f"{_head(options)}\n\n{_table(rows)}\n", encoding="utf-8")
+        above = file.read_text(encoding="utf-8") if file.exists() else ""
+        above = above.partition(HEADING)[0] if HEADING in above else "# Intervals\n\n"
+        file.write_text(f"{above}{_head(options)}\n\n{_table(rows)}\n", encoding="utf-8")
     except OSError as error:
         raise Error(f"{file} can't be written: {error.strerror}") from error
 
@@ -50,9 +56,9 @@ def expected_range(seeds: int, level: float = LEVEL, confidence: float = 0.99) -
 
 def _head(options: CoverageOptions) -> str:
     lowest, highest = (100 * k / options.seeds for k in expected_range(options.seeds))
-    return f"""# Intervals: how often they hold the truth
+    return f"""{HEADING}
 
-Written by
+From here on written by
 
     python -m sepcal study intervals --seeds {options.seeds} -o docs/intervals.md
 
