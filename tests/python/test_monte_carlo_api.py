@@ -254,11 +254,6 @@ def test_a_result_that_cannot_be_pickled_is_on_record():
     assert study.values == [here.values[index] for index in (0, 1, 3, 5)]
 
 
-def test_a_trial_that_cannot_be_sent_is_an_error():
-    with pytest.raises(sepcal.Error, match="can't be sent"):
-        sepcal.monte_carlo(lambda rng: 1.0, 3, executor=partial(ProcessPoolExecutor, 1))
-
-
 def test_a_pool_that_was_shut_down_is_said_to_be():
     with ThreadPoolExecutor(1) as pool:
         pass
