@@ -9,15 +9,22 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+)
 from dataclasses import dataclass
 from itertools import count, islice
+from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
 from typing import Generic, TypeAlias, TypeVar
 
 from sepcal._core import Error
 from sepcal.dask_executor import with_sure_futures
-from sepcal.remote_call import Answer, call_all, raise_again
+from sepcal.remote_call import Answer, call_all, call_pickled, raise_again
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -186,7 +193,12 @@ def _stream(
         executor = pool.executor
         items = [item for _, item in task.items]
         try:
-            future = executor.submit(call_all, function, items, next(TICKETS))
+            if isinstance(executor, ProcessPoolExecutor):
+                # Left to the pool, what doesn't pickle may hang its shutdown (CPython 3.11).
+                call = bytes(ForkingPickler.dumps((function, items)))
+                future = executor.submit(call_pickled, call, next(TICKETS))
+            else:
+                future = executor.submit(call_all, function, items, next(TICKETS))
         except Exception as error:
             if not isinstance(error, RuntimeError) and not _is_lost(error):
                 raise _not_sent(error) from error

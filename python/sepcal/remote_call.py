@@ -10,7 +10,7 @@ import pickle
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from sepcal._core import Error
 
@@ -39,6 +39,12 @@ def call_all(
         except Exception as error:
             return Answer(results, _to_travel(error), traceback.format_exc())
     return Answer(results, None, "")
+
+
+def call_pickled(call: bytes, ticket: int) -> Answer[Any]:
+    """call_all() of a pickled function and its items."""
+    function, items = pickle.loads(call)
+    return call_all(function, items, ticket)
 
 
 def raise_again(answer: Answer[Result]) -> None:
