@@ -7,7 +7,6 @@
 
 #include "objective.hpp"
 #include "plausibility.hpp"
-#include "refine.hpp"
 #include "sepcal/identifiability.hpp"
 
 namespace sepcal {
@@ -33,17 +32,18 @@ void Alternation::begin_noise() {
   result_.noise = raise_to_floor(loss_ ? scales(*loss_) : result_.noise);
 }
 
-void Alternation::look_around(bool hold) {
+void Alternation::look_around(const Attempt& attempt) {
   const auto factors = sweep_.tangent_factors(xi1(), xi2());
   const TriangularFactor factor = whiten(factors);
   if (!factor.all_finite()) return;
   const Index n = result_.x.size();
   const std::vector<Variable>& parameters = problem_.parameters();
   scale_ = plausible_scale(parameters, factors, sweep_.measurements());
-  if (!hold || !leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) return;
+  if (!attempt.hold || !leaves_open(factor.matrix().topLeftCorner(n, n), scale_)) return;
   const Prior loose = loose_prior(parameters, scale_);
   priors_.push_back(loose);
   result_.method = SecondStage::joint;
+  if (attempt.near) return;
   result_.x.head(sweep_.tables().n_1()) = box_.clip(loose.mean).head(sweep_.tables().n_1());
 }
 
@@ -59,6 +59,18 @@ void Alternation::descend() {
 bool Alternation::refine() {
   JointObjective objective(sweep_, weights(), priors_, loss_);
   const Refinement refinement = sepcal::refine(objective, result_.x, box_, scale_);
+  take(refinement, objective);
+  return refinement.converged;
+}
+
+bool Alternation::refine_downhill() {
+  JointObjective objective(sweep_, weights(), priors_, loss_);
+  const Refinement refinement = sepcal::refine_downhill(objective, result_.x, box_, scale_);
+  if (refinement.converged) take(refinement, objective);
+  return refinement.converged;
+}
+
+void Alternation::take(const Refinement& refinement, const JointObjective& objective) {
   result_.x = refinement.x;
   result_.at_bound = refinement.at_bound;
   result_.factors = objective.factors();
@@ -72,7 +84,6 @@ bool Alternation::refine() {
       break;
     }
   }
-  return refinement.converged;
 }
 
 double Alternation::update_noise() {

@@ -7,7 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "attempts.hpp"
 #include "minimise.hpp"
+#include "refine.hpp"
 #include "stages.hpp"
 #include "sweep.hpp"
 
@@ -24,14 +26,18 @@ class Alternation {
 
   /// Takes the parameters' lengths from the start. Where the record leaves a combination of them
   /// open there, nothing in it would keep them from running away: if asked to hold them, a loose
-  /// prior does, and the fit is joint.
-  void look_around(bool hold);
+  /// prior does, and the fit is joint. Linear parameters then begin at its mean, as open ones may
+  /// be anywhere, unless the start is near.
+  void look_around(const Attempt& attempt);
 
   /// Minimises J over the parameters at the present R, from result.x.
   void descend();
 
   /// Takes x to the last digit at the present R; false, with x as it was, where no minimum is near.
   bool refine();
+
+  /// The same in a few passes, and only to what lies lower: false for all but a near minimum.
+  bool refine_downhill();
 
   /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
   double update_noise();
@@ -50,6 +56,8 @@ class Alternation {
   Eigen::VectorXd xi2() const { return result_.x.tail(sweep_.tables().n_2()); }
   Eigen::VectorXd weights() const { return result_.noise.cwiseInverse(); }
   double rows() const { return static_cast<double>(sweep_.measurements().rows()); }
+
+  void take(const Refinement& refinement, const JointObjective& objective);
 
   /// One factor of all outputs, with what is known beforehand.
   TriangularFactor whiten(const std::vector<TriangularFactor>& factors) const;

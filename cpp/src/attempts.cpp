@@ -13,6 +13,11 @@ constexpr double customary = 1e3;     // a damping of 0.001, the customary first
 constexpr double short_steps = 10.0;
 constexpr double within_the_basin = 0.1;  // a fraction of Gauss-Newton's, as in stage one
 
+/// A loss is minimised jointly.
+SecondStage possible(const FitOptions& options, SecondStage method) {
+  return options.loss == Loss::squares ? method : SecondStage::joint;
+}
+
 }  // namespace
 
 std::vector<Attempt> list_attempts(const FitOptions& options, const StageOne& start) {
@@ -35,6 +40,14 @@ std::vector<Attempt> list_attempts(const FitOptions& options, const StageOne& st
           {automatic ? SecondStage::joint : method, gauss_newton, true},
           {method, short_steps, false},
           {method, within_the_basin, false}};
+}
+
+Attempt from_neighbour(const FitOptions& options, SecondStage method, bool hold) {
+  return {possible(options, method), customary, hold, true};
+}
+
+Attempt within_basin(const FitOptions& options, SecondStage method) {
+  return {possible(options, method), within_the_basin, false};
 }
 
 bool is_enough(const Ending& ending, bool start_given) {

@@ -13,6 +13,9 @@ struct Attempt {
   double first_radius = 1e4;                // as in DescentOptions
   /// Where the record leaves something open at the start, hold it by a loose prior, jointly.
   bool hold = true;
+  /// The start is all but the minimum: it is refined before anything else, and kept where it has to
+  /// be held.
+  bool near = false;
 };
 
 /// The ways from stage one's end, the first of which nearly always is enough. Behind samples: as
@@ -20,6 +23,12 @@ struct Attempt {
 /// and what the record leaves open there it may determine at the minimum: nothing is held at first.
 /// Then follow joint (`auto`) with what is open held, and the first way again with shorter steps.
 std::vector<Attempt> list_attempts(const FitOptions& options, const StageOne& start);
+
+/// From the minimum of a neighbouring problem, in which what is open was held or was not.
+Attempt from_neighbour(const FitOptions& options, SecondStage method, bool hold);
+
+/// The same by steps so short that the descent ends in the neighbour's basin; nothing is held.
+Attempt within_basin(const FitOptions& options, SecondStage method);
 
 /// How an attempt ended.
 struct Ending {

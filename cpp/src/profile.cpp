@@ -122,7 +122,9 @@ class Profiles {
     const auto n = static_cast<double>(x.size());
     freedom_ = noise_given_ ? infinity : count_ - n;
     reach_ = noise_given_ ? normal_reach(level) : student_reach(level, freedom_);
-    const auto found = find_minimum(problem, measurements, start, pool);
+    std::vector<Attempt> attempts = list_attempts(problem.options(), start);
+    attempts.insert(attempts.begin(), from_neighbour(problem.options(), fit.method, true));
+    const auto found = find_minimum(problem, measurements, start, attempts, pool);
     if (!found) return;
     minimum_ = *found;
     converged_ = true;
@@ -218,8 +220,8 @@ std::vector<Index> find_places(const Problem& problem, const Fit& fit,
 }
 
 /// A refit that came out lower than the fit: its estimates are another minimum's.
-std::string say_if_lower(const ProfilePath& lower, const ProfilePath& upper,
-                         const ProfileInterval& interval, const Fit& fit) {
+std::string tell_of_lower(const ProfilePath& lower, const ProfilePath& upper,
+                          const ProfileInterval& interval, const Fit& fit) {
   // Where something is open, a loose prior keeps the fit a little above its minimum.
   const double least = fit.status == FitStatus::not_identifiable ? 0.1 : 1e-4;
   const ProfilePath& path = lower.deficit() > upper.deficit() ? lower : upper;
@@ -229,6 +231,16 @@ std::string say_if_lower(const ProfilePath& lower, const ProfilePath& upper,
           << path.lowest_at() << " the cost is lower by " << path.deficit()
           << "; fit again with more samples, or start there";
   return message.str();
+}
+
+/// What there is to say about an interval, in one line.
+std::string join(const std::vector<std::string>& messages) {
+  std::string line;
+  for (const std::string& message : messages) {
+    if (message.empty()) continue;
+    line += (line.empty() ? "" : "; ") + message;
+  }
+  return line;
 }
 
 }  // namespace
@@ -279,7 +291,8 @@ std::vector<ProfileInterval> profile_intervals(const BlockModel& model, const Re
     interval.lower_end = lower.kind;
     interval.upper_end = upper.kind;
     interval.message = profiles.converged()
-                           ? say_if_lower(*paths[2 * i], *paths[2 * i + 1], interval, fit)
+                           ? join({lower.message, upper.message,
+                                   tell_of_lower(*paths[2 * i], *paths[2 * i + 1], interval, fit)})
                            : "the fit did not converge, so that there is no profile about it";
     intervals.push_back(std::move(interval));
   }

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <sstream>
+#include <string>
+
+#include "crossing_bracket.hpp"
 
 namespace sepcal {
 namespace {
@@ -11,17 +14,20 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+constexpr double settled = 1e-5;           // of J: it moves an end by 1e-5 of the interval at most
 constexpr double root_tolerance = 1e-9;    // |root - height| / height
 constexpr double width_tolerance = 1e-12;  // of a bracket, relative: the profile jumps there
 constexpr int most_refits = 80;
 constexpr int most_failures = 8;
 
-/// The options of a refit: begun from a neighbour, by the fit's own method, R settled.
+/// The options of a refit: begun from a neighbour, by the fit's own method, R settled. Where it
+/// does not within `noise_updates`, find_minimum() goes on.
 FitOptions refit_options(const Problem& problem, SecondStage method) {
+  constexpr int noise_updates = 20;
   FitOptions options = problem.options();
   options.second_stage = method;
   options.noise_tolerance = std::min(options.noise_tolerance, FitOptions{}.noise_tolerance);
-  options.noise_iterations = std::max(options.noise_iterations, FitOptions{}.noise_iterations);
+  options.noise_iterations = noise_updates;
   options.progress = {};
   return options;
 }
@@ -34,63 +40,35 @@ double known_cost(const FitOptions& options, const std::string& name, double val
   return 0.5 * r * r;
 }
 
-/// The bracket of a crossing, narrowed by the Illinois rule: a secant that halves the height of an
-/// end that stays twice.
-class Bracket {
- public:
-  explicit Bracket(double height) : height_(height), low_excess_(-height) {}
+/// Whether a point lies on the height, as near as its refit is to its minimum.
+bool is_on(const ProfilePoint& point, double height) {
+  const double exact = root_tolerance * height;
+  return std::abs(point.root - height) <=
+         (point.converged ? exact : std::max(exact, settled / height));
+}
 
-  bool closed() const { return high_ > 0; }
-  double width() const { return high_ - low_; }
-  double high() const { return high_; }
-
-  /// The first point is the minimum: distance 0, root 0.
-  void add(double distance, double root) {
-    const bool above = root > height_;
-    if (!above) {
-      slope_ = (root - height_ - low_true_) / (distance - low_);
-      low_ = distance;
-      low_excess_ = low_true_ = root - height_;
-    } else {
-      high_ = distance;
-      high_excess_ = root - height_;
-    }
-    const int side = above ? 1 : -1;
-    if (closed() && last_side_ == side) (above ? low_excess_ : high_excess_) *= 0.5;
-    last_side_ = side;
+/// The share of a step from `x` at which it meets the first bound of the box.
+double share_within(const Box& box, const VectorXd& x, const VectorXd& step) {
+  double share = 1.0;
+  for (Index k = 0; k < x.size(); ++k) {
+    if (step[k] == 0.0) continue;
+    const double bound = step[k] < 0 ? box.lower[k] : box.upper[k];
+    share = std::min(share, std::max(0.0, (bound - x[k]) / step[k]));
   }
-
-  double next() const {
-    constexpr double most_growth = 4.0;
-    if (closed()) return low_ - low_excess_ * (high_ - low_) / (high_excess_ - low_excess_);
-    const double longest = most_growth * low_;
-    return slope_ > 0 ? std::min(low_ - low_true_ / slope_, longest) : longest;
-  }
-
-  double low() const { return low_; }
-
- private:
-  double height_;
-  double low_ = 0.0;
-  double low_excess_;  // root - height, halved by the rule
-  double low_true_ = -height_;
-  double slope_ = 0.0;  // of the last two points below
-  double high_ = 0.0;   // zero: none yet
-  double high_excess_ = 0.0;
-  int last_side_ = 0;  // of the point added last: 1 above the height, -1 below
-};
+  return share;
+}
 
 }  // namespace
 
 std::optional<ProfileMinimum> find_minimum(const Problem& problem, const Measurements& measurements,
-                                           StageOne start, ThreadPool& pool) {
+                                           StageOne start, const std::vector<Attempt>& attempts,
+                                           ThreadPool& pool) {
   constexpr int most_rounds = 15;
-  constexpr double settled = 1e-5;  // of J: it moves an end by 1e-5 of the interval at most
   const auto rows = static_cast<double>(measurements.rows());
   const Index n_1 = problem.model().tables().n_1();
   double before = infinity;
   for (int round = 0; round < most_rounds; ++round) {
-    ProfileMinimum now{run_stage_two(problem, measurements, start, pool)};
+    ProfileMinimum now{run_stage_two(problem, measurements, start, attempts, pool)};
     now.cost = find_cost(problem, now.two, rows);
     if (!std::isfinite(now.cost)) return {};
     if (now.two.converged || std::abs(now.cost - before) < settled) return now;
@@ -111,7 +89,7 @@ ProfilePath::ProfilePath(const BlockModel& model, const Problem& problem,
       minimum_(minimum),
       k_(k),
       up_(up),
-      points_{{0.0, 0.0, minimum.two.x, minimum.two.noise}},
+      points_{{0.0, 0.0, true, minimum.two.x, minimum.two.noise}},
       lowest_at_(minimum.two.x[k]) {}
 
 double ProfilePath::edge() const {
@@ -150,10 +128,10 @@ StageOne ProfilePath::start_of(const ProfilePoint& start, bool held) const {
 }
 
 std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoint& start,
-                                               SecondStage method) {
+                                               const Attempt& attempt) {
   const std::string& name = problem_.parameters()[static_cast<std::size_t>(k_)].name;
   const double value = at(distance);
-  FitOptions options = refit_options(problem_, method);
+  FitOptions options = refit_options(problem_, attempt.method);
   ProfilePoint from = start;
   from.x[k_] = value;
   // A parameter that is alone can't be held, as nothing would be left to fit: two bounds a few
@@ -167,7 +145,7 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
   }
   const Problem problem(model_, options);
   const std::optional<ProfileMinimum> best =
-      find_minimum(problem, measurements_, start_of(from, held), pool_);
+      find_minimum(problem, measurements_, start_of(from, held), {attempt}, pool_);
   if (!best) return {};
   const StageTwo& two = best->two;
   double cost = best->cost;
@@ -176,8 +154,8 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
     deficit_ = minimum_.cost - cost;
     lowest_at_ = value;
   }
-  ProfilePoint point{distance, std::sqrt(2.0 * std::max(0.0, cost - minimum_.cost)), from.x,
-                     two.noise};
+  ProfilePoint point{distance, std::sqrt(2.0 * std::max(0.0, cost - minimum_.cost)), two.converged,
+                     from.x, two.noise};
   if (held) {
     point.x.head(k_) = two.x.head(k_);
     point.x.tail(two.x.size() - k_) = two.x.tail(two.x.size() - k_);
@@ -198,20 +176,26 @@ ProfilePoint ProfilePath::predict(double distance) const {
   }
   if (second != nullptr) {
     const double share = (distance - first.distance) / (first.distance - second->distance);
-    predicted.x += share * (first.x - second->x);
+    const VectorXd step = share * (first.x - second->x);
+    predicted.x += share_within(problem_.box(), first.x, step) * step;
   }
   return predicted;
 }
 
 std::optional<ProfilePoint> ProfilePath::evaluate(double distance) {
+  const FitOptions& options = problem_.options();
   const SecondStage method = minimum_.two.method;
   const SecondStage other =
       method == SecondStage::joint ? SecondStage::projected : SecondStage::joint;
-  std::optional<ProfilePoint> point = refit(distance, predict(distance), method);
-  if (!point) point = refit(distance, nearest(distance), other);
-  if (!point) point = refit(distance, nearest(distance), method);
-  if (point) points_.push_back(*point);
+  std::optional<ProfilePoint> point =
+      refit(distance, predict(distance), from_neighbour(options, method, minimum_.two.held));
+  if (!point) point = refit(distance, nearest(distance), from_neighbour(options, other, true));
+  if (!point) point = refit(distance, nearest(distance), within_basin(options, method));
   return point;
+}
+
+std::optional<ProfilePoint> ProfilePath::evaluate_within_basin(double distance) {
+  return refit(distance, nearest(distance), within_basin(problem_.options(), minimum_.two.method));
 }
 
 ProfilePath::End ProfilePath::walk(const ProfileReach& reach) {
@@ -222,33 +206,65 @@ ProfilePath::End ProfilePath::walk(const ProfileReach& reach) {
   if (edge <= 0) return at_bound;
   if (!std::isfinite(reach.root)) return std::isfinite(edge) ? at_bound : open;
 
-  Bracket bracket(reach.root);
+  CrossingBracket bracket(reach.root, reach.first);
   double distance = std::min(reach.first, edge);
   double blocked = infinity;  // the least distance at which there is no fit
+  double checked = infinity;  // the bracket's width when its upper end was fitted again
   int failures = 0;
   for (int refits = 0; refits < most_refits && failures <= most_failures; ++refits) {
-    const std::optional<ProfilePoint> point = evaluate(distance);
+    std::optional<ProfilePoint> point = evaluate(distance);
     if (!point) {
       ++failures;
       blocked = distance;
       distance = 0.5 * (bracket.low() + blocked);
       continue;
     }
-    if (std::abs(point->root - reach.root) <= root_tolerance * reach.root) {
-      return {at(distance), IntervalEnd::crossed};
-    }
+    if (is_on(*point, reach.root)) return {at(distance), IntervalEnd::crossed};
+    // A point of another branch would mislead the predictions.
+    if (!bracket.leaps_to(distance, point->root)) points_.push_back(*point);
     bracket.add(distance, point->root);
-    if (!bracket.closed()) {
-      if (distance >= edge) return at_bound;
-      if (distance >= reach.limit) return open;
-    } else if (bracket.width() <= width_tolerance * bracket.high() ||
-               at(bracket.low()) == at(bracket.high())) {
-      return {at(bracket.high()), IntervalEnd::crossed};
+    const auto narrow = [&] {
+      return bracket.closed() && (bracket.width() <= width_tolerance * bracket.high() ||
+                                  at(bracket.low()) == at(bracket.high()));
+    };
+    const bool near = bracket.width() <= 0.1 * std::min(checked, bracket.high());
+    if (bracket.leaps() && (near || narrow())) {
+      checked = bracket.width();
+      ++refits;
+      point = evaluate_within_basin(bracket.high());
+      if (point && point->root <= reach.root) {
+        bracket.reopen(point->root);
+        checked = infinity;
+        points_.push_back(*point);
+      }
     }
-    distance = std::min({bracket.next(), edge, std::max(reach.limit, distance)});
+    if (narrow()) return {at(bracket.high()), IntervalEnd::crossed};
+    if (!bracket.closed()) {
+      if (bracket.low() >= edge) return at_bound;
+      if (bracket.low() >= reach.limit) return open;
+    }
+    distance = std::min({bracket.next(), edge, std::max(reach.limit, bracket.low())});
     if (distance >= blocked) distance = 0.5 * (bracket.low() + blocked);
   }
-  return {not_a_number, IntervalEnd::failed};
+  return failed(bracket, blocked);
+}
+
+ProfilePath::End ProfilePath::failed(const CrossingBracket& bracket, double blocked) const {
+  const std::string& name = problem_.parameters()[static_cast<std::size_t>(k_)].name;
+  End end;
+  std::ostringstream message;
+  message << (up_ ? "the upper" : "the lower") << " end could not be found: with " << name
+          << " held at " << at(bracket.low()) << " the cost is below the interval's height, ";
+  if (bracket.closed()) {
+    message << "at " << at(bracket.high()) << " above it, and the refits between them don't settle";
+  } else if (std::isfinite(blocked)) {
+    message << "and at " << at(blocked) << " the other parameters could not be fitted; bound "
+            << name << " before it, or hold or bound another parameter";
+  } else {
+    message << "and it rises too slowly from there; bound " << name;
+  }
+  end.message = message.str();
+  return end;
 }
 
 }  // namespace sepcal

@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "attempts.hpp"
+#include "crossing_bracket.hpp"
 #include "problem.hpp"
 #include "sepcal/measurements.hpp"
 #include "sepcal/profile.hpp"
@@ -18,6 +21,7 @@ namespace sepcal {
 struct ProfilePoint {
   double distance = 0.0;  // from the minimum, not negative
   double root = 0.0;      // sqrt(2 (J_p - J-hat)), zero where J_p is lower
+  bool converged = true;  // false: the refit stopped in a flat valley, within 1e-5 of J_p
   Eigen::VectorXd x;      // all n free parameters
   Eigen::VectorXd noise;  // n_z
 };
@@ -31,7 +35,8 @@ struct ProfileMinimum {
 /// Stage two, repeated where it stops in a flat valley, which it calls not converged, until that
 /// gains nothing. Nothing where it goes on gaining or the model is not finite.
 std::optional<ProfileMinimum> find_minimum(const Problem& problem, const Measurements& measurements,
-                                           StageOne start, ThreadPool& pool);
+                                           StageOne start, const std::vector<Attempt>& attempts,
+                                           ThreadPool& pool);
 
 /// How far the walk goes.
 struct ProfileReach {
@@ -50,6 +55,7 @@ class ProfilePath {
   struct End {
     double value = not_a_number;  // of the parameter; infinite where open, NaN where failed
     IntervalEnd kind = IntervalEnd::failed;
+    std::string message = {};  // of a failed one: one line
   };
   End walk(const ProfileReach& reach);
 
@@ -63,8 +69,12 @@ class ProfilePath {
 
   /// Nothing where the others can't be fitted.
   std::optional<ProfilePoint> evaluate(double distance);
-  std::optional<ProfilePoint> refit(double distance, const ProfilePoint& start, SecondStage method);
-  /// On the line through the two nearest points.
+  /// From the nearest point alone, by short steps.
+  std::optional<ProfilePoint> evaluate_within_basin(double distance);
+  std::optional<ProfilePoint> refit(double distance, const ProfilePoint& start,
+                                    const Attempt& attempt);
+  End failed(const CrossingBracket& bracket, double blocked) const;
+  /// On the line through the two nearest points, up to the first bound.
   ProfilePoint predict(double distance) const;
   StageOne start_of(const ProfilePoint& start, bool held) const;
   const ProfilePoint& nearest(double distance) const;

@@ -79,33 +79,55 @@ bool refine_by_curvature(Objective& objective, Refinement& result, const Box& bo
   return false;
 }
 
-}  // namespace
+/// Sums of squares where steps began and ended.
+struct Squares {
+  double first = infinity;
+  double last = infinity;
+};
 
-Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
-                  const VectorXd& scale) {
-  Refinement result{box.clip(start), std::vector<bool>(static_cast<std::size_t>(start.size()))};
+/// Gauss-Newton's steps while they contract. Unless they do to the end, x is left on the way.
+bool refine_by_gauss_newton(Objective& objective, Refinement& result, const Box& box,
+                            const VectorXd& scale, Squares& squares) {
   VectorXd residual;
   MatrixXd jacobian;
   double before = infinity;
   for (; result.iterations < most_steps; ++result.iterations) {
-    if (!objective.linearise(result.x, residual, jacobian)) break;
+    if (!objective.linearise(result.x, residual, jacobian)) return false;
+    squares.last = residual.squaredNorm();
+    if (result.iterations == 0) squares.first = squares.last;
     const BoundedSolution step =
         solve_bounded(-jacobian, residual, {box.lower - result.x, box.upper - result.x});
     const StepLength length((jacobian * step.x).stableNorm(), step.x, scale, residual.stableNorm());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
-      for (Index k = 0; k < start.size(); ++k) {
+      for (Index k = 0; k < result.x.size(); ++k) {
         if (step.active[static_cast<std::size_t>(k)]) result.x[k] += step.x[k];  // onto its bound
       }
       result.x = box.clip(result.x);
       result.converged = true;
-      return result;
+      return true;
     }
-    if (!(length.size < before)) break;
+    if (!(length.size < before)) return false;
     before = length.size;
     result.x = box.clip(result.x + step.x);
   }
+  return false;
+}
+
+Refinement begin(const VectorXd& start, const Box& box) {
+  return {box.clip(start), std::vector<bool>(static_cast<std::size_t>(start.size()))};
+}
+
+}  // namespace
+
+Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
+                  const VectorXd& scale) {
+  Refinement result = begin(start, box);
+  Squares squares;
+  if (refine_by_gauss_newton(objective, result, box, scale, squares)) return result;
   result.x = box.clip(start);
+  VectorXd residual;
+  MatrixXd jacobian;
   if (refine_by_curvature(objective, result, box, scale) &&
       objective.linearise(result.x, residual, jacobian)) {
     result.converged = true;
@@ -115,6 +137,16 @@ Refinement refine(Objective& objective, const VectorXd& start, const Box& box,
   if (objective.linearise(result.x, residual, jacobian)) {
     result.at_bound = held_by_bounds(result.x, -jacobian.transpose() * residual, box);
   }
+  return result;
+}
+
+Refinement refine_downhill(Objective& objective, const VectorXd& start, const Box& box,
+                           const VectorXd& scale) {
+  constexpr double rounding = 1e-9;  // of the sum
+  Refinement result = begin(start, box);
+  Squares squares;
+  result.converged = refine_by_gauss_newton(objective, result, box, scale, squares) &&
+                     squares.last <= (1.0 + rounding) * squares.first;
   return result;
 }
 

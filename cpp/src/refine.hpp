@@ -26,4 +26,9 @@ struct Refinement {
 Refinement refine(Objective& objective, const Eigen::VectorXd& start, const Box& box,
                   const Eigen::VectorXd& scale);
 
+/// The same without Newton's steps, which take a pass for each parameter, and converged only where
+/// the cost is no higher than at `start`. Unless converged, x and the objective are anywhere.
+Refinement refine_downhill(Objective& objective, const Eigen::VectorXd& start, const Box& box,
+                           const Eigen::VectorXd& scale);
+
 }  // namespace sepcal

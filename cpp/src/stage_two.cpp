@@ -21,12 +21,16 @@ struct Outcome {
   bool settled = false;
 };
 
-/// The parameters at R, R at the parameters, and so on until Eq. 26 holds.
+/// The parameters at R, R at the parameters, and so on until Eq. 26 holds. `near`: the parameters
+/// are all but there.
 Outcome alternate(Alternation& alternation, StageTwo& result, const FitOptions& options,
-                  bool noise_given) {
+                  bool noise_given, bool near) {
   constexpr int most_failures = 3;  // then another R will not help
-  alternation.descend();
-  Outcome outcome{alternation.refine(), noise_given};
+  Outcome outcome{near && alternation.refine_downhill(), noise_given};
+  if (!outcome.refined) {
+    alternation.descend();
+    outcome.refined = alternation.refine();
+  }
   int failures = outcome.refined ? 0 : 1;
   int updates = 0;
   while (!outcome.settled && failures < most_failures && updates < options.noise_iterations) {
@@ -65,13 +69,14 @@ Ending try_once(const Problem& problem, const Sweep& sweep, const StageOne& star
 
   Alternation alternation(problem, sweep, attempt.first_radius, result);
   if (!noise_given) alternation.begin_noise();
-  alternation.look_around(attempt.hold);
-  Outcome outcome = alternate(alternation, result, problem.options(), noise_given);
+  alternation.look_around(attempt);
+  Outcome outcome = alternate(alternation, result, problem.options(), noise_given, attempt.near);
   // A poor start may have seen less than the solution does: what holds nothing open has to go.
   if (alternation.release_what_is_determined()) {
-    outcome = alternate(alternation, result, problem.options(), noise_given);
+    outcome = alternate(alternation, result, problem.options(), noise_given, attempt.near);
   }
   result.converged = outcome.refined && outcome.settled;
+  result.held = alternation.holds();
   if (!outcome.refined) {
     result.message +=
         "the minimisation did not converge: no minimum was found near where it ended; "
@@ -105,9 +110,14 @@ double find_cost(const Problem& problem, const StageTwo& two, double rows) {
 
 StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
                        const StageOne& start, ThreadPool& pool) {
+  return run_stage_two(problem, measurements, start, list_attempts(problem.options(), start), pool);
+}
+
+StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
+                       const StageOne& start, const std::vector<Attempt>& attempts,
+                       ThreadPool& pool) {
   const Sweep sweep(problem.model(), measurements, pool);
   const bool start_given = !problem.options().start.empty();
-  const std::vector<Attempt> attempts = list_attempts(problem.options(), start);
   StageTwo best;
   const Ending first = try_once(problem, sweep, start, attempts.front(), best);
   Ending best_ending = first;

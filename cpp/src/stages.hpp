@@ -14,6 +14,8 @@
 
 namespace sepcal {
 
+struct Attempt;
+
 /// Steps 2-4.
 StageOne run_stage_one(const Problem& problem, const Record& record, ThreadPool& pool);
 
@@ -27,6 +29,7 @@ struct StageTwo {
   int noise_iterations = 0;
   int iterations = 0;
   bool converged = false;
+  bool held = false;  // a loose prior held what the record leaves open
   std::string message;
 };
 
@@ -39,5 +42,10 @@ double find_cost(const Problem& problem, const StageTwo& two, double rows);
 /// Step 5, from where stage one ended.
 StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
                        const StageOne& start, ThreadPool& pool);
+
+/// The same in the ways given (at least one), until one of them is enough.
+StageTwo run_stage_two(const Problem& problem, const Measurements& measurements,
+                       const StageOne& start, const std::vector<Attempt>& attempts,
+                       ThreadPool& pool);
 
 }  // namespace sepcal

@@ -123,6 +123,40 @@ def test_a_model_with_an_effect_and_given_noise():
     assert_allclose(upper - lower, 2 * norm.ppf(0.975) * prediction.measurement_error)
 
 
+def test_beyond_a_bound_of_the_wind_along_the_track_the_profile_goes_on():
+    """A tube on 30 degrees of track: w_n reaches -100 m/s before w_e's upper end."""
+    flown = sepcal.simulate("pitot-static", rows=600, seed=42)
+    rows = np.abs(np.arctan2(flown["ve_mps"], flown["vn_mps"])) < np.pi / 12
+    part = sepcal.Flight({header: values[rows] for header, values in flown.items()})
+    fit = sepcal.fit(sepcal.PitotStatic(), part, samples=100)
+    assert fit.status == "converged"
+    vn, ve, vd, z = (part[name] for name in ("vn_mps", "ve_mps", "vd_mps", "airspeed_mps"))
+
+    def square(w_n, w_e):
+        airspeed = np.sqrt((vn - w_n) ** 2 + (ve - w_e) ** 2 + vd**2)
+        columns = np.stack([airspeed, np.ones_like(z)], axis=1)
+        return np.linalg.lstsq(columns, z, rcond=None)[1].item()
+
+    def least(w_e):
+        options = {"xatol": 1e-9}
+        inside = minimize_scalar(
+            lambda w_n: square(w_n, w_e), bounds=(-100, 50), method="bounded", options=options
+        )
+        return min(inside.fun, square(-100.0, w_e))
+
+    at = fit["w_e"]
+    colour = (at.standard_error / at.standard_error_white) ** 2
+    freedom = z.size - 4
+    reach = student_t.ppf(0.975, freedom)
+    height = least(at.value) * (1 + colour * reach**2 / freedom)
+    lower = brentq(lambda w_e: least(w_e) - height, -5.0, at.value, xtol=1e-10)
+    upper = brentq(lambda w_e: least(w_e) - height, at.value, 40.0, xtol=1e-10)
+    assert square(-100.0, upper) < square(-99.9, upper)
+    found = fit.intervals(names=["w_e"])["w_e"]
+    assert found.ends == ("crossed", "crossed")
+    assert_allclose(found.profile, (lower, upper), rtol=1e-6)
+
+
 def test_a_calibrations_intervals_are_near_the_gaussian_ones(base, flown, tmp_path):
     found = base.intervals()
     assert list(found.parameters) == list(PROBE.parameters)
