@@ -122,9 +122,8 @@ class Profiles {
     const auto n = static_cast<double>(x.size());
     freedom_ = noise_given_ ? infinity : count_ - n;
     reach_ = noise_given_ ? normal_reach(level) : student_reach(level, freedom_);
-    std::vector<Attempt> attempts = list_attempts(problem.options(), start);
-    attempts.insert(attempts.begin(), from_neighbour(problem.options(), fit.method, true));
-    const auto found = find_minimum(problem, measurements, start, attempts, pool);
+    const Attempt attempt = from_neighbour(problem.options(), fit.method, true);
+    const auto found = find_minimum(problem, measurements, start, attempt, pool);
     if (!found) return;
     minimum_ = *found;
     converged_ = true;

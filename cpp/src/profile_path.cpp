@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "crossing_bracket.hpp"
 
@@ -40,6 +41,15 @@ double known_cost(const FitOptions& options, const std::string& name, double val
   return 0.5 * r * r;
 }
 
+/// Whether gains that go on shrinking as the last two did are far from settled after the rounds
+/// left.
+bool goes_on_gaining(double before, double gain, int rounds_left) {
+  constexpr double benefit_of_the_doubt = 3.0;
+  if (!std::isfinite(before) || !(gain > settled)) return false;
+  const double shrinks = std::log(std::max(1.0, before / gain));
+  return std::log(gain / settled) > benefit_of_the_doubt * rounds_left * shrinks;
+}
+
 /// Whether a point lies on the height, as near as its refit is to its minimum.
 bool is_on(const ProfilePoint& point, double height) {
   const double exact = root_tolerance * height;
@@ -61,17 +71,20 @@ double share_within(const Box& box, const VectorXd& x, const VectorXd& step) {
 }  // namespace
 
 std::optional<ProfileMinimum> find_minimum(const Problem& problem, const Measurements& measurements,
-                                           StageOne start, const std::vector<Attempt>& attempts,
+                                           StageOne start, const Attempt& attempt,
                                            ThreadPool& pool) {
   constexpr int most_rounds = 15;
   const auto rows = static_cast<double>(measurements.rows());
   const Index n_1 = problem.model().tables().n_1();
   double before = infinity;
+  double gain = infinity;
   for (int round = 0; round < most_rounds; ++round) {
-    ProfileMinimum now{run_stage_two(problem, measurements, start, attempts, pool)};
+    ProfileMinimum now{run_stage_two(problem, measurements, start, {attempt}, pool)};
     now.cost = find_cost(problem, now.two, rows);
     if (!std::isfinite(now.cost)) return {};
     if (now.two.converged || std::abs(now.cost - before) < settled) return now;
+    const double gain_before = std::exchange(gain, before - now.cost);
+    if (goes_on_gaining(gain_before, gain, most_rounds - round - 1)) return {};
     before = now.cost;
     start.xi1 = now.two.x.head(n_1);
     start.xi2 = now.two.x.tail(now.two.x.size() - n_1);
@@ -145,7 +158,7 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
   }
   const Problem problem(model_, options);
   const std::optional<ProfileMinimum> best =
-      find_minimum(problem, measurements_, start_of(from, held), {attempt}, pool_);
+      find_minimum(problem, measurements_, start_of(from, held), attempt, pool_);
   if (!best) return {};
   const StageTwo& two = best->two;
   double cost = best->cost;

@@ -35,7 +35,7 @@ struct ProfileMinimum {
 /// Stage two, repeated where it stops in a flat valley, which it calls not converged, until that
 /// gains nothing. Nothing where it goes on gaining or the model is not finite.
 std::optional<ProfileMinimum> find_minimum(const Problem& problem, const Measurements& measurements,
-                                           StageOne start, const std::vector<Attempt>& attempts,
+                                           StageOne start, const Attempt& attempt,
                                            ThreadPool& pool);
 
 /// How far the walk goes.
