@@ -45,16 +45,19 @@ double known_cost(const FitOptions& options, const std::string& name, double val
 /// left.
 bool goes_on_gaining(double before, double gain, int rounds_left) {
   constexpr double benefit_of_the_doubt = 3.0;
-  if (!std::isfinite(before) || !(gain > settled)) return false;
+  constexpr double much = 1e-2;  // of J: less comes of a flat valley, where gains are uneven
+  if (!std::isfinite(before) || !(gain > much)) return false;
   const double shrinks = std::log(std::max(1.0, before / gain));
   return std::log(gain / settled) > benefit_of_the_doubt * rounds_left * shrinks;
 }
 
-/// Whether a point lies on the height, as near as its refit is to its minimum.
-bool is_on(const ProfilePoint& point, double height) {
+/// Whether a point lies on the height, as near as refits come to their minima in a flat valley:
+/// that shows where one doesn't converge, or where many of them get no nearer.
+bool is_on(const ProfilePoint& point, double height, int refits) {
+  constexpr int many = 20;
   const double exact = root_tolerance * height;
-  return std::abs(point.root - height) <=
-         (point.converged ? exact : std::max(exact, settled / height));
+  const bool flat = !point.converged || refits >= many;
+  return std::abs(point.root - height) <= (flat ? std::max(exact, settled / height) : exact);
 }
 
 /// The share of a step from `x` at which it meets the first bound of the box.
@@ -214,8 +217,8 @@ std::optional<ProfilePoint> ProfilePath::evaluate_within_basin(double distance) 
 ProfilePath::End ProfilePath::walk(const ProfileReach& reach) {
   const double edge = this->edge();
   const double side = up_ ? 1.0 : -1.0;
-  const End at_bound{at(edge), IntervalEnd::bound};
-  const End open{side * infinity, IntervalEnd::open};
+  End at_bound{at(edge), IntervalEnd::bound};
+  End open{side * infinity, IntervalEnd::open};
   if (edge <= 0) return at_bound;
   if (!std::isfinite(reach.root)) return std::isfinite(edge) ? at_bound : open;
 
@@ -232,7 +235,7 @@ ProfilePath::End ProfilePath::walk(const ProfileReach& reach) {
       distance = 0.5 * (bracket.low() + blocked);
       continue;
     }
-    if (is_on(*point, reach.root)) return {at(distance), IntervalEnd::crossed};
+    if (is_on(*point, reach.root, refits)) return {at(distance), IntervalEnd::crossed};
     // A point of another branch would mislead the predictions.
     if (!bracket.leaps_to(distance, point->root)) points_.push_back(*point);
     bracket.add(distance, point->root);
@@ -258,6 +261,10 @@ ProfilePath::End ProfilePath::walk(const ProfileReach& reach) {
     }
     distance = std::min({bracket.next(), edge, std::max(reach.limit, bracket.low())});
     if (distance >= blocked) distance = 0.5 * (bracket.low() + blocked);
+  }
+  // In a flat valley refits scatter about the height, all of them as near as need be.
+  if (bracket.closed() && bracket.width() <= settled * bracket.high()) {
+    return {at(bracket.high()), IntervalEnd::crossed};
   }
   return failed(bracket, blocked);
 }
