@@ -3,11 +3,9 @@
 // sum of squares itself, by bisection; at bounds, and nowhere.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <string>
 
 #include "profile_records.hpp"
 #include "sepcal/profile.hpp"
@@ -20,8 +18,9 @@ using sepcal::IntervalEnd;
 using sepcal::ProfileInterval;
 using sepcal::Quantity;
 using sepcal::Record;
-using sepcal::test::Draws;
+using sepcal::test::cross;
 using sepcal::test::Growth;
+using sepcal::test::growth_record;
 using sepcal::test::Line;
 using sepcal::test::line_record;
 using sepcal::test::t_95_8;
@@ -62,63 +61,12 @@ struct Saturation {
   }
 };
 
-/// z = s exp(c u).
-struct ScaledGrowth {
-  static constexpr std::array inputs{Quantity{"u", "1"}};
-  static constexpr std::array outputs{Quantity{"z", "1"}};
-  static constexpr std::array linear{Quantity{"s", "1"}};
-  static constexpr std::array nonlinear{Quantity{"c", "1", -3, 3}};
-  template <class U, class X>
-  sepcal::Affine<X, 1, 1> at(const sepcal::Vec<U, 1>& u, const sepcal::Vec<X, 1>& xi2) const {
-    using std::exp;
-    sepcal::Affine<X, 1, 1> z;
-    z.A << exp(xi2[0] * u[0]);
-    z.b << X(0.0);
-    return z;
-  }
-};
-
-/// z = s u + sqrt(1 - c), not a number beyond c = 1.
-struct Root {
-  static constexpr std::array inputs{Quantity{"u", "1"}};
-  static constexpr std::array outputs{Quantity{"z", "1"}};
-  static constexpr std::array linear{Quantity{"s", "1"}};
-  static constexpr std::array nonlinear{Quantity{"c", "1", -3, 3}};
-  template <class U, class X>
-  sepcal::Affine<X, 1, 1> at(const sepcal::Vec<U, 1>& u, const sepcal::Vec<X, 1>& xi2) const {
-    using std::sqrt;
-    sepcal::Affine<X, 1, 1> z;
-    z.A << X(u[0]);
-    z.b << sqrt(1.0 - xi2[0]);
-    return z;
-  }
-};
-
-Record growth_record(double noise) {
-  Draws draws(5);
-  const std::vector<double> u = draws.uniform_column(10, 0, 2);
-  std::vector<double> z;
-  for (const double x : u) z.push_back(std::exp(0.6 * x) + noise * draws.normal());
-  Record record;
-  record.add("u", u).add("z", z);
-  return record;
-}
-
 double growth_square(const Record& record, double c) {
   const auto u = record.column("u");
   const auto z = record.column("z");
   double square = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) square += std::pow(z[i] - std::exp(c * u[i]), 2);
   return square;
-}
-
-/// Where a function that rises away from `inside` crosses `height`, between the two.
-double cross(const std::function<double(double)>& f, double height, double inside, double outside) {
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (f(middle) < height ? inside : outside) = middle;
-  }
-  return inside;
 }
 
 }  // namespace
@@ -182,67 +130,6 @@ TEST_CASE("a bound within the interval ends it, and so do those of others") {
         Approx(cross(square, height, fit["c"].value, -9)).epsilon(1e-7));
   CHECK(intervals[1].profile.upper ==
         Approx(cross(square, height, fit["c"].value, 9)).epsilon(1e-7));
-}
-
-TEST_CASE("another parameter meets its bound on the way: the profile has a kink there") {
-  // The larger c, the smaller s: both ends lie beyond a bound of s, by the SSE of the best s
-  // within.
-  const Record record = growth_record(0.3);
-  FitOptions options = white();
-  const double best = sepcal::fit(ScaledGrowth{}, record, options)["s"].value;
-  options.bounds = {{"s", {best - 0.1, best + 0.1}}};
-  const Fit fit = sepcal::fit(ScaledGrowth{}, record, options);
-  REQUIRE_FALSE(fit["s"].at_bound);
-  const auto free_scale = [&](double c) {
-    const auto u = record.column("u");
-    const auto z = record.column("z");
-    double az = 0.0;
-    double aa = 0.0;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      az += std::exp(c * u[i]) * z[i], aa += std::exp(2 * c * u[i]);
-    }
-    return az / aa;
-  };
-  const auto square = [&](double c) {
-    const auto u = record.column("u");
-    const auto z = record.column("z");
-    const double s = std::clamp(free_scale(c), best - 0.1, best + 0.1);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < u.size(); ++i) sum += std::pow(z[i] - s * std::exp(c * u[i]), 2);
-    return sum;
-  };
-  const double height = square(fit["c"].value) * (1 + t_95_8 * t_95_8 / 8);
-  const double lower = cross(square, height, fit["c"].value, -3);
-  const double upper = cross(square, height, fit["c"].value, 3);
-  REQUIRE(free_scale(lower) > best + 0.1);
-  REQUIRE(free_scale(upper) < best - 0.1);
-  for (const auto method : {sepcal::SecondStage::joint, sepcal::SecondStage::projected}) {
-    options.second_stage = method;
-    const auto interval =
-        sepcal::profile_intervals(ScaledGrowth{}, record, fit, options, {.names = {"c"}}).at(0);
-    CHECK(interval.lower_end == IntervalEnd::crossed);
-    CHECK(interval.upper_end == IntervalEnd::crossed);
-    CHECK(interval.profile.lower == Approx(lower).epsilon(1e-7));
-    CHECK(interval.profile.upper == Approx(upper).epsilon(1e-7));
-  }
-}
-
-TEST_CASE("an end that could not be found says where and why") {
-  Record record;
-  record.add("u", {-2, -1, 0, 1, 2, 3}).add("z", {-1.9, -1.3, 0.5, 1.2, 1.7, 3.3});
-  FitOptions options = white();
-  options.noise = {{"z", 0.5}};
-  options.start = {{"c", 0.9}};
-  const Fit fit = sepcal::fit(Root{}, record, options);
-  REQUIRE(fit.status == sepcal::FitStatus::converged);
-  const auto interval =
-      sepcal::profile_intervals(Root{}, record, fit, options, {.names = {"c"}}).at(0);
-  CHECK(interval.upper_end == IntervalEnd::failed);
-  CHECK(std::isnan(interval.profile.upper));
-  CHECK(interval.message.find("the upper end could not be found: with c held at 0.99") !=
-        std::string::npos);
-  CHECK(interval.message.find("the other parameters could not be fitted; bound c") !=
-        std::string::npos);
 }
 
 TEST_CASE("what nothing determines is open") {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A line's record for profile likelihoods, and the quantiles that end their intervals.
+// Records for profile likelihoods, the quantiles that end their intervals, crossings by bisection.
 #pragma once
 
+#include <cmath>
+#include <functional>
 #include <vector>
 
 #include "sepcal/options.hpp"
@@ -28,6 +30,26 @@ inline Record line_record() {
   Record record;
   record.add("u", u).add("z", z);
   return record;
+}
+
+inline Record growth_record(double noise) {
+  Draws draws(5);
+  const std::vector<double> u = draws.uniform_column(10, 0, 2);
+  std::vector<double> z;
+  for (const double x : u) z.push_back(std::exp(0.6 * x) + noise * draws.normal());
+  Record record;
+  record.add("u", u).add("z", z);
+  return record;
+}
+
+/// Where a function that rises away from `inside` crosses `height`, between the two.
+inline double cross(const std::function<double(double)>& f, double height, double inside,
+                    double outside) {
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (f(middle) < height ? inside : outside) = middle;
+  }
+  return inside;
 }
 
 }  // namespace sepcal::test
