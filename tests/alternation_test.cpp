@@ -56,7 +56,7 @@ TEST_CASE("descent, last digits and R: a line's are those of least squares") {
   Straight line;
   Alternation alternation = line.alternate();
   alternation.begin_noise();
-  alternation.look_around(true);
+  alternation.look_around({});
   CHECK_FALSE(alternation.holds());
   alternation.descend();
   CHECK(alternation.refine());
@@ -76,7 +76,7 @@ TEST_CASE("a bound of a linear parameter holds, and what was projected falls bac
   line.result.method = sepcal::SecondStage::projected;
   Alternation alternation = line.alternate();
   alternation.begin_noise();
-  alternation.look_around(true);
+  alternation.look_around({});
   alternation.descend();
   CHECK(alternation.refine());
   CHECK(line.result.x[0] == 2.0);
