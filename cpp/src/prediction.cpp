@@ -49,9 +49,7 @@ MatrixXd known_covariance(const Fit& fit) {
   return covariance;
 }
 
-double measurements_of(const Fit& fit) {
-  return static_cast<double>(fit.rows * fit.noise.size());
-}
+double measurements_of(const Fit& fit) { return static_cast<double>(fit.rows * fit.noise.size()); }
 
 /// Measurements less free parameters.
 double freedom_of(const Fit& fit) {
@@ -63,7 +61,8 @@ double quantile_of(const Fit& fit, const FitOptions& options, double level) {
   return options.noise.empty() ? student_reach(level, freedom_of(fit)) : normal_reach(level);
 }
 
-/// The variance of output j's noise: as given, or R-hat times M / (M - n), as the covariance has it.
+/// The variance of output j's noise: as given, or R-hat times M / (M - n), as the covariance has
+/// it.
 double variance_of(const Fit& fit, const FitOptions& options, Index j) {
   const double noise = fit.noise[static_cast<std::size_t>(j)].value;
   const double ratio = options.noise.empty() ? measurements_of(fit) / freedom_of(fit) : 1.0;

@@ -161,8 +161,8 @@ class FlightProblem {
 };
 
 /// Fits `model` to all flights of a fleet. Throws Error for misuse: names that the model doesn't
-/// have, nothing shared, flights of one name or none, a loss; for flights that can't be used unless they
-/// are left out; and what the fleet throws.
+/// have, nothing shared, flights of one name or none, a loss; for flights that can't be used unless
+/// they are left out; and what the fleet throws.
 ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options);
 
 /// The same on records in memory, on ManyOptions::fit.threads threads.
