@@ -110,19 +110,20 @@ JointCovariance factorise(const JointProblem& joint, const JointStage& stage,
 
 /// Parameters that the measurements had to pay for: all of them, less the share of each that was
 /// known beforehand.
-double count_spent(const JointCovariance& at_R, const JointProblem& joint,
+double count_spent(const JointCovariance& unjudged, const JointProblem& joint,
                    const ManyObjective& objective) {
   auto spent = static_cast<double>(joint.layout.size());
   const VectorXd& weights = objective.known_weights();
-  if (weights.isZero(0.0) || at_R.singular) return spent;
+  if (weights.isZero(0.0) || unjudged.singular) return spent;
   const auto share = [](const MatrixXd& covariance, const VectorXd& weight) {
     const double known = covariance.diagonal().cwiseProduct(weight.cwiseAbs2()).sum();
     return std::isfinite(known) ? known : 0.0;
   };
-  spent -= share(at_R.shared_white(), weights.tail(joint.layout.shared)(at_R.shared));
+  spent -= share(unjudged.shared_white(), weights.tail(joint.layout.shared)(unjudged.shared));
   for (Index i = 0; i < joint.layout.flights; ++i) {
-    const JudgedFlight& judged = at_R.flights[static_cast<std::size_t>(i)];
-    spent -= share(at_R.own_white(i), own_weights(judged, objective).head(judged.share.own.cols()));
+    const JudgedFlight& judged = unjudged.flights[static_cast<std::size_t>(i)];
+    spent -=
+        share(unjudged.own_white(i), own_weights(judged, objective).head(judged.share.own.cols()));
   }
   return spent;
 }
