@@ -17,8 +17,15 @@ bool is_singular(const MatrixXd& R) {
 
 MatrixXd undefined(Index n) { return MatrixXd::Constant(n, n, not_a_number); }
 
+/// rows K^-1. Without rows or columns there is nothing to solve, and Eigen is not to be asked.
+MatrixXd divide(MatrixXd rows, const MatrixXd& K) {
+  if (rows.size() > 0) K.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows);
+  return rows;
+}
+
 /// R^-1 M R^-T, symmetric to the last bit.
 MatrixXd sandwich(const MatrixXd& R, const MatrixXd& M) {
+  if (R.size() == 0) return M;
   const auto upper = R.triangularView<Eigen::Upper>();
   const MatrixXd half = upper.solve(M);
   const MatrixXd whole = upper.solve(half.transpose());
@@ -45,9 +52,7 @@ JudgedFlight judge_flight(const JointProblem& joint, const JointStage& stage,
 
 /// Rows of what is known in the coordinates of K.
 MatrixXd known_rows(const VectorXd& weights, const MatrixXd& K) {
-  MatrixXd rows = weights.asDiagonal();
-  K.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(rows);
-  return rows;
+  return divide(weights.asDiagonal(), K);
 }
 
 /// Of [own | shared], the own ones alone.
@@ -132,9 +137,8 @@ double count_spent(const JointCovariance& unjudged, const JointProblem& joint,
 
 MatrixXd JointCovariance::contribution(Index flight) const {
   const Index k = joint.cols();
-  MatrixXd B = flights[static_cast<std::size_t>(flight)].share.shared.matrix().topLeftCorner(k, k);
-  joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(B);
-  return B;
+  const TriangularFactor& factor = flights[static_cast<std::size_t>(flight)].share.shared;
+  return divide(factor.matrix().topLeftCorner(k, k), joint);
 }
 
 MatrixXd JointCovariance::shared_middle(Index flight) const {
@@ -157,8 +161,7 @@ MatrixXd JointCovariance::own_white(Index flight) const {
   const Share& share = flights[static_cast<std::size_t>(flight)].share;
   const Index n_own = share.own.cols();
   if (!is_defined() || is_singular(share.own)) return undefined(n_own);
-  MatrixXd through = share.cross;  // what the shared parameters' error adds
-  joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(through);
+  const MatrixXd through = divide(share.cross, joint);  // what the shared parameters' error adds
   return sandwich(share.own, MatrixXd::Identity(n_own, n_own) + through * through.transpose());
 }
 
@@ -167,8 +170,7 @@ MatrixXd JointCovariance::own_coloured(Index flight) const {
   const Share& share = judged.share;
   const Index n_own = share.own.cols();
   if (!is_defined() || is_singular(share.own)) return undefined(n_own);
-  MatrixXd through = share.cross;
-  joint.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(through);
+  const MatrixXd through = divide(share.cross, joint);
   MatrixXd own = MatrixXd::Identity(n_own, n_own);
   MatrixXd mixed = MatrixXd::Zero(n_own, joint.cols());
   if (judged.middle.size() > 0) {
