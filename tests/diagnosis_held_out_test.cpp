@@ -27,7 +27,7 @@ namespace {
 template <class Wanted>
 std::vector<Index> rows_of(const RowLayout& layout, const Folds& folds, const Wanted& wanted) {
   std::vector<Index> rows;
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     if (!wanted(block)) continue;
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
       for (Index i = block.first; i < block.last; ++i) rows.push_back(layout.first(j) + i);
@@ -49,12 +49,12 @@ std::vector<double> refit_every_fold(const RowLayout& layout, const MatrixXd& co
                                      const VectorXd& z, const Folds& folds) {
   std::vector<double> squares;
   const VectorXd scales = scales_of(layout);
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     if (!block.judged) continue;
     const auto others =
-        rows_of(layout, folds, [&](const LeftOut& other) { return other.fold != block.fold; });
-    const auto own =
-        rows_of(layout, folds, [&](const LeftOut& other) { return other.first == block.first; });
+        rows_of(layout, folds, [&](const HeldOutBlock& other) { return other.fold != block.fold; });
+    const auto own = rows_of(layout, folds,
+                             [&](const HeldOutBlock& other) { return other.first == block.first; });
     const VectorXd x = least_squares(columns(others, Eigen::all), z(others));
     squares.push_back(
         scales(own).cwiseProduct(z(own) - columns(own, Eigen::all) * x).squaredNorm());
@@ -95,7 +95,7 @@ void check_is_refit(const Flight& flight, const Folds& folds) {
 /// Blocks one after another over all rows, none of them empty.
 void check_covers(const RowLayout& layout, const Folds& folds) {
   Index row = 0;
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     CHECK(block.first == row);
     CHECK(block.last > block.first);
     CHECK(block.fold >= 0);
@@ -197,7 +197,7 @@ TEST_CASE("the end blocks of a ramp would be extrapolated to: they are not judge
     CHECK(folds.blocks[i].judged == (i != 0 && i != 11));
   }
   judge_interpolated(layout, VectorXd(ramp.array().sin()), folds);
-  CHECK(std::ranges::all_of(folds.blocks, &LeftOut::judged));
+  CHECK(std::ranges::all_of(folds.blocks, &HeldOutBlock::judged));
 
   MatrixXd both(1200, 2);
   both << VectorXd(ramp.array().sin()), ramp;

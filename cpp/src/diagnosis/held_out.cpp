@@ -20,7 +20,7 @@ std::vector<TriangularFactor> factor_by_fold(const RowLayout& layout, const Matr
                                              const Folds& folds) {
   std::vector<TriangularFactor> factors(static_cast<std::size_t>(folds.count),
                                         TriangularFactor(static_cast<int>(columns.cols())));
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
       MatrixXd rows = columns.middleRows(layout.first(j) + block.first, block.last - block.first);
       factors[static_cast<std::size_t>(block.fold)].absorb(rows);
@@ -41,7 +41,7 @@ VectorXd estimate_without(const std::vector<TriangularFactor>& factors, int left
 
 /// Squared error of a block in the outputs' unit.
 double square_of(const RowLayout& layout, const MatrixXd& columns, const VectorXd& estimate,
-                 const LeftOut& block) {
+                 const HeldOutBlock& block) {
   double square = 0.0;
   const Index n = estimate.size();
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
@@ -55,13 +55,13 @@ double square_of(const RowLayout& layout, const MatrixXd& columns, const VectorX
 /// Whether most of a block's rows lie within what the rows of other folds span, column by column
 /// and output by output: an effect on one output is 0 in the others, which says nothing.
 bool interpolates(const RowLayout& layout, const MatrixXd& G, const Folds& folds,
-                  const LeftOut& block) {
+                  const HeldOutBlock& block) {
   for (Index k = 0; k < G.cols(); ++k) {
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
       const auto column = G.col(k).segment(layout.first(j), layout.rows).array();
       double lowest = infinity;
       double highest = -infinity;
-      for (const LeftOut& other : folds.blocks) {
+      for (const HeldOutBlock& other : folds.blocks) {
         if (other.fold == block.fold) continue;
         const auto rows = column.segment(other.first, other.last - other.first);
         lowest = std::min(lowest, rows.minCoeff());
@@ -109,7 +109,7 @@ Folds interleaved_blocks(const RowLayout& layout, double correlation, int fewest
 }
 
 void judge_interpolated(const RowLayout& layout, const MatrixXd& G, Folds& folds) {
-  for (LeftOut& block : folds.blocks) block.judged = interpolates(layout, G, folds, block);
+  for (HeldOutBlock& block : folds.blocks) block.judged = interpolates(layout, G, folds, block);
 }
 
 double correlation_rows(const RowLayout& layout, const VectorXd& residual) {
@@ -183,7 +183,7 @@ HeldOut hold_out(const Linearisation& fit, const MatrixXd& G, const Folds& folds
   std::vector<double> before;
   std::vector<double> after;
   double rows = 0.0;
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     if (!block.judged) continue;
     const auto f = static_cast<std::size_t>(block.fold);
     before.push_back(square_of(layout, without, estimates_without[f], block));

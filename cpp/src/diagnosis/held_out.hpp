@@ -12,7 +12,7 @@
 namespace sepcal {
 
 /// Rows that are left out together, as a block; blocks of one fold are left out at once.
-struct LeftOut {
+struct HeldOutBlock {
   Eigen::Index first = 0;  // among the N rows
   Eigen::Index last = 0;
   int fold = 0;
@@ -20,7 +20,7 @@ struct LeftOut {
 };
 
 struct Folds {
-  std::vector<LeftOut> blocks;
+  std::vector<HeldOutBlock> blocks;
   int count = 0;
   bool interleaved = false;
 };

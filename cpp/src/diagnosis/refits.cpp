@@ -70,7 +70,7 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
                 const Folds& folds, int fold) {
   std::vector<Segment> others;
   std::vector<std::vector<Segment>> left_out;
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     if (block.fold == fold) {
       if (block.judged) append_rows(room, block.first, block.last, left_out.emplace_back());
     } else {
@@ -124,7 +124,7 @@ HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate
     old.insert(old.end(), before[f].begin(), before[f].end());
     now.insert(now.end(), after[f].begin(), after[f].end());
   }
-  for (const LeftOut& block : folds.blocks) {
+  for (const HeldOutBlock& block : folds.blocks) {
     if (block.judged) rows += static_cast<double>(block.last - block.first);
   }
   return summarise(old, now, rows * static_cast<double>(without->tables().n_z()));
