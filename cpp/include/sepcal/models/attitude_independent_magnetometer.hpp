@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "sepcal/model.hpp"
+#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -73,5 +74,7 @@ struct AttitudeIndependentMagnetometer {
     return C;
   }
 };
+
+extern template class StaticModel<AttitudeIndependentMagnetometer>;
 
 }  // namespace sepcal

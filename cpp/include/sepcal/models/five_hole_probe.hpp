@@ -10,6 +10,7 @@
 
 #include "sepcal/model.hpp"
 #include "sepcal/rotation.hpp"
+#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -81,5 +82,7 @@ struct FiveHoleProbe {
     return {x, cos(eps) * y + sin(eps) * z, cos(eps) * z - sin(eps) * y};
   }
 };
+
+extern template class StaticModel<FiveHoleProbe>;
 
 }  // namespace sepcal

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "sepcal/model.hpp"
+#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -51,5 +52,7 @@ struct Magnetometer {
     return C_alpha * C_eta;
   }
 };
+
+extern template class StaticModel<Magnetometer>;
 
 }  // namespace sepcal

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sepcal/model.hpp"
+#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -58,5 +59,7 @@ struct PitotStatic {
     return sqrt(square + floor * floor);
   }
 };
+
+extern template class StaticModel<PitotStatic>;
 
 }  // namespace sepcal

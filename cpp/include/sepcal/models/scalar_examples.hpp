@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sepcal/model.hpp"
+#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -50,5 +51,8 @@ struct ScalarExample2 {
     return z;
   }
 };
+
+extern template class StaticModel<ScalarExample1>;
+extern template class StaticModel<ScalarExample2>;
 
 }  // namespace sepcal

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The models that sepcal brings, compiled once: who fits them doesn't differentiate them again.
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/models/magnetometer.hpp"
+#include "sepcal/models/pitot_static.hpp"
+#include "sepcal/models/scalar_examples.hpp"
+
+namespace sepcal {
+
+template class StaticModel<AttitudeIndependentMagnetometer>;
+template class StaticModel<FiveHoleProbe>;
+template class StaticModel<Magnetometer>;
+template class StaticModel<PitotStatic>;
+template class StaticModel<ScalarExample1>;
+template class StaticModel<ScalarExample2>;
+
+}  // namespace sepcal
