@@ -7,28 +7,21 @@
 #include <stdexcept>
 
 #include "global_search.hpp"
+#include "profile_cost.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
-#include "simulated_records.hpp"
 #include "small_models.hpp"
 
 using doctest::Approx;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 using sepcal::FitOptions;
-using sepcal::Search;
 using sepcal::stage_one;
 using sepcal::StageOne;
+using sepcal::test::global;
 using sepcal::test::Simulated;
 
 namespace {
-
-FitOptions global(int evaluations = 500) {
-  FitOptions options;
-  options.search = Search::global;
-  options.samples = evaluations;
-  return options;
-}
 
 /// x^2 + 1 in one parameter, which throws beyond a number of calls.
 class Failing final : public sepcal::Objective {

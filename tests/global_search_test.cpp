@@ -26,16 +26,10 @@ using sepcal::stage_one;
 using sepcal::StageOne;
 using sepcal::test::dense_gradient;
 using sepcal::test::dense_trace;
+using sepcal::test::global;
 using sepcal::test::Simulated;
 
 namespace {
-
-FitOptions global(int evaluations = 500) {
-  FitOptions options;
-  options.search = Search::global;
-  options.samples = evaluations;
-  return options;
-}
 
 /// Scalar example 2 over five turns of eta, where frequency and phase trade: c may be anything.
 Simulated simulate_wave(std::uint64_t seed) {

@@ -10,9 +10,18 @@
 
 #include "dense_reference.hpp"
 #include "sepcal/model.hpp"
+#include "sepcal/options.hpp"
 #include "simulated_records.hpp"
 
 namespace sepcal::test {
+
+/// Stage one by NLopt.
+inline FitOptions global(int evaluations = 500) {
+  FitOptions options;
+  options.search = Search::global;
+  options.samples = evaluations;
+  return options;
+}
 
 /// Tr[R] at one xi2: mean squared residual after dense linear least squares with R = I, summed
 /// over outputs.

@@ -21,19 +21,15 @@ SecondStage possible(const FitOptions& options, SecondStage method) {
 }  // namespace
 
 std::vector<Attempt> list_attempts(const FitOptions& options, const StageOne& start) {
-  if (options.loss != Loss::squares && options.second_stage != SecondStage::joint) {
-    FitOptions joint = options;
-    joint.second_stage = SecondStage::joint;
-    return list_attempts(joint, start);
-  }
-  const bool automatic = options.second_stage == SecondStage::automatic;
+  const SecondStage asked = possible(options, options.second_stage);
+  const bool automatic = asked == SecondStage::automatic;
   const bool separable = start.xi1.size() > 0;
   if (options.start.empty()) {
-    if (!automatic) return {{options.second_stage}};
+    if (!automatic) return {{asked}};
     if (!start.unique_minimum) return {{SecondStage::joint}};
     return {{SecondStage::projected}, {SecondStage::joint}};
   }
-  const SecondStage method = !automatic  ? options.second_stage
+  const SecondStage method = !automatic  ? asked
                              : separable ? SecondStage::projected
                                          : SecondStage::joint;
   return {{method, customary, false},

@@ -62,9 +62,7 @@ double count_spent(const Problem& problem, const StageTwo& two, const std::vecto
   auto spent = static_cast<double>(two.x.size());
   for (const Prior& prior : problem.knowledge()) {
     const MatrixXd R = select_columns(whiten(problem, two, two.noise), inside);
-    const VectorXd shares =
-        inverse_of_square(R).diagonal().cwiseProduct(prior.weight(inside).cwiseAbs2());
-    if (shares.allFinite()) spent -= shares.sum();
+    spent -= known_share(inverse_of_square(R), prior.weight(inside));
   }
   return spent;
 }
@@ -233,6 +231,11 @@ Covariances find_covariances(const Problem& problem, const Sweep& sweep, const S
   const MatrixXd coloured = sandwich.covariance(result.inside).covariance;
   if (coloured.allFinite()) result.coloured = coloured;
   return result;
+}
+
+double known_share(const MatrixXd& covariance, const VectorXd& weights) {
+  const double share = covariance.diagonal().cwiseProduct(weights.cwiseAbs2()).sum();
+  return std::isfinite(share) ? share : 0.0;
 }
 
 MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {

@@ -30,6 +30,10 @@ struct Covariances {
 /// something is not finite.
 Covariances find_covariances(const Problem& problem, const Sweep& sweep, const StageTwo& two);
 
+/// How many of the parameters of a covariance were paid for by what was known beforehand, each in
+/// part: `weights` are 1 / standard deviation of that knowledge. 0 where there is no covariance.
+double known_share(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& weights);
+
 /// A covariance of some of n parameters among all of them, NaN for the others.
 Eigen::MatrixXd spread(const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& places,
                        Eigen::Index n);

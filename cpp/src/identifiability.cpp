@@ -4,11 +4,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 
 #include "sepcal/quantity.hpp"
+#include "short_number.hpp"
 
 namespace sepcal {
 namespace {
@@ -66,12 +66,6 @@ std::string spoken_list(const std::vector<std::string>& names, std::size_t most,
   }
   if (spoken == names.size()) return text;
   return text + " and " + std::to_string(names.size() - spoken) + " more" + where_to_look;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 /// A length of one where none is known: nothing measures that parameter, whatever its length.
@@ -140,7 +134,7 @@ std::string combination_text(const VectorXd& coefficients, const std::vector<std
     if (sign == 0.0) sign = c[k] < 0 ? -1.0 : 1.0;  // the first coefficient is written positive
     const double value = sign * c[k];
     if (!text.empty()) text += value < 0 ? " - " : " + ";
-    const std::string size = number(std::abs(value));
+    const std::string size = short_number(std::abs(value));
     if (size != "1") text += size + " ";
     text += names[static_cast<std::size_t>(k)];
   }
@@ -252,7 +246,7 @@ Identifiability identify(const MatrixXd& R, const std::vector<std::string>& name
                      noise_factor * deviation.norm()};
     result.sentences.push_back(spoken_list(weak.parameters, most_names) +
                                " are hard to tell apart: " + weak.text +
-                               " has a standard error of " + number(weak.standard_error));
+                               " has a standard error of " + short_number(weak.standard_error));
     result.weak.push_back(std::move(weak));
   }
   return result;

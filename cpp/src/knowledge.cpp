@@ -2,32 +2,27 @@
 #include "knowledge.hpp"
 
 #include <cmath>
-#include <cstdio>
+
+#include "short_number.hpp"
 
 namespace sepcal {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 std::string judge(const Parameter& parameter, const Normal& known) {
   constexpr double far = 4.0;         // standard deviations of the difference
   constexpr double less_sure = 1.05;  // rounding and the noise model's own error aside
   const double error = std::isfinite(parameter.standard_error) ? parameter.standard_error : 0.0;
   const double sd = known.standard_deviation;
-  const std::string prior = number(known.mean) + " +- " + number(sd);
+  const std::string prior = short_number(known.mean) + " +- " + short_number(sd);
   if (std::abs(parameter.value - known.mean) > far * std::hypot(sd, error)) {
-    return "'" + parameter.name + "' came out as " + number(parameter.value) +
+    return "'" + parameter.name + "' came out as " + short_number(parameter.value) +
            ", far from what is known of it, " + prior + "; ";
   }
   if (error > less_sure * sd) {
     return "'" + parameter.name + "' is less sure than it was known, " + prior +
            ": its residuals are coloured, and the measurements weigh more than they know; give the "
            "outputs' noise (about " +
-           number(error / parameter.standard_error_white) + " times as large as found); ";
+           short_number(error / parameter.standard_error_white) + " times as large as found); ";
   }
   return "";
 }

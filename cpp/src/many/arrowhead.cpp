@@ -57,6 +57,13 @@ TriangularFactor merge_shared(const std::vector<Share>& shares) {
   return merged;
 }
 
+MatrixXd shared_factor(const std::vector<Share>& shares, MatrixXd known) {
+  TriangularFactor all = merge_shared(shares);
+  all.absorb(known);
+  const Index n_shared = all.columns() - 1;
+  return all.matrix().topLeftCorner(n_shared, n_shared);
+}
+
 MatrixXd beside_others(const Share& share, const MatrixXd& joint) {
   const Index n_own = share.own.cols();
   MatrixXd K = MatrixXd::Zero(n_own + joint.cols(), n_own + joint.cols());

@@ -30,6 +30,10 @@ Share eliminate_own(Eigen::MatrixXd rows, Eigen::Index n_own);
 /// The factors of [shared | r] of all flights, merged in their order.
 TriangularFactor merge_shared(const std::vector<Share>& shares);
 
+/// What all flights together say of the shared parameters, with `known` rows of [shared | r] beside
+/// them: n_shared x n_shared, upper.
+Eigen::MatrixXd shared_factor(const std::vector<Share>& shares, Eigen::MatrixXd known);
+
 /// [own cross; 0 joint]: what all flights together say of one flight's own and of the shared
 /// parameters. `joint`: n_shared x n_shared, upper.
 Eigen::MatrixXd beside_others(const Share& share, const Eigen::MatrixXd& joint);

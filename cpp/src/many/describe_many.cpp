@@ -155,14 +155,7 @@ class Description {
   /// What all flights together leave open: of the shared parameters, then of each flight's own.
   /// With the columns of parameters at a bound: a bound may hold what the flights leave open.
   void judge() {
-    std::vector<Share> shares;
-    for (const TriangularFactor& block : objective_.flight_blocks()) {
-      shares.push_back(eliminate_own(block.matrix(), joint_.layout.own));
-    }
-    const Index n_shared = joint_.layout.shared;
-    TriangularFactor all = merge_shared(shares);
-    all.merge(objective_.shared_knowledge());
-    const MatrixXd merged = all.matrix().topLeftCorner(n_shared, n_shared);
+    const Eliminated all = eliminate_own(objective_);
     const VectorXd scale = plausible_lengths(joint_, objective_);
     const double factor = std::isnan(covariance_.ratio) ? 1.0 : std::sqrt(covariance_.ratio);
     std::vector<std::string> names;
@@ -170,14 +163,15 @@ class Description {
       names.push_back(variable.name);
     }
     const std::vector<std::string> shared(names.begin() + joint_.layout.own, names.end());
-    result_.identifiability = identify(merged, shared, scale.tail(n_shared), factor);
+    result_.identifiability =
+        identify(all.shared, shared, scale.tail(joint_.layout.shared), factor);
     result_.message += result_.identifiability.message();
     bool open = !result_.identifiability.unobservable.empty();
     std::vector<std::string> open_flights;
     std::string first;
     for (Index i = 0; i < joint_.layout.flights && !open; ++i) {
       const Identifiability alone =
-          identify(beside_others(shares[static_cast<std::size_t>(i)], merged), names,
+          identify(beside_others(all.shares[static_cast<std::size_t>(i)], all.shared), names,
                    joint_.layout.point(scale, i), factor);
       if (alone.unobservable.empty()) continue;
       if (open_flights.empty()) first = alone.sentences.front();

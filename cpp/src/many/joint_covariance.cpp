@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "covariance.hpp"
+
 namespace sepcal {
 namespace {
 
@@ -102,35 +104,38 @@ JointCovariance factorise(const JointProblem& joint, const JointStage& stage,
     if (column >= joint.layout.own) result.shared.push_back(column - joint.layout.own);
   }
   // Own parameters at their bounds differ from flight to flight, the shared ones don't.
-  const auto k = static_cast<Index>(result.shared.size());
   std::vector<Index> columns = result.shared;
   columns.push_back(joint.layout.shared);
-  MatrixXd known = objective.shared_knowledge().matrix()(Eigen::all, columns);
-  TriangularFactor all = merge_shared(shares);
-  all.absorb(known);
-  result.joint = all.matrix().topLeftCorner(k, k);
+  result.joint = shared_factor(shares, objective.shared_knowledge().matrix()(Eigen::all, columns));
   result.singular = is_singular(result.joint);
   return result;
 }
 
 /// Parameters that the measurements had to pay for: all of them, less the share of each that was
 /// known beforehand.
-double count_spent(const JointCovariance& unjudged, const JointProblem& joint,
+double count_spent(const JointProblem& joint, const JointStage& stage,
                    const ManyObjective& objective) {
   auto spent = static_cast<double>(joint.layout.size());
   const VectorXd& weights = objective.known_weights();
-  if (weights.isZero(0.0) || unjudged.singular) return spent;
-  const auto share = [](const MatrixXd& covariance, const VectorXd& weight) {
-    const double known = covariance.diagonal().cwiseProduct(weight.cwiseAbs2()).sum();
-    return std::isfinite(known) ? known : 0.0;
-  };
-  spent -= share(unjudged.shared_white(), weights.tail(joint.layout.shared)(unjudged.shared));
+  if (weights.isZero(0.0)) return spent;
+  const JointCovariance all = factorise(joint, stage, objective, stage.noise);
+  spent -= known_share(all.shared_white(), weights.tail(joint.layout.shared)(all.shared));
   for (Index i = 0; i < joint.layout.flights; ++i) {
-    const JudgedFlight& judged = unjudged.flights[static_cast<std::size_t>(i)];
+    const JudgedFlight& judged = all.flights[static_cast<std::size_t>(i)];
     spent -=
-        share(unjudged.own_white(i), own_weights(judged, objective).head(judged.share.own.cols()));
+        known_share(all.own_white(i), own_weights(judged, objective).head(judged.share.own.cols()));
   }
   return spent;
+}
+
+/// M / (M - n), the square of what R-hat has to be multiplied by; 1 where R was given, NaN where
+/// nothing is left to estimate it from.
+double judge_ratio(const JointProblem& joint, const JointStage& stage,
+                   const ManyObjective& objective) {
+  if (joint.noise_given()) return 1.0;
+  const double measurements = joint.rows * static_cast<double>(stage.noise.size());
+  const double freedom = measurements - count_spent(joint, stage, objective);
+  return freedom > 0 ? measurements / freedom : not_a_number;
 }
 
 }  // namespace
@@ -184,14 +189,10 @@ MatrixXd JointCovariance::own_coloured(Index flight) const {
 
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
                                       const ManyObjective& objective, Fleet& fleet) {
-  JointCovariance result = factorise(joint, stage, objective, stage.noise);
-  if (!joint.noise_given()) {
-    const double measurements = joint.rows * static_cast<double>(stage.noise.size());
-    const double freedom = measurements - count_spent(result, joint, objective);
-    const double ratio = freedom > 0 ? measurements / freedom : not_a_number;
-    if (freedom > 0) result = factorise(joint, stage, objective, std::sqrt(ratio) * stage.noise);
-    result.ratio = ratio;
-  }
+  const double ratio = judge_ratio(joint, stage, objective);
+  const double known_ratio = std::isnan(ratio) ? 1.0 : ratio;
+  JointCovariance result = factorise(joint, stage, objective, std::sqrt(known_ratio) * stage.noise);
+  result.ratio = ratio;
   if (!result.is_defined()) return result;
   if (joint.problem.options().coloured_errors) {
     ask_for_middles(result, joint, stage, objective, fleet);

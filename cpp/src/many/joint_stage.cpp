@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "many/arrowhead.hpp"
 #include "many/joint_start.hpp"
 #include "many/minimise_many.hpp"
 #include "sepcal/identifiability.hpp"
@@ -112,17 +112,10 @@ class JointAlternation {
   }
 
   bool leaves_something_open() const {
-    std::vector<Share> shares;
-    for (const TriangularFactor& block : objective_.flight_blocks()) {
-      if (!block.all_finite()) return false;
-      shares.push_back(eliminate_own(block.matrix(), joint_.layout.own));
-    }
-    const Index n_shared = joint_.layout.shared;
-    TriangularFactor all = merge_shared(shares);
-    all.merge(objective_.shared_knowledge());
-    const MatrixXd merged = all.matrix().topLeftCorner(n_shared, n_shared);
+    if (!std::ranges::all_of(objective_.blocks(), &TriangularFactor::all_finite)) return false;
+    const Eliminated all = eliminate_own(objective_);
     for (Index i = 0; i < joint_.layout.flights; ++i) {
-      const MatrixXd K = beside_others(shares[static_cast<std::size_t>(i)], merged);
+      const MatrixXd K = beside_others(all.shares[static_cast<std::size_t>(i)], all.shared);
       if (leaves_open(K, joint_.layout.point(scale_, i))) return true;
     }
     return false;
@@ -161,6 +154,15 @@ std::vector<Prior> JointProblem::knowledge() const {
 double JointProblem::noise_floor(Index j) const {
   return std::max(1e-12 * std::sqrt(output_squares[j] / rows),
                   std::sqrt(std::numeric_limits<double>::min()));
+}
+
+Eliminated eliminate_own(const ManyObjective& objective) {
+  std::vector<Share> shares;
+  for (const TriangularFactor& block : objective.flight_blocks()) {
+    shares.push_back(eliminate_own(block.matrix(), objective.layout().own));
+  }
+  const MatrixXd shared = shared_factor(shares, objective.shared_knowledge().matrix());
+  return {std::move(shares), shared};
 }
 
 VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objective) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "many/arrowhead.hpp"
 #include "many/many_objective.hpp"
 #include "problem.hpp"
 
@@ -39,6 +40,14 @@ struct JointStage {
   int noise_iterations = 0;
   std::string message;
 };
+
+/// At the objective's point: each flight without its own parameters, and all flights together with
+/// what is known of the shared ones (n_shared x n_shared, upper).
+struct Eliminated {
+  std::vector<Share> shares;
+  Eigen::MatrixXd shared;
+};
+Eliminated eliminate_own(const ManyObjective& objective);
 
 /// Plausible lengths of all flights' parameters, off the factors at the objective's point.
 Eigen::VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objective);
