@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.register_assert_rewrite("apps")
+pytest.register_assert_rewrite("apps", "refusals")
 
 from apps import FIVE_HOLE_MODEL, FIVE_HOLE_OPTIONS, Bench  # noqa: E402
 from oracle.magnetometer import Magnetometer  # noqa: E402

@@ -10,15 +10,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import sepcal
-from oracle.cases import CASE_NAMES, K_ALPHA, K_BETA, LEVER_ARM, state_case
+from oracle.cases import CASE_NAMES, state_case
+from own_models import BUILT_IN
 
 PROBE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
-MODELS = {
-    "scalar_1": sepcal.ScalarExample1(),
-    "scalar_2": sepcal.ScalarExample2(),
-    "five_hole": sepcal.FiveHoleProbe(k_alpha=K_ALPHA, k_beta=K_BETA, lever_arm=LEVER_ARM),
-    "magnetometer": sepcal.Magnetometer(),
-}
 
 
 @pytest.fixture
@@ -47,7 +42,7 @@ def test_a_model_tells_its_tables() -> None:
 def test_evaluate_gives_the_oracles_numbers(name: str) -> None:
     """A, b and D against the closed forms and hand-written derivatives of the oracle."""
     case = state_case(name)
-    model = MODELS[name]
+    model = BUILT_IN[name]
     n_1 = len(model.linear)
     xi1, xi2 = case.truth[:n_1], case.truth[n_1:]
     expected_A, expected_b = case.model.affine(case.record, xi2)

@@ -1,28 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Bad input and misuse from Python: each one line that names the culprit and the way out."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import sepcal
+from refusals import refuse
 
 PROBE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5)
 SCALAR = sepcal.ScalarExample1()
 ETA = np.linspace(1.0, 10.0, 100)
 RECORD = {"eta": ETA, "z": np.cos(ETA)}
-
-
-def refuse(work: Callable[[], object], *words: str) -> None:
-    """`work` raises sepcal.Error, one line with all of `words` in it."""
-    with pytest.raises(sepcal.Error) as caught:
-        work()
-    message = str(caught.value)
-    assert "\n" not in message
-    for word in words:
-        assert word in message
 
 
 @pytest.fixture

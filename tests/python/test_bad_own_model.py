@@ -11,17 +11,7 @@ from numpy.testing import assert_array_equal
 
 import sepcal
 from own_models import BOX, WindBox, WithDerivatives, simulate_wind_box
-
-
-def refuse(work: Callable[[], object], *words: str) -> None:
-    """`work` raises sepcal.Error, one line with all of `words` in it."""
-    with pytest.raises(sepcal.Error) as caught:
-        work()
-    message = str(caught.value)
-    assert "\n" not in message
-    for word in words:
-        assert word in message
-
+from refusals import refuse
 
 # --- tables
 

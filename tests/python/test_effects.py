@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 
 import sepcal
 from own_models import WindBox, simulate_wind_box
+from refusals import refuse
 
 PROBE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
 MAGNETOMETER = sepcal.Magnetometer(field=(19.7, -1.4, 49.4))
@@ -36,16 +37,6 @@ def base(flight: sepcal.Flight) -> sepcal.Calibration:
 def better(base: sepcal.Calibration) -> sepcal.Calibration:
     """Both of them added, one by its alias."""
     return base.add("wind_shear").add("propwash")
-
-
-def refuse(work: Callable[[], object], *words: str) -> None:
-    """`work` raises sepcal.Error, one line with all of `words` in it."""
-    with pytest.raises(sepcal.Error) as caught:
-        work()
-    message = str(caught.value)
-    assert "\n" not in message
-    for word in words:
-        assert word in message
 
 
 def total_rmse(calibration: sepcal.Calibration) -> float:

@@ -16,6 +16,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import sepcal
 from own_models import WindBox, simulate_wind_box
+from refusals import refuse
 
 MAGNETOMETER = sepcal.Magnetometer(field=(19.7, -1.4, 49.4))
 HIDDEN = {"bias[current_a]": (0.05, -0.04, 0.06)}
@@ -52,16 +53,6 @@ def built_in(flight: sepcal.Flight) -> sepcal.Calibration:
 def own(flight: sepcal.Flight) -> sepcal.Calibration:
     """With the same effect made here."""
     return sepcal.fit(MAGNETOMETER, flight, effects=[MOTOR])
-
-
-def refuse(work: Callable[[], object], *words: str) -> None:
-    """`work` raises sepcal.Error, one line with all of `words` in it."""
-    with pytest.raises(sepcal.Error) as caught:
-        work()
-    message = str(caught.value)
-    assert "\n" not in message
-    for word in words:
-        assert word in message
 
 
 def assert_same_fit(own: sepcal.Fit, built_in: sepcal.Fit, tolerance: float) -> None:

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import sepcal
-from oracle.cases import CASE_NAMES, K_ALPHA, K_BETA, LEVER_ARM, Case, state_case
+from oracle.cases import CASE_NAMES, Case, state_case
 from oracle.closed_form import fit_field_map, fit_scalar_example_1
 from oracle.magnetometer import compose
 from oracle.maximum_likelihood import (
@@ -20,13 +20,7 @@ from oracle.maximum_likelihood import (
     fit_with_noise,
 )
 from oracle.model import Array
-
-MODELS = {
-    "scalar_1": sepcal.ScalarExample1(),
-    "scalar_2": sepcal.ScalarExample2(),
-    "five_hole": sepcal.FiveHoleProbe(k_alpha=K_ALPHA, k_beta=K_BETA, lever_arm=LEVER_ARM),
-    "magnetometer": sepcal.Magnetometer(),
-}
+from own_models import BUILT_IN
 
 
 @pytest.fixture(scope="module", params=CASE_NAMES)
@@ -50,7 +44,7 @@ def fit(request: pytest.FixtureRequest, case: Case) -> sepcal.Fit:
 def fit_case(case: Case, second_stage: str, noise: dict[str, float] | None) -> sepcal.Fit:
     """A fit that has to converge off its bounds, or SciPy's unbounded one is another problem."""
     fit = sepcal.fit(
-        MODELS[case.name],
+        BUILT_IN[case.name],
         case.record,
         bounds=case.bounds,
         noise=noise,
@@ -71,7 +65,7 @@ def assert_values_agree(actual: Array, expected: Array, standard_errors: Array) 
 
 def test_tables_agree(case: Case) -> None:
     """Both sides speak of the same quantities in the same order."""
-    model = MODELS[case.name]
+    model = BUILT_IN[case.name]
     assert model.outputs == case.model.outputs
     assert model.linear == case.model.linear
     assert model.nonlinear == case.model.nonlinear
@@ -132,7 +126,7 @@ def test_losses(case: Case, loss: str, width: float) -> None:
         record[name][14::25] -= 9.0 * deviation
     expected = fit_with_loss(case.model, record, case.noise, case.truth, loss, width)
     fit = sepcal.fit(
-        MODELS[case.name],
+        BUILT_IN[case.name],
         record,
         bounds=case.bounds,
         noise=case.noise_by_output,

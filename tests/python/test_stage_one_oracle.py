@@ -8,17 +8,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import sepcal
-from oracle.cases import CASE_NAMES, K_ALPHA, K_BETA, LEVER_ARM, Case, state_case
+from oracle.cases import CASE_NAMES, Case, state_case
 from oracle.closed_form import fit_scalar_example_1
 from oracle.model import Array
 from oracle.residual_sampling import estimate_linear
-
-MODELS = {
-    "scalar_1": sepcal.ScalarExample1(),
-    "scalar_2": sepcal.ScalarExample2(),
-    "five_hole": sepcal.FiveHoleProbe(k_alpha=K_ALPHA, k_beta=K_BETA, lever_arm=LEVER_ARM),
-    "magnetometer": sepcal.Magnetometer(),
-}
+from own_models import BUILT_IN
 
 
 @pytest.fixture(scope="module", params=CASE_NAMES)
@@ -35,7 +29,9 @@ def stage_one(case: Case) -> sepcal.StageOne:
 
 def search(case: Case, bounds: dict[str, tuple[float, float]]) -> sepcal.StageOne:
     """Stage one of a fit with the paper's 500 samples."""
-    return sepcal.fit(MODELS[case.name], case.record, bounds=bounds, samples=500, seed=5).stage_one
+    return sepcal.fit(
+        BUILT_IN[case.name], case.record, bounds=bounds, samples=500, seed=5
+    ).stage_one
 
 
 def order(case: Case, xi2: Mapping[str, float]) -> Array:
