@@ -2,15 +2,10 @@
 // Checks that every composed model goes through, made at compile time or at run time.
 #pragma once
 
-#include <doctest/doctest.h>
-
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "composed_models.hpp"
-#include "dense_reference.hpp"
-#include "sepcal/check_model.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 
@@ -19,73 +14,25 @@ namespace sepcal::test {
 inline const FiveHoleProbe probe{4.5, 4.0, {0.35, -0.1, -0.02}};
 
 /// 60 rows of an aircraft, in two segments.
-inline Record five_hole_record() {
-  Record record = sample(five_hole_signals(), uneven_times(60, 0.2));
-  return record.cut({{"first", 0, 35}, {"second", 35, 60}});
-}
+Record five_hole_record();
 
-inline Record magnetometer_record() {
-  Record record = sample(magnetometer_signals(), uneven_times(60, 0.2));
-  return record.cut({{"first", 0, 35}, {"second", 35, 60}});
-}
+Record magnetometer_record();
 
 /// D against differences of A xi1 + b (relative to each column), then check_model() with outputs of
 /// the model's own.
-inline void check_tangent(const BlockModel& model, Record record, const NamedValues& values,
-                          double tolerance = 1e-7) {
-  const Tables& tables = model.tables();
-  const Eigen::VectorXd xi1 = in_order(tables.linear, values);
-  const Eigen::VectorXd xi2 = in_order(tables.nonlinear, values);
-  Draws draws(900);
-  add_outputs(record, model, xi1, xi2, Eigen::VectorXd::Zero(tables.n_z()), draws);
-  const Eigen::MatrixXd rows = tangent_rows(model, record, values);
-  const Eigen::MatrixXd expected = dense_rows(model, record, xi1, xi2);
-  for (Eigen::Index k = 0; k < xi2.size(); ++k) {
-    CAPTURE(tables.nonlinear[static_cast<std::size_t>(k)].name);
-    const Eigen::VectorXd numeric = expected.col(xi1.size() + k);
-    const double scale = numeric.cwiseAbs().maxCoeff();
-    CHECK(scale > 0.0);  // nothing is shown by a parameter without an effect
-    const double difference = (rows.col(xi1.size() + k) - numeric).cwiseAbs().maxCoeff();
-    CHECK(difference < tolerance * scale);
-  }
-  CHECK_NOTHROW(check_model(model, record));
-}
+void check_tangent(const BlockModel& model, Record record, const NamedValues& values,
+                   double tolerance = 1e-7);
 
 /// Derivatives with respect to each input against differences.
-inline void check_input_tangent(const BlockModel& model, const Record& record,
-                                const NamedValues& values) {
-  for (int i = 0; i < model.tables().n_u(); ++i) {
-    CAPTURE(model.tables().inputs[static_cast<std::size_t>(i)].name);
-    const InputTangents both =
-        input_tangents(model, record, in_order(model.tables().linear, values),
-                       in_order(model.tables().nonlinear, values), {i});
-    const double difference = (both.given - both.numeric).cwiseAbs().maxCoeff();
-    CHECK(difference < 1e-8 * (1.0 + both.numeric.cwiseAbs().maxCoeff()));
-  }
-}
+void check_input_tangent(const BlockModel& model, const Record& record, const NamedValues& values);
 
 /// A xi1 + b (n_z * N).
-inline Eigen::VectorXd predict(const BlockModel& model, const Record& record,
-                               const NamedValues& values) {
-  return dense_prediction(model, record, in_order(model.tables().linear, values),
-                          in_order(model.tables().nonlinear, values));
-}
+Eigen::VectorXd predict(const BlockModel& model, const Record& record, const NamedValues& values);
 
 /// A copy of the record with `column` instead of its column of that name.
-inline Record with_column(const Record& record, const std::string& name,
-                          const std::vector<double>& column) {
-  Record changed;
-  for (const std::string& other : record.names()) {
-    const auto values = record.column(other);
-    if (other != name) changed.add(other, {values.begin(), values.end()});
-  }
-  return changed.add(name, column).cut(record.segments());
-}
+Record with_column(const Record& record, const std::string& name,
+                   const std::vector<double>& column);
 
-inline std::vector<std::string> names_of(const std::vector<Variable>& variables) {
-  std::vector<std::string> names;
-  for (const Variable& variable : variables) names.push_back(variable.name);
-  return names;
-}
+std::vector<std::string> names_of(const std::vector<Variable>& variables);
 
 }  // namespace sepcal::test

@@ -6,7 +6,9 @@
 
 #include <numeric>
 
+#include "block_inputs.hpp"
 #include "composed_checks.hpp"
+#include "dense_reference.hpp"
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/static_effect.hpp"

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "block_inputs.hpp"
 #include "dense_reference.hpp"
 #include "simulated_records.hpp"
 

@@ -20,61 +20,14 @@ inline const std::vector<std::string> kinds{"white", "AR(0.9)", "pink", "random 
 /// `rows` of a noise whose innovations have a standard deviation near 1. Pink: first-order
 /// processes whose time constants double sum to a spectrum 1/f. Bursty: white, a tenth of it four
 /// times as loud.
-inline Eigen::VectorXd draw_noise(const std::string& kind, Eigen::Index rows, Draws& draws) {
-  const auto autoregress = [&](double correlation) {
-    Eigen::VectorXd x(rows);
-    double last = draws.normal();
-    for (double& value : x) {
-      value = last;
-      last = correlation * last + std::sqrt(1.0 - correlation * correlation) * draws.normal();
-    }
-    return x;
-  };
-  Eigen::VectorXd e = Eigen::VectorXd::Zero(rows);
-  if (kind == "AR(0.9)") return autoregress(0.9);
-  if (kind == "pink") {
-    for (Eigen::Index k = 1; k <= 4 * rows; k *= 2) {
-      e += autoregress(std::exp(-2.0 / static_cast<double>(k)));
-    }
-    return e;
-  }
-  for (double& value : e) value = draws.normal();
-  if (kind == "random walk") {
-    for (Eigen::Index t = 1; t < rows; ++t) e[t] += e[t - 1];
-  }
-  if (kind == "bursty") {
-    for (Eigen::Index t = 0; t < rows; ++t) {
-      if (t % (rows / 4) < rows / 40) e[t] *= 4.0;
-    }
-  }
-  return e;
-}
+Eigen::VectorXd draw_noise(const std::string& kind, Eigen::Index rows, Draws& draws);
 
-inline std::span<const double> as_span(const Eigen::VectorXd& e) {
-  return {e.data(), static_cast<std::size_t>(e.size())};
-}
+std::span<const double> as_span(const Eigen::VectorXd& e);
 
 /// Segments of the given lengths, `gap` rows between them that belong to none.
-inline std::vector<Segment> make_segments(const std::vector<std::size_t>& lengths,
-                                          std::size_t gap = 0) {
-  std::vector<Segment> segments;
-  std::size_t first = gap;
-  for (const std::size_t length : lengths) {
-    segments.push_back({"", first, first + length});
-    first += length + gap;
-  }
-  return segments;
-}
+std::vector<Segment> make_segments(const std::vector<std::size_t>& lengths, std::size_t gap = 0);
 
 /// Whether k events of probability p in n trials lie outside the central 99.9 %.
-inline bool outside_binomial(int k, int n, double p) {
-  double term = std::pow(1.0 - p, n);  // of 0 events
-  double below = 0.0;
-  for (int i = 0; i < k; ++i) {
-    below += term;
-    term *= static_cast<double>(n - i) / (i + 1) * p / (1.0 - p);
-  }
-  return below + term < 0.0005 || 1.0 - below < 0.0005;
-}
+bool outside_binomial(int k, int n, double p);
 
 }  // namespace sepcal::test

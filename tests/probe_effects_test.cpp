@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "block_inputs.hpp"
 #include "dense_reference.hpp"
 #include "flights_with_effects.hpp"
 #include "sepcal/check_model.hpp"

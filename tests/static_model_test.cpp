@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "block_inputs.hpp"
 #include "dense_reference.hpp"
 #include "sepcal/error.hpp"
 #include "simulated_records.hpp"
