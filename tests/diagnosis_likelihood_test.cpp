@@ -185,7 +185,7 @@ TEST_CASE("a slow drift that the null's noise model swallows stands out in the r
 }
 
 TEST_CASE("the larger a drift, the larger its ratio") {
-  for (const std::uint64_t seed : {5, 6, 7}) {
+  for (const std::uint64_t seed : {5U, 6U, 7U}) {
     double last = 0.0;
     for (const double drift : {0.1, 0.5, 1.0, 2.0, 4.0, 8.0}) {
       CAPTURE(seed);

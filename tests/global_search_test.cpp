@@ -113,7 +113,7 @@ void check_stationary(const Simulated& problem, const VectorXd& xi2,
 }  // namespace
 
 TEST_CASE("every side lobe of a tone is found, those of a dense grid and no others") {
-  for (const std::uint64_t seed : {5, 6, 7}) {
+  for (const std::uint64_t seed : {5U, 6U, 7U}) {
     CAPTURE(seed);
     const Simulated tone = sepcal::test::simulate_tone(seed);
     FitOptions options = global();
@@ -204,7 +204,7 @@ TEST_CASE("sampling and the global search agree on the best minimum") {
   for (Simulated& simulated : sepcal::test::simulate_all(300)) {
     problems.emplace_back(std::move(simulated), FitOptions{});
   }
-  for (const std::uint64_t seed : {11, 12, 13}) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
     problems.emplace_back(sepcal::test::simulate_tone(seed), FitOptions{});
     problems.emplace_back(simulate_wave(seed), any_phase({}));
     problems.emplace_back(simulate_headings(seed), FitOptions{});

@@ -65,7 +65,7 @@ TEST_CASE("the same seed gives the same samples, another seed others") {
 }
 
 TEST_CASE("a low-discrepancy sequence leaves fewer cells empty than uniform draws") {
-  for (const std::uint64_t seed : {0, 1, 2, 3}) {
+  for (const std::uint64_t seed : {0U, 1U, 2U, 3U}) {
     FitOptions options = options_for(512, seed);
     const int uniform = empty_cells(draw_samples(plane, options));
     options.sampling = sepcal::Sampling::low_discrepancy;

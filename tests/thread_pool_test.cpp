@@ -17,7 +17,7 @@ using sepcal::ThreadPool;
 TEST_CASE("every task runs exactly once, whatever the number of threads and tasks") {
   for (const int threads : {0, 1, 2, 5}) {
     ThreadPool pool(threads);
-    for (const std::size_t count : {0, 1, 2, 3, 100, 1000}) {
+    for (const std::size_t count : {0U, 1U, 2U, 3U, 100U, 1000U}) {
       std::vector<std::atomic<int>> runs(count);
       pool.for_each(count, [&](std::size_t i) { ++runs[i]; });
       for (const auto& times : runs) CHECK(times == 1);
