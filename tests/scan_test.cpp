@@ -66,7 +66,7 @@ TEST_CASE("what is held does not follow: then a step held at zero explains nothi
 }
 
 TEST_CASE("the time lies between the two rows where the step is, in short records and long ones") {
-  for (const std::size_t rows : {60, 399, 400, 1'000, 5'000}) {
+  for (const std::size_t rows : {60U, 399U, 400U, 1'000U, 5'000U}) {
     CAPTURE(rows);
     const double t0 = 0.1 * std::floor(0.37 * static_cast<double>(rows)) - 0.05;
     const Record record = make_record(rows, t0, 0.01);

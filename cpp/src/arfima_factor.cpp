@@ -53,9 +53,9 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
   const Index regressed = delta == 0.0 ? 0 : std::clamp<Index>(rows - order, 0, most_regressed);
   const NoiseMoments moments = find_moments(delta, phi_, order + regressed);
   regression_.resize(order, regressed);
-  for (Index i = 0; i < order; ++i) {
+  for (Index i = 0; i < order && regressed > 0; ++i) {
     VectorXd row = moments.cross.segment(order - i, regressed);
-    if (regressed > 0) whiten_fractional(row);
+    whiten_fractional(row);
     regression_.row(i) = row;
   }
   MatrixXd covariance(order, order);
