@@ -254,121 +254,12 @@ def test_a_result_that_cannot_be_pickled_is_on_record():
     assert study.values == [here.values[index] for index in (0, 1, 3, 5)]
 
 
-def test_a_pool_that_was_shut_down_is_said_to_be():
-    with ThreadPoolExecutor(1) as pool:
-        pass
-    with pytest.raises(sepcal.Error, match="the executor was shut down before the work was done"):
-        sepcal.monte_carlo(fit_scalar, 3, executor=pool)
-
-
-def test_a_truth_of_other_names_is_refused_at_the_first_fit():
-    ran = []
-
-    def trial(rng, index):
-        ran.append(index)
-        if index == 0:
-            raise ValueError("not yet")
-        return fit_scalar(rng)
-
-    words = "truth: no trial estimates 'aa'; they estimate: a, c, b"
-    with pytest.raises(sepcal.Error, match=words):
-        sepcal.monte_carlo(trial, 9, truth={"aa": 2.0, "c": 1.0})
-    assert ran == [0, 1]
-    records = list(sepcal.stream_trials(trial, 2))
-    with pytest.raises(sepcal.Error, match=words):
-        sepcal.MonteCarlo(records, {"c": 1.0, "aa": 2.0})
-    assert len(sepcal.MonteCarlo(records[:1], {"aa": 2.0})) == 1
-
-
-def test_failures_are_counted_in_the_table():
-    def trial(rng, index):
-        if index < 6:
-            raise ValueError(f"no luck with {index}")
-        return 1.0
-
-    lines = str(sepcal.monte_carlo(trial, 8)).splitlines()
-    assert lines[0] == "8 trials: 6 failed"
-    assert lines[-4:] == [
-        *(f"trial {index} failed: ValueError: no luck with {index}" for index in range(3)),
-        "and 3 more failed; `failed` has the record of each",
-    ]
-    assert "more failed" not in str(sepcal.monte_carlo(trial, range(3, 8)))
-
-
-def test_a_study_that_failed_altogether_says_so_first():
-    def trial(rng, index):
-        raise ValueError(f"no luck\nwith {index}")
-
-    assert str(sepcal.monte_carlo(trial, range(3, 5))).splitlines() == [
-        "all 2 trials failed; trial 3: ValueError: no luck with 3",
-        "trial 4 failed: ValueError: no luck with 4",
-    ]
-    assert str(sepcal.monte_carlo(trial, 6)).splitlines()[-1].startswith("and 2 more failed")
-    one = str(sepcal.monte_carlo(trial, 1))
-    assert one == "the only trial failed; trial 0: ValueError: no luck with 0"
-
-
 def test_defaults_are_no_index():
     def trial(rng, rows=10, *, noise=0.3):
         return {"rows": rows, "noise": noise}
 
     assert set(sepcal.monte_carlo(trial, 3)["rows"]) == {10}
     assert sepcal.monte_carlo(partial(fail_on_seventh, index=2), 3)["index"].tolist() == [2] * 3
-
-
-def test_studies_that_do_not_go_together():
-    def trial(rng, index):
-        return {"a": 1.0, "x": np.zeros(index + 1)} if index else {"b": 1.0, "x": np.zeros(1)}
-
-    study = sepcal.monte_carlo(trial, 3)
-    for use in (study.summary, lambda: study["a"], lambda: study["x"]):
-        with pytest.raises(sepcal.Error):
-            use()
-    assert "different parameters" in str(study)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"trials": 0}, "trials=0 must be at least 1"),
-        ({"trials": [1, 1]}, "each once"),
-        ({"trials": []}, "a whole number or indices"),
-        ({"trials": 2.5}, "trials=2.5 must be a whole number or indices"),
-        ({"trials": [0, 1.5]}, "a whole number or indices"),
-        ({"trials": "10"}, "a whole number or indices"),
-        ({"seed": 0.5}, "seed=0.5 must be an integer"),
-        ({"trials": range(-1, 4)}, "0 and above"),
-        ({"seed": -1}, "seed=-1 must not be negative"),
-        ({"batch": 0}, "batch=0"),
-        ({"executor": "threads"}, "executor is a str"),
-        ({"trial": 3}, "the trial is a int; give a function"),
-    ],
-)
-def test_refusals(arguments, words):
-    with pytest.raises(sepcal.Error, match=words):
-        sepcal.monte_carlo(**{"trial": fit_scalar, **arguments})
-
-
-@pytest.mark.parametrize("level", [0.0, 1.0, 95])
-def test_a_level_is_a_probability(serial, level):
-    with pytest.raises(sepcal.Error, match="must be between 0 and 1"):
-        serial.summary(level=level)
-
-
-@pytest.mark.parametrize(
-    ("model", "arguments", "error", "words"),
-    [
-        (sepcal.ScalarExample1(), {}, sepcal.Error, "can't be flown.*trial of your own"),
-        (sepcal.PitotStatic(), {"simulation": {"seed": 1}}, sepcal.Error, "simulation has a seed"),
-        (sepcal.PitotStatic(), {"simulation": {"noise": "brown"}}, sepcal.Error, "brown"),
-        (sepcal.PitotStatic(), {"simulation": {"hide": {"gusts": 1}}}, sepcal.Error, "gusts"),
-        (sepcal.PitotStatic(), {"sampels": 3}, TypeError, "sampels"),
-        (sepcal.Magnetometer(field_strength=50), {}, sepcal.Error, "doesn't show a rotation"),
-    ],
-)
-def test_a_simulated_trial_refuses_at_once(model, arguments, error, words):
-    with pytest.raises(error, match=words):
-        sepcal.SimulatedTrial(model, **arguments)
 
 
 def test_the_fields_strength_without_a_rotation():
@@ -383,13 +274,3 @@ def test_the_fields_strength_without_a_rotation():
 def test_threads_are_one_to_a_worker():
     assert TUBE.options["threads"] == 1
     assert sepcal.SimulatedTrial(sepcal.PitotStatic(), threads=2).options["threads"] == 2
-
-
-def test_the_table_without_a_truth():
-    study = sepcal.monte_carlo(lambda rng, index: {"x": float(index), "longer_name": 2.0}, 3)
-    assert str(study).splitlines() == [
-        "3 trials",
-        "parameter    mean  scatter  std. error  of",
-        "x               1        1           -   3",
-        "longer_name     2        0           -   3",
-    ]
