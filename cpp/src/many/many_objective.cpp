@@ -16,9 +16,7 @@ void ManyObjective::weigh(const VectorXd& weights) {
 }
 
 void ManyObjective::know(const Prior& knowledge) {
-  known_ = known_own_ = known_shared_ = knowledge;
-  known_own_.weight.tail(layout_.shared).setZero();
-  known_shared_.weight.head(layout_.own).setZero();
+  known_ = knowledge;
   combine_blocks();
 }
 
@@ -41,11 +39,13 @@ bool ManyObjective::linearise(const VectorXd& x) {
 }
 
 std::vector<TriangularFactor> ManyObjective::flight_blocks(const VectorXd& weights) const {
+  Prior own = known_;
+  own.weight.tail(layout_.shared).setZero();
   std::vector<TriangularFactor> blocks;
   for (std::size_t i = 0; i < factors_.size(); ++i) {
     blocks.push_back(combine(factors_[i], weights));
-    if (known_own_.weight.isZero(0.0)) continue;
-    known_own_.join(blocks.back(), layout_.point(at_, static_cast<Index>(i)));
+    if (own.weight.isZero(0.0)) continue;
+    own.join(blocks.back(), layout_.point(at_, static_cast<Index>(i)));
   }
   return blocks;
 }
@@ -59,9 +59,9 @@ TriangularFactor ManyObjective::shared_knowledge() const {
 void ManyObjective::combine_blocks() {
   blocks_ = flight_blocks();
   if (blocks_.empty()) return;
-  if (!known_shared_.weight.isZero(0.0)) {
-    known_shared_.join(blocks_.front(), layout_.point(at_, 0));
-  }
+  Prior shared = known_;
+  shared.weight.head(layout_.own).setZero();
+  if (!shared.weight.isZero(0.0)) shared.join(blocks_.front(), layout_.point(at_, 0));
   for (std::size_t i = 0; i < priors_.size(); ++i) {
     priors_[i].join(blocks_[i], layout_.point(at_, static_cast<Index>(i)));
   }

@@ -20,9 +20,8 @@ class ManyObjective {
       : fleet_(fleet),
         flights_(std::move(flights)),
         layout_(layout),
-        known_(nothing(layout)),
-        known_own_(known_),
-        known_shared_(known_) {}
+        known_{Eigen::VectorXd::Zero(layout.own + layout.shared),
+               Eigen::VectorXd::Zero(layout.own + layout.shared)} {}
 
   const Layout& layout() const { return layout_; }
   std::size_t flight(Eigen::Index i) const { return flights_[static_cast<std::size_t>(i)]; }
@@ -67,19 +66,13 @@ class ManyObjective {
   int passes() const { return passes_; }
 
  private:
-  static Prior nothing(const Layout& layout) {
-    const auto zero = Eigen::VectorXd::Zero(layout.own + layout.shared);
-    return {zero, zero};
-  }
   void combine_blocks();
 
   Fleet& fleet_;
   std::vector<std::size_t> flights_;
   Layout layout_;
   Eigen::VectorXd weights_;
-  Prior known_;         // of [own | shared]
-  Prior known_own_;     // the same without weight on the shared ones
-  Prior known_shared_;  // without weight on the own ones
+  Prior known_;
   std::vector<Prior> priors_;
   Eigen::VectorXd at_;
   std::vector<std::vector<TriangularFactor>> factors_;
