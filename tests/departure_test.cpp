@@ -11,6 +11,7 @@
 #include "sepcal/models/scalar_examples.hpp"
 
 using namespace sepcal;
+using sepcal::test::draw_autoregression;
 using sepcal::test::Draws;
 using sepcal::test::outside_binomial;
 
@@ -26,17 +27,6 @@ struct Fleets {
   std::uint64_t seed = 1;
 };
 
-/// First-order noise of unit variance, drawn without the library.
-Eigen::VectorXd draw(double correlation, Eigen::Index rows, Draws& draws) {
-  Eigen::VectorXd e(rows);
-  double last = draws.normal();
-  for (double& value : e) {
-    value = last;
-    last = correlation * last + std::sqrt(1.0 - correlation * correlation) * draws.normal();
-  }
-  return e;
-}
-
 /// z = (1 + a) cos(eta + b) + c with a and b shared, c the flight's own.
 ManyFit fly(const Fleets& fleets, int fleet) {
   Draws draws(10'000 * fleets.seed + static_cast<std::uint64_t>(fleet));
@@ -45,7 +35,7 @@ ManyFit fly(const Fleets& fleets, int fleet) {
     std::vector<double> eta;
     std::vector<double> z;
     const double sigma = 0.1 * (i == 3 ? fleets.loud : 1.0);
-    const Eigen::VectorXd e = sigma * draw(fleets.correlation, fleets.rows, draws);
+    const Eigen::VectorXd e = sigma * draw_autoregression(fleets.correlation, fleets.rows, draws);
     const double c = draws.normal();
     // eta turns evenly: the standard error of a alone is sigma sqrt(2 / rows) in white noise.
     const double size =

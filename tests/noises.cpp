@@ -5,21 +5,22 @@
 
 namespace sepcal::test {
 
+Eigen::VectorXd draw_autoregression(double correlation, Eigen::Index rows, Draws& draws) {
+  Eigen::VectorXd x(rows);
+  double last = draws.normal();
+  for (double& value : x) {
+    value = last;
+    last = correlation * last + std::sqrt(1.0 - correlation * correlation) * draws.normal();
+  }
+  return x;
+}
+
 Eigen::VectorXd draw_noise(const std::string& kind, Eigen::Index rows, Draws& draws) {
-  const auto autoregress = [&](double correlation) {
-    Eigen::VectorXd x(rows);
-    double last = draws.normal();
-    for (double& value : x) {
-      value = last;
-      last = correlation * last + std::sqrt(1.0 - correlation * correlation) * draws.normal();
-    }
-    return x;
-  };
   Eigen::VectorXd e = Eigen::VectorXd::Zero(rows);
-  if (kind == "AR(0.9)") return autoregress(0.9);
+  if (kind == "AR(0.9)") return draw_autoregression(0.9, rows, draws);
   if (kind == "pink") {
     for (Eigen::Index k = 1; k <= 4 * rows; k *= 2) {
-      e += autoregress(std::exp(-2.0 / static_cast<double>(k)));
+      e += draw_autoregression(std::exp(-2.0 / static_cast<double>(k)), rows, draws);
     }
     return e;
   }

@@ -17,6 +17,9 @@ namespace sepcal::test {
 
 inline const std::vector<std::string> kinds{"white", "AR(0.9)", "pink", "random walk", "bursty"};
 
+/// First-order noise of unit variance.
+Eigen::VectorXd draw_autoregression(double correlation, Eigen::Index rows, Draws& draws);
+
 /// `rows` of a noise whose innovations have a standard deviation near 1. Pink: first-order
 /// processes whose time constants double sum to a spectrum 1/f. Bursty: white, a tenth of it four
 /// times as loud.
