@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Compiles CASE with COMPILER. Without an `// expect: TEXT` line it has to compile; with some it has
-# to fail at its static_assert, and every TEXT has to stand in the compiler's message.
+# Compiles CASE with COMPILER, INCLUDES and DEFINITIONS. Without an `// expect: TEXT` line it has to
+# compile; with some it has to fail at its static_assert, and every TEXT has to stand in the
+# compiler's message.
 file(STRINGS ${CASE} expected REGEX "^// expect: ")
 
 set(command ${COMPILER} -std=c++20 -fsyntax-only -fconcepts-diagnostics-depth=3 -DEIGEN_NO_DEBUG)
 foreach(folder ${INCLUDES})
   list(APPEND command -I${folder})
+endforeach()
+foreach(definition ${DEFINITIONS})
+  list(APPEND command -D${definition})
 endforeach()
 set(ENV{LC_ALL} C) # plain quotes, English
 execute_process(

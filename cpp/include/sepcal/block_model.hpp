@@ -4,11 +4,11 @@
 // here on.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <span>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal {

@@ -5,7 +5,6 @@
 // on rows that were held out. docs/diagnosis.md has the statistics.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/named_effects.hpp"
 #include "sepcal/noise_model.hpp"

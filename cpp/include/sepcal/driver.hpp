@@ -4,13 +4,13 @@
 // was logged, whatever other effects correct.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/eigen.hpp"
 #include "sepcal/natural_spline.hpp"
 #include "sepcal/record.hpp"
 

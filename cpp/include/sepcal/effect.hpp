@@ -8,13 +8,13 @@
 // compose.hpp at compile time).
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/driver.hpp"
+#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 

@@ -3,13 +3,13 @@
 // fit by constrained maximum likelihood. What sepcal exists for, in one call.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/identifiability.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"

@@ -4,7 +4,6 @@
 // triangular factor an output; these cross processes and machines, the data never move.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/triangular_factor.hpp"
 

@@ -3,9 +3,10 @@
 // written as combinations of named parameters ("0.8 w_n - 0.6 lambda_va").
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
+
+#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 

@@ -3,10 +3,10 @@
 // (Sun & Gebre-Egziabher, Eq. 4). A model is a pure function of a sample: it owns no data.
 #pragma once
 
-#include <Eigen/Core>
 #include <concepts>
 #include <limits>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal {

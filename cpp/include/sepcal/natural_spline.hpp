@@ -4,9 +4,10 @@
 // (one at their own knot, zero at the others) are the smooth drivers of effects.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
+
+#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 

@@ -5,11 +5,12 @@
 
 #include <ceres/jet.h>
 
-#include <Eigen/Core>
 #include <cmath>
 #include <compare>
 #include <limits>
 #include <utility>
+
+#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 

@@ -4,13 +4,13 @@
 // noise d = 0.5, a slow drift d near 1. Segments are independent of each other.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <random>
 #include <span>
 #include <vector>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

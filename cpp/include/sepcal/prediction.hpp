@@ -3,8 +3,8 @@
 // sqrt(g' Cov g) with g a row of [A D], and that of a new measurement, with the output's noise.
 #pragma once
 
-#include <Eigen/Core>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 
 namespace sepcal {

@@ -2,8 +2,9 @@
 // Attitude: the 3-2-1 Euler sequence from body axes (forward, right, down) to north-east-down.
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
+
+#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 

@@ -38,4 +38,5 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/noise_model.hpp"        // the noise of residuals
 #include "sepcal/rotation.hpp"
+#include "sepcal/eigen.hpp"              // aligned alike on both sides
 #include "sepcal/error.hpp"

@@ -4,12 +4,12 @@
 // whether there is one, and along which directions it is flat.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/eigen.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

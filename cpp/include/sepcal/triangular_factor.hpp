@@ -4,8 +4,9 @@
 // nothing loses half its digits. Golub & Van Loan, Matrix Computations, Sec. 5.2 and 6.5.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
+
+#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 

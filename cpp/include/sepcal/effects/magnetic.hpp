@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sepcal/effects/driven.hpp"
+#include "sepcal/eigen.hpp"
 
 namespace sepcal::effects {
 

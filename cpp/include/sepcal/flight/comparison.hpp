@@ -4,10 +4,10 @@
 // near 0 or near 1).
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/flight/calibration.hpp"
 
 namespace sepcal {

@@ -3,7 +3,6 @@
 // needs, what must be known of the instrument, and the correction that a calibration makes.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <map>
 #include <memory>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/eigen.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/options.hpp"

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/static_model.hpp"
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/rotation.hpp"
 #include "sepcal/static_model.hpp"
