@@ -9,11 +9,12 @@
 #include <new>
 
 #include "fit_arguments.hpp"
-#include "flight/option_spelling.hpp"
+#include "flight/files/option_spelling.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/solver_log.hpp"
 #include "simulation_arguments.hpp"
 #include "verbs.hpp"
 
@@ -102,7 +103,7 @@ void add_applying_options(CLI::App& apply, Arguments& arguments) {
 int run(Instrument& instrument, int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, not an end
   silence_solver_log();
-  spell_options_for_command_line();
+  files::spell_options_for_command_line();
   CLI::App cli(instrument.summary(), instrument.app());
   cli.require_subcommand(1);
   cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);

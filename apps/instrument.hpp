@@ -10,16 +10,16 @@
 
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/flight/simulate.hpp"
-#include "sepcal/flight/truth.hpp"
+#include "sepcal/simulation/simulate.hpp"
+#include "sepcal/simulation/truth.hpp"
 
 namespace sepcal::app {
 
 /// What to simulate.
 struct SimulationOrder {
-  std::string truth;                 // JSON, or empty for the defaults
-  std::string source;                // opens messages about the truth
-  std::vector<HiddenEffect> hidden;  // beside those of the truth
+  std::string truth;                // JSON, or empty for the defaults
+  std::string source;               // opens messages about the truth
+  std::vector<SizedEffect> hidden;  // beside those of the truth
   SimulationOptions options;
 };
 

@@ -3,7 +3,7 @@
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/truth.hpp"
+#include "sepcal/simulation/truth.hpp"
 
 namespace sepcal::app {
 namespace {

@@ -33,7 +33,8 @@ void SimulationArguments::add_to(CLI::App& simulate) {
 
 SimulationOrder SimulationArguments::resolve() const {
   SimulationOrder order;
-  for (const std::string& text : hidden_) order.hidden.push_back(parse_hidden_effect(text));
+  for (const std::string& text : hidden_)
+    order.hidden.push_back(parse_sized_effect(text, "--hide"));
   order.options = options_;
   order.options.excitation = find_excitation(excitation_);
   order.options.noise = find_noise_kind(noise_);

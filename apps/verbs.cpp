@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "diagnosis_table.hpp"
-#include "flight/text_file.hpp"
+#include "flight/files/text_file.hpp"
 #include "interval_table.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
@@ -43,19 +43,6 @@ int exit_code(FitStatus status) {
       return 4;
     default:
       return 5;
-  }
-}
-
-/// Throws Error as parse_hidden_effect() does, in this option's name.
-HiddenEffect parse_injection(const std::string& text) {
-  constexpr std::string_view other = "--hide";
-  try {
-    return parse_hidden_effect(text);
-  } catch (const Error& error) {
-    std::string what = error.what();
-    const std::size_t at = what.find(other);
-    if (at != std::string::npos) what.replace(at, other.size(), "--inject");
-    throw Error(what);
   }
 }
 
@@ -148,8 +135,8 @@ int Verbs::diagnose() const {
     check_not_input(arguments_.output, arguments_.calibration);
     output.emplace(arguments_.output);
   }
-  std::optional<HiddenEffect> injected;
-  if (!arguments_.inject.empty()) injected = parse_injection(arguments_.inject);
+  std::optional<SizedEffect> injected;
+  if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
   const Calibration base = read_base();
   const Flight flight = read_flight();
   ProgressLine line;
@@ -219,7 +206,7 @@ int Verbs::simulate(SimulationOrder order) const {
   std::optional<OutputFile> truth;
   if (!arguments_.truth.empty() && !given) truth.emplace(arguments_.truth);
   order.source = given ? arguments_.truth : "simulate";
-  if (given) order.truth = read_text_file(arguments_.truth, "as a truth file");
+  if (given) order.truth = files::read_text_file(arguments_.truth, "as a truth file");
   const Simulation simulation = instrument_.simulate(order);
   write_csv(simulation.flight, output.stream());
   output.flush();

@@ -14,8 +14,8 @@ using Texts = std::vector<std::string>;
 
 namespace {
 
-const HiddenEffect shear{"wind[altitude_m]", {0.02, -0.03}};
-const HiddenEffect loss{"airspeed_scale[alpha^2]", {-0.8}};
+const SizedEffect shear{"wind[altitude_m]", {0.02, -0.03}};
+const SizedEffect loss{"airspeed_scale[alpha^2]", {-0.8}};
 
 SimulatedFlight fly_both(double noise = 0.1, std::size_t rows = 400) {
   return fly("five-hole", {shear, loss}, {.rows = rows, .noise = noise, .seed = 11});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // R and the parameters in turn for a straight line, where every step is known in closed form.
-#include "alternation.hpp"
+#include "estimation/alternation.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,9 +13,9 @@
 using doctest::Approx;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
-using sepcal::Alternation;
 using sepcal::FitOptions;
-using sepcal::StageTwo;
+using sepcal::estimation::Alternation;
+using sepcal::estimation::StageTwo;
 
 namespace {
 
@@ -29,8 +29,8 @@ class Straight {
         problem_(*model_, options),
         pool_(1) {
     record_.add("u", {-1.0, 0.0, 1.0, 2.0}).add("z", {0.0, 1.0, 2.0, 7.0});
-    measurements_ = std::make_unique<sepcal::Measurements>(*model_, record_);
-    sweep_ = std::make_unique<sepcal::Sweep>(*model_, *measurements_, pool_);
+    measurements_ = std::make_unique<sepcal::model::Measurements>(*model_, record_);
+    sweep_ = std::make_unique<sepcal::model::Sweep>(*model_, *measurements_, pool_);
     result.x = Vector2d::Zero();
     result.noise = VectorXd::Ones(1);
     result.at_bound = {false, false};
@@ -42,10 +42,10 @@ class Straight {
  private:
   std::shared_ptr<const sepcal::BlockModel> model_;
   sepcal::Record record_;
-  sepcal::Problem problem_;
-  sepcal::ThreadPool pool_;
-  std::unique_ptr<sepcal::Measurements> measurements_;
-  std::unique_ptr<sepcal::Sweep> sweep_;
+  sepcal::estimation::Problem problem_;
+  sepcal::base::ThreadPool pool_;
+  std::unique_ptr<sepcal::model::Measurements> measurements_;
+  std::unique_ptr<sepcal::model::Sweep> sweep_;
 };
 
 const double root_mean_square = std::sqrt(1.2);
@@ -61,7 +61,7 @@ TEST_CASE("descent, last digits and R: a line's are those of least squares") {
   alternation.descend();
   CHECK(alternation.refine());
   CHECK((line.result.x - Vector2d(2.2, 1.4)).norm() < 1e-12);
-  CHECK(sepcal::squares(line.result.factors)[0] == Approx(4.8).epsilon(1e-13));
+  CHECK(sepcal::estimation::squares(line.result.factors)[0] == Approx(4.8).epsilon(1e-13));
   CHECK(alternation.update_noise() == Approx(0.2).epsilon(1e-12));  // from 1 to 1.2
   CHECK(line.result.noise[0] == Approx(root_mean_square).epsilon(1e-13));
   CHECK(alternation.update_noise() < 1e-15);

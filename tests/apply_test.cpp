@@ -35,7 +35,7 @@ Calibration make_scaled_magnetometer() {
 }
 
 /// A five-hole probe whose one effect is `effect`, at the values of a simulated flight.
-Calibration calibrate_hidden(const char* probe, const HiddenEffect& effect) {
+Calibration calibrate_hidden(const char* probe, const SizedEffect& effect) {
   return calibrate_with(probe, fly(probe, {effect}, {.noise = 1e-6, .seed = 2}), {effect.name});
 }
 
@@ -175,9 +175,9 @@ TEST_CASE("a driver that isn't logged is an error that names the effect and the 
 }
 
 TEST_CASE("effects on the world need no driver and change no reading") {
-  for (const HiddenEffect& effect : {HiddenEffect{"wind[altitude_m]", {0.01}},
-                                     {"heading_bias", {0.03}},
-                                     {"lever_arm", {0.1, 0.2, -0.3}}}) {
+  for (const SizedEffect& effect : {SizedEffect{"wind[altitude_m]", {0.01}},
+                                    {"heading_bias", {0.03}},
+                                    {"lever_arm", {0.1, 0.2, -0.3}}}) {
     CAPTURE(effect.name);
     Calibration calibration = calibrate_hidden("five-hole", effect);
     const SimulatedFlight flight = fly("five-hole", {});
@@ -198,8 +198,8 @@ TEST_CASE("effects on the world need no driver and change no reading") {
 }
 
 TEST_CASE("drivers that aren't columns of their own are computed") {
-  const HiddenEffect loss{"airspeed_scale[alpha^2]", {-0.8}};
-  const HiddenEffect propwash{"pressure_offset[throttle]", {20.0}};
+  const SizedEffect loss{"airspeed_scale[alpha^2]", {-0.8}};
+  const SizedEffect propwash{"pressure_offset[throttle]", {20.0}};
   const SimulatedFlight lossy = fly("five-hole", {loss});
   const auto columns = apply(calibrate_hidden("five-hole", loss), make_flight(lossy));
   const auto truth = true_readings("five-hole", {loss}, {});
@@ -211,7 +211,7 @@ TEST_CASE("drivers that aren't columns of their own are computed") {
 }
 
 TEST_CASE("a field's rate comes from the body rates or, without them, from the readings") {
-  const HiddenEffect eddy{"eddy_currents", {0.002}};
+  const SizedEffect eddy{"eddy_currents", {0.002}};
   const Calibration calibration = calibrate_hidden("magnetometer", eddy);
   const Conditions fast{.rows = 1600};
   const SimulatedFlight flight = fly("magnetometer", {eddy}, fast);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The order in which stage two tries, and which end it keeps.
-#include "attempts.hpp"
+#include "estimation/attempts.hpp"
 
 #include <doctest/doctest.h>
 
-using sepcal::agree;
-using sepcal::Attempt;
-using sepcal::Ending;
 using sepcal::FitOptions;
-using sepcal::is_better;
-using sepcal::is_enough;
-using sepcal::list_attempts;
 using sepcal::SecondStage;
 using sepcal::StageOne;
+using sepcal::estimation::agree;
+using sepcal::estimation::Attempt;
+using sepcal::estimation::Ending;
+using sepcal::estimation::is_better;
+using sepcal::estimation::is_enough;
+using sepcal::estimation::list_attempts;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where a fit to the field's strength begins: at the readings' ellipsoid, at a sphere where that is
 // out of bounds, and nowhere where the unit can't be right.
-#include "flight/attitude_independent_start.hpp"
+#include "flight/probes/attitude_independent_start.hpp"
 
 #include <Eigen/Core>
 #include <cmath>
@@ -55,7 +55,7 @@ Interval bounds_of(const FitOptions& options, const Quantity& parameter) {
 TEST_CASE("without noise the start is the truth, n bounded two field strengths round the middle") {
   for (const double cap : {2.0, 0.7}) {
     const Record record = simulate(cap, 0.0);
-    const FitOptions options = start_attitude_independent({}, record, strength);
+    const FitOptions options = probes::start_attitude_independent({}, record, strength);
     for (std::size_t k = 0; k < 9; ++k) {
       const std::string name(parameters[k].name);
       CHECK(options.start.at(name) == Approx(truth[static_cast<int>(k)]).epsilon(1e-7));
@@ -72,7 +72,8 @@ TEST_CASE("a start that is given is kept, and so are bounds") {
   FitOptions given;
   given.start = {{"n_x", 3.0}};
   given.bounds = {{"n_z", {-5, 50}}, {"lambda_x", {-0.1, 0.2}}};
-  const FitOptions options = start_attitude_independent(given, simulate(2.0, 0.1), strength);
+  const FitOptions options =
+      probes::start_attitude_independent(given, simulate(2.0, 0.1), strength);
   CHECK(options.start == given.start);
   CHECK(options.bounds.at("n_z").upper == 50);
   CHECK(options.bounds.at("lambda_x").lower == -0.1);
@@ -82,7 +83,8 @@ TEST_CASE("a start that is given is kept, and so are bounds") {
 TEST_CASE("the start is within the bounds whatever the readings cover") {
   for (const double cap : {0.3, 0.1, 0.03, 0.005}) {
     for (const double noise : {0.05, 0.5, 5.0}) {
-      const FitOptions options = start_attitude_independent({}, simulate(cap, noise), strength);
+      const FitOptions options =
+          probes::start_attitude_independent({}, simulate(cap, noise), strength);
       for (const Quantity& parameter : parameters) {
         const auto [lower, upper] = bounds_of(options, parameter);
         const double start = options.start.at(std::string(parameter.name));
@@ -103,26 +105,28 @@ TEST_CASE("the start is from stage one's segments") {
   spoiled.cut({{"good", 0, 200}, {"bad", 200, 400}});
   FitOptions given;
   given.stage_one_segments = given.stage_two_segments = "good";
-  const FitOptions options = start_attitude_independent(given, spoiled, strength);
+  const FitOptions options = probes::start_attitude_independent(given, spoiled, strength);
   CHECK(options.start.at("n_x") == Approx(12).epsilon(1e-6));
 }
 
 TEST_CASE("readings in another unit than the field's strength are refused") {
   for (const double scale : {0.01, 0.3, 2.0, 1000.0}) {
-    check_refused([&] { start_attitude_independent({}, simulate(2.0, 0.1, scale), strength); },
-                  {"the readings lie on an ellipsoid of", "field_strength is 48 uT",
-                   "beyond the bounds of lambda", "check the unit"});
+    check_refused(
+        [&] { probes::start_attitude_independent({}, simulate(2.0, 0.1, scale), strength); },
+        {"the readings lie on an ellipsoid of", "field_strength is 48 uT",
+         "beyond the bounds of lambda", "check the unit"});
   }
   FitOptions wide;
   for (const char* name : {"lambda_x", "lambda_y", "lambda_z"}) wide.bounds[name] = {-0.9, 2.0};
-  const FitOptions options = start_attitude_independent(wide, simulate(2.0, 0.0, 2.0), strength);
+  const FitOptions options =
+      probes::start_attitude_independent(wide, simulate(2.0, 0.0, 2.0), strength);
   CHECK(options.start.at("lambda_x") == Approx(1.16).epsilon(1e-6));
 }
 
 TEST_CASE("open bounds are refused") {
   FitOptions open;
   open.bounds["lambda_y"] = {-0.5, infinity};
-  check_refused([&] { start_attitude_independent(open, simulate(2.0, 0.1), strength); },
+  check_refused([&] { probes::start_attitude_independent(open, simulate(2.0, 0.1), strength); },
                 {"'lambda_y'", "open", "two finite ones"});
 }
 
@@ -133,7 +137,7 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
     fit.parameters.push_back({.name = std::string(parameter.name), .unit = "1"});
   }
   SUBCASE("nothing at a bound") {
-    judge_attitude_independent(fit, 48.0);
+    probes::judge_attitude_independent(fit, 48.0);
     CHECK(fit.status == FitStatus::converged);
     REQUIRE(fit.identifiability.unobservable.size() == 3);
     CHECK(fit.identifiability.unobservable[1].text == "eta_y");
@@ -142,7 +146,7 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
   SUBCASE("lambda_z at its bound") {
     fit.parameters[2].at_bound = true;
     fit.message = "something";
-    judge_attitude_independent(fit, 48.0);
+    probes::judge_attitude_independent(fit, 48.0);
     CHECK(fit.status == FitStatus::not_identifiable);
     REQUIRE(fit.identifiability.unobservable.size() == 4);
     CHECK(fit.identifiability.unobservable[0].text == "lambda_z");
@@ -151,7 +155,7 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
   SUBCASE("what did not converge stays so") {
     fit.parameters[2].at_bound = fit.parameters[3].at_bound = true;
     fit.status = FitStatus::not_converged;
-    judge_attitude_independent(fit, 48.0);
+    probes::judge_attitude_independent(fit, 48.0);
     CHECK(fit.status == FitStatus::not_converged);
     CHECK(fit.message.find("the bounds of lambda_z, alpha_xy kept") != std::string::npos);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "basins.hpp"
+#include "numerics/basins.hpp"
 
 #include <doctest/doctest.h>
 
@@ -31,7 +31,7 @@ VectorXd column(std::initializer_list<double> values) { return row(values).trans
 TEST_CASE("two valleys on a line are as deep as the pass between them is high") {
   // Two neighbours on either side; the pass between the minima 1 and 0 is two samples wide, at 5.
   const auto basins =
-      find_basins(row({0, 1, 2, 3, 4, 5, 6, 7}), column({3, 1, 2, 5, 5.5, 4, 0, 6}));
+      numerics::find_basins(row({0, 1, 2, 3, 4, 5, 6, 7}), column({3, 1, 2, 5, 5.5, 4, 0, 6}));
   REQUIRE(basins.size() == 2);
   CHECK(basins[0].lowest == 6);
   CHECK(basins[0].depth == infinity_depth);
@@ -40,14 +40,14 @@ TEST_CASE("two valleys on a line are as deep as the pass between them is high") 
 }
 
 TEST_CASE("a slope has one basin, wherever its samples stand") {
-  const auto basins = find_basins(row({4, 2, 0, 3, 1}), column({8, 4, 0, 6, 2}));
+  const auto basins = numerics::find_basins(row({4, 2, 0, 3, 1}), column({8, 4, 0, 6, 2}));
   REQUIRE(basins.size() == 1);
   CHECK(basins[0].lowest == 2);
 }
 
 TEST_CASE("samples where the function is not defined join nothing") {
   const double undefined = infinity_depth;
-  const auto basins = find_basins(
+  const auto basins = numerics::find_basins(
       row({0, 1, 2, 10, 11, 12, 13, 14, 20, 21, 22}),
       column({1, 0, 3, undefined, undefined, undefined, undefined, undefined, 4, 2, 5}));
   REQUIRE(basins.size() == 2);
@@ -56,7 +56,7 @@ TEST_CASE("samples where the function is not defined join nothing") {
 }
 
 TEST_CASE("a single sample is a basin") {
-  const auto basins = find_basins(row({0.5}), column({2}));
+  const auto basins = numerics::find_basins(row({0.5}), column({2}));
   REQUIRE(basins.size() == 1);
   CHECK(basins[0].lowest == 0);
 }
@@ -75,7 +75,7 @@ TEST_CASE("scatter within a narrow valley makes shallow basins, a second minimum
     points.col(s) << x, y;
     values[s] = 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * x)) + 20.0 * (y - x) * (y - x);
   }
-  const auto basins = find_basins(points, values);
+  const auto basins = numerics::find_basins(points, values);
   REQUIRE(basins.size() >= 2);
   const auto x_of = [&](std::size_t i) { return points(0, basins[i].lowest); };
   CHECK(std::min(x_of(0), x_of(1)) == doctest::Approx(0.0).epsilon(0.25));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bounded_least_squares.hpp"
+#include "numerics/bounded_least_squares.hpp"
+#include "sepcal/quantity.hpp"
 
 #include <doctest/doctest.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 /// The least |R x - q| over a box, by trying every choice of free, lower and upper for every
 /// column.
-double exhaustive_minimum(const MatrixXd& R, const VectorXd& q, const Box& box) {
+double exhaustive_minimum(const MatrixXd& R, const VectorXd& q, const numerics::Box& box) {
   const Index n = R.cols();
   double least = infinity;
   const auto choices = static_cast<int>(std::pow(3, n));
@@ -46,8 +47,8 @@ TEST_CASE("without a bound in the way the solution is that of least squares") {
   MatrixXd R(3, 2);
   R << 2, 1, 0, 3, 1, -1;
   const VectorXd q = (VectorXd(3) << 1, 2, 3).finished();
-  const Box box{VectorXd::Constant(2, -10), VectorXd::Constant(2, 10)};
-  const BoundedSolution solution = solve_bounded(R, q, box);
+  const numerics::Box box{VectorXd::Constant(2, -10), VectorXd::Constant(2, 10)};
+  const numerics::BoundedSolution solution = numerics::solve_bounded(R, q, box);
   CHECK((solution.x - R.colPivHouseholderQr().solve(q)).norm() < 1e-14);
   CHECK(solution.active == std::vector<bool>{false, false});
 }
@@ -61,12 +62,12 @@ TEST_CASE("in random boxes the solution is as good as the best of all choices of
     VectorXd q(n + 1);
     for (double& value : R.reshaped()) value = draw();
     for (double& value : q) value = 3.0 * draw();
-    Box box{VectorXd(n), VectorXd(n)};
+    numerics::Box box{VectorXd(n), VectorXd(n)};
     for (Index k = 0; k < n; ++k) {
       box.lower[k] = trial % 7 == 0 ? 0.0 : -std::abs(draw());  // zero itself may be a bound
       box.upper[k] = trial % 11 == 0 ? infinity : std::abs(draw());
     }
-    const BoundedSolution solution = solve_bounded(R, q, box);
+    const numerics::BoundedSolution solution = numerics::solve_bounded(R, q, box);
     CHECK(((solution.x - box.lower).array() >= 0).all());
     CHECK(((box.upper - solution.x).array() >= 0).all());
     CHECK((R * solution.x - q).norm() ==
@@ -90,8 +91,8 @@ TEST_CASE("a column of zeros takes no step") {
   MatrixXd R(2, 2);
   R << 1, 0, 0, 0;
   const VectorXd q = (VectorXd(2) << 2, 0).finished();
-  const Box box{VectorXd::Constant(2, -1), VectorXd::Constant(2, 1)};
-  const BoundedSolution solution = solve_bounded(R, q, box);
+  const numerics::Box box{VectorXd::Constant(2, -1), VectorXd::Constant(2, 1)};
+  const numerics::BoundedSolution solution = numerics::solve_bounded(R, q, box);
   CHECK(solution.x == (VectorXd(2) << 1, 0).finished());
   CHECK(solution.active[0]);
 }

@@ -151,7 +151,7 @@ TEST_CASE("an effect means the same on another flight: its centre, knots and spa
   // The other flight is 200 m higher. The simulator takes the altitude about that flight's own
   // mean, so that the rise goes into the wind.
   constexpr double noise = 1e-3;
-  const HiddenEffect shear{"wind[altitude_m]", {0.02, -0.03}};
+  const SizedEffect shear{"wind[altitude_m]", {0.02, -0.03}};
   const SimulatedFlight first = fly("five-hole", {shear}, {.noise = 1e-6, .seed = 1});
   const Calibration calibration = calibrate_with("five-hole", first, {"wind[altitude_m]"});
   const double centre = values(first, "altitude_m").mean();
@@ -174,7 +174,7 @@ TEST_CASE("an effect means the same on another flight: its centre, knots and spa
 }
 
 TEST_CASE("a flight without an effect's channel is refused, one in which it is constant is not") {
-  const HiddenEffect bias{"airspeed_bias[flap]", {0.7}};
+  const SizedEffect bias{"airspeed_bias[flap]", {0.7}};
   SimulatedFlight flight = fly("five-hole", {bias});
   const Calibration calibration = calibrate_with("five-hole", flight, {bias.name});
   SimulatedFlight level = fly("five-hole", {});

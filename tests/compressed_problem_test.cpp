@@ -5,7 +5,7 @@
 #include <ceres/solver.h>
 #include <doctest/doctest.h>
 
-#include "minimise.hpp"
+#include "estimation/minimise.hpp"
 #include "simulated_records.hpp"
 
 using doctest::Approx;
@@ -54,10 +54,10 @@ void add_samples(ceres::Problem& problem, const sepcal::Record& record, double* 
 
 TEST_CASE("cost, gradient and solution of the compressed problem are those of the plain one") {
   const auto flight = sepcal::test::simulate_five_hole(rows);
-  const sepcal::Measurements measurements(*flight.model, flight.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*flight.model, measurements, pool);
-  sepcal::JointObjective objective(sweep, noise.cwiseInverse());
+  const sepcal::model::Measurements measurements(*flight.model, flight.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*flight.model, measurements, pool);
+  sepcal::estimation::JointObjective objective(sweep, noise.cwiseInverse());
 
   VectorXd x(10);
   x << 0.05, 0.2, 1, 1, 0, 0, 0, 0, 0, 0;
@@ -88,8 +88,8 @@ TEST_CASE("cost, gradient and solution of the compressed problem are those of th
   ceres::Solver::Summary summary;
   ceres::Solve(options, &plain, &summary);
   const VectorXd free = VectorXd::Constant(10, sepcal::infinity);
-  const auto descent = sepcal::minimise(objective, x, {-free, free},
-                                        {.iterations = 100, .function_tolerance = 1e-16});
+  const auto descent = sepcal::estimation::minimise(
+      objective, x, {-free, free}, {.iterations = 100, .function_tolerance = 1e-16});
   CHECK(descent.converged);
   CHECK(descent.square == Approx(2 * summary.final_cost).epsilon(1e-13));
   VectorXd solution(10);
@@ -99,18 +99,19 @@ TEST_CASE("cost, gradient and solution of the compressed problem are those of th
 
 TEST_CASE("a descent stays in its box, starts in it, and stops at its number of iterations") {
   const auto flight = sepcal::test::simulate_five_hole(rows);
-  const sepcal::Measurements measurements(*flight.model, flight.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*flight.model, measurements, pool);
-  sepcal::ProjectedObjective objective(sweep, noise.cwiseInverse());
+  const sepcal::model::Measurements measurements(*flight.model, flight.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*flight.model, measurements, pool);
+  sepcal::estimation::ProjectedObjective objective(sweep, noise.cwiseInverse());
   VectorXd lower = VectorXd::Constant(5, -0.05);
   VectorXd upper = VectorXd::Constant(5, 0.04);
-  const auto bounded =
-      sepcal::minimise(objective, VectorXd::Constant(5, 9.0), {lower, upper}, {.iterations = 100});
+  const auto bounded = sepcal::estimation::minimise(objective, VectorXd::Constant(5, 9.0),
+                                                    {lower, upper}, {.iterations = 100});
   CHECK(bounded.converged);
   CHECK((bounded.x.array() >= lower.array()).all());
   CHECK((bounded.x.array() <= upper.array()).all());
   CHECK(bounded.x[0] == 0.04);  // the truth is at 0.1
   CHECK_FALSE(
-      sepcal::minimise(objective, VectorXd::Zero(5), {lower, upper}, {.iterations = 1}).converged);
+      sepcal::estimation::minimise(objective, VectorXd::Zero(5), {lower, upper}, {.iterations = 1})
+          .converged);
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Standard errors on coloured residuals, against closed forms with dense matrices of their own.
-#include "covariance.hpp"
+#include "estimation/covariance.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
 #include <cmath>
 
+#include "estimation/residual_colour.hpp"
 #include "noises.hpp"
-#include "residual_colour.hpp"
 #include "sepcal/fit.hpp"
 #include "small_models.hpp"
 
@@ -16,10 +16,10 @@ using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using sepcal::find_residual_noise;
 using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::Record;
+using sepcal::estimation::find_residual_noise;
 using sepcal::test::as_span;
 using sepcal::test::draw_noise;
 using sepcal::test::Draws;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Crossings of functions whose place is known, smooth, with a kink and with a jump.
-#include "crossing_bracket.hpp"
+#include "numerics/crossing_bracket.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <functional>
 
 using doctest::Approx;
-using sepcal::CrossingBracket;
+using sepcal::numerics::CrossingBracket;
 
 namespace {
 

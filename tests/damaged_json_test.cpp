@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrated_flights.hpp"
-#include "sepcal/flight/truth.hpp"
+#include "sepcal/simulation/truth.hpp"
 
 using namespace sepcal;
 using namespace sepcal::test;

@@ -15,7 +15,7 @@ namespace sepcal::test {
 /// For each probe an effect about ten standard errors large in 400 rows with this noise.
 struct HiddenCase {
   std::string_view probe;
-  HiddenEffect effect;
+  SizedEffect effect;
   double noise;
 };
 
@@ -44,7 +44,7 @@ struct DiagnosedFlight {
 };
 
 inline DiagnosedFlight diagnose_flight(std::string_view probe,
-                                       const std::vector<HiddenEffect>& hidden,
+                                       const std::vector<SizedEffect>& hidden,
                                        const Conditions& conditions) {
   SimulatedFlight simulated = fly(probe, hidden, conditions);
   Flight flight = make_flight(simulated);

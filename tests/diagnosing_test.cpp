@@ -107,7 +107,7 @@ TEST_CASE("nothing is hidden: adequate, on every probe") {
 }
 
 TEST_CASE("what the model's own parameters absorb can't be seen, however large it is") {
-  const auto check = [](const char* probe, const HiddenEffect& hidden, double noise) {
+  const auto check = [](const char* probe, const SizedEffect& hidden, double noise) {
     CAPTURE(hidden.name);
     const DiagnosedFlight flight = diagnose_flight(probe, {hidden}, {.noise = noise, .seed = 13});
     const EffectFinding& effect = find(flight.result, hidden.name);
@@ -168,7 +168,7 @@ TEST_CASE("a flight other than the fitted is diagnosed by what its own residuals
 }
 
 TEST_CASE("what the calibration has is no candidate, and leaves nothing to find") {
-  const HiddenEffect& hidden = strong_effects.front().effect;
+  const SizedEffect& hidden = strong_effects.front().effect;
   const SimulatedFlight simulated = fly("five-hole", {hidden}, {.noise = 0.15, .seed = 11});
   const Calibration whole = calibrate_with("five-hole", simulated, {hidden.name});
   const FlightDiagnosis result = diagnose(whole, make_flight(simulated), {}, quick_diagnosis());

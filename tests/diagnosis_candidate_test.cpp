@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "flights_with_effects.hpp"
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/probe_effects.hpp"
-#include "sepcal/measurements.hpp"
-#include "sweep.hpp"
 
 using namespace sepcal;
 using namespace sepcal::test;
@@ -45,7 +45,7 @@ class Prediction {
     model_ =
         compose(fitted.model, make_effects(fitted.kit, *fitted.model, settings, record_), record_);
     record_.cut(fitted.rows);
-    values_ = values_by_name(fitted.fit);
+    values_ = fitted.fit.by_name();
     for (const Variable& parameter : model_->tables().parameters())
       values_.try_emplace(parameter.name);
   }
@@ -53,13 +53,14 @@ class Prediction {
   void hold(const std::string& name, double value) { values_.at(name) = value; }
 
   MatrixXd at(const std::string& name, double value) const {
-    ParameterValues values = values_;
+    base::ParameterValues values = values_;
     values.at(name) = value;
-    const Measurements measurements(*model_, record_);
-    ThreadPool alone(1);
+    const model::Measurements measurements(*model_, record_);
+    base::ThreadPool alone(1);
     const Tables& tables = model_->tables();
-    return -Sweep(*model_, measurements, alone)
-                .residuals(in_order(tables.linear, values), in_order(tables.nonlinear, values));
+    return -model::Sweep(*model_, measurements, alone)
+                .residuals(base::in_order(tables.linear, values),
+                           base::in_order(tables.nonlinear, values));
   }
 
   /// Richardson's extrapolation of differences about zero; of forward ones where below zero
@@ -75,11 +76,11 @@ class Prediction {
  private:
   Record record_;
   std::shared_ptr<const BlockModel> model_;
-  ParameterValues values_;
+  base::ParameterValues values_;
 };
 
 /// A column of the stacked, scaled rows as a matrix of rows x used outputs in their units.
-MatrixXd in_units(const RowLayout& layout, const VectorXd& column) {
+MatrixXd in_units(const diagnosis::RowLayout& layout, const VectorXd& column) {
   MatrixXd outputs(layout.rows, static_cast<Index>(layout.outputs.size()));
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     outputs.col(static_cast<Index>(j)) =
@@ -89,7 +90,7 @@ MatrixXd in_units(const RowLayout& layout, const VectorXd& column) {
 }
 
 /// The rows that a fit with the effect would use: those near an edge are guessed at.
-std::vector<Index> inner_rows(const DiagnosedFit& fitted, const Candidate& candidate) {
+std::vector<Index> inner_rows(const DiagnosedFit& fitted, const diagnosis::Candidate& candidate) {
   Record record = fitted.record;
   record.cut(fitted.rows);
   const Record inner = without_edges(record, reach(candidate.effects));
@@ -105,8 +106,8 @@ std::vector<Index> inner_rows(const DiagnosedFit& fitted, const Candidate& candi
 }
 
 /// The largest entry of the columns of this unit, in the outputs' units.
-double size_of(const RowLayout& layout, const Candidate& candidate, const MatrixXd& columns,
-               const std::string& unit) {
+double size_of(const diagnosis::RowLayout& layout, const diagnosis::Candidate& candidate,
+               const MatrixXd& columns, const std::string& unit) {
   double size = 0.0;
   for (Index k = 0; k < columns.cols(); ++k) {
     if (candidate.coefficients[static_cast<std::size_t>(k)].unit != unit) continue;
@@ -116,9 +117,10 @@ double size_of(const RowLayout& layout, const Candidate& candidate, const Matrix
 }
 
 /// Checks columns() of the effect at its first, middle and last shape.
-void check_columns(const DiagnosedFit& fitted, CandidateRoom& room, const std::string& name) {
+void check_columns(const DiagnosedFit& fitted, diagnosis::CandidateRoom& room,
+                   const std::string& name) {
   CAPTURE(name);
-  const Candidate candidate = room.make(name);
+  const diagnosis::Candidate candidate = room.make(name);
   const std::vector<Index> rows = inner_rows(fitted, candidate);
   const std::vector<double>& shapes = candidate.shape.values;
   Prediction prediction(fitted, name);
@@ -157,8 +159,8 @@ void check_catalogue(const char* probe, const std::vector<std::string>& fitted_e
   const SimulatedFlight simulated = fly(probe, {}, {.rows = rows, .noise = 0.2, .seed = 8});
   const Calibration calibration = calibrate_with(probe, simulated, fitted_effects);
   const DiagnosedFit fitted = diagnosed_fit(calibration, make_flight(simulated));
-  ThreadPool pool(1);
-  CandidateRoom room(fitted, pool);
+  base::ThreadPool pool(1);
+  diagnosis::CandidateRoom room(fitted, pool);
   std::vector<std::string> names = others;
   for (const CataloguedEffect& effect : effect_catalogue(probe)) {
     if (effect.equation.starts_with("alias")) continue;
@@ -197,9 +199,9 @@ TEST_CASE("what varies of a driven effect: its driver about the mean of the rows
   DiagnosedFit fitted = diagnosed_fit(calibration, make_flight(simulated));
   fitted.rows.pop_back();
   fitted.rows.front().first += 7;
-  ThreadPool pool(1);
-  CandidateRoom room(fitted, pool);
-  const Candidate candidate = room.make("wind[throttle]");
+  base::ThreadPool pool(1);
+  diagnosis::CandidateRoom room(fitted, pool);
+  const diagnosis::Candidate candidate = room.make("wind[throttle]");
   const double shape = candidate.shape.values.front();
   double sum = 0.0;
   double count = 0.0;
@@ -217,9 +219,9 @@ TEST_CASE("a candidate by an alias, of a pair; what can't be made is refused") {
   const SimulatedFlight simulated = fly("five-hole", {}, {.noise = 0.2, .seed = 8});
   const Calibration calibration = calibrate_with("five-hole", simulated, {});
   const DiagnosedFit fitted = diagnosed_fit(calibration, make_flight(simulated));
-  ThreadPool pool(1);
-  CandidateRoom room(fitted, pool);
-  const Candidate pair = room.make("wind_shear+propwash");
+  base::ThreadPool pool(1);
+  diagnosis::CandidateRoom room(fitted, pool);
+  const diagnosis::Candidate pair = room.make("wind_shear+propwash");
   CHECK(pair.name == "wind[altitude_m]+pressure_offset[throttle]");
   CHECK(pair.drivers == std::vector<std::string>{"altitude_m", "throttle"});
   CHECK(pair.coefficients.size() == 3);
@@ -229,5 +231,5 @@ TEST_CASE("a candidate by an alias, of a pair; what can't be made is refused") {
 
   DiagnosedFit other = fitted;
   other.fit.parameters.pop_back();
-  check_refused([&] { CandidateRoom(other, pool); }, {"are not those of its model"});
+  check_refused([&] { diagnosis::CandidateRoom(other, pool); }, {"are not those of its model"});
 }

@@ -11,9 +11,9 @@
 
 #include "diagnosis/projection.hpp"
 #include "diagnosis/residual_noise.hpp"
-#include "diagnosis/tails.hpp"
 #include "linearisations.hpp"
 #include "noises.hpp"
+#include "numerics/tails.hpp"
 
 using doctest::Approx;
 using Eigen::Index;
@@ -24,12 +24,13 @@ using namespace sepcal::test;
 
 namespace {
 
-MatrixXd perpendicular(const Linearisation& fit, const MatrixXd& columns) {
-  return orthonormal_basis(remove_span(orthonormal_basis(fit.tangent), columns));
+MatrixXd perpendicular(const diagnosis::Linearisation& fit, const MatrixXd& columns) {
+  return diagnosis::orthonormal_basis(
+      diagnosis::remove_span(diagnosis::orthonormal_basis(fit.tangent), columns));
 }
 
 /// N ln(s0^2 / s1^2) of one output, by dense least squares.
-double white_ratio(const Linearisation& fit, const MatrixXd& added) {
+double white_ratio(const diagnosis::Linearisation& fit, const MatrixXd& added) {
   MatrixXd columns(added.rows(), fit.tangent.cols() + added.cols());
   columns << fit.tangent, added;
   const VectorXd left = fit.residual - columns * least_squares(columns, fit.residual);
@@ -49,9 +50,9 @@ MatrixXd waves(Index rows) {
 /// 250 s of a velocity [m/s], noise 0.15, at 5 Hz, with a wind that changes by `drift` in all.
 struct Drifting {
   static constexpr Index rows = 1250;
-  RowLayout layout = make_layout({{"", rows}}, {1.0});
+  diagnosis::RowLayout layout = make_layout({{"", rows}}, {1.0});
   VectorXd ramp = VectorXd::LinSpaced(rows, -0.5, 0.5);
-  Linearisation fit;
+  diagnosis::Linearisation fit;
 
   explicit Drifting(double drift, std::uint64_t seed = 5) {
     Draws draws(seed);
@@ -68,12 +69,14 @@ TEST_CASE("white noise: N ln of the variances' ratio, to the digit where no colo
   int without_colour = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Draws draws(seed);
-    const RowLayout layout = make_layout({{"", 500}}, {1.0});
+    const diagnosis::RowLayout layout = make_layout({{"", 500}}, {1.0});
     const MatrixXd G = draws.normal_matrix(500, 2);
-    const Linearisation fit = fit_to(layout, draws.normal_matrix(500, 3),
-                                     G.col(0) * 0.4 + VectorXd(draws.normal_matrix(500, 1)));
-    const NullHypothesis null = find_null(fit);
-    const LikelihoodRatio ratio = compare_with_null(null, perpendicular(fit, G));
+    const diagnosis::Linearisation fit =
+        fit_to(layout, draws.normal_matrix(500, 3),
+               G.col(0) * 0.4 + VectorXd(draws.normal_matrix(500, 1)));
+    const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
+    const diagnosis::LikelihoodRatio ratio =
+        diagnosis::compare_with_null(null, perpendicular(fit, G));
     const double expected = white_ratio(fit, G);
     CAPTURE(seed);
     CHECK(ratio.value == Approx(expected).epsilon(0.1));
@@ -89,13 +92,15 @@ TEST_CASE("white noise: N ln of the variances' ratio, to the digit where no colo
 
 TEST_CASE("two outputs: the sum over them, whatever their scales") {
   Draws draws(31);
-  const RowLayout layout = make_layout({{"a", 300}, {"b", 400}}, {0.1, 25.0});
+  const diagnosis::RowLayout layout = make_layout({{"a", 300}, {"b", 400}}, {0.1, 25.0});
   const MatrixXd G = draws.normal_matrix(1400, 1);
   VectorXd noise = draws.normal_matrix(1400, 1);
   noise.tail(700) *= 3.0;
-  const Linearisation fit = fit_to(layout, draws.normal_matrix(1400, 4), 0.5 * G + noise);
-  const NullHypothesis null = find_null(fit);
-  const LikelihoodRatio ratio = compare_with_null(null, perpendicular(fit, G));
+  const diagnosis::Linearisation fit =
+      fit_to(layout, draws.normal_matrix(1400, 4), 0.5 * G + noise);
+  const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
+  const diagnosis::LikelihoodRatio ratio =
+      diagnosis::compare_with_null(null, perpendicular(fit, G));
 
   // Weighted least squares by turns with the two variances.
   const auto minus_two_log_likelihood = [&](const MatrixXd& columns) {
@@ -119,13 +124,13 @@ TEST_CASE("two outputs: the sum over them, whatever their scales") {
 
 TEST_CASE("the estimate and its covariance are those of generalised least squares") {
   Draws draws(8);
-  const RowLayout layout = make_layout({{"a", 400}, {"b", 500}}, {1.0});
+  const diagnosis::RowLayout layout = make_layout({{"a", 400}, {"b", 500}}, {1.0});
   const MatrixXd G = draws.normal_matrix(900, 2);
-  const Linearisation fit = fit_to(layout, draws.normal_matrix(900, 3),
-                                   0.3 * G.col(1) + draw_noise("AR(0.9)", 900, draws));
-  const NullHypothesis null = find_null(fit);
+  const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(900, 3),
+                                              0.3 * G.col(1) + draw_noise("AR(0.9)", 900, draws));
+  const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
   const MatrixXd added = perpendicular(fit, G);
-  const Hypothesis with = compare_with_null(null, added).with;
+  const diagnosis::Hypothesis with = diagnosis::compare_with_null(null, added).with;
   MatrixXd columns(900, 5);
   columns << null.basis, added;
   const MatrixXd identity = MatrixXd::Identity(900, 900);
@@ -144,17 +149,18 @@ TEST_CASE("the larger hypothesis is never the worse one") {
   for (const std::string& kind : kinds) {
     CAPTURE(kind);
     Draws draws(17);
-    const RowLayout layout = make_layout({{"a", 150}, {"b", 250}}, {1.0, 1.0});
+    const diagnosis::RowLayout layout = make_layout({{"a", 150}, {"b", 250}}, {1.0, 1.0});
     VectorXd noise(800);
     noise << draw_noise(kind, 400, draws), draw_noise(kind, 400, draws);
-    const Linearisation fit = fit_to(layout, draws.normal_matrix(800, 4), noise);
-    const NullHypothesis null = find_null(fit);
+    const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(800, 4), noise);
+    const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
     MatrixXd columns(800, 0);
     double last = null.best.minus_two_log_likelihood;
     for (int q = 1; q <= 4; ++q) {
       columns.conservativeResize(Eigen::NoChange, q);
       columns.col(q - 1) = draws.normal_matrix(800, 1);
-      const LikelihoodRatio ratio = compare_with_null(null, perpendicular(fit, columns));
+      const diagnosis::LikelihoodRatio ratio =
+          diagnosis::compare_with_null(null, perpendicular(fit, columns));
       CHECK(ratio.value >= 0.0);
       CHECK(ratio.with.minus_two_log_likelihood < last + 0.05);
       last = ratio.with.minus_two_log_likelihood;
@@ -164,21 +170,21 @@ TEST_CASE("the larger hypothesis is never the worse one") {
 
 TEST_CASE("a slow drift that the null's noise model swallows stands out in the ratio") {
   const Drifting flight(2.0);
-  const NullHypothesis null = find_null(flight.fit);
+  const diagnosis::NullHypothesis null = diagnosis::find_null(flight.fit);
   CHECK(null.best.noise[0].d > 0.2);  // the drift, taken for slow noise
   const MatrixXd added = perpendicular(flight.fit, flight.ramp);
 
   MatrixXd white = added;
-  whiten(flight.fit.layout, null.best.noise, white);
-  white = remove_span(null.white_basis, white);
+  diagnosis::whiten(flight.fit.layout, null.best.noise, white);
+  white = diagnosis::remove_span(null.white_basis, white);
   const double score = std::pow(white.col(0).dot(null.white_residual), 2) / white.squaredNorm();
-  const LikelihoodRatio ratio = compare_with_null(null, added);
+  const diagnosis::LikelihoodRatio ratio = diagnosis::compare_with_null(null, added);
   CHECK(ratio.value > 90.0);
   CHECK(score < 0.25 * ratio.value);
 
   // With the ramp taken out the rest is white: the search comes down to its closed form, but for
   // the level, which is free.
-  const VectorXd left = remove_span(added, flight.fit.residual);
+  const VectorXd left = diagnosis::remove_span(added, flight.fit.residual);
   const double N = static_cast<double>(Drifting::rows);
   const double white_noise = N * (1.0 + std::log(2.0 * std::numbers::pi * left.squaredNorm() / N));
   CHECK(std::abs(ratio.with.minus_two_log_likelihood - white_noise) < 10.0);
@@ -191,8 +197,9 @@ TEST_CASE("the larger a drift, the larger its ratio") {
       CAPTURE(seed);
       CAPTURE(drift);
       const Drifting flight(drift, seed);
-      const NullHypothesis null = find_null(flight.fit);
-      const double ratio = compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
+      const diagnosis::NullHypothesis null = diagnosis::find_null(flight.fit);
+      const double ratio =
+          diagnosis::compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
       CHECK(ratio > 0.5 * last);
       last = std::max(last, ratio);
     }
@@ -204,8 +211,8 @@ TEST_CASE("without a drift the ratio of a ramp is that of chance") {
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Drifting flight(0.0, seed);
-    const NullHypothesis null = find_null(flight.fit);
-    sum += compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
+    const diagnosis::NullHypothesis null = diagnosis::find_null(flight.fit);
+    sum += diagnosis::compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
   }
   CHECK(sum / 20.0 > 0.2);
   CHECK(sum / 20.0 < 2.5);  // 1 but for what a noise model takes of it
@@ -213,40 +220,41 @@ TEST_CASE("without a drift the ratio of a ramp is that of chance") {
 
 TEST_CASE("simulated under white noise, the ratio has the moments of chi-squared") {
   Draws draws(12);
-  const RowLayout layout = make_layout({{"", 390}}, {1.0});
-  const Linearisation fit =
+  const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
+  const diagnosis::Linearisation fit =
       fit_to(layout, draws.normal_matrix(390, 4), draws.normal_matrix(390, 1));
-  const NullHypothesis null = find_null(fit);
+  const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
   const MatrixXd added = perpendicular(fit, draws.normal_matrix(390, 3));
-  ThreadPool pool(2);
-  const VectorXd ratios = simulate_ratios(null, added, 400, 1, pool);
+  base::ThreadPool pool(2);
+  const VectorXd ratios = diagnosis::simulate_ratios(null, added, 400, 1, pool);
   CHECK(std::abs(ratios.mean() - 3.0) < 4.0 * std::sqrt(6.0 / 400.0));
-  CHECK(inflation_of(ratios, 3).median < 1.3);
-  CHECK(inflation_of(ratios, 3).ninetieth < 1.3);
+  CHECK(diagnosis::inflation_of(ratios, 3).median < 1.3);
+  CHECK(diagnosis::inflation_of(ratios, 3).ninetieth < 1.3);
 
-  ThreadPool alone(1);
-  CHECK(simulate_ratios(null, added, 400, 1, alone) == ratios);
-  CHECK(simulate_ratios(null, added, 400, 2, pool) != ratios);
+  base::ThreadPool alone(1);
+  CHECK(diagnosis::simulate_ratios(null, added, 400, 1, alone) == ratios);
+  CHECK(diagnosis::simulate_ratios(null, added, 400, 2, pool) != ratios);
 }
 
 TEST_CASE("where noise is as slow as the effect, simulations say how much larger ratios get") {
   Draws draws(3);
-  const RowLayout layout = make_layout({{"", 390}}, {1.0});
-  const Linearisation fit = fit_to(layout, waves(390), draw_noise("pink", 390, draws));
-  const NullHypothesis null = find_null(fit);
-  ThreadPool pool(2);
+  const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
+  const diagnosis::Linearisation fit = fit_to(layout, waves(390), draw_noise("pink", 390, draws));
+  const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
+  base::ThreadPool pool(2);
   const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
-  CHECK(simulate_ratios(null, ramp, 100, 1, pool).mean() > 1.3);
+  CHECK(diagnosis::simulate_ratios(null, ramp, 100, 1, pool).mean() > 1.3);
 }
 
 TEST_CASE("inflation: of chi-squared's own quantiles none, of twice these two, of outliers none") {
   constexpr int count = 1000;
   for (const int q : {1, 2, 6, 30}) {
     VectorXd ratios(count);
-    for (int i = 0; i < count; ++i) ratios[i] = chi_squared_point(1.0 - (i + 0.5) / count, q);
+    for (int i = 0; i < count; ++i)
+      ratios[i] = numerics::chi_squared_point(1.0 - (i + 0.5) / count, q);
     const auto check = [&](const VectorXd& some, double expected) {
-      CHECK(inflation_of(some, q).median == Approx(expected).epsilon(0.02));
-      CHECK(inflation_of(some, q).ninetieth == Approx(expected).epsilon(0.02));
+      CHECK(diagnosis::inflation_of(some, q).median == Approx(expected).epsilon(0.02));
+      CHECK(diagnosis::inflation_of(some, q).ninetieth == Approx(expected).epsilon(0.02));
     };
     check(ratios, 1.0);
     check(2.0 * ratios, 2.0);
@@ -254,29 +262,33 @@ TEST_CASE("inflation: of chi-squared's own quantiles none, of twice these two, o
     ratios.tail(count / 20).setConstant(1e4);
     check(ratios, 1.0);
     const double ratio = 40.0 + q;
-    CHECK(log10_ratio_tail(ratio, q, {}) == Approx(log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
-    CHECK(log10_ratio_tail(2.0 * ratio, q, {2.0, 2.0}) ==
-          Approx(log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
+    CHECK(diagnosis::log10_ratio_tail(ratio, q, {}) ==
+          Approx(numerics::log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
+    CHECK(diagnosis::log10_ratio_tail(2.0 * ratio, q, {2.0, 2.0}) ==
+          Approx(numerics::log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
   }
   // SciPy 1.11: chi2.isf(0.5, 2), chi2.isf(0.1, 5)
-  CHECK(chi_squared_point(0.5, 2.0) == Approx(1.3862943611198906).epsilon(1e-9));
-  CHECK(chi_squared_point(0.1, 5.0) == Approx(9.236356899781123).epsilon(1e-9));
+  CHECK(numerics::chi_squared_point(0.5, 2.0) == Approx(1.3862943611198906).epsilon(1e-9));
+  CHECK(numerics::chi_squared_point(0.1, 5.0) == Approx(9.236356899781123).epsilon(1e-9));
 }
 
 TEST_CASE("a ninetieth percentile below the median's inflation makes no tail shorter") {
   for (const int q : {1, 3, 12}) {
-    CHECK(log10_ratio_tail(60.0, q, {1.8, 1.3}) >= log10_ratio_tail(60.0, q, {1.3, 1.3}) - 1e-9);
-    CHECK(log10_ratio_tail(60.0, q, {1.3, 1.8}) > log10_ratio_tail(60.0, q, {1.3, 1.3}));
+    CHECK(diagnosis::log10_ratio_tail(60.0, q, {1.8, 1.3}) >=
+          diagnosis::log10_ratio_tail(60.0, q, {1.3, 1.3}) - 1e-9);
+    CHECK(diagnosis::log10_ratio_tail(60.0, q, {1.3, 1.8}) >
+          diagnosis::log10_ratio_tail(60.0, q, {1.3, 1.3}));
   }
 }
 
 TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the output's unit") {
   Draws draws(2);
-  const RowLayout layout = make_layout({{"a", 900}, {"b", 600}}, {0.5, 4.0});
+  const diagnosis::RowLayout layout = make_layout({{"a", 900}, {"b", 600}}, {0.5, 4.0});
   VectorXd noise(3000);
   noise << draw_noise("AR(0.9)", 1500, draws), draw_noise("white", 1500, draws);
-  const Linearisation fit = fit_to(layout, draws.normal_matrix(3000, 2), noise);
-  const std::vector<ResidualNoise> described = describe_residual(find_null(fit));
+  const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(3000, 2), noise);
+  const std::vector<ResidualNoise> described =
+      diagnosis::describe_residual(diagnosis::find_null(fit));
   REQUIRE(described.size() == 2);
   for (std::size_t j = 0; j < 2; ++j) {
     const VectorXd e = fit.residual.segment(layout.first(j), 1500);
@@ -297,7 +309,7 @@ TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the o
     CHECK(described[j].rmse == layout.outputs[j].scale);
     CHECK(described[j].lag_one == Approx(first).epsilon(1e-10));
     CHECK(described[j].ljung_box_p ==
-          Approx(std::pow(10.0, log10_chi_squared_tail(Q, 20.0))).epsilon(1e-8));
+          Approx(std::pow(10.0, numerics::log10_chi_squared_tail(Q, 20.0))).epsilon(1e-8));
   }
   CHECK(described[0].lag_one == Approx(0.9).epsilon(0.05));
   CHECK(described[0].ljung_box_p < 1e-50);

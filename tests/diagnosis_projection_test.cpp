@@ -47,7 +47,9 @@ struct Problem {
                Eigen::Vector3d(1e-3, 1.0, 40.0).asDiagonal();
   VectorXd e = draws.normal_matrix(rows, 1);
 
-  Projection projected() const { return project(orthonormal_basis(J), G, G, least_visibility); }
+  diagnosis::Projection projected() const {
+    return diagnosis::project(diagnosis::orthonormal_basis(J), G, G, least_visibility);
+  }
 };
 
 }  // namespace
@@ -58,7 +60,7 @@ TEST_CASE("an orthonormal basis spans the columns, of whatever size, in their nu
   columns << problem.J, problem.J.col(0) - 2.0 * problem.J.col(3), VectorXd::Zero(rows);
   columns.col(1) *= 1e8;
   columns.col(2) *= 1e-8;
-  const MatrixXd Q = orthonormal_basis(columns);
+  const MatrixXd Q = diagnosis::orthonormal_basis(columns);
   REQUIRE(Q.cols() == 5);
   CHECK(worst(Q.transpose() * Q - MatrixXd::Identity(5, 5)) < 1e-13);
   CHECK(worst(Q * Q.transpose() - MatrixXd::Identity(rows, rows) + annihilator(problem.J)) < 1e-12);
@@ -66,22 +68,22 @@ TEST_CASE("an orthonormal basis spans the columns, of whatever size, in their nu
 
 TEST_CASE("removing a span leaves what least squares leaves") {
   const Problem problem;
-  const MatrixXd left = remove_span(orthonormal_basis(problem.J), problem.G);
+  const MatrixXd left = diagnosis::remove_span(diagnosis::orthonormal_basis(problem.J), problem.G);
   CHECK(worst(left - annihilator(problem.J) * problem.G) < 1e-10);
   CHECK(worst(problem.J.transpose() * left) < 1e-10);
-  CHECK(remove_span(MatrixXd(rows, 0), problem.G) == problem.G);
+  CHECK(diagnosis::remove_span(MatrixXd(rows, 0), problem.G) == problem.G);
 }
 
 TEST_CASE("what of a span lies within rounding of another is removed as well") {
   const Problem problem;
-  const MatrixXd Q = orthonormal_basis(problem.J);
+  const MatrixXd Q = diagnosis::orthonormal_basis(problem.J);
   const VectorXd near = 1e9 * problem.J.col(0) + problem.e;
-  CHECK(worst(Q.transpose() * remove_span(Q, near)) < 1e-13);
+  CHECK(worst(Q.transpose() * diagnosis::remove_span(Q, near)) < 1e-13);
 }
 
 TEST_CASE("a candidate that is seen whole spans what the tangent doesn't explain of it") {
   const Problem problem;
-  const Projection projection = problem.projected();
+  const diagnosis::Projection projection = problem.projected();
   REQUIRE(projection.visible() == 3);
   const MatrixXd& B = projection.basis;
   CHECK(worst(B.transpose() * B - MatrixXd::Identity(3, 3)) < 1e-13);
@@ -96,15 +98,15 @@ TEST_CASE("visibility is the smallest sine between the candidate and the tangent
   const VectorXd squares = squared_sines(problem.J, problem.G, problem.G);
   CHECK(problem.projected().visibility == Approx(std::sqrt(squares[0])).epsilon(1e-10));
   const MatrixXd centred = problem.G.rowwise() - problem.G.colwise().mean();
-  const Projection varying =
-      project(orthonormal_basis(problem.J), problem.G, centred, least_visibility);
+  const diagnosis::Projection varying = diagnosis::project(diagnosis::orthonormal_basis(problem.J),
+                                                           problem.G, centred, least_visibility);
   CHECK(varying.visibility ==
         Approx(std::min(1.0, std::sqrt(squared_sines(problem.J, problem.G, centred)[0]))));
 }
 
 TEST_CASE("the coefficients behind the basis are those of least squares with the tangent") {
   const Problem problem;
-  const Projection projection = problem.projected();
+  const diagnosis::Projection projection = problem.projected();
   MatrixXd both(rows, 8);
   both << problem.J, problem.G;
   const VectorXd expected = (both.transpose() * both).ldlt().solve(both.transpose() * problem.e);
@@ -115,9 +117,9 @@ TEST_CASE("the coefficients behind the basis are those of least squares with the
 TEST_CASE("the coefficients don't depend on what visibility is measured against") {
   const Problem problem;
   const MatrixXd centred = problem.G.rowwise() - problem.G.colwise().mean();
-  const MatrixXd Q = orthonormal_basis(problem.J);
-  const Projection plain = project(Q, problem.G, problem.G, 0.0);
-  const Projection varying = project(Q, problem.G, centred, 0.0);
+  const MatrixXd Q = diagnosis::orthonormal_basis(problem.J);
+  const diagnosis::Projection plain = diagnosis::project(Q, problem.G, problem.G, 0.0);
+  const diagnosis::Projection varying = diagnosis::project(Q, problem.G, centred, 0.0);
   const VectorXd a = plain.to_effect * (plain.basis.transpose() * problem.e);
   const VectorXd b = varying.to_effect * (varying.basis.transpose() * problem.e);
   for (Index k = 0; k < 3; ++k) CHECK(a[k] == Approx(b[k]).epsilon(1e-9));
@@ -129,23 +131,25 @@ TEST_CASE("one direction that the tangent all but contains is left out of the ba
   const VectorXd squares = squared_sines(problem.J, problem.G, problem.G);
   REQUIRE(squares[0] < least_visibility * least_visibility);
   REQUIRE(squares[1] > least_visibility * least_visibility);
-  const Projection projection = problem.projected();
+  const diagnosis::Projection projection = problem.projected();
   CHECK(projection.visibility == Approx(std::sqrt(squares[0])).epsilon(1e-8));
   REQUIRE(projection.visible() == 2);
 
   // The others are seen: their sum of squares is least squares with those directions alone.
   const MatrixXd seen = problem.G * projection.to_effect;
-  CHECK(worst(remove_span(orthonormal_basis(problem.J), seen) - projection.basis) < 1e-10);
-  const MatrixXd every = project(orthonormal_basis(problem.J), problem.G, problem.G, 0.0).basis;
+  CHECK(worst(diagnosis::remove_span(diagnosis::orthonormal_basis(problem.J), seen) -
+              projection.basis) < 1e-10);
+  const MatrixXd every =
+      diagnosis::project(diagnosis::orthonormal_basis(problem.J), problem.G, problem.G, 0.0).basis;
   REQUIRE(every.cols() == 3);
   CHECK(worst(every.leftCols(2) - projection.basis) < 1e-10);
 }
 
 TEST_CASE("nothing is seen of a candidate within the tangent, nor of one that is deficient") {
   Problem problem;
-  const MatrixXd Q = orthonormal_basis(problem.J);
+  const MatrixXd Q = diagnosis::orthonormal_basis(problem.J);
   const MatrixXd within = problem.J.leftCols(2);
-  const Projection hidden = project(Q, within, within, least_visibility);
+  const diagnosis::Projection hidden = diagnosis::project(Q, within, within, least_visibility);
   CHECK(hidden.visible() == 0);
   CHECK(hidden.visibility < 1e-12);
 
@@ -156,21 +160,23 @@ TEST_CASE("nothing is seen of a candidate within the tangent, nor of one that is
   CHECK(problem.projected().visible() == 0);
 
   const MatrixXd wide = problem.draws.normal_matrix(4, 6);
-  CHECK(project(MatrixXd(4, 0), wide, wide, least_visibility).visible() == 0);
+  CHECK(diagnosis::project(MatrixXd(4, 0), wide, wide, least_visibility).visible() == 0);
 }
 
 TEST_CASE("the smallest canonical correlation of two spans, from their projectors' eigenvalues") {
   Problem problem;
-  const MatrixXd a = orthonormal_basis(problem.J);
-  const MatrixXd b = orthonormal_basis(problem.G);
+  const MatrixXd a = diagnosis::orthonormal_basis(problem.J);
+  const MatrixXd b = diagnosis::orthonormal_basis(problem.G);
   MatrixXd P = a.transpose() * b;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(P.transpose() * P);
-  CHECK(canonical_correlation(a, b) == Approx(std::sqrt(solver.eigenvalues()[0])).epsilon(1e-10));
-  CHECK(canonical_correlation(b, a) == Approx(canonical_correlation(a, b)).epsilon(1e-13));
+  CHECK(diagnosis::canonical_correlation(a, b) ==
+        Approx(std::sqrt(solver.eigenvalues()[0])).epsilon(1e-10));
+  CHECK(diagnosis::canonical_correlation(b, a) ==
+        Approx(diagnosis::canonical_correlation(a, b)).epsilon(1e-13));
 
   const MatrixXd inside =
-      orthonormal_basis(problem.J.leftCols(2) * problem.draws.normal_matrix(2, 2));
-  CHECK(canonical_correlation(inside, a) == Approx(1.0).epsilon(1e-13));
-  CHECK(canonical_correlation(problem.projected().basis, a) < 1e-12);
-  CHECK(canonical_correlation(a, MatrixXd(rows, 0)) == 0.0);
+      diagnosis::orthonormal_basis(problem.J.leftCols(2) * problem.draws.normal_matrix(2, 2));
+  CHECK(diagnosis::canonical_correlation(inside, a) == Approx(1.0).epsilon(1e-13));
+  CHECK(diagnosis::canonical_correlation(problem.projected().basis, a) < 1e-12);
+  CHECK(diagnosis::canonical_correlation(a, MatrixXd(rows, 0)) == 0.0);
 }

@@ -2,7 +2,7 @@
 // Tails against mpmath with fifty digits (gammainc, regularized), which scipy.stats.chi2.logsf
 // repeats where it reaches; corrections for many tests against published examples and against
 // their definitions, which need no sorting.
-#include "diagnosis/tails.hpp"
+#include "numerics/tails.hpp"
 
 #include <doctest/doctest.h>
 
@@ -81,7 +81,7 @@ TEST_CASE("the tail of chi-squared, from likely to 1e-2055, few degrees of freed
         Tail{150'000.0, 100'000, -2055.2466925635357}}) {
     CAPTURE(x);
     CAPTURE(freedom);
-    check_close(log10_chi_squared_tail(x, freedom), expected);
+    check_close(numerics::log10_chi_squared_tail(x, freedom), expected);
   }
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("the tail of a gamma variable on either side of where series and fract
         Tail{11.005, 10.0, -0.46856162539517662}}) {
     CAPTURE(x);
     CAPTURE(shape);
-    check_close(log10_gamma_tail(shape, x), expected);
+    check_close(numerics::log10_gamma_tail(shape, x), expected);
   }
 }
 
@@ -113,33 +113,35 @@ TEST_CASE("the tail of Fisher's F, against scipy.stats.f.logsf") {
         Fisher{0.99, 7.0, 60000.0, -0.360298192549}, Fisher{40.0, 7.0, 60000.0, -55.8132770548}}) {
     CAPTURE(x);
     CAPTURE(k);
-    CHECK(log10_f_tail(x, k, freedom) == Approx(expected).epsilon(1e-9));
+    CHECK(numerics::log10_f_tail(x, k, freedom) == Approx(expected).epsilon(1e-9));
   }
   // Many degrees of freedom: chi-squared over k.
-  CHECK(log10_f_tail(5.0, 4.0, 1e9) == Approx(log10_chi_squared_tail(20.0, 4.0)).epsilon(1e-6));
-  CHECK(log10_f_tail(0.0, 2.0, 5.0) == 0.0);
+  CHECK(numerics::log10_f_tail(5.0, 4.0, 1e9) ==
+        Approx(numerics::log10_chi_squared_tail(20.0, 4.0)).epsilon(1e-6));
+  CHECK(numerics::log10_f_tail(0.0, 2.0, 5.0) == 0.0);
 }
 
 TEST_CASE("the ends of the axis") {
-  CHECK(log10_gamma_tail(2.0, 0.0) == 0.0);
-  CHECK(log10_gamma_tail(2.0, -1.0) == 0.0);
-  CHECK(log10_gamma_tail(2.0, infinity) == -infinity);
-  CHECK(log10_chi_squared_tail(0.0, 3.0) == 0.0);
+  CHECK(numerics::log10_gamma_tail(2.0, 0.0) == 0.0);
+  CHECK(numerics::log10_gamma_tail(2.0, -1.0) == 0.0);
+  CHECK(numerics::log10_gamma_tail(2.0, infinity) == -infinity);
+  CHECK(numerics::log10_chi_squared_tail(0.0, 3.0) == 0.0);
 }
 
 TEST_CASE("Holm's adjusted probabilities, by hand") {
-  check_equal(adjust_by_holm(log10_of({0.01, 0.04, 0.03, 0.005})), {0.03, 0.06, 0.06, 0.02});
-  check_equal(adjust_by_holm(log10_of({0.5, 0.6})), {1.0, 1.0});
-  check_equal(adjust_by_holm(log10_of({0.02})), {0.02});
-  CHECK(adjust_by_holm({}).empty());
+  check_equal(numerics::adjust_by_holm(log10_of({0.01, 0.04, 0.03, 0.005})),
+              {0.03, 0.06, 0.06, 0.02});
+  check_equal(numerics::adjust_by_holm(log10_of({0.5, 0.6})), {1.0, 1.0});
+  check_equal(numerics::adjust_by_holm(log10_of({0.02})), {0.02});
+  CHECK(sepcal::numerics::adjust_by_holm({}).empty());
 }
 
 TEST_CASE("the example of Benjamini and Hochberg (1995): four are listed, Holm takes three") {
   const std::vector<double> log10_p =
       log10_of({0.0001, 0.0004, 0.0019, 0.0095, 0.0201, 0.0278, 0.0298, 0.0344, 0.0459, 0.3240,
                 0.4262, 0.5719, 0.6528, 0.7590, 1.0000});
-  const std::vector<double> listed = adjust_by_benjamini_hochberg(log10_p);
-  const std::vector<double> holm = adjust_by_holm(log10_p);
+  const std::vector<double> listed = numerics::adjust_by_benjamini_hochberg(log10_p);
+  const std::vector<double> holm = numerics::adjust_by_holm(log10_p);
   const auto within = [](double p) { return p < 0.05; };
   CHECK(std::ranges::count_if(listed, within) == 4);
   CHECK(std::ranges::count_if(holm, within) == 3);
@@ -155,14 +157,15 @@ TEST_CASE("both corrections in any order, with ties, are what they are defined t
     for (int i = 0; i < 30; ++i) p.push_back(std::pow(draws.uniform(0.0, 1.0), 4));
     p[4] = p[11] = p[23];
     p[0] = 1.0;
-    check_equal(adjust_by_holm(log10_of(p)), holm_by_definition(p));
-    check_equal(adjust_by_benjamini_hochberg(log10_of(p)), benjamini_hochberg_by_definition(p));
+    check_equal(numerics::adjust_by_holm(log10_of(p)), holm_by_definition(p));
+    check_equal(numerics::adjust_by_benjamini_hochberg(log10_of(p)),
+                benjamini_hochberg_by_definition(p));
   }
 }
 
 TEST_CASE("probabilities too small for a double are zero and keep their places") {
   const std::vector<double> log10_p{-2.0, -700.0, -699.0, -1.0};
-  check_equal(adjust_by_holm(log10_p), {0.02, 0.0, 0.0, 0.1});
-  check_equal(adjust_by_benjamini_hochberg(log10_p), {0.04 / 3, 0.0, 0.0, 0.1});
-  check_equal(adjust_by_holm({-300.0, 0.0}), {2e-300, 1.0});
+  check_equal(numerics::adjust_by_holm(log10_p), {0.02, 0.0, 0.0, 0.1});
+  check_equal(numerics::adjust_by_benjamini_hochberg(log10_p), {0.04 / 3, 0.0, 0.0, 0.1});
+  check_equal(numerics::adjust_by_holm({-300.0, 0.0}), {2e-300, 1.0});
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effects hidden by the simulator, added to the fit and undone in the readings: the truth comes
 // back, residuals are noise, and corrected columns are what a perfect sensor reads.
-#include "flight/effect_readings.hpp"
+#include "flight/verbs/effect_readings.hpp"
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace {
 
 struct Hidden {
   const char* probe;
-  HiddenEffect effect;
+  SizedEffect effect;
 };
 
 /// Every estimate but a step's time is within six standard errors of the truth: among a thousand
@@ -85,24 +85,24 @@ TEST_CASE("a five-hole probe's effects are found and undone") {
   // The pressures are exact, so that only the estimates' errors are left: of 400 rows, well below
   // one standard deviation of the noise.
   constexpr double noise = 1e-6;
-  for (const HiddenEffect& effect : {HiddenEffect{"wind[altitude_m]", {0.01, -0.02}},
-                                     {"wind[maneuver]", {0.5}},
-                                     {"wind[spline(time,6)]", {1.0}},
-                                     {"airspeed_scale[alpha^2]", {-0.8}},
-                                     {"airspeed_scale[throttle^n]", {0.05}},
-                                     {"airspeed_bias[flap]", {0.7}},
-                                     {"airspeed_bias[maneuver]", {0.4}},
-                                     {"pressure_offset[throttle]", {20.0}},
-                                     {"pressure_offset[temp_k]", {5.0}},
-                                     {"alpha_offset[q]", {0.05}},
-                                     {"beta_offset[r]", {0.05}},
-                                     {"heading_bias", {0.03}},
-                                     {"lever_arm", {0.1, 0.2, -0.3}},
-                                     {"density_error", {5.0}},
-                                     {"compressibility", {1.0}},
-                                     {"upwash", {0.4}},
-                                     {"sidewash", {0.3}},
-                                     {"water_blockage", {-0.1}}}) {
+  for (const SizedEffect& effect : {SizedEffect{"wind[altitude_m]", {0.01, -0.02}},
+                                    {"wind[maneuver]", {0.5}},
+                                    {"wind[spline(time,6)]", {1.0}},
+                                    {"airspeed_scale[alpha^2]", {-0.8}},
+                                    {"airspeed_scale[throttle^n]", {0.05}},
+                                    {"airspeed_bias[flap]", {0.7}},
+                                    {"airspeed_bias[maneuver]", {0.4}},
+                                    {"pressure_offset[throttle]", {20.0}},
+                                    {"pressure_offset[temp_k]", {5.0}},
+                                    {"alpha_offset[q]", {0.05}},
+                                    {"beta_offset[r]", {0.05}},
+                                    {"heading_bias", {0.03}},
+                                    {"lever_arm", {0.1, 0.2, -0.3}},
+                                    {"density_error", {5.0}},
+                                    {"compressibility", {1.0}},
+                                    {"upwash", {0.4}},
+                                    {"sidewash", {0.3}},
+                                    {"water_blockage", {-0.1}}}) {
     check_hidden({"five-hole", effect}, {.noise = noise, .seed = 3}, noise);
   }
 }
@@ -111,31 +111,31 @@ TEST_CASE("a pitot-static tube's effects are found and undone") {
   // The reading's own noise stays in it, divided by s_va: 400 values beyond six standard deviations
   // are less than 1 in 10^6.
   constexpr double noise = 1e-6;
-  for (const HiddenEffect& effect : {HiddenEffect{"wind[time]", {0.02, -0.03}},
-                                     {"wind[altitude_m^2]", {0.001}},
-                                     {"airspeed_scale[throttle]", {0.05}},
-                                     {"airspeed_bias[current_a]", {0.05}},
-                                     {"pressure_offset[throttle]", {20.0}},
-                                     {"density_error", {5.0}},
-                                     {"water_blockage", {-0.1}}}) {
+  for (const SizedEffect& effect : {SizedEffect{"wind[time]", {0.02, -0.03}},
+                                    {"wind[altitude_m^2]", {0.001}},
+                                    {"airspeed_scale[throttle]", {0.05}},
+                                    {"airspeed_bias[current_a]", {0.05}},
+                                    {"pressure_offset[throttle]", {20.0}},
+                                    {"density_error", {5.0}},
+                                    {"water_blockage", {-0.1}}}) {
     check_hidden({"pitot-static", effect}, {.noise = noise, .seed = 3}, 6.5 * noise);
   }
 }
 
 TEST_CASE("a magnetometer's effects are found and undone, without an attitude as well") {
   constexpr double noise = 1e-6;
-  for (const HiddenEffect& effect : {HiddenEffect{"bias[current_a]", {0.2, -0.1, 0.3}},
-                                     {"bias[throttle^n]", {2, -1, 3}},
-                                     {"bias[temp_degc^2]", {0.01, 0.02, -0.01}},
-                                     {"scale[temp_degc]", {0.001}},
-                                     {"axis_scale[current_a]", {0.001, -0.002, 0.003}},
-                                     {"bias_step", {2, -1, 3}},
-                                     {"warm_up", {2, -1, 3}}}) {
+  for (const SizedEffect& effect : {SizedEffect{"bias[current_a]", {0.2, -0.1, 0.3}},
+                                    {"bias[throttle^n]", {2, -1, 3}},
+                                    {"bias[temp_degc^2]", {0.01, 0.02, -0.01}},
+                                    {"scale[temp_degc]", {0.001}},
+                                    {"axis_scale[current_a]", {0.001, -0.002, 0.003}},
+                                    {"bias_step", {2, -1, 3}},
+                                    {"warm_up", {2, -1, 3}}}) {
     check_hidden({"magnetometer", effect}, {.noise = noise, .seed = 3}, 6.5 * noise);
     check_hidden({"magnetometer-norm", effect}, {.noise = noise, .seed = 3}, 6.5 * noise);
   }
-  for (const HiddenEffect& effect :
-       {HiddenEffect{"cubic_nonlinearity", {1e-6, -2e-6, 3e-6, 1e-4, 2e-4, -1e-4}},
+  for (const SizedEffect& effect :
+       {SizedEffect{"cubic_nonlinearity", {1e-6, -2e-6, 3e-6, 1e-4, 2e-4, -1e-4}},
         {"eddy_currents", {0.01, -0.02, 0.03, 0.02, 0.01, -0.01, 0.015, 0.005, -0.03}},
         {"field_declination", {0.05}}}) {
     check_hidden({"magnetometer", effect}, {.noise = noise, .seed = 3}, 6.5 * noise);
@@ -146,7 +146,7 @@ TEST_CASE("a ramp is found and undone, but for its corner") {
   // The fit's corner is rounded over +-0.6 s, the truth's is sharp: off by 0.15 s times 0.001 / s
   // of the airspeed, 4e-3 m/s, where it is worst.
   constexpr double noise = 1e-2;
-  const HiddenEffect ramp{"icing_ramp", {-0.001}};
+  const SizedEffect ramp{"icing_ramp", {-0.001}};
   check_hidden({"five-hole", ramp}, {.noise = noise, .seed = 3}, noise);
   check_hidden({"pitot-static", ramp}, {.noise = noise, .seed = 3}, 6.5 * noise);
 }

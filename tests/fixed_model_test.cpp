@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A model with parameters held is the same function of those that are left.
-#include "fixed_model.hpp"
+#include "model/fixed_model.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using sepcal::FixedModel;
+using sepcal::model::FixedModel;
 
 namespace {
 

@@ -34,12 +34,12 @@ bool is_of_the_world(const std::string& effect) {
 }
 
 std::vector<Eigen::ArrayXd> true_readings(std::string_view probe,
-                                          const std::vector<HiddenEffect>& effects,
+                                          const std::vector<SizedEffect>& effects,
                                           Conditions conditions) {
   conditions.noise = 0.0;
   conditions.perfect_sensor = true;
-  std::vector<HiddenEffect> of_the_world;
-  for (const HiddenEffect& effect : effects) {
+  std::vector<SizedEffect> of_the_world;
+  for (const SizedEffect& effect : effects) {
     if (is_of_the_world(effect.name)) of_the_world.push_back(effect);
   }
   const SimulatedFlight flight = fly(probe, of_the_world, conditions);

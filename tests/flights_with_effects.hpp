@@ -34,7 +34,7 @@ struct Conditions {
 };
 
 template <class Truth>
-Truth truth_of(const std::vector<HiddenEffect>& effects, const Conditions& conditions) {
+Truth truth_of(const std::vector<SizedEffect>& effects, const Conditions& conditions) {
   Truth truth;
   truth.effects = effects;
   truth.noise.fill(conditions.noise);
@@ -51,7 +51,7 @@ Truth truth_of(const std::vector<HiddenEffect>& effects, const Conditions& condi
   return truth;
 }
 
-inline SimulatedFlight fly(std::string_view probe, const std::vector<HiddenEffect>& effects,
+inline SimulatedFlight fly(std::string_view probe, const std::vector<SizedEffect>& effects,
                            const Conditions& conditions = {}) {
   const SimulationOptions options = condensed(conditions.rows, conditions.seed);
   if (probe == "five-hole") {
@@ -76,7 +76,7 @@ bool is_of_the_world(const std::string& effect);
 
 /// What apply() should give (a column each): the readings of a perfect sensor on the same flight.
 std::vector<Eigen::ArrayXd> true_readings(std::string_view probe,
-                                          const std::vector<HiddenEffect>& effects,
+                                          const std::vector<SizedEffect>& effects,
                                           Conditions conditions);
 
 }  // namespace sepcal::test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <memory>
 
-#include "objective.hpp"
+#include "estimation/objective.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal::test {
@@ -34,28 +34,28 @@ class Unasked {
  public:
   Unasked() : model_(block_model(Plane{})), pool_(1) {
     record_.add("u", {1.0, 2.0, 3.0, 4.0, 5.0}).add("z", {0.0, 0.0, 0.0, 0.0, 0.0});
-    measurements_ = std::make_unique<Measurements>(*model_, record_);
-    sweep_ = std::make_unique<Sweep>(*model_, *measurements_, pool_);
+    measurements_ = std::make_unique<model::Measurements>(*model_, record_);
+    sweep_ = std::make_unique<model::Sweep>(*model_, *measurements_, pool_);
   }
-  const Sweep& sweep() const { return *sweep_; }
+  const model::Sweep& sweep() const { return *sweep_; }
   const BlockModel& model() const { return *model_; }
 
  private:
   std::shared_ptr<const BlockModel> model_;
   Record record_;
-  ThreadPool pool_;
-  std::unique_ptr<Measurements> measurements_;
-  std::unique_ptr<Sweep> sweep_;
+  base::ThreadPool pool_;
+  std::unique_ptr<model::Measurements> measurements_;
+  std::unique_ptr<model::Sweep> sweep_;
 };
 
 /// r(x) (m) and its Jacobian (m x n); false where they are not finite.
 using Residual =
     std::function<bool(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J)>;
 
-class FormulaObjective final : public Objective {
+class FormulaObjective final : public estimation::Objective {
  public:
   FormulaObjective(const Unasked& unasked, int m, int n, Residual residual)
-      : Objective(unasked.sweep(), Eigen::VectorXd::Ones(1)),
+      : estimation::Objective(unasked.sweep(), Eigen::VectorXd::Ones(1)),
         m_(m),
         n_(n),
         residual_(std::move(residual)) {}

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "global_search.hpp"
+#include "estimation/global_search.hpp"
 #include "profile_cost.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
@@ -24,9 +24,10 @@ using sepcal::test::Simulated;
 namespace {
 
 /// x^2 + 1 in one parameter, which throws beyond a number of calls.
-class Failing final : public sepcal::Objective {
+class Failing final : public sepcal::estimation::Objective {
  public:
-  Failing(const sepcal::Sweep& sweep, int calls) : Objective(sweep, {}), calls_(calls) {}
+  Failing(const sepcal::model::Sweep& sweep, int calls)
+      : sepcal::estimation::Objective(sweep, {}), calls_(calls) {}
   int parameters() const override { return 1; }
   double square(const VectorXd& x) override {
     if (calls_-- == 0) throw std::domain_error("out of range");
@@ -70,19 +71,21 @@ TEST_CASE("a parameter without finite bounds is an error that says what to do") 
 
 TEST_CASE("what a model throws comes out as it was thrown") {
   const Simulated wave = sepcal::test::simulate_scalar_1(10);
-  const sepcal::Measurements measurements(*wave.model, wave.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*wave.model, measurements, pool);
+  const sepcal::model::Measurements measurements(*wave.model, wave.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*wave.model, measurements, pool);
   const std::vector<sepcal::Variable> x{{"x", "1", -1.0, 2.0}};
-  const sepcal::Box box{VectorXd::Constant(1, -1.0), VectorXd::Constant(1, 2.0)};
+  const sepcal::numerics::Box box{VectorXd::Constant(1, -1.0), VectorXd::Constant(1, 2.0)};
   const VectorXd width = VectorXd::Constant(1, 1.5);
   Failing soon(sweep, 7);
-  CHECK_THROWS_WITH_AS(sepcal::search_globally(soon, x, 50, {}), "out of range", std::domain_error);
-  Failing sooner(sweep, 2);
-  CHECK_THROWS_WITH_AS(sepcal::descend(sooner, VectorXd::Ones(1), box, width), "out of range",
+  CHECK_THROWS_WITH_AS(sepcal::estimation::search_globally(soon, x, 50, {}), "out of range",
                        std::domain_error);
+  Failing sooner(sweep, 2);
+  CHECK_THROWS_WITH_AS(sepcal::estimation::descend(sooner, VectorXd::Ones(1), box, width),
+                       "out of range", std::domain_error);
   Failing never(sweep, -1);
-  const sepcal::Descent descent = sepcal::descend(never, VectorXd::Ones(1), box, width);
+  const sepcal::estimation::Descent descent =
+      sepcal::estimation::descend(never, VectorXd::Ones(1), box, width);
   CHECK(descent.converged);
   CHECK(std::abs(descent.x[0]) < 1e-5);
 }

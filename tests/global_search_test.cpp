@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stage one by NLopt: every minimum of problems that have several, against dense grids, each with
 // a gradient of zero by differences; the same best minimum as by sampling.
-#include "global_search.hpp"
+#include "estimation/global_search.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Accepted headers, and a header that was nearly one.
-#include "flight/headers.hpp"
+#include "flight/files/headers.hpp"
 
 #include <doctest/doctest.h>
 
-using sepcal::accepted_headers;
-using sepcal::describe_missing;
 using sepcal::UnitKind;
+using sepcal::files::accepted_headers;
+using sepcal::files::describe_missing;
 using Headers = std::vector<std::string>;
 
 namespace {

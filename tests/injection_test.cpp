@@ -22,7 +22,7 @@ struct Clean {
         flight(make_flight(simulated)),
         base(calibrate_with(probe, simulated, effects)) {}
 
-  FlightDiagnosis with(const HiddenEffect& effect) const {
+  FlightDiagnosis with(const SizedEffect& effect) const {
     return diagnose_with(effect, base, flight, {}, quick_diagnosis());
   }
 };
@@ -32,7 +32,7 @@ struct Clean {
 TEST_CASE("a large effect would have been found, at its size; a tiny one would not") {
   struct Case {
     const char* probe;
-    HiddenEffect large;
+    SizedEffect large;
     double noise;
   };
   for (const auto& [probe, large, noise] :
@@ -55,7 +55,7 @@ TEST_CASE("a large effect would have been found, at its size; a tiny one would n
             4.5 * coefficient.standard_error);
     }
 
-    HiddenEffect tiny = large;
+    SizedEffect tiny = large;
     for (double& size : tiny.sizes) size *= 0.02;
     const FlightDiagnosis missed = clean.with(tiny);
     CHECK_FALSE(missed.injection->found);
@@ -109,7 +109,7 @@ TEST_CASE("a step's time is a size as well, the last") {
 
 TEST_CASE("what can't be injected is refused") {
   const Clean clean("five-hole", 0.15, {"wind[altitude_m]"});
-  const auto refused = [&](const HiddenEffect& effect,
+  const auto refused = [&](const SizedEffect& effect,
                            std::initializer_list<std::string_view> words) {
     check_refused([&] { clean.with(effect); }, words);
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Columns between their rows: within a segment, over the jumps of an angle.
-#include "interpolated_column.hpp"
+#include "numerics/interpolated_column.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,9 +12,9 @@
 
 using doctest::Approx;
 using doctest::Contains;
-using sepcal::InterpolatedColumn;
 using sepcal::NaturalSpline;
 using sepcal::Record;
+using sepcal::numerics::InterpolatedColumn;
 
 namespace {
 

@@ -13,15 +13,16 @@
 namespace sepcal::test {
 
 /// Segments one after another, by label and length, and outputs by their scales.
-inline RowLayout make_layout(const std::vector<std::pair<std::string, std::size_t>>& segments,
-                             const std::vector<double>& scales) {
+inline diagnosis::RowLayout make_layout(
+    const std::vector<std::pair<std::string, std::size_t>>& segments,
+    const std::vector<double>& scales) {
   std::vector<Segment> cut;
   std::size_t row = 0;
   for (const auto& [label, length] : segments) {
     cut.push_back({label, row, row + length});
     row += length;
   }
-  RowLayout layout{cut, cut, {}, static_cast<Eigen::Index>(row)};
+  diagnosis::RowLayout layout{cut, cut, {}, static_cast<Eigen::Index>(row)};
   for (std::size_t j = 0; j < scales.size(); ++j) {
     layout.outputs.push_back({static_cast<int>(j), "z" + std::to_string(j), "m/s", scales[j]});
   }
@@ -34,9 +35,9 @@ inline Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen
 }
 
 /// The fit of z = tangent x + noise: what least squares leaves, output by output below each other.
-inline Linearisation fit_to(const RowLayout& layout, const Eigen::MatrixXd& tangent,
-                            const Eigen::VectorXd& z) {
-  Linearisation fit{layout, {}, tangent, z - tangent * least_squares(tangent, z)};
+inline diagnosis::Linearisation fit_to(const diagnosis::RowLayout& layout,
+                                       const Eigen::MatrixXd& tangent, const Eigen::VectorXd& z) {
+  diagnosis::Linearisation fit{layout, {}, tangent, z - tangent * least_squares(tangent, z)};
   for (Eigen::Index k = 0; k < tangent.cols(); ++k) {
     fit.parameters.push_back("x" + std::to_string(k));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Losses against their definitions, the scale against bisection of its own equation.
-#include "loss.hpp"
+#include "model/loss.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@
 using doctest::Approx;
 using Eigen::VectorXd;
 using sepcal::Loss;
-using sepcal::RobustLoss;
+using sepcal::model::RobustLoss;
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A record in a model's order, cut into blocks and chunks.
-#include "sepcal/measurements.hpp"
+#include "model/measurements.hpp"
 
 #include <doctest/doctest.h>
 
@@ -14,8 +14,8 @@
 
 using doctest::Contains;
 using sepcal::Error;
-using sepcal::Measurements;
 using sepcal::Record;
+using sepcal::model::Measurements;
 
 namespace {
 

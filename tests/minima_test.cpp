@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which ends of descents are one minimum, and their order, for double wells in closed form.
-#include "minima.hpp"
+#include "estimation/minima.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
+#include "estimation/problem.hpp"
 #include "formula_objective.hpp"
-#include "problem.hpp"
 
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
-using sepcal::Descent;
-using sepcal::describe_flat_directions;
-using sepcal::find_minima;
 using sepcal::FitOptions;
-using sepcal::half_widths;
 using sepcal::infinity;
-using sepcal::Problem;
+using sepcal::estimation::Descent;
+using sepcal::estimation::describe_flat_directions;
+using sepcal::estimation::find_minima;
+using sepcal::estimation::half_widths;
+using sepcal::estimation::Problem;
 using sepcal::test::FormulaObjective;
 using sepcal::test::Unasked;
 

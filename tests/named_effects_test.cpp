@@ -10,6 +10,7 @@
 #include "calibrated_flights.hpp"
 #include "dense_reference.hpp"
 #include "sepcal/composition.hpp"
+#include "sepcal/static_effect.hpp"
 #include "small_models.hpp"
 
 using namespace sepcal;

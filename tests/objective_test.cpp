@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The two compressed objectives against the dense, whitened problem.
-#include "objective.hpp"
+#include "estimation/objective.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,8 +15,8 @@ using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using sepcal::JointObjective;
-using sepcal::ProjectedObjective;
+using sepcal::estimation::JointObjective;
+using sepcal::estimation::ProjectedObjective;
 using sepcal::test::Simulated;
 
 namespace {
@@ -57,9 +57,9 @@ VectorXd projected_residual(const Simulated& simulated, const VectorXd& xi2) {
 void check_joint(const Simulated& simulated) {
   const Index n_1 = simulated.xi1.size();
   const Index n_z = simulated.model->tables().n_z();
-  const sepcal::Measurements measurements(*simulated.model, simulated.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
+  const sepcal::model::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*simulated.model, measurements, pool);
   JointObjective objective(sweep, deviations(n_z).cwiseInverse());
   VectorXd x(n_1 + simulated.xi2.size());
   x << 1.1 * simulated.xi1, 0.7 * simulated.xi2;
@@ -85,9 +85,9 @@ void check_joint(const Simulated& simulated) {
 
 void check_projected(const Simulated& simulated) {
   const Index n_z = simulated.model->tables().n_z();
-  const sepcal::Measurements measurements(*simulated.model, simulated.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
+  const sepcal::model::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*simulated.model, measurements, pool);
   ProjectedObjective objective(sweep, deviations(n_z).cwiseInverse());
   const VectorXd xi2 = 0.7 * simulated.xi2;
   const double square = projected_residual(simulated, xi2).squaredNorm();
@@ -125,9 +125,9 @@ void check_projected(const Simulated& simulated) {
 /// Golub and Pereyra's Jacobian against differences of the projected residual.
 void check_golub_pereyra(const Simulated& simulated) {
   const Index n_z = simulated.model->tables().n_z();
-  const sepcal::Measurements measurements(*simulated.model, simulated.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
+  const sepcal::model::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*simulated.model, measurements, pool);
   const VectorXd noise = deviations(n_z);
   ProjectedObjective objective(sweep, noise.cwiseInverse(), {},
                                sepcal::ProjectedJacobian::golub_pereyra);
@@ -163,10 +163,10 @@ void check_with_knowledge(const Simulated& simulated) {
   const Index n_1 = simulated.xi1.size();
   const Index n = n_1 + simulated.xi2.size();
   const Index n_z = simulated.model->tables().n_z();
-  const sepcal::Measurements measurements(*simulated.model, simulated.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
-  sepcal::Prior prior{VectorXd::Zero(n), VectorXd::Zero(n)};
+  const sepcal::model::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*simulated.model, measurements, pool);
+  sepcal::estimation::Prior prior{VectorXd::Zero(n), VectorXd::Zero(n)};
   prior.mean[0] = 0.3;
   prior.weight[0] = 50.0;
   prior.mean[n_1] = 0.1;
@@ -202,10 +202,10 @@ void check_with_knowledge(const Simulated& simulated) {
 void check_loss(const Simulated& simulated, sepcal::Loss kind) {
   const Index n_1 = simulated.xi1.size();
   const Index n_z = simulated.model->tables().n_z();
-  const sepcal::Measurements measurements(*simulated.model, simulated.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*simulated.model, measurements, pool);
-  const sepcal::RobustLoss loss(kind, 0.0);
+  const sepcal::model::Measurements measurements(*simulated.model, simulated.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*simulated.model, measurements, pool);
+  const sepcal::model::RobustLoss loss(kind, 0.0);
   const VectorXd noise = 0.1 * deviations(n_z);  // many rows past the width
   JointObjective objective(sweep, noise.cwiseInverse(), {}, loss);
   VectorXd x(n_1 + simulated.xi2.size());
@@ -280,9 +280,9 @@ TEST_CASE("projected: a singular A loses only what it does not see") {
 TEST_CASE(
     "the linear estimate is weighted least squares (Eq. 27), also right after another point") {
   const Simulated flight = sepcal::test::simulate_five_hole(200);
-  const sepcal::Measurements measurements(*flight.model, flight.record);
-  sepcal::ThreadPool pool(1);
-  const sepcal::Sweep sweep(*flight.model, measurements, pool);
+  const sepcal::model::Measurements measurements(*flight.model, flight.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*flight.model, measurements, pool);
   ProjectedObjective objective(sweep, deviations(3).cwiseInverse());
   (void)objective.square(VectorXd::Zero(5));
   const VectorXd xi1 = objective.linear_estimate(flight.xi2);

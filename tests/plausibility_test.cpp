@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plausibility.hpp"
+#include "estimation/plausibility.hpp"
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,8 @@ TEST_CASE("a prior's rows pull a least-squares estimate as a measurement of each
   MatrixXd A(2, 2);
   A << 2.0, 1.0, 0.5, -1.0;
   const VectorXd z = (VectorXd(2) << 7.0, -3.0).finished();
-  const Prior prior{(VectorXd(2) << 3.0, -1.0).finished(), (VectorXd(2) << 2.0, 0.5).finished()};
+  const estimation::Prior prior{(VectorXd(2) << 3.0, -1.0).finished(),
+                                (VectorXd(2) << 2.0, 0.5).finished()};
 
   TriangularFactor factor(3);
   MatrixXd rows(2, 3);
@@ -43,12 +44,13 @@ TEST_CASE("the plausible length is half the bounds' width, or what makes a colum
   Record record;
   record.add("eta", {0.0, 1.0, 2.0, 3.0}).add("z", {2.0, -2.0, 2.0, -2.0});
   const StaticModel model(ScalarExample1{});
-  const Measurements measurements(model, record);
+  const model::Measurements measurements(model, record);
   TriangularFactor factor(4);
   MatrixXd rows(4, 4);  // columns a, c, b, r; rms 2, 1/2, 3 and rms(z) = 2
   rows << 2, 0.5, 3, 0, 2, -0.5, 3, 0, -2, 0.5, -3, 0, 2, 0.5, 3, 0;
   factor.absorb(rows);
-  const VectorXd scale = plausible_scale(model.tables().parameters(), {factor}, measurements);
+  const VectorXd scale =
+      estimation::plausible_scale(model.tables().parameters(), {factor}, measurements);
   CHECK(scale[0] == doctest::Approx(1.0));
   CHECK(scale[1] == doctest::Approx(4.0));
   CHECK(scale[2] == doctest::Approx(0.5));  // b is bounded: [-0.5, 0.5]
@@ -57,7 +59,8 @@ TEST_CASE("the plausible length is half the bounds' width, or what makes a colum
 TEST_CASE("a loose prior is centred in the bounds or at zero, and ten lengths wide") {
   const std::vector<Variable> parameters{
       {"free", "1"}, {"bounded", "1", 2.0, 4.0}, {"unseen", "1"}};
-  const Prior prior = loose_prior(parameters, (VectorXd(3) << 5.0, 1.0, infinity).finished());
+  const estimation::Prior prior =
+      estimation::loose_prior(parameters, (VectorXd(3) << 5.0, 1.0, infinity).finished());
   CHECK(prior.mean == (VectorXd(3) << 0.0, 3.0, 0.0).finished());
   CHECK(prior.weight.isApprox((VectorXd(3) << 0.02, 0.1, 0.1).finished()));
 }

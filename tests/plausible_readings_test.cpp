@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Logs whose headers promise another unit than the cells are in, and logs that are merely unusual.
-#include "flight/plausible_readings.hpp"
+#include "flight/probes/plausible_readings.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,9 +11,9 @@
 #include "flight_log.hpp"
 
 using doctest::Contains;
-using sepcal::describe_implausible;
-using sepcal::Reading;
 using sepcal::UnitKind;
+using sepcal::probes::describe_implausible;
+using sepcal::probes::Reading;
 using sepcal::test::Log;
 using sepcal::test::mentions;
 using Values = std::vector<double>;

@@ -10,6 +10,7 @@
 #include "flights_with_effects.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/static_effect.hpp"
 
 using namespace sepcal;
 using namespace sepcal::test;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Quantiles against SciPy 1.14's scipy.stats.norm and scipy.stats.t, ppf(0.5 + level / 2).
-#include "quantiles.hpp"
+#include "numerics/quantiles.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 #include "sepcal/error.hpp"
 
 using doctest::Approx;
-using sepcal::normal_reach;
-using sepcal::student_reach;
+using sepcal::numerics::normal_reach;
+using sepcal::numerics::student_reach;
 
 TEST_CASE("the normal's quantiles are SciPy's") {
   CHECK(normal_reach(0.5) == Approx(0.6744897501960817).epsilon(1e-13));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The last digits of minima that are known in closed form, with and without a bound that holds.
-#include "refine.hpp"
+#include "estimation/refine.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,10 +13,10 @@ using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
-using sepcal::Box;
 using sepcal::infinity;
-using sepcal::refine;
-using sepcal::Refinement;
+using sepcal::estimation::refine;
+using sepcal::estimation::Refinement;
+using sepcal::numerics::Box;
 using sepcal::test::FormulaObjective;
 using sepcal::test::Unasked;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws of xi2 within its bounds.
-#include "sampling.hpp"
+#include "estimation/sampling.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,14 +8,15 @@
 #include <cmath>
 #include <set>
 
+#include "numerics/quantiles.hpp"
 #include "sepcal/error.hpp"
 
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
-using sepcal::draw_samples;
 using sepcal::FitOptions;
 using sepcal::Variable;
+using sepcal::estimation::draw_samples;
 
 namespace {
 
@@ -104,20 +105,21 @@ TEST_CASE("both tails of a prior are drawn alike, however far out the bounds are
 }
 
 TEST_CASE("the normal quantile agrees with published values and inverts erfc") {
-  CHECK(sepcal::normal_quantile(0.5) == Approx(0.0).epsilon(1e-15));
+  CHECK(sepcal::numerics::normal_quantile(0.5) == Approx(0.0).epsilon(1e-15));
   // SciPy 1.x, scipy.special.ndtri.
-  CHECK(sepcal::normal_quantile(0.975) == Approx(1.959963984540054).epsilon(1e-14));
-  CHECK(sepcal::normal_quantile(0.9) == Approx(1.2815515655446004).epsilon(1e-14));
-  CHECK(sepcal::normal_quantile(0.01) == Approx(-2.3263478740408408).epsilon(1e-14));
-  CHECK(sepcal::normal_quantile(1e-10) == Approx(-6.361340902404056).epsilon(1e-14));
-  CHECK(sepcal::normal_quantile(1e-300) == Approx(-37.0470962993612).epsilon(1e-14));
+  CHECK(sepcal::numerics::normal_quantile(0.975) == Approx(1.959963984540054).epsilon(1e-14));
+  CHECK(sepcal::numerics::normal_quantile(0.9) == Approx(1.2815515655446004).epsilon(1e-14));
+  CHECK(sepcal::numerics::normal_quantile(0.01) == Approx(-2.3263478740408408).epsilon(1e-14));
+  CHECK(sepcal::numerics::normal_quantile(1e-10) == Approx(-6.361340902404056).epsilon(1e-14));
+  CHECK(sepcal::numerics::normal_quantile(1e-300) == Approx(-37.0470962993612).epsilon(1e-14));
 }
 
 TEST_CASE("the quantile is odd about the median, into the far tail") {
   for (const int power : {2, 10, 20, 30, 40}) {
     const double p = std::ldexp(1.0, -power);  // 1 - p is exact
     CAPTURE(power);
-    CHECK(sepcal::normal_quantile(1.0 - p) == Approx(-sepcal::normal_quantile(p)).epsilon(1e-14));
+    CHECK(sepcal::numerics::normal_quantile(1.0 - p) ==
+          Approx(-sepcal::numerics::normal_quantile(p)).epsilon(1e-14));
   }
 }
 
@@ -129,5 +131,5 @@ TEST_CASE("the nominal point is the middle of the bounds, the prior's mean, or w
   options.priors = {{"d", {0.2, 1}}, {"e", {5, 1}}};
   Eigen::VectorXd expected(5);
   expected << 2, 0, 3, 0.2, 1;
-  CHECK(sepcal::nominal_point(parameters, options) == expected);
+  CHECK(sepcal::estimation::nominal_point(parameters, options) == expected);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The time of a step: between the two rows where it is, whether its coefficient is linear or not,
 // and what the first order does for the parameters that follow.
-#include "scan.hpp"
+#include "estimation/scan.hpp"
 
 #include <doctest/doctest.h>
 
@@ -42,7 +42,7 @@ std::shared_ptr<const BlockModel> with_step(const char* name, Record record) {
   return compose(line, make_effects(plain_kit(line->tables()), *line, settings, record), record);
 }
 
-const ScanPoint without_step{{{"s", 2.0}, {"c", 1.25}}, {}, 1};
+const estimation::ScanPoint without_step{{{"s", 2.0}, {"c", 1.25}}, {}, 1};
 
 }  // namespace
 
@@ -50,19 +50,19 @@ TEST_CASE("the best of the candidates is found, whether the coefficient is linea
   const Record record = make_record(100, 6.0, 0.01);
   const std::vector<double> candidates{2.05, 4.05, 5.95, 8.05};
   const auto linear = with_step("c[step(time)]", record);
-  CHECK(scan(*linear, record, without_step, "c[step(time)].t0", candidates) == 5.95);
+  CHECK(estimation::scan(*linear, record, without_step, "c[step(time)].t0", candidates) == 5.95);
   // s u: an offset of u by 0.25 is one of z by 0.5. At zero the effect is seen by its slope alone.
   const auto nonlinear = with_step("u[step(time)]", record);
-  CHECK(scan(*nonlinear, record, without_step, "u[step(time)].t0", candidates) == 5.95);
+  CHECK(estimation::scan(*nonlinear, record, without_step, "u[step(time)].t0", candidates) == 5.95);
 }
 
 TEST_CASE("what is held does not follow: then a step held at zero explains nothing") {
   const Record record = make_record(100, 6.0, 0.01);
   const auto model = with_step("c[step(time)]", record);
-  ScanPoint held = without_step;
+  estimation::ScanPoint held = without_step;
   held.held["c[step(time)].s"] = 0.0;
   // All are as good: the first one stays.
-  CHECK(scan(*model, record, held, "c[step(time)].t0", {2.05, 5.95}) == 2.05);
+  CHECK(estimation::scan(*model, record, held, "c[step(time)].t0", {2.05, 5.95}) == 2.05);
 }
 
 TEST_CASE("the time lies between the two rows where the step is, in short records and long ones") {
@@ -73,7 +73,8 @@ TEST_CASE("the time lies between the two rows where the step is, in short record
     for (const char* name : {"c[step(time)]", "u[step(time)]"}) {
       CAPTURE(name);
       const auto model = with_step(name, record);
-      const double found = scan_step(*model, record, without_step, std::string(name) + ".t0");
+      const double found =
+          estimation::scan_step(*model, record, without_step, std::string(name) + ".t0");
       CHECK(std::abs(found - t0) < 1e-9);  // the middle between two rows
     }
   }
@@ -82,19 +83,23 @@ TEST_CASE("the time lies between the two rows where the step is, in short record
 TEST_CASE("bounds are kept, and no time lies across a segment's edge") {
   Record record = make_record(100, 6.05, 0.01);
   const auto model = with_step("c[step(time)]", record);
-  const double found = scan_step(*model, record, without_step, "c[step(time)].t0", {2.0, 5.0});
+  const double found =
+      estimation::scan_step(*model, record, without_step, "c[step(time)].t0", {2.0, 5.0});
   CHECK(found >= 2.0);
   CHECK(found <= 5.0);
   record.cut({{"a", 0, 61}, {"b", 61, 100}});  // the step's two rows are 60 and 61
-  const double beside = scan_step(*model, record, without_step, "c[step(time)].t0");
+  const double beside = estimation::scan_step(*model, record, without_step, "c[step(time)].t0");
   CHECK(std::abs(beside - 6.05) == doctest::Approx(0.1));
 }
 
 TEST_CASE("a parameter that isn't there and bounds without a row are refused") {
   const Record record = make_record(30, 1.0, 0.01);
   const auto model = with_step("c[step(time)]", record);
-  check_refused([&] { scan(*model, record, without_step, "t1", {1.0}); },
+  check_refused([&] { estimation::scan(*model, record, without_step, "t1", {1.0}); },
                 {"there is no parameter 't1'"});
-  check_refused([&] { scan_step(*model, record, without_step, "c[step(time)].t0", {50.0, 60.0}); },
-                {"no two rows of the record", "'c[step(time)].t0'", "widen its bounds"});
+  check_refused(
+      [&] {
+        estimation::scan_step(*model, record, without_step, "c[step(time)].t0", {50.0, 60.0});
+      },
+      {"no two rows of the record", "'c[step(time)].t0'", "widen its bounds"});
 }

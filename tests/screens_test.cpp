@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Eqs. 17 and 18 in closed form for the paper's first example, and what stage one does with them.
-#include "screens.hpp"
+#include "estimation/screens.hpp"
 
 #include <doctest/doctest.h>
 

@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "flight/hidden_spline.hpp"
 #include "simulated_flights.hpp"
+#include "simulation/hidden_spline.hpp"
 
 namespace {
 
@@ -182,7 +182,7 @@ TEST_CASE("beyond its end knots a spline goes straight on") {
 
 TEST_CASE("effects add up, in any order") {
   const MagnetometerTruth truth = quiet(MagnetometerTruth{});
-  const HiddenEffect current{"bias[current_a]", {0.3}}, drift{"bias_drift", {0.01}};
+  const SizedEffect current{"bias[current_a]", {0.3}}, drift{"bias_drift", {0.01}};
   const SimulatedFlight one = simulate_magnetometer(hiding(truth, {current, drift}), ten_hertz);
   const SimulatedFlight other = simulate_magnetometer(hiding(truth, {drift, current}), ten_hertz);
   const ArrayXd t = logged("time_s");

@@ -57,7 +57,7 @@ Vector3d ground_velocity(const SimulatedFlight& flight, std::size_t k, const Fiv
   return turn_back * body_to_ned(flight, k) * body + row.wind;
 }
 
-void check_effects(const std::vector<HiddenEffect>& effects, const Correction& correct) {
+void check_effects(const std::vector<SizedEffect>& effects, const Correction& correct) {
   const FiveHoleTruth truth = quiet(FiveHoleTruth{});
   for (const SimulationOptions& options : {condensed(300), SimulationOptions{.rate = 1.0}}) {
     const SimulatedFlight flight = simulate_five_hole(hiding(truth, effects), options);
@@ -164,7 +164,7 @@ TEST_CASE("the density may be another, and air can be compressed") {
 TEST_CASE("a spline over alpha as read ends at its last coefficient") {
   const std::vector<double> heights{0.004, -0.002, 0.006, 0.002};
   for (const char* port : {"airspeed_scale", "alpha_offset"}) {
-    const HiddenEffect effect{std::string(port) + "[spline(alpha,5)]", heights};
+    const SizedEffect effect{std::string(port) + "[spline(alpha,5)]", heights};
     const FiveHoleTruth truth = quiet(FiveHoleTruth{});
     const SimulatedFlight flight = simulate_five_hole(hiding(truth, {effect}), condensed(300));
     const Eigen::ArrayXd alpha = values(flight, "dpa_pa") / truth.k_alpha /

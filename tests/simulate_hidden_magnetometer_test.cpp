@@ -29,7 +29,7 @@ Matrix3d sensor_matrix(const MagnetometerTruth& truth) {
 using ByHand = std::function<Vector3d(const SimulatedFlight&, std::size_t row, const Vector3d& h)>;
 
 /// Every reading is C (h + turned) + n + added, h from the logged attitude and field.
-void check_effect(const HiddenEffect& effect, const ByHand& added, const ByHand& turned = {}) {
+void check_effect(const SizedEffect& effect, const ByHand& added, const ByHand& turned = {}) {
   CAPTURE(effect.name);
   const MagnetometerTruth truth = quiet(MagnetometerTruth{});
   const SimulatedFlight plain = simulate_magnetometer(truth, condensed(300));

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "calibrated_flights.hpp"
-#include "flight/simulated_noise.hpp"
 #include "simulated_flights.hpp"
+#include "simulation/simulated_noise.hpp"
 
 namespace {
 

@@ -38,7 +38,7 @@ ArrayXd expect_reading(const SimulatedFlight& flight, const Correction& correct)
   return s_va * met + c_va;
 }
 
-void check_effects(const std::vector<HiddenEffect>& effects, const Correction& correct) {
+void check_effects(const std::vector<SizedEffect>& effects, const Correction& correct) {
   const SimulatedFlight flight =
       simulate_pitot_static(hiding(quiet(PitotStaticTruth{}), effects), condensed(300));
   const ArrayXd read = values(flight, "airspeed_mps");
@@ -157,9 +157,9 @@ TEST_CASE("a tube that can't read is refused") {
   truth = {};
   truth.noise = {-1};
   check_refused([&] { simulate_pitot_static(truth, condensed(20)); }, {"airspeed noise -1"});
-  for (const HiddenEffect& effect : {HiddenEffect{"airspeed_bias[throttle]", {90.0}},
-                                     HiddenEffect{"pressure_offset[throttle]", {3000.0}},
-                                     HiddenEffect{"airspeed_scale[flap]", {-2.0}}}) {
+  for (const SizedEffect& effect : {SizedEffect{"airspeed_bias[throttle]", {90.0}},
+                                    SizedEffect{"pressure_offset[throttle]", {3000.0}},
+                                    SizedEffect{"airspeed_scale[flap]", {-2.0}}}) {
     check_refused(
         [&] { simulate_pitot_static(hiding(PitotStaticTruth{}, {effect}), condensed(50)); },
         {"nothing to read", "smaller"});

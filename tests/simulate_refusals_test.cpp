@@ -13,13 +13,13 @@ using namespace sepcal;
 using namespace sepcal::test;
 using Words = std::initializer_list<std::string_view>;
 
-void refuse_five_hole(const HiddenEffect& effect, Words words) {
+void refuse_five_hole(const SizedEffect& effect, Words words) {
   CAPTURE(effect.name);
   check_refused([&] { simulate_five_hole(hiding(FiveHoleTruth{}, {effect}), condensed(40)); },
                 words);
 }
 
-void refuse_magnetometer(const HiddenEffect& effect, Words words) {
+void refuse_magnetometer(const SizedEffect& effect, Words words) {
   CAPTURE(effect.name);
   check_refused(
       [&] { simulate_magnetometer(hiding(MagnetometerTruth{}, {effect}), condensed(40)); }, words);
@@ -109,14 +109,15 @@ TEST_CASE("an effect hidden twice, under whatever name") {
 }
 
 TEST_CASE("an effect and its sizes as they are typed") {
-  CHECK(parse_hidden_effect("wind[time]=0.5").name == "wind[time]");
-  CHECK(parse_hidden_effect("bias_step=1:-2.5:3e-2:40").sizes ==
+  CHECK(parse_sized_effect("wind[time]=0.5", "--hide").name == "wind[time]");
+  CHECK(parse_sized_effect("bias_step=1:-2.5:3e-2:40", "--hide").sizes ==
         std::vector{1.0, -2.5, 0.03, 40.0});
   for (const char* text : {"wind[time]", "=3", ""}) {
-    check_refused([&] { parse_hidden_effect(text); }, {"E=SIZE", "e.g. wind[time]"});
+    check_refused([&] { parse_sized_effect(text, "--hide"); }, {"E=SIZE", "e.g. wind[time]"});
   }
   for (const char* text : {"wind[time]=", "wind[time]=a", "wind[time]=1:", "wind[time]=1::2",
                            "wind[time]=nan", "wind[time]=1,2"}) {
-    check_refused([&] { parse_hidden_effect(text); }, {"--hide wind[time]=", "is not a number"});
+    check_refused([&] { parse_sized_effect(text, "--hide"); },
+                  {"--hide wind[time]=", "is not a number"});
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The simulator's physics against facts from elsewhere: the equations written out by hand, numeric
 // differences of its own attitude, tables of the standard atmosphere, laws of large numbers.
-#include "sepcal/flight/simulate.hpp"
+#include "sepcal/simulation/simulate.hpp"
 
 #include <doctest/doctest.h>
 #include <Eigen/Dense>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/flight/simulate.hpp"
+#include "sepcal/simulation/simulate.hpp"
 
 namespace sepcal::test {
 
@@ -42,7 +42,7 @@ Truth quiet(Truth truth) {
 
 /// The truth with these effects at work.
 template <class Truth>
-Truth hiding(Truth truth, std::vector<HiddenEffect> effects) {
+Truth hiding(Truth truth, std::vector<SizedEffect> effects) {
   truth.effects = std::move(effects);
   return truth;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Steps in a fit: their times found over many seeds, held where the caller holds them, two at once,
 // and with coefficients that are linear or not.
-#include "step_times.hpp"
+#include "estimation/step_times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace sepcal::test;
 
 namespace {
 
-const HiddenEffect bias_step{"bias_step", {2.0, -1.0, 3.0}};
+const SizedEffect bias_step{"bias_step", {2.0, -1.0, 3.0}};
 
 /// The longest time between two rows [s].
 double row_interval(const SimulatedFlight& flight) {
@@ -92,8 +92,8 @@ TEST_CASE("coefficients that the caller holds or bounds are no hindrance") {
 }
 
 TEST_CASE("two steps are found at once, in either order") {
-  const std::vector<HiddenEffect> hidden{{"bias_step", {2.0, -1.0, 3.0, 30.0}},
-                                         {"scale[step(time)]", {0.1, 55.0}}};
+  const std::vector<SizedEffect> hidden{{"bias_step", {2.0, -1.0, 3.0, 30.0}},
+                                        {"scale[step(time)]", {0.1, 55.0}}};
   const SimulatedFlight flight =
       fly("magnetometer", hidden, {.rows = 300, .noise = 0.3, .seed = 3});
   for (const std::vector<std::string>& order :
@@ -111,7 +111,7 @@ TEST_CASE("only effects that step have a time to be found") {
       {.name = "bias_step"}, {.name = "warm_up"}, {.name = "scale[step(time)]"}};
   const EffectiveFlight made =
       prepare_with_effects(*probe, make_flight(fly("magnetometer", {})), settings, {}, false);
-  const auto times = step_times(settings, made.effects);
+  const auto times = estimation::step_times(settings, made.effects);
   REQUIRE(times.size() == 2);
   CHECK(times.at("bias_step.t0") == settings.data());
   CHECK(times.at("scale[step(time)].t0") == &settings[2]);

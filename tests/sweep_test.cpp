@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Passes over a record against the whole record in dense matrices, on one thread and on several.
-#include "sweep.hpp"
+#include "model/sweep.hpp"
 
 #include <doctest/doctest.h>
 
@@ -14,9 +14,9 @@
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using sepcal::Measurements;
-using sepcal::Sweep;
-using sepcal::ThreadPool;
+using sepcal::base::ThreadPool;
+using sepcal::model::Measurements;
+using sepcal::model::Sweep;
 using sepcal::test::Simulated;
 
 namespace {

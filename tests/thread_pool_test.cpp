@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Numbered tasks on a pool of threads.
-#include "thread_pool.hpp"
+#include "base/thread_pool.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-using sepcal::ThreadPool;
+using sepcal::base::ThreadPool;
 
 TEST_CASE("every task runs exactly once, whatever the number of threads and tasks") {
   for (const int threads : {0, 1, 2, 5}) {

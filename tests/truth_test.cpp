@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/truth.hpp"
+#include "sepcal/simulation/truth.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -65,7 +65,7 @@ TEST_CASE("a tube's truth reads back as it was") {
 
 TEST_CASE("a truth with hidden effects flies the same flight again") {
   const auto check = [](auto truth, auto simulate, auto parse,
-                        const std::vector<HiddenEffect>& effects) {
+                        const std::vector<SizedEffect>& effects) {
     const SimulatedFlight flight = simulate(hiding(truth, effects), condensed(60, 3));
     const std::string json = to_json(as_flown(truth, flight));
     const auto written = nlohmann::ordered_json::parse(json);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // UTF-8 against RFC 3629, section 3: every code point is encoded here by its table of bits.
-#include "utf8.hpp"
+#include "base/utf8.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
-using sepcal::utf8_length;
+using sepcal::base::utf8_length;
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <sepcal/flight/simulate.hpp>
 #include <sepcal/sepcal.hpp>
+#include <sepcal/simulation/simulate.hpp>
 #include <vector>
 
 /// An accelerometer on a tilt table: z = s g sin(theta + delta) + bias.

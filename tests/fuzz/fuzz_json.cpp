@@ -2,10 +2,10 @@
 // Calibrations and truth files, whatever they hold. What parses is written, parses again and is
 // written as the same text; and a calibration is put to use on a short log, as `apply` and
 // `compare` do first.
-#include "flight/calibrated_flight.hpp"
+#include "flight/verbs/calibrated_flight.hpp"
 #include "fuzzing.hpp"
 #include "sepcal/flight/apply.hpp"
-#include "sepcal/flight/truth.hpp"
+#include "sepcal/simulation/truth.hpp"
 #include "small_flights.hpp"
 
 namespace sepcal::fuzz {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/model.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 

@@ -12,7 +12,7 @@
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/effect.hpp"
-#include "sepcal/options.hpp"
+#include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

@@ -3,18 +3,20 @@
 // fit by constrained maximum likelihood. What sepcal exists for, in one call.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "sepcal/block_model.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/identifiability.hpp"
+#include "sepcal/model.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/stage_one.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -74,13 +76,12 @@ struct Fit {
   const Parameter& operator[](std::string_view name) const;
 
   Eigen::VectorXd values() const;  // n
+  std::map<std::string, double> by_name() const;
+  /// The nonlinear parameters that were estimated: where another fit begins (FitOptions::start).
+  std::map<std::string, double> nonlinear_estimates() const;
   Eigen::VectorXd xi1() const { return values().head(n_1); }
   Eigen::VectorXd xi2() const { return values().tail(values().size() - n_1); }
 };
-
-/// Keeps Ceres and glog, on which the fit is built, from writing to standard error in this process.
-/// The apps and the Python module call it; a program that logs through glog itself may not want it.
-void silence_solver_log();
 
 /// Fits `model` to `record`. Non-convergence and what the record does not determine are statuses of
 /// the result; misuse throws Error (see stage_one(), check_model()).

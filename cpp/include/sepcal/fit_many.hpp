@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "sepcal/block_model.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/model.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal {

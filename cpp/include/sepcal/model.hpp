@@ -59,6 +59,11 @@ concept SeparableModel =
       { model.at(u, xi2) } -> std::same_as<typename Sizes<M>::template Result<double>>;
     };
 
+/// A model as everything below the waist takes it, in static_model.hpp: who calls fit() or its like
+/// with a model of their own includes that, or sepcal.hpp.
+template <SeparableModel M>
+class StaticModel;
+
 /// A model or effect whose at() takes dual numbers for the inputs, too, says
 /// `static constexpr bool dual_inputs = true`: then effects correct its inputs by exact
 /// derivatives; else by numeric differences, and at() only ever sees inputs in double (but for

@@ -14,7 +14,6 @@
 #include "sepcal/effect.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/static_effect.hpp"
 
 namespace sepcal {
 
@@ -57,15 +56,9 @@ struct EffectKit {
   std::map<std::string, std::function<std::string(const Record&)>> aliases;  // to whole names
 };
 
-/// Effects of the caller's own, by name; they go before a kit's own.
+/// Effects of the caller's own, by name (own_effect(), column_effect()); they go before a kit's
+/// own.
 using OwnEffects = std::map<std::string, EffectKit::Maker>;
-
-/// A term or an input correction written as a struct (static_effect.hpp), for OwnEffects.
-template <class T>
-OwnEffects::value_type own_effect(const std::string& name, T made) {
-  return {name, [name, made](const BlockModel& /*model*/, EffectSetting& /*setting*/,
-                             Record& /*record*/) { return effect(name, made); }};
-}
 
 /// An effect whose columns are known for every row of the record: `columns` by component, each of
 /// shape (rows, n_z). Throws Error for another shape and for a value that is no number within the

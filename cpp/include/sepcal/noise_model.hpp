@@ -67,7 +67,9 @@ NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segmen
 /// The rows of the segments of `e`, one segment after another. Throws Error where one leaves `e`.
 Eigen::VectorXd gather_rows(std::span<const double> e, const std::vector<Segment>& segments);
 
+namespace noise {
 class ArfimaFactor;
+}  // namespace noise
 
 /// W with W'W = Sigma^-1, Sigma the covariance of the noise: W e is white with unit variance. Only
 /// the lengths and the sequence of the segments count. Const and safe to share between threads.
@@ -92,7 +94,7 @@ class Whitener {
 
  private:
   std::vector<Eigen::Index> lengths_;  // rows of each segment
-  std::shared_ptr<const ArfimaFactor> factor_;
+  std::shared_ptr<const noise::ArfimaFactor> factor_;
   double sigma_;
   bool free_level_;
   Eigen::Index rows_ = 0;

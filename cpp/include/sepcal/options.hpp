@@ -14,11 +14,6 @@
 
 namespace sepcal {
 
-struct Interval {
-  double lower = -infinity;
-  double upper = infinity;
-};
-
 /// A normal distribution, in the parameter's unit.
 struct Normal {
   double mean = 0.0;

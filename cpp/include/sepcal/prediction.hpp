@@ -3,9 +3,10 @@
 // sqrt(g' Cov g) with g a row of [A D], and that of a new measurement, with the output's noise.
 #pragma once
 
-
+#include "sepcal/block_model.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/model.hpp"
 
 namespace sepcal {
 

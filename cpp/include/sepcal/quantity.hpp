@@ -13,6 +13,11 @@ namespace sepcal {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
+struct Interval {
+  double lower = -infinity;
+  double upper = infinity;
+};
+
 /// Name and unit of an input, an output or a parameter, as a model declares it at compile time.
 /// Parameters may carry the bounds that apply when the caller gives none, in the same unit.
 struct Quantity {

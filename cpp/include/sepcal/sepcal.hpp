@@ -18,7 +18,6 @@
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist
 #include "sepcal/nested_dual.hpp"        // second derivatives
-#include "sepcal/measurements.hpp"       // a record as a model sees it
 #include "sepcal/natural_spline.hpp"     // smooth functions
 #include "sepcal/driver.hpp"             // what drives an effect
 #include "sepcal/effect.hpp"             // a physical term that a model lacks
@@ -38,5 +37,6 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/noise_model.hpp"        // the noise of residuals
 #include "sepcal/rotation.hpp"
+#include "sepcal/solver_log.hpp"         // Ceres and glog silenced
 #include "sepcal/eigen.hpp"              // aligned alike on both sides
 #include "sepcal/error.hpp"

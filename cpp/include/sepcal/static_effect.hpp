@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "sepcal/effect.hpp"
+#include "sepcal/named_effects.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -126,6 +127,13 @@ Effect effect(std::string name, T made) {
     result.corrections.push_back(std::make_shared<const StaticCorrection<T>>(std::move(made)));
   }
   return result;
+}
+
+/// A term or an input correction written as a struct, by its name among a kit's or the caller's.
+template <class T>
+OwnEffects::value_type own_effect(const std::string& name, T made) {
+  return {name, [name, made](const BlockModel& /*model*/, EffectSetting& /*setting*/,
+                             Record& /*record*/) { return effect(name, made); }};
 }
 
 }  // namespace sepcal

@@ -163,7 +163,7 @@ py::dict compare_with(const Calibration& calibration, const Flight& flight) {
 /// The JSON that the app's diagnose prints, and notes.
 py::dict diagnose_on(const Calibration& calibration, const Flight& flight,
                      const std::vector<PythonEffect>& own,
-                     const std::optional<HiddenEffect>& injected, int simulations,
+                     const std::optional<SizedEffect>& injected, int simulations,
                      std::uint64_t seed) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
   DiagnosisOptions options;
@@ -269,8 +269,8 @@ void define_flight(py::module_& module) {
            [](const Calibration& self, const Flight& flight, const std::vector<PythonEffect>& own,
               const std::optional<std::pair<std::string, std::vector<double>>>& injected,
               int simulations, std::uint64_t seed) {
-             std::optional<HiddenEffect> hidden;
-             if (injected) hidden = HiddenEffect{injected->first, injected->second};
+             std::optional<SizedEffect> hidden;
+             if (injected) hidden = SizedEffect{injected->first, injected->second};
              return diagnose_on(self, flight, own, hidden, simulations, seed);
            })
       .def("intervals", &bindings::find_intervals)

@@ -11,7 +11,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "flight/held_options.hpp"
+#include "flight/verbs/held_options.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -81,7 +81,7 @@ ManyOptions many_options(const Model& model, const CalibrationOptions& given,
           "a model of the field's strength alone depends on its own noise, which"
           " fit_many() does not follow; fit each flight by itself");
     }
-    options = hold(*model.probe, options);
+    options = verbs::hold(*model.probe, options);
   } else if (!options.free.empty()) {
     throw Error("free is for sepcal's own probes: this model holds no parameter by default");
   }

@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/solver_log.hpp"
 
 namespace sepcal::bindings {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "differences.hpp"
+#include "model/differences.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::bindings {
@@ -135,7 +135,7 @@ void PythonModel::fill_differences(const Block& block, const double* xi2, const 
       return predict(block, x.data(), xi1);
     };
     tangent.col(i) =
-        differentiate(along, scale, parameter.lower - middle, parameter.upper - middle);
+        model::differentiate(along, scale, parameter.lower - middle, parameter.upper - middle);
     x[i] = middle;
   }
 }
@@ -161,8 +161,8 @@ void PythonModel::evaluate(const Block& block, const double* xi2, const double* 
 void PythonModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                 std::span<const int> inputs, Rows columns) const {
   const py::gil_scoped_acquire gil;
-  differentiate_by_inputs([&](const Block& moved) { return predict(moved, xi2, xi1); }, block,
-                          inputs, columns);
+  model::differentiate_by_inputs([&](const Block& moved) { return predict(moved, xi2, xi1); },
+                                 block, inputs, columns);
 }
 
 }  // namespace sepcal::bindings

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flights from physics. The truth crosses over as the JSON that the apps' --truth reads.
-#include "sepcal/flight/simulate.hpp"
+#include "sepcal/simulation/simulate.hpp"
 
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/truth.hpp"
+#include "sepcal/simulation/truth.hpp"
 
 namespace sepcal::bindings {
 namespace {

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "driven_rows.hpp"
-#include "parts_of_record.hpp"
+#include "base/parts_of_record.hpp"
+#include "effects/driven_rows.hpp"
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/measurements.hpp"
-#include "sweep.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -61,7 +61,8 @@ Index find_column(const std::vector<Variable>& parameters, const std::string& na
 }
 
 /// The values of a model's parameters by name; zero for a coefficient that has none.
-VectorXd values_in_order(const std::vector<Variable>& parameters, const ParameterValues& values) {
+VectorXd values_in_order(const std::vector<Variable>& parameters,
+                         const base::ParameterValues& values) {
   VectorXd ordered = VectorXd::Zero(static_cast<Index>(parameters.size()));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const auto at = values.find(parameters[k].name);
@@ -78,16 +79,16 @@ bool is_driven(const Effect& effect, const EffectKit& kit) {
 
 }  // namespace
 
-CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, ThreadPool& pool)
+CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
     : fitted_(fitted),
       record_(fitted.record),
       settings_(fitted.effects),
       effects_(make_effects(fitted.kit, *fitted.model, settings_, record_)),
-      values_(values_by_name(fitted.fit)) {
+      values_(fitted.fit.by_name()) {
   linearise(fitted.fit, pool);
 }
 
-void CandidateRoom::linearise(const Fit& fit, ThreadPool& pool) {
+void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
   const auto model = this->model();
   const Tables& tables = model->tables();
   const std::vector<Variable> parameters = tables.parameters();
@@ -96,12 +97,12 @@ void CandidateRoom::linearise(const Fit& fit, ThreadPool& pool) {
   }
   Record rows = record_;
   rows.cut(fitted_.rows);
-  const Measurements measurements(*model, rows);
-  const Sweep sweep(*model, measurements, pool);
+  const model::Measurements measurements(*model, rows);
+  const model::Sweep sweep(*model, measurements, pool);
   const std::vector<MatrixXd> outputs = sweep.tangent_rows(fit.xi1(), fit.xi2());
 
   RowLayout& layout = linearisation_.layout;
-  layout = {.segments = join_segments(fitted_.rows),
+  layout = {.segments = base::join_segments(fitted_.rows),
             .runs = measurements.runs(),
             .rows = static_cast<Index>(rows.rows())};
   std::vector<Index> free;
@@ -137,17 +138,17 @@ MatrixXd CandidateRoom::stack(const std::vector<MatrixXd>& outputs,
 }
 
 MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
-                                         const ParameterValues& shapes,
+                                         const base::ParameterValues& shapes,
                                          const std::vector<std::string>& names) const {
   const auto model = model_with(added);
-  ParameterValues values = values_;
+  base::ParameterValues values = values_;
   values.insert(shapes.begin(), shapes.end());
   Record rows = record_;
   rows.cut(fitted_.rows);
-  const Measurements measurements(*model, rows);
-  ThreadPool alone(1);
+  const model::Measurements measurements(*model, rows);
+  base::ThreadPool alone(1);
   const std::vector<MatrixXd> outputs =
-      Sweep(*model, measurements, alone)
+      model::Sweep(*model, measurements, alone)
           .tangent_rows(values_in_order(model->tables().linear, values),
                         values_in_order(model->tables().nonlinear, values));
   const std::vector<Variable> parameters = model->tables().parameters();
@@ -214,7 +215,7 @@ const MatrixXd& CandidateRoom::port_columns(const Port& port) {
 
 MatrixXd CandidateRoom::driven_columns(const Effect& effect, double shape, bool centred) const {
   const MatrixXd& base = ports_.at(effect.port);
-  const MatrixXd whole = drive(*effect.driver, shape, record_);
+  const MatrixXd whole = effects::drive(*effect.driver, shape, record_);
   const RowLayout& layout = linearisation_.layout;
   MatrixXd phi(layout.rows, whole.cols());
   for (std::size_t i = 0; i < layout.segments.size(); ++i) {
@@ -249,7 +250,7 @@ MatrixXd CandidateRoom::fill(const Candidate& candidate, double shape, bool cent
       for (const Variable& coefficient : candidate.coefficients) {
         if (coefficient.name.starts_with(effect.name + ".")) names.push_back(coefficient.name);
       }
-      ParameterValues shapes;
+      base::ParameterValues shapes;
       if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
       part = composed_columns({effect}, shapes, names);
     }
@@ -259,4 +260,4 @@ MatrixXd CandidateRoom::fill(const Candidate& candidate, double shape, bool cent
   return all;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

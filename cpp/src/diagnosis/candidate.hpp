@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "base/parameter_values.hpp"
+#include "base/thread_pool.hpp"
 #include "diagnosis/linearisation.hpp"
-#include "parameter_values.hpp"
 #include "sepcal/diagnosis.hpp"
-#include "thread_pool.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// A shape does not exist at zero size: it is scanned.
 struct ShapeGrid {
@@ -34,7 +34,7 @@ struct Candidate {
 class CandidateRoom {
  public:
   /// Evaluates the fit. Throws Error for a fit whose parameters are not those of its model.
-  CandidateRoom(const DiagnosedFit& fitted, ThreadPool& pool);
+  CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool);
 
   const Linearisation& fit() const { return linearisation_; }
   const Record& record() const { return record_; }
@@ -65,19 +65,20 @@ class CandidateRoom {
  private:
   Eigen::MatrixXd fill(const Candidate& candidate, double shape, bool centred) const;
   Eigen::MatrixXd driven_columns(const Effect& effect, double shape, bool centred) const;
-  Eigen::MatrixXd composed_columns(const std::vector<Effect>& added, const ParameterValues& shapes,
+  Eigen::MatrixXd composed_columns(const std::vector<Effect>& added,
+                                   const base::ParameterValues& shapes,
                                    const std::vector<std::string>& names) const;
   Eigen::MatrixXd stack(const std::vector<Eigen::MatrixXd>& outputs,
                         const std::vector<Eigen::Index>& columns) const;
-  void linearise(const Fit& fit, ThreadPool& pool);
+  void linearise(const Fit& fit, base::ThreadPool& pool);
 
   const DiagnosedFit& fitted_;
   Record record_;  // with what effects derive from other columns
   std::vector<EffectSetting> settings_;
   std::vector<Effect> effects_;  // that the fit has
-  ParameterValues values_;
+  base::ParameterValues values_;
   Linearisation linearisation_;
   std::map<std::string, Eigen::MatrixXd> ports_;
 };
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -10,11 +10,14 @@
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/ranking.hpp"
 #include "diagnosis/residual_noise.hpp"
-#include "diagnosis/tails.hpp"
 #include "diagnosis/trial.hpp"
+#include "numerics/tails.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
+
+using namespace diagnosis;  // this room's own
+
 namespace {
 
 constexpr std::size_t most_tested = 12;  // of either screen's best
@@ -51,7 +54,7 @@ class Recipe {
 
   const DiagnosedFit& fitted_;
   const DiagnosisOptions& options_;
-  ThreadPool pool_;
+  base::ThreadPool pool_;
   CandidateRoom room_;
   NullHypothesis null_;
   Tangent tangent_;
@@ -175,8 +178,8 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   }
   // Those that could have been chosen and were not count as if they had said nothing.
   log10_p.resize(std::max(log10_p.size(), static_cast<std::size_t>(tests)), 0.0);
-  const std::vector<double> holm = adjust_by_holm(log10_p);
-  const std::vector<double> listed = adjust_by_benjamini_hochberg(log10_p);
+  const std::vector<double> holm = numerics::adjust_by_holm(log10_p);
+  const std::vector<double> listed = numerics::adjust_by_benjamini_hochberg(log10_p);
   std::vector<EffectFinding> findings;
   std::size_t v = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "diagnosis/projection.hpp"
-#include "diagnosis/tails.hpp"
+#include "numerics/tails.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::MatrixXd;
@@ -29,7 +29,7 @@ double explained(const MatrixXd& basis, const VectorXd& residual) {
 }
 
 double log10_tail(double drop, const Trial& trial) {
-  return log10_scan(trial) + log10_chi_squared_tail(std::max(0.0, drop), trial.freedom);
+  return log10_scan(trial) + numerics::log10_chi_squared_tail(std::max(0.0, drop), trial.freedom);
 }
 
 }  // namespace
@@ -93,4 +93,4 @@ bool Family::is_enough(const Trial& other) const {
   return log10_tail(drops.both - drops.other, first_) > significant;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

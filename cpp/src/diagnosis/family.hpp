@@ -8,7 +8,7 @@
 #include "diagnosis/likelihood_ratio.hpp"
 #include "diagnosis/trial.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// Whether the columns of two visible effects are alike, whatever the residual: their canonical
 /// correlation beyond the tangent exceeds `correlation`.
@@ -57,4 +57,4 @@ class Family {
   Eigen::VectorXd white_residual_;
 };
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

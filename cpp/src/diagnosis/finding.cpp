@@ -5,6 +5,8 @@
 
 namespace sepcal {
 
+using namespace diagnosis;  // this room's own
+
 using Eigen::Index;
 
 std::string_view to_string(Verdict verdict) {
@@ -29,7 +31,8 @@ std::string_view to_string(FindingStatus status) {
   }
 }
 
-EffectFinding describe(const CandidateRoom& room, const Tangent& tangent, const Trial& trial) {
+EffectFinding diagnosis::describe(const CandidateRoom& room, const Tangent& tangent,
+                                  const Trial& trial) {
   EffectFinding finding{.name = trial.candidate.name,
                         .drivers = trial.candidate.drivers,
                         .log10_p = trial.log10_p,

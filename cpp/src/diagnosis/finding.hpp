@@ -7,7 +7,7 @@
 #include "diagnosis/trial.hpp"
 #include "sepcal/diagnosis.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// The fit's linearisation, factorised once: what an effect left out does to the parameters.
 using Tangent = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
@@ -15,4 +15,4 @@ using Tangent = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
 /// All but what depends on the other trials: the adjusted probabilities, `found`, the family.
 EffectFinding describe(const CandidateRoom& room, const Tangent& tangent, const Trial& trial);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

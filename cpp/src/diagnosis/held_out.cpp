@@ -6,7 +6,7 @@
 
 #include "sepcal/triangular_factor.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -193,4 +193,4 @@ HeldOut hold_out(const Linearisation& fit, const MatrixXd& G, const Folds& folds
   return summarise(before, after, rows * static_cast<double>(layout.outputs.size()));
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -9,7 +9,7 @@
 
 #include "diagnosis/linearisation.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// Rows that are left out together, as a block; blocks of one fold are left out at once.
 struct HeldOutBlock {
@@ -57,4 +57,4 @@ HeldOut hold_out(const Linearisation& fit, const Eigen::MatrixXd& G, const Folds
 /// RMSE over all outputs, in their unit, of a residual whose outputs are scaled.
 double total_rmse(const RowLayout& layout, const Eigen::VectorXd& residual);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

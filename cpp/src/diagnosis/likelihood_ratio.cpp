@@ -7,9 +7,9 @@
 
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
-#include "diagnosis/tails.hpp"
+#include "numerics/tails.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -91,7 +91,7 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const MatrixXd& ad
 }
 
 VectorXd simulate_ratios(const NullHypothesis& null, const MatrixXd& added, int simulations,
-                         std::uint64_t seed, ThreadPool& pool) {
+                         std::uint64_t seed, base::ThreadPool& pool) {
   constexpr Index most_rows = 400;
   constexpr double roughly = 0.05;  // in -2 ln L, of the search for the noise model
   const Thinned thinned = thin_out(null.fit->layout, most_rows);
@@ -125,7 +125,7 @@ Inflation inflation_of(const VectorXd& ratios, int freedom) {
   std::ranges::sort(sorted);
   const auto larger = [&](double share) {
     const auto at = static_cast<Index>(share * static_cast<double>(sorted.size()));
-    return std::max(1.0, sorted[at] / chi_squared_point(1.0 - share, freedom));
+    return std::max(1.0, sorted[at] / numerics::chi_squared_point(1.0 - share, freedom));
   };
   return {larger(0.5), larger(0.9)};
 }
@@ -133,22 +133,23 @@ Inflation inflation_of(const VectorXd& ratios, int freedom) {
 double log10_ratio_tail(double ratio, int freedom, const Inflation& inflation) {
   // By chance the ninetieth percentile may be inflated less: no reason for a shorter tail.
   const double median =
-      std::min(inflation.median, inflation.ninetieth) * chi_squared_point(0.5, freedom);
-  const double ninetieth = inflation.ninetieth * chi_squared_point(0.1, freedom);
+      std::min(inflation.median, inflation.ninetieth) * numerics::chi_squared_point(0.5, freedom);
+  const double ninetieth = inflation.ninetieth * numerics::chi_squared_point(0.1, freedom);
   double few = 0.02;  // the freedom of a chi-squared whose percentiles have that ratio
   double many = 4.0 * freedom + 100.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = std::sqrt(few * many);
-    const double spread = chi_squared_point(0.1, middle) / chi_squared_point(0.5, middle);
+    const double spread =
+        numerics::chi_squared_point(0.1, middle) / numerics::chi_squared_point(0.5, middle);
     (spread > ninetieth / median ? few : many) = middle;
   }
-  const double scale = median / chi_squared_point(0.5, few);
+  const double scale = median / numerics::chi_squared_point(0.5, few);
   // Both have the ninetieth percentile; the first is too strict far out, the second of many
   // columns.
-  const double stretched = log10_chi_squared_tail(ratio / scale, few);
+  const double stretched = numerics::log10_chi_squared_tail(ratio / scale, few);
   const double larger = std::max(inflation.median, inflation.ninetieth);
-  const double scaled = log10_chi_squared_tail(ratio / larger, freedom);
-  return std::max(std::min(stretched, scaled), log10_chi_squared_tail(ratio, freedom));
+  const double scaled = numerics::log10_chi_squared_tail(ratio / larger, freedom);
+  return std::max(std::min(stretched, scaled), numerics::log10_chi_squared_tail(ratio, freedom));
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

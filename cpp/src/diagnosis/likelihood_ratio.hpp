@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "base/thread_pool.hpp"
 #include "diagnosis/noise_hypothesis.hpp"
-#include "thread_pool.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// The fit without any candidate, in a noise model of its own.
 struct NullHypothesis {
@@ -37,7 +37,7 @@ LikelihoodRatio compare_with_null(const NullHypothesis& null, const Eigen::Matri
 /// The ratio on simulations without the effect, in the null's noise; its innovations keep their
 /// sizes. Records of more than a few hundred rows are thinned out, which errs on the safe side.
 Eigen::VectorXd simulate_ratios(const NullHypothesis& null, const Eigen::MatrixXd& added,
-                                int simulations, std::uint64_t seed, ThreadPool& pool);
+                                int simulations, std::uint64_t seed, base::ThreadPool& pool);
 
 /// How much larger the median and the ninetieth percentile of a ratio are than chi-squared's, each
 /// at least 1. The largest ratios don't count: where a search ends in a poor optimum it makes one
@@ -52,4 +52,4 @@ Inflation inflation_of(const Eigen::VectorXd& ratios, int freedom);
 /// those of chi-squared, inflated.
 double log10_ratio_tail(double ratio, int freedom, const Inflation& inflation);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -11,7 +11,7 @@
 #include "sepcal/block_model.hpp"
 #include "sepcal/record.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// An output whose residual is not zero.
 struct UsedOutput {
@@ -40,4 +40,4 @@ struct Linearisation {
   Eigen::VectorXd residual;             // count(), z - model
 };
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -133,4 +133,4 @@ Hypothesis maximise(const RowLayout& layout, const MatrixXd& columns, const Vect
   return best;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -10,7 +10,7 @@
 #include "diagnosis/linearisation.hpp"
 #include "sepcal/noise_model.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 using NoiseModels = std::vector<NoiseModel>;  // of each used output, in units of its RMSE
 
@@ -69,4 +69,4 @@ class WhitenedColumns {
 Hypothesis maximise(const RowLayout& layout, const Eigen::MatrixXd& columns,
                     const Eigen::VectorXd& residual, const std::vector<NoiseModels>& starts);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/parts_of_record.hpp"
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
-#include "diagnosis/tails.hpp"
-#include "parts_of_record.hpp"
+#include "numerics/tails.hpp"
 #include "sepcal/error.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -19,22 +19,23 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// By label where there are a few, else even windows of at least ten correlation times.
-std::vector<Part> cut_windows(const CandidateRoom& room, double correlation) {
+std::vector<base::Part> cut_windows(const CandidateRoom& room, double correlation) {
   constexpr std::size_t fewest = 3;
   constexpr std::size_t most = 20;
   const RowLayout& layout = room.fit().layout;
-  std::vector<Part> windows = parts_by_label(layout.segments);
+  std::vector<base::Part> windows = base::parts_by_label(layout.segments);
   if (windows.size() >= fewest && windows.size() <= most) return windows;
   const double wanted = std::floor(static_cast<double>(layout.rows) / (10.0 * correlation));
   const double count = std::clamp(wanted, 4.0, static_cast<double>(most));
   Record rows = room.record();
   rows.cut(room.rows());
-  return parts_by_time(layout.segments, gather_time(rows), static_cast<std::size_t>(count));
+  return base::parts_by_time(layout.segments, base::gather_time(rows),
+                             static_cast<std::size_t>(count));
 }
 
 /// Each column restricted to each window.
 MatrixXd by_window(const RowLayout& layout, const MatrixXd& columns,
-                   const std::vector<Part>& windows) {
+                   const std::vector<base::Part>& windows) {
   const auto count = static_cast<Index>(windows.size());
   MatrixXd parts = MatrixXd::Zero(layout.count(), columns.cols() * count);
   for (Index k = 0; k < columns.cols(); ++k) {
@@ -58,7 +59,8 @@ struct Offsets {
 };
 
 std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
-                                  const NullHypothesis& null, const std::vector<Part>& windows) {
+                                  const NullHypothesis& null,
+                                  const std::vector<base::Part>& windows) {
   const RowLayout& layout = room.fit().layout;
   std::vector<Offsets> sets;
   const auto add = [&](const std::string& where, const MatrixXd& columns) {
@@ -86,10 +88,9 @@ std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
 }
 
 /// How far each window is off, in its own standard errors: the larger of its columns'.
-std::vector<std::pair<std::string, double>> describe_windows(const RowLayout& layout,
-                                                             const NullHypothesis& null,
-                                                             const Offsets& offsets,
-                                                             const std::vector<Part>& windows) {
+std::vector<std::pair<std::string, double>> describe_windows(
+    const RowLayout& layout, const NullHypothesis& null, const Offsets& offsets,
+    const std::vector<base::Part>& windows) {
   std::vector<std::pair<std::string, double>> described;
   const auto count = static_cast<Index>(windows.size());
   for (Index w = 0; w < count; ++w) {
@@ -121,10 +122,10 @@ double upper_normal_point(double probability) {
 }  // namespace
 
 Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
-                           const DiagnosisOptions& options, ThreadPool& pool) {
+                           const DiagnosisOptions& options, base::ThreadPool& pool) {
   const RowLayout& layout = room.fit().layout;
   const VectorXd residual = remove_span(null.basis, room.fit().residual);
-  const std::vector<Part> windows = cut_windows(room, correlation_rows(layout, residual));
+  const std::vector<base::Part> windows = cut_windows(room, correlation_rows(layout, residual));
   const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
   std::vector<LikelihoodRatio> ratios(sets.size());
   pool.for_each(sets.size(),
@@ -134,7 +135,7 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
   double least = 0.0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const auto freedom = static_cast<double>(sets[i].basis.cols());
-    double log10_p = correction + log10_chi_squared_tail(ratios[i].value, freedom);
+    double log10_p = correction + numerics::log10_chi_squared_tail(ratios[i].value, freedom);
     if (log10_p < std::log10(options.unexplained_below)) {
       const Inflation inflation = inflation_of(
           simulate_ratios(null, sets[i].basis, options.simulations, options.seed + i, pool),
@@ -190,4 +191,4 @@ std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& ki
   return limits;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -9,13 +9,13 @@
 #include "diagnosis/likelihood_ratio.hpp"
 #include "sepcal/diagnosis.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// Offsets of each output and of each port by maneuver, or by windows of at least ten correlation
 /// times; the smallest probability of these sets, corrected for their number and calibrated by
 /// simulation.
 Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
-                           const DiagnosisOptions& options, ThreadPool& pool);
+                           const DiagnosisOptions& options, base::ThreadPool& pool);
 
 /// The smallest straight line in time on every port that would be found nine times in ten among
 /// `candidates` of them.
@@ -23,4 +23,4 @@ std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& ki
                                         const NullHypothesis& null, double significance,
                                         std::size_t candidates);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

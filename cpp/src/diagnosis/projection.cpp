@@ -4,7 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -73,4 +73,4 @@ double canonical_correlation(const MatrixXd& a, const MatrixXd& b) {
   return cosines[std::min(a.cols(), b.cols()) - 1];
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

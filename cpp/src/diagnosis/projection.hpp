@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// An orthonormal basis of some columns, of their numerical rank.
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns);
@@ -33,4 +33,4 @@ Projection project(const Eigen::MatrixXd& tangent_basis, const Eigen::MatrixXd& 
 /// of the smaller one: 1 where it lies within the larger.
 double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

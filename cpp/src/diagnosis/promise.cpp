@@ -3,9 +3,11 @@
 
 namespace sepcal {
 
+using namespace diagnosis;  // this room's own
+
 Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads) {
-  ThreadPool pool(threads);
+  base::ThreadPool pool(threads);
   CandidateRoom room(fitted, pool);
   const Linearisation& fit = room.fit();
   Promise promised;

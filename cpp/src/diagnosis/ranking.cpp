@@ -6,7 +6,7 @@
 
 #include "diagnosis/family.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 constexpr std::size_t most_families = 12;
@@ -44,7 +44,7 @@ void prefer_simplest(const Comparisons& among, std::vector<EffectFinding>& findi
   std::rotate(begin, chosen, chosen + 1);
 }
 
-void find_families(const Comparisons& among, double threshold, ThreadPool& pool,
+void find_families(const Comparisons& among, double threshold, base::ThreadPool& pool,
                    std::vector<EffectFinding>& findings) {
   for (std::size_t a = 0; a < std::min(most_families, findings.size()); ++a) {
     const Trial& first = trial_of(among, findings[a]);
@@ -68,4 +68,4 @@ void find_families(const Comparisons& among, double threshold, ThreadPool& pool,
   }
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

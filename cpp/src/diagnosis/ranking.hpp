@@ -4,13 +4,13 @@
 
 #include <vector>
 
+#include "base/thread_pool.hpp"
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/likelihood_ratio.hpp"
 #include "diagnosis/trial.hpp"
 #include "sepcal/diagnosis.hpp"
-#include "thread_pool.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// What findings are compared by: the trials that they come from.
 struct Comparisons {
@@ -29,7 +29,7 @@ void prefer_simplest(const Comparisons& among, std::vector<EffectFinding>& findi
 
 /// Fills in the families of the first dozen. `threshold`: log10 of the probability below which a
 /// proxy is significant.
-void find_families(const Comparisons& among, double threshold, ThreadPool& pool,
+void find_families(const Comparisons& among, double threshold, base::ThreadPool& pool,
                    std::vector<EffectFinding>& findings);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

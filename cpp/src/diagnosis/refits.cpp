@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/measurements.hpp"
-#include "sweep.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -80,13 +80,14 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
   Record rows = room.record();
   rows.cut(others);
   const Fit fitted = fit(model, rows, options);
-  ThreadPool alone(1);
+  base::ThreadPool alone(1);
   VectorXd squares(static_cast<Index>(left_out.size()));
   for (std::size_t b = 0; b < left_out.size(); ++b) {
     rows.cut(left_out[b]);
-    const Measurements measurements(model, rows);
-    squares[static_cast<Index>(b)] =
-        Sweep(model, measurements, alone).squared_residuals(fitted.xi1(), fitted.xi2()).sum();
+    const model::Measurements measurements(model, rows);
+    squares[static_cast<Index>(b)] = model::Sweep(model, measurements, alone)
+                                         .squared_residuals(fitted.xi1(), fitted.xi2())
+                                         .sum();
   }
   return squares;
 }
@@ -94,7 +95,7 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
 }  // namespace
 
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
-                           const Folds& folds, ThreadPool& pool) {
+                           const Folds& folds, base::ThreadPool& pool) {
   const auto without = room.model();
   const auto with = room.model_with(candidate.effects);
   const FitOptions base = options_from(room.fitted());
@@ -130,4 +131,4 @@ HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate
   return summarise(old, now, rows * static_cast<double>(without->tables().n_z()));
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

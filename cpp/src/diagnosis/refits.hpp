@@ -6,11 +6,11 @@
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/held_out.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// Fits the model with and without the candidate to all folds but one, from the estimates on all
 /// rows and within the fit's bounds, and predicts the rows left out. Not judged where a fit fails.
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
-                           const Folds& folds, ThreadPool& pool);
+                           const Folds& folds, base::ThreadPool& pool);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

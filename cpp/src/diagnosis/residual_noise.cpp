@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "diagnosis/tails.hpp"
+#include "numerics/tails.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -50,8 +50,8 @@ std::vector<ResidualNoise> describe_residual(const NullHypothesis& null) {
         Q += r[k - 1] * r[k - 1] / (rows - static_cast<double>(k));
       }
       noise.lag_one = r[0];
-      noise.ljung_box_p = std::pow(
-          10.0, log10_chi_squared_tail(rows * (rows + 2.0) * Q, static_cast<double>(lags)));
+      noise.ljung_box_p = std::pow(10.0, numerics::log10_chi_squared_tail(
+                                             rows * (rows + 2.0) * Q, static_cast<double>(lags)));
     }
     noise.noise.sigma *= output.scale;
     noise.floor = noise.noise.sigma;
@@ -60,4 +60,4 @@ std::vector<ResidualNoise> describe_residual(const NullHypothesis& null) {
   return described;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

@@ -7,9 +7,9 @@
 #include "diagnosis/likelihood_ratio.hpp"
 #include "sepcal/diagnosis.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// One entry a used output.
 std::vector<ResidualNoise> describe_residual(const NullHypothesis& null);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

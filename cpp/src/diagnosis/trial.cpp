@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "diagnosis/refits.hpp"
-#include "diagnosis/tails.hpp"
+#include "numerics/tails.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 namespace {
 
 using Eigen::Index;
@@ -59,8 +59,8 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     const VectorXd product = white.transpose() * null.white_residual;
     const VectorXd step = covariance * product;
     score.white = product.dot(step);
-    score.white = log10_chi_squared_tail(score.white, score.freedom);
-    score.plain = log10_chi_squared_tail(score.plain, score.freedom);
+    score.white = numerics::log10_chi_squared_tail(score.white, score.freedom);
+    score.plain = numerics::log10_chi_squared_tail(score.plain, score.freedom);
     best_plain = std::min(best_plain, score.plain);
     trial.scores.push_back(score);
     if (!(score.white < best_white)) continue;
@@ -100,8 +100,8 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     trial.predicted_drop = predict_drop(null, added.basis);
     trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
   }
-  trial.log10_p =
-      std::min(0.0, log10_scan(trial) + log10_chi_squared_tail(trial.ratio, trial.freedom));
+  trial.log10_p = std::min(
+      0.0, log10_scan(trial) + numerics::log10_chi_squared_tail(trial.ratio, trial.freedom));
 }
 
 bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
@@ -122,7 +122,7 @@ bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
 
 Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
                              const Trial& trial, int simulations, std::uint64_t seed,
-                             ThreadPool& pool) {
+                             base::ThreadPool& pool) {
   const Projection added = project_trial(room, null, trial, trial.shape);
   return inflation_of(simulate_ratios(null, added.basis, simulations, seed, pool), trial.freedom);
 }
@@ -155,10 +155,10 @@ void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& tria
   trial.held_out = hold_out(fit, G, trial.folds);
 }
 
-void confirm(const CandidateRoom& room, ThreadPool& pool, Trial& trial) {
+void confirm(const CandidateRoom& room, base::ThreadPool& pool, Trial& trial) {
   const HeldOut confirmed =
       hold_out_by_refits(room, trial.candidate, trial.shape, trial.folds, pool);
   if (confirmed.judged) trial.held_out = confirmed;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

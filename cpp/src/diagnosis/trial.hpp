@@ -12,7 +12,7 @@
 #include "diagnosis/likelihood_ratio.hpp"
 #include "diagnosis/projection.hpp"
 
-namespace sepcal {
+namespace sepcal::diagnosis {
 
 /// A candidate at one of its shapes.
 struct ShapeScore {
@@ -66,7 +66,7 @@ bool is_smooth(const RowLayout& layout, const Eigen::MatrixXd& columns);
 /// By how much noise as slow as the effect enlarges the ratio, by simulation of the null.
 Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
                              const Trial& trial, int simulations, std::uint64_t seed,
-                             ThreadPool& pool);
+                             base::ThreadPool& pool);
 
 /// Corrects the test's tail.
 void inflate(const Inflation& inflation, Trial& trial);
@@ -76,6 +76,6 @@ void inflate(const Inflation& inflation, Trial& trial);
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
 /// The same by real fits, which replace the steps.
-void confirm(const CandidateRoom& room, ThreadPool& pool, Trial& trial);
+void confirm(const CandidateRoom& room, base::ThreadPool& pool, Trial& trial);
 
-}  // namespace sepcal
+}  // namespace sepcal::diagnosis

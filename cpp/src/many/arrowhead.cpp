@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -147,4 +147,4 @@ double Arrowhead::residual() const {
   return std::sqrt(square);
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

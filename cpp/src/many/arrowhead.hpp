@@ -7,11 +7,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bounded_least_squares.hpp"
 #include "many/split.hpp"
+#include "numerics/bounded_least_squares.hpp"
 #include "sepcal/triangular_factor.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// One flight's rows once its own columns are eliminated:
 ///   [ own  cross  rest  ]
@@ -38,7 +38,7 @@ Eigen::MatrixXd shared_factor(const std::vector<Share>& shares, Eigen::MatrixXd 
 /// parameters. `joint`: n_shared x n_shared, upper.
 Eigen::MatrixXd beside_others(const Share& share, const Eigen::MatrixXd& joint);
 
-class Arrowhead final : public LeastSquares {
+class Arrowhead final : public numerics::LeastSquares {
  public:
   /// `blocks`: a factor of [own | shared | q] each; they must outlive this.
   Arrowhead(const std::vector<TriangularFactor>& blocks, const Layout& layout)
@@ -58,4 +58,4 @@ class Arrowhead final : public LeastSquares {
   Layout layout_;
 };
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/tails.hpp"
+#include "numerics/tails.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -78,16 +78,18 @@ class Tester {
     const double measurements = joint_.rows * outputs;
     const double freedom = measurements - static_cast<double>(joint_.layout.size()) - k;
     if (joint_.noise_given()) {
-      test.log10_p_white = log10_chi_squared_tail(drop, k);
+      test.log10_p_white = numerics::log10_chi_squared_tail(drop, k);
     } else if (freedom > 0 && drop < measurements) {
-      test.log10_p_white = log10_f_tail(drop / k * freedom / (measurements - drop), k, freedom);
+      test.log10_p_white =
+          numerics::log10_f_tail(drop / k * freedom / (measurements - drop), k, freedom);
     }
     const double own_freedom =
         static_cast<double>(joint_.starts[static_cast<std::size_t>(flight)].rows) * outputs -
         static_cast<double>(joint_.layout.own + joint_.layout.shared);
     const bool coloured =
         covariance_.flights[static_cast<std::size_t>(flight)].middle.size() > 0 && own_freedom > 0;
-    test.log10_p = coloured ? log10_f_tail(statistic / k, k, own_freedom) : test.log10_p_white;
+    test.log10_p =
+        coloured ? numerics::log10_f_tail(statistic / k, k, own_freedom) : test.log10_p_white;
     test.departure.statistic = statistic;
     test.departure.combinations = static_cast<int>(k);
   }
@@ -119,7 +121,7 @@ void adjust(std::vector<Test>& tests, double Test::* log10_p, double Departure::
   for (const Test& test : tests) {
     if (!std::isnan(test.*log10_p)) tested.push_back(test.*log10_p);
   }
-  const std::vector<double> adjusted = adjust_by_holm(tested);
+  const std::vector<double> adjusted = numerics::adjust_by_holm(tested);
   std::size_t next = 0;
   for (Test& test : tests) {
     if (std::isnan(test.*log10_p)) continue;
@@ -146,4 +148,4 @@ std::vector<Departure> find_departures(const JointProblem& joint,
   return departures;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -13,11 +13,11 @@
 #include "many/joint_covariance.hpp"
 #include "sepcal/fit_many.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// One a flight, in their order; differences in the order of the free shared parameters. White:
 /// F where R was estimated, exact for one output and a linear model, else chi-squared.
 std::vector<Departure> find_departures(const JointProblem& joint,
                                        const JointCovariance& covariance);
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "covariance.hpp"
-#include "knowledge.hpp"
+#include "estimation/covariance.hpp"
+#include "estimation/knowledge.hpp"
 #include "many/departure.hpp"
 #include "sepcal/identifiability.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -65,7 +65,7 @@ class Description {
     result_.message = stage_.message;
     judge();
     if (!result_.message.empty() && !result_.message.ends_with("; ")) result_.message += "; ";
-    result_.message += judge_knowledge(result_.shared, joint_.problem.options());
+    result_.message += estimation::judge_knowledge(result_.shared, joint_.problem.options());
     if (result_.message.ends_with("; ")) result_.message.resize(result_.message.size() - 2);
     result_.iterations = stage_.iterations;
     result_.noise_iterations = stage_.noise_iterations;
@@ -102,9 +102,9 @@ class Description {
     std::vector<Index> inside;
     for (const Index k : covariance_.shared) inside.push_back(places[static_cast<std::size_t>(k)]);
     const auto n = static_cast<Index>(result_.shared.size());
-    result_.covariance = spread(covariance_.shared_coloured(), inside, n);
-    result_.covariance_white = spread(covariance_.shared_white(), inside, n);
-    result_.correlation = correlation_of(result_.covariance);
+    result_.covariance = estimation::spread(covariance_.shared_coloured(), inside, n);
+    result_.covariance_white = estimation::spread(covariance_.shared_white(), inside, n);
+    result_.correlation = estimation::correlation_of(result_.covariance);
     set_errors(result_.shared, inside, result_.covariance(inside, inside),
                result_.covariance_white(inside, inside));
   }
@@ -208,4 +208,4 @@ void describe_many(const BlockModel& model, const JointProblem& joint, const Joi
   Description(model, joint, stage, objective, covariance, result).describe(names);
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

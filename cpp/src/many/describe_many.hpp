@@ -11,11 +11,11 @@
 #include "many/many_objective.hpp"
 #include "sepcal/fit_many.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// Fills `result` but for the flights left out. `names`: of the fleet's flights.
 void describe_many(const BlockModel& model, const JointProblem& joint, const JointStage& stage,
                    const ManyObjective& objective, const JointCovariance& covariance,
                    const std::vector<std::string>& names, ManyFit& result);
 
-}  // namespace sepcal
+}  // namespace sepcal::many

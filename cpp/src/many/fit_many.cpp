@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <set>
 
+#include "base/name_list.hpp"
 #include "many/describe_many.hpp"
 #include "many/joint_covariance.hpp"
 #include "many/joint_stage.hpp"
-#include "name_list.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
+
+using namespace many;  // this room's own
+
 namespace {
 
 using Eigen::Index;
@@ -40,8 +43,9 @@ void check_left_out(const std::vector<LeftOut>& left_out, std::size_t flights, b
   throw Error(nothing_left ? text : text + "; mend it or leave such flights out (leave_out)");
 }
 
-Box joint_box(const Problem& problem, const Split& parting, const Layout& layout) {
-  const Box box = problem.box();
+numerics::Box joint_box(const estimation::Problem& problem, const Split& parting,
+                        const Layout& layout) {
+  const numerics::Box box = problem.box();
   const std::vector<Index> order = parting.order();
   return {layout.repeat(box.lower(order)), layout.repeat(box.upper(order))};
 }
@@ -54,7 +58,7 @@ const Named& find_named(const std::vector<Named>& all, std::string_view name,
   std::vector<std::string> names;
   for (const Named& one : all) names.push_back(one.name);
   throw Error("there is no " + what + " '" + std::string(name) + "'; the " + owner +
-              " has: " + list_names(names));
+              " has: " + base::list_names(names));
 }
 
 }  // namespace
@@ -68,7 +72,7 @@ const FlightFit& ManyFit::flight(std::string_view name) const {
 }
 
 ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options) {
-  const Problem problem(model, options.fit);
+  const estimation::Problem problem(model, options.fit);
   if (options.fit.loss != Loss::squares) {
     throw Error("many flights are fitted jointly by least squares alone, without loss '" +
                 std::string(to_string(options.fit.loss)) +

@@ -3,13 +3,16 @@
 #include <cmath>
 #include <optional>
 
+#include "estimation/residual_colour.hpp"
 #include "many/split.hpp"
-#include "residual_colour.hpp"
+#include "model/sweep.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/fit_many.hpp"
-#include "sweep.hpp"
 
 namespace sepcal {
+
+using namespace many;  // this room's own
+
 namespace {
 
 using Eigen::Index;
@@ -74,14 +77,14 @@ struct FlightProblem::Parts {
     return ordered;
   }
 
-  Sweep sweep() const { return {problem.model(), measurements, pool}; }
+  model::Sweep sweep() const { return {problem.model(), measurements, pool}; }
 
   Record record;
-  Problem problem;
+  estimation::Problem problem;
   Split parting;
   Record second;
-  Measurements measurements;
-  mutable ThreadPool pool;
+  model::Measurements measurements;
+  mutable base::ThreadPool pool;
   const BlockModel& whole;
 };
 
@@ -134,11 +137,12 @@ MatrixXd FlightProblem::score_covariance(const ScoreQuestion& question) const {
   const auto freedom = static_cast<double>(residuals.size() - x.size());
   if (!(freedom > 0.0) || !residuals.allFinite()) return {};
   const std::vector<Segment>& runs = parts_->measurements.runs();
-  const auto models = find_output_noise(residuals, runs, question.rounding, parts_->pool);
-  const ScoreNoise noise{question.noise, models, runs,
-                         static_cast<double>(residuals.size()) / freedom};
-  MatrixXd covariance =
-      find_score_covariance(std::move(tangents), noise, columns, question.K, parts_->pool);
+  const auto models =
+      estimation::find_output_noise(residuals, runs, question.rounding, parts_->pool);
+  const estimation::ScoreNoise noise{question.noise, models, runs,
+                                     static_cast<double>(residuals.size()) / freedom};
+  MatrixXd covariance = estimation::find_score_covariance(std::move(tangents), noise, columns,
+                                                          question.K, parts_->pool);
   if (!covariance.allFinite()) return {};
   return covariance;
 }

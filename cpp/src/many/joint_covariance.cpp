@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "covariance.hpp"
+#include "estimation/covariance.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -119,11 +119,12 @@ double count_spent(const JointProblem& joint, const JointStage& stage,
   const VectorXd& weights = objective.known_weights();
   if (weights.isZero(0.0)) return spent;
   const JointCovariance all = factorise(joint, stage, objective, stage.noise);
-  spent -= known_share(all.shared_white(), weights.tail(joint.layout.shared)(all.shared));
+  spent -=
+      estimation::known_share(all.shared_white(), weights.tail(joint.layout.shared)(all.shared));
   for (Index i = 0; i < joint.layout.flights; ++i) {
     const JudgedFlight& judged = all.flights[static_cast<std::size_t>(i)];
-    spent -=
-        known_share(all.own_white(i), own_weights(judged, objective).head(judged.share.own.cols()));
+    spent -= estimation::known_share(all.own_white(i),
+                                     own_weights(judged, objective).head(judged.share.own.cols()));
   }
   return spent;
 }
@@ -204,4 +205,4 @@ JointCovariance find_joint_covariance(const JointProblem& joint, const JointStag
   return result;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -11,7 +11,7 @@
 #include "many/arrowhead.hpp"
 #include "many/joint_stage.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// A flight at the solution, without the parameters that a bound holds.
 struct JudgedFlight {
@@ -52,4 +52,4 @@ struct JointCovariance {
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
                                       const ManyObjective& objective, Fleet& fleet);
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -10,7 +10,7 @@
 #include "many/minimise_many.hpp"
 #include "sepcal/identifiability.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -28,7 +28,7 @@ class JointAlternation {
       result_.noise[j] = std::max(result_.noise[j], joint_.noise_floor(j));
     }
     objective_.weigh(result_.noise.cwiseInverse());
-    for (const Prior& prior : joint_.knowledge()) objective_.know(prior);
+    for (const estimation::Prior& prior : joint_.knowledge()) objective_.know(prior);
     result_.x = find_joint_start(objective_, joint_.starts, joint_.box);
     scale_ = plausible_lengths(joint_, objective_);
     if (leaves_something_open()) objective_.hold(loose_priors());
@@ -82,14 +82,15 @@ class JointAlternation {
 
  private:
   void descend() {
-    const Descent descent =
+    const estimation::Descent descent =
         minimise_many(objective_, result_.x, joint_.box, joint_.problem.options().iterations);
     result_.iterations += descent.iterations;
     result_.x = descent.x;
   }
 
   bool refine() {
-    const Refinement refinement = refine_many(objective_, result_.x, joint_.box, scale_);
+    const estimation::Refinement refinement =
+        refine_many(objective_, result_.x, joint_.box, scale_);
     result_.x = refinement.x;
     result_.at_bound = refinement.at_bound;
     result_.iterations += refinement.iterations;
@@ -122,12 +123,12 @@ class JointAlternation {
   }
 
   /// Of the shared parameters it stands in the first flight's.
-  std::vector<Prior> loose_priors() {
+  std::vector<estimation::Prior> loose_priors() {
     held_ = true;
-    std::vector<Prior> priors;
+    std::vector<estimation::Prior> priors;
     for (Index i = 0; i < joint_.layout.flights; ++i) {
-      priors.push_back(
-          loose_prior(variables(joint_.problem, joint_.parting), joint_.layout.point(scale_, i)));
+      priors.push_back(estimation::loose_prior(variables(joint_.problem, joint_.parting),
+                                               joint_.layout.point(scale_, i)));
       if (i > 0) priors.back().weight.tail(joint_.layout.shared).setZero();
     }
     return priors;
@@ -144,10 +145,10 @@ class JointAlternation {
 
 }  // namespace
 
-std::vector<Prior> JointProblem::knowledge() const {
-  std::vector<Prior> known = problem.knowledge();
+std::vector<estimation::Prior> JointProblem::knowledge() const {
+  std::vector<estimation::Prior> known = problem.knowledge();
   const std::vector<Index> order = parting.order();
-  for (Prior& prior : known) prior = {prior.mean(order), prior.weight(order)};
+  for (estimation::Prior& prior : known) prior = {prior.mean(order), prior.weight(order)};
   return known;
 }
 
@@ -173,11 +174,12 @@ VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objec
     const auto& factors = objective.factors()[static_cast<std::size_t>(i)];
     const double z_square = joint.starts[static_cast<std::size_t>(i)].output_squares.sum();
     joint.layout.own_of(lengths, i) =
-        plausible_scale(parameters, factors, z_square).head(joint.layout.own);
+        estimation::plausible_scale(parameters, factors, z_square).head(joint.layout.own);
     all.insert(all.end(), factors.begin(), factors.end());
   }
   lengths.tail(joint.layout.shared) =
-      plausible_scale(parameters, all, joint.output_squares.sum()).tail(joint.layout.shared);
+      estimation::plausible_scale(parameters, all, joint.output_squares.sum())
+          .tail(joint.layout.shared);
   return lengths;
 }
 
@@ -192,4 +194,4 @@ JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective) 
   return result;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "estimation/problem.hpp"
 #include "many/arrowhead.hpp"
 #include "many/many_objective.hpp"
-#include "problem.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// The joint fit's question, complete.
 struct JointProblem {
-  const Problem& problem;
+  const estimation::Problem& problem;
   const Split& parting;
   Layout layout;
-  Box box;                              // of all flights' parameters
+  numerics::Box box;                    // of all flights' parameters
   std::vector<FlightStart> starts;      // of the flights that take part
   double rows = 0.0;                    // of all flights
   Eigen::VectorXd output_squares = {};  // n_z, over all flights
@@ -25,7 +25,7 @@ struct JointProblem {
   bool noise_given() const { return problem.noise().size() > 0; }
 
   /// What is known of [own | shared] beforehand; none or one.
-  std::vector<Prior> knowledge() const;
+  std::vector<estimation::Prior> knowledge() const;
 
   /// Below it the noise of output j is rounding.
   double noise_floor(Eigen::Index j) const;
@@ -56,4 +56,4 @@ Eigen::VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective
 /// but what is known.
 JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective);
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -6,7 +6,7 @@
 
 #include "many/arrowhead.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -74,7 +74,7 @@ VectorXd pooled_noise(const std::vector<FlightStart>& starts) {
 }
 
 VectorXd find_joint_start(ManyObjective& objective, const std::vector<FlightStart>& starts,
-                          const Box& box) {
+                          const numerics::Box& box) {
   const Layout& layout = objective.layout();
   const std::vector<Share> shares = own_shares(starts, layout.own);
   const std::vector<bool> usable = find_usable(starts);
@@ -103,4 +103,4 @@ VectorXd find_joint_start(ManyObjective& objective, const std::vector<FlightStar
   return best;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -5,19 +5,19 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "estimation/minimise.hpp"
 #include "many/many_objective.hpp"
-#include "minimise.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// The better of two starts for the parameters of all flights, within the box: the shared ones as
 /// all flights' factors weigh them, and their medians, which a single flight in another minimum
 /// can't move; a flight's own ones follow to first order. Flights that did not converge by
 /// themselves count only where none did. The objective has weights; it is linearised at the result.
 Eigen::VectorXd find_joint_start(ManyObjective& objective, const std::vector<FlightStart>& starts,
-                                 const Box& box);
+                                 const numerics::Box& box);
 
 /// R-hat by output (n_z standard deviations) of the flights' own fits together.
 Eigen::VectorXd pooled_noise(const std::vector<FlightStart>& starts);
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <thread>
 
+#include "base/thread_pool.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
-#include "thread_pool.hpp"
 
 namespace sepcal {
 namespace {
@@ -71,7 +71,7 @@ class LocalFleet final : public Fleet {
   const BlockModel& model_;
   Flights flights_;
   ManyOptions options_;
-  ThreadPool pool_;
+  base::ThreadPool pool_;
   std::vector<std::unique_ptr<FlightProblem>> problems_;
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace sepcal {
+namespace sepcal::many {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -15,12 +15,12 @@ void ManyObjective::weigh(const VectorXd& weights) {
   combine_blocks();
 }
 
-void ManyObjective::know(const Prior& knowledge) {
+void ManyObjective::know(const estimation::Prior& knowledge) {
   known_ = knowledge;
   combine_blocks();
 }
 
-void ManyObjective::hold(std::vector<Prior> priors) {
+void ManyObjective::hold(std::vector<estimation::Prior> priors) {
   priors_ = std::move(priors);
   combine_blocks();
 }
@@ -39,7 +39,7 @@ bool ManyObjective::linearise(const VectorXd& x) {
 }
 
 std::vector<TriangularFactor> ManyObjective::flight_blocks(const VectorXd& weights) const {
-  Prior own = known_;
+  estimation::Prior own = known_;
   own.weight.tail(layout_.shared).setZero();
   std::vector<TriangularFactor> blocks;
   for (std::size_t i = 0; i < factors_.size(); ++i) {
@@ -59,7 +59,7 @@ TriangularFactor ManyObjective::shared_knowledge() const {
 void ManyObjective::combine_blocks() {
   blocks_ = flight_blocks();
   if (blocks_.empty()) return;
-  Prior shared = known_;
+  estimation::Prior shared = known_;
   shared.weight.head(layout_.own).setZero();
   if (!shared.weight.isZero(0.0)) shared.join(blocks_.front(), layout_.point(at_, 0));
   for (std::size_t i = 0; i < priors_.size(); ++i) {
@@ -85,4 +85,4 @@ double ManyObjective::square() const {
   return sum;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "estimation/plausibility.hpp"
 #include "many/split.hpp"
-#include "plausibility.hpp"
 #include "sepcal/fit_many.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 class ManyObjective {
  public:
@@ -31,10 +31,10 @@ class ManyObjective {
 
   /// What is known beforehand of [own | shared]: of every flight's own ones, and once of those that
   /// are shared.
-  void know(const Prior& knowledge);
+  void know(const estimation::Prior& knowledge);
 
   /// What holds [own | shared] of each flight for a while; empty: nothing.
-  void hold(std::vector<Prior> priors);
+  void hold(std::vector<estimation::Prior> priors);
 
   /// Goes to x; a pass over the data unless it is there already. False where a model is not finite.
   bool linearise(const Eigen::VectorXd& x);
@@ -72,12 +72,12 @@ class ManyObjective {
   std::vector<std::size_t> flights_;
   Layout layout_;
   Eigen::VectorXd weights_;
-  Prior known_;
-  std::vector<Prior> priors_;
+  estimation::Prior known_;
+  std::vector<estimation::Prior> priors_;
   Eigen::VectorXd at_;
   std::vector<std::vector<TriangularFactor>> factors_;
   std::vector<TriangularFactor> blocks_;
   int passes_ = 0;
 };
 
-}  // namespace sepcal
+}  // namespace sepcal::many

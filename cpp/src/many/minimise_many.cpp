@@ -13,7 +13,7 @@
 #include <memory>
 #include <utility>
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
@@ -87,7 +87,8 @@ class FlightCost final : public ceres::CostFunction {
   std::size_t flight_;
 };
 
-void set_bounds(ceres::Problem& problem, double* block, Index size, const Box& box, Index first) {
+void set_bounds(ceres::Problem& problem, double* block, Index size, const numerics::Box& box,
+                Index first) {
   for (Index k = 0; k < size; ++k) {
     const int index = static_cast<int>(k);
     const double lower = box.lower[first + k];
@@ -110,10 +111,10 @@ ceres::Solver::Options solver_options(int iterations) {
 
 }  // namespace
 
-Descent minimise_many(ManyObjective& objective, const VectorXd& start, const Box& box,
-                      int iterations) {
+estimation::Descent minimise_many(ManyObjective& objective, const VectorXd& start,
+                                  const numerics::Box& box, int iterations) {
   const Layout& layout = objective.layout();
-  Descent descent{.x = box.clip(start)};
+  estimation::Descent descent{.x = box.clip(start)};
   Visit visit(objective, descent.x);
 
   ceres::Problem::Options ownership;
@@ -149,4 +150,4 @@ Descent minimise_many(ManyObjective& objective, const VectorXd& start, const Box
   return descent;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

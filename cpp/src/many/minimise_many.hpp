@@ -6,19 +6,19 @@
 
 #include <Eigen/Core>
 
+#include "estimation/minimise.hpp"
+#include "estimation/refine.hpp"
 #include "many/many_objective.hpp"
-#include "minimise.hpp"
-#include "refine.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// x stays within the box; the start is clipped to it. What the fleet throws is thrown again.
-Descent minimise_many(ManyObjective& objective, const Eigen::VectorXd& start, const Box& box,
-                      int iterations);
+estimation::Descent minimise_many(ManyObjective& objective, const Eigen::VectorXd& start,
+                                  const numerics::Box& box, int iterations);
 
 /// Gauss-Newton steps on the arrowhead, within the bounds, to refine()'s last digit. Where they
 /// don't contract x is `start`, not converged.
-Refinement refine_many(ManyObjective& objective, const Eigen::VectorXd& start, const Box& box,
-                       const Eigen::VectorXd& scale);
+estimation::Refinement refine_many(ManyObjective& objective, const Eigen::VectorXd& start,
+                                   const numerics::Box& box, const Eigen::VectorXd& scale);
 
-}  // namespace sepcal
+}  // namespace sepcal::many

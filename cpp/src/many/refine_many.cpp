@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
-#include "bounded_least_squares.hpp"
+#include "estimation/step_length.hpp"
 #include "many/arrowhead.hpp"
 #include "many/minimise_many.hpp"
-#include "step_length.hpp"
+#include "numerics/bounded_least_squares.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
 /// Onto their bounds, to the last bit.
-VectorXd put_on_bounds(VectorXd x, const BoundedSolution& step, const Box& box) {
+VectorXd put_on_bounds(VectorXd x, const numerics::BoundedSolution& step,
+                       const numerics::Box& box) {
   for (Index k = 0; k < x.size(); ++k) {
     if (step.active[static_cast<std::size_t>(k)]) x[k] += step.x[k];
   }
@@ -22,17 +23,19 @@ VectorXd put_on_bounds(VectorXd x, const BoundedSolution& step, const Box& box) 
 
 }  // namespace
 
-Refinement refine_many(ManyObjective& objective, const VectorXd& start, const Box& box,
-                       const VectorXd& scale) {
+estimation::Refinement refine_many(ManyObjective& objective, const VectorXd& start,
+                                   const numerics::Box& box, const VectorXd& scale) {
   constexpr int most_steps = 60;
-  Refinement result{box.clip(start), std::vector<bool>(static_cast<std::size_t>(start.size()))};
+  estimation::Refinement result{box.clip(start),
+                                std::vector<bool>(static_cast<std::size_t>(start.size()))};
   double before = infinity;
   for (; result.iterations < most_steps; ++result.iterations) {
     if (!objective.linearise(result.x)) break;
     const Arrowhead arrowhead(objective.blocks(), objective.layout());
-    const BoundedSolution step =
-        solve_bounded(arrowhead, {box.lower - result.x, box.upper - result.x});
-    const StepLength length(arrowhead.length_of(step.x), step.x, scale, arrowhead.residual());
+    const numerics::BoundedSolution step =
+        numerics::solve_bounded(arrowhead, {box.lower - result.x, box.upper - result.x});
+    const estimation::StepLength length(arrowhead.length_of(step.x), step.x, scale,
+                                        arrowhead.residual());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
       result.x = put_on_bounds(std::move(result.x), step, box);
@@ -56,4 +59,4 @@ Refinement refine_many(ManyObjective& objective, const VectorXd& start, const Bo
   return result;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 
-#include "name_list.hpp"
+#include "base/name_list.hpp"
 #include "sepcal/error.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 namespace {
 
 using Eigen::Index;
 
-void check_own(const Problem& problem, const std::vector<std::string>& own) {
+void check_own(const estimation::Problem& problem, const std::vector<std::string>& own) {
   for (auto name = own.begin(); name != own.end(); ++name) {
     if (std::ranges::find(problem.parameters(), *name, &Variable::name) ==
         problem.parameters().end()) {
@@ -19,7 +19,7 @@ void check_own(const Problem& problem, const std::vector<std::string>& own) {
       throw Error(fixed ? "own '" + *name + "' is fixed, and so the same in every flight; free it" +
                               " or leave it out of own"
                         : "own: there is no parameter '" + *name +
-                              "'; the model has: " + list_names(problem.parameters()));
+                              "'; the model has: " + base::list_names(problem.parameters()));
     }
     if (std::find(own.begin(), name, *name) != name) {
       throw Error("own: '" + *name + "' stands there twice; leave one out");
@@ -35,7 +35,7 @@ std::vector<Index> Split::order() const {
   return order;
 }
 
-Split split(const Problem& problem, const std::vector<std::string>& own) {
+Split split(const estimation::Problem& problem, const std::vector<std::string>& own) {
   check_own(problem, own);
   Split split;
   for (std::size_t k = 0; k < problem.parameters().size(); ++k) {
@@ -50,7 +50,7 @@ Split split(const Problem& problem, const std::vector<std::string>& own) {
   return split;
 }
 
-std::vector<Variable> variables(const Problem& problem, const Split& split) {
+std::vector<Variable> variables(const estimation::Problem& problem, const Split& split) {
   std::vector<Variable> variables;
   for (const Index k : split.order()) {
     variables.push_back(problem.parameters()[static_cast<std::size_t>(k)]);
@@ -58,4 +58,4 @@ std::vector<Variable> variables(const Problem& problem, const Split& split) {
   return variables;
 }
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "minimise.hpp"
-#include "problem.hpp"
+#include "estimation/minimise.hpp"
+#include "estimation/problem.hpp"
 
-namespace sepcal {
+namespace sepcal::many {
 
 /// Places among the problem's free parameters; both in the model's order.
 struct Split {
@@ -25,10 +25,10 @@ struct Split {
 
 /// Throws Error for a name that is no parameter, is fixed or stands there twice, and where nothing
 /// is shared.
-Split split(const Problem& problem, const std::vector<std::string>& own);
+Split split(const estimation::Problem& problem, const std::vector<std::string>& own);
 
 /// Free parameters in a split's order.
-std::vector<Variable> variables(const Problem& problem, const Split& split);
+std::vector<Variable> variables(const estimation::Problem& problem, const Split& split);
 
 /// How the parameters of all flights stand in one vector: own of flight 0, own of flight 1, ...,
 /// shared.
@@ -62,4 +62,4 @@ struct Layout {
   }
 };
 
-}  // namespace sepcal
+}  // namespace sepcal::many

@@ -14,7 +14,9 @@
 
 namespace sepcal {
 
-class TextLines;  // the file as lines; internal
+namespace files {
+class TextLines;  // the file as lines
+}  // namespace files
 
 /// Told the fraction of a file that has been read, from 0 to 1, about once a MiB. May be empty.
 using Progress = std::function<void(double fraction)>;
@@ -68,7 +70,7 @@ class CsvReader {
   [[noreturn]] void fail(std::size_t line, const std::string& message) const;
 
   std::string file_;
-  std::unique_ptr<TextLines> lines_;
+  std::unique_ptr<files::TextLines> lines_;
   std::vector<std::string> header_;
   std::vector<std::string_view> cells_;
   std::string_view text_;

@@ -10,7 +10,7 @@
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
-#include "sepcal/flight/simulate.hpp"
+#include "sepcal/flight/sized_effect.hpp"
 
 namespace sepcal {
 
@@ -45,7 +45,7 @@ FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
 /// Puts an effect into the flight's measurements, fits again from the calibration's estimates and
 /// diagnoses that. Throws Error also for an effect that the flight can't make, one that the
 /// calibration has, and another number of sizes than one or the effect's coefficients.
-FlightDiagnosis diagnose_with(const HiddenEffect& injected, const Calibration& calibration,
+FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& calibration,
                               const Flight& flight, const OwnEffects& own = {},
                               const DiagnosisOptions& options = {});
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A pool of threads that lives as long as a fit: numbered tasks, handed out in order, whose results
+// never depend on which thread ran them. Threads start at the first call that can use them.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace sepcal::base {
+
+class ThreadPool {
+ public:
+  /// `threads` of them, the caller's included; 0: as many as the machine has cores.
+  explicit ThreadPool(int threads);
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+  ~ThreadPool();
+
+  /// Runs task(0) ... task(count - 1) and returns when all are done. The first exception of a task
+  /// is thrown again here; the tasks not yet begun are then skipped.
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& task);
+
+ private:
+  void start_workers();
+  void work();
+  void run_tasks(std::unique_lock<std::mutex>& lock);
+
+  int threads_;
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable done_;
+  const std::function<void(std::size_t)>* task_ = nullptr;
+  std::size_t next_ = 0;
+  std::size_t count_ = 0;
+  std::size_t running_ = 0;
+  bool stopping_ = false;
+  std::exception_ptr failure_;
+};
+
+}  // namespace sepcal::base

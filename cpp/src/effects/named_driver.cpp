@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "effects/named_driver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "base/name_list.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::effects {
+namespace {
+
+using Shape = EffectName::Shape;
+
+constexpr double longest_delay = 0.2;  // [s] of a driver
+
+/// The unit that a header's last part says, or nothing.
+std::string unit_of_channel(const std::string& header) {
+  static const std::map<std::string, std::string> known{
+      {"m", "m"},         {"ft", "ft"},   {"km", "km"},   {"s", "s"},     {"ms", "ms"},
+      {"a", "A"},         {"ma", "mA"},   {"v", "V"},     {"mv", "mV"},   {"w", "W"},
+      {"degc", "degC"},   {"k", "K"},     {"rad", "rad"}, {"deg", "deg"}, {"radps", "rad/s"},
+      {"degps", "deg/s"}, {"mps", "m/s"}, {"kt", "kt"},   {"pa", "Pa"},   {"hpa", "hPa"},
+      {"kpa", "kPa"},     {"pct", "%"},   {"us", "us"},   {"rpm", "rpm"}, {"mps2", "m/s^2"},
+      {"kgpm3", "kg/m^3"}};
+  if (header == "time") return "s";
+  if (header == "alpha" || header == "beta") return "rad";
+  if (header == "p" || header == "q" || header == "r") return "rad/s";
+  const std::size_t split = header.rfind('_');
+  if (split == std::string::npos) return "";
+  const auto found = known.find(header.substr(split + 1));
+  return found == known.end() ? "" : found->second;
+}
+
+/// The values of a column in the record's segments.
+std::vector<double> selected(const Record& record, const std::string& name) {
+  const std::span<const double> column = record.column(name);
+  std::vector<double> values;
+  for (const Segment& segment : record.segments()) {
+    const auto part = column.subspan(segment.first, segment.rows());
+    values.insert(values.end(), part.begin(), part.end());
+  }
+  return values;
+}
+
+/// The segments' labels as numbers, in the order of `labels`; -1 for one that isn't there.
+void add_label_codes(Record& record, const std::vector<std::string>& labels) {
+  std::vector<double> codes(record.length(), -1.0);
+  for (const Segment& segment : record.segments()) {
+    const auto at = std::ranges::find(labels, segment.label);
+    const double code = at == labels.end() ? -1.0 : static_cast<double>(at - labels.begin());
+    std::fill(codes.begin() + static_cast<std::ptrdiff_t>(segment.first),
+              codes.begin() + static_cast<std::ptrdiff_t>(segment.last), code);
+  }
+  record.add("maneuver", std::move(codes));
+}
+
+std::vector<std::string> labels_of(const Record& record) {
+  std::vector<std::string> labels;
+  for (const Segment& segment : record.segments()) {
+    if (std::ranges::find(labels, segment.label) == labels.end()) labels.push_back(segment.label);
+  }
+  return labels;
+}
+
+void check_channel(const EffectName& name, const Record& record, bool known) {
+  if (name.base == "maneuver") return;
+  if (!record.has(name.base)) {
+    throw Error("effect " + name.text + ": there is no channel '" + name.base +
+                "'; the record has: " + base::list_names(record.names()));
+  }
+  const std::vector<double> values = selected(record, name.base);
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  if (!std::ranges::all_of(values, is_number)) {
+    throw Error("effect " + name.text + ": channel '" + name.base +
+                "' holds something else than finite numbers");
+  }
+  const auto [lowest, highest] = std::ranges::minmax(values);
+  if (known || lowest < highest) return;
+  throw Error("effect " + name.text + ": channel '" + name.base + "' is constant (" +
+              std::to_string(lowest) + "), so that this record can't show the effect");
+}
+
+/// Altitude, time and temperature are taken about their mean: their zero is far from any flight.
+bool is_centred(const std::string& base) {
+  return base == "time" || base.starts_with("altitude") || base.starts_with("temp");
+}
+
+}  // namespace
+
+std::string coefficient_unit(const std::string& port_unit, const EffectName& name) {
+  const std::string channel = unit_of_channel(name.base);
+  const bool as_it_is =
+      name.shape != Shape::power && name.shape != Shape::ramp && name.shape != Shape::delay;
+  if (as_it_is || channel.empty() || name.base == "maneuver") return port_unit;
+  std::string unit = port_unit + " per " + channel;
+  if (name.number > 1) unit.append("^").append(std::to_string(name.number));
+  return unit;
+}
+
+DriverPointer make_named_driver(const EffectName& name, EffectSetting& setting, Record& record) {
+  check_channel(name, record, setting.known);
+  if (name.base == "maneuver") {
+    if (setting.labels.empty()) setting.labels = labels_of(record);
+    if (!record.has("maneuver")) add_label_codes(record, setting.labels);
+    return category_driver({"maneuver", ""}, setting.labels);
+  }
+  const Variable channel(name.base, name.base == "time" ? "s" : "");
+  const std::vector<double> values = selected(record, name.base);
+  if (name.shape == Shape::spline) {
+    if (setting.knots.empty()) {
+      const auto [lowest, highest] = std::ranges::minmax(values);
+      setting.knots = even_knots(lowest, highest, name.number);
+    }
+    return spline_driver(channel, setting.knots);
+  }
+  if (name.shape == Shape::exponent) return exponent_driver(channel);
+  if (name.shape == Shape::delay) return delay_driver(channel, record, longest_delay);
+  if (name.shape == Shape::power) {
+    if (!setting.centre) {
+      const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+      setting.centre = is_centred(name.base) ? sum / static_cast<double>(values.size()) : 0.0;
+    }
+    return power_driver(channel, *setting.centre, name.number);
+  }
+  if (!setting.span) setting.span = {values.front(), values.back()};
+  const auto [first, last] = *setting.span;
+  if (name.shape == Shape::decay) return decay_driver(channel, first, last);
+  return name.shape == Shape::step ? step_driver(channel, first, last)
+                                   : ramp_driver(channel, first, last);
+}
+
+}  // namespace sepcal::effects

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/named_effects.hpp"
+
+#include <algorithm>
+
+#include "base/name_list.hpp"
+#include "effects/named_driver.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace effects;  // this room's own
+
+namespace {
+
+std::string known_names(const EffectKit& kit) {
+  std::vector<std::string> names;
+  for (const Port& port : kit.ports) names.push_back(port.name + "[driver]");
+  for (const auto& [name, maker] : kit.own) names.push_back(name);
+  for (const auto& [name, resolve] : kit.aliases) names.push_back(name);
+  return base::list_names(names);
+}
+
+Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting& setting,
+                   Record& record) {
+  EffectName name = parse_effect_name(setting.name);
+  const auto alias = kit.aliases.find(name.text);
+  if (alias != kit.aliases.end()) name = parse_effect_name(alias->second(record));
+  setting.name = name.text;
+  const auto own = kit.own.find(name.text);
+  if (own != kit.own.end()) return own->second(model, setting, record);
+  const auto port = std::ranges::find(kit.ports, name.port, &Port::name);
+  if (port == kit.ports.end() || name.shape == EffectName::Shape::none) {
+    if (setting.known) {
+      throw Error("effect '" + name.text +
+                  "' is not in the catalogue; if it is one of your own, it can be used only where "
+                  "it is defined: load the calibration there");
+    }
+    throw Error("there is no effect '" + name.text + "'; known: " + known_names(kit));
+  }
+  return make_named(name.text, name, *port, model, setting, record);
+}
+
+}  // namespace
+
+Effect make_named(const std::string& owner, const EffectName& means, const Port& port,
+                  const BlockModel& model, EffectSetting& setting, Record& record) {
+  if (std::ranges::find(model.tables().outputs, means.base, &Variable::name) !=
+      model.tables().outputs.end()) {
+    throw Error("effect " + means.text + ": '" + means.base +
+                "' is what is measured; a driver must be another channel, or it explains itself");
+  }
+  const DriverPointer driver = make_named_driver(means, setting, record);
+  return make_driven(owner, port, driver, coefficient_unit(port.unit, means), model, record);
+}
+
+EffectKit plain_kit(const Tables& model) {
+  EffectKit kit;
+  for (const Variable& parameter : model.linear) {
+    kit.ports.push_back(
+        {parameter.name, parameter.unit, {{.name = "s", .linear = parameter.name}}});
+  }
+  for (const Variable& input : model.inputs) {
+    kit.ports.push_back({input.name, input.unit, {{.name = "s", .input = input.name}}});
+  }
+  return kit;
+}
+
+std::vector<Effect> make_effects(const EffectKit& kit, const BlockModel& model,
+                                 std::vector<EffectSetting>& settings, Record& record) {
+  std::vector<Effect> effects;
+  for (EffectSetting& setting : settings) {
+    effects.push_back(make_effect(kit, model, setting, record));
+    setting.known = true;
+  }
+  return effects;
+}
+
+}  // namespace sepcal

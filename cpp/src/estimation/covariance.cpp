@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/covariance.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "estimation/residual_colour.hpp"
+#include "model/loss.hpp"
+
+namespace sepcal::estimation {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+MatrixXd nothing(Index k) { return MatrixXd::Constant(k, k, undefined); }
+
+/// (R' R)^-1 by way of R^-1; NaN throughout where R is singular.
+MatrixXd inverse_of_square(const MatrixXd& R) {
+  const Index n = R.cols();
+  if ((R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any()) {
+    return nothing(n);
+  }
+  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
+  return inverse * inverse.transpose();
+}
+
+/// The free parameters whose estimate has a distribution: those not held by a bound.
+std::vector<Index> find_inside(const std::vector<bool>& at_bound) {
+  std::vector<Index> indices;
+  for (std::size_t k = 0; k < at_bound.size(); ++k) {
+    if (!at_bound[k]) indices.push_back(static_cast<Index>(k));
+  }
+  return indices;
+}
+
+/// The factor of a selection of columns.
+MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
+  TriangularFactor factor(static_cast<int>(columns.size()));
+  MatrixXd rows = R(Eigen::all, columns);
+  factor.absorb(rows);
+  return factor.matrix();
+}
+
+/// Rows over `noise`, those of what is known among them: n x n.
+MatrixXd whiten(const Problem& problem, const StageTwo& two, const VectorXd& noise) {
+  TriangularFactor factor = combine(two.factors, noise.cwiseInverse());
+  for (const Prior& prior : problem.knowledge()) prior.join(factor, two.x);
+  return factor.matrix().topLeftCorner(two.x.size(), two.x.size());
+}
+
+/// Parameters that the measurements had to pay for: all of them, less the share of each that was
+/// known beforehand.
+double count_spent(const Problem& problem, const StageTwo& two, const std::vector<Index>& inside) {
+  auto spent = static_cast<double>(two.x.size());
+  for (const Prior& prior : problem.knowledge()) {
+    const MatrixXd R = select_columns(whiten(problem, two, two.noise), inside);
+    spent -= known_share(inverse_of_square(R), prior.weight(inside));
+  }
+  return spent;
+}
+
+/// The noise that residuals are judged to have, by output: two.noise where it was given, else with
+/// M / (M - p), and less where it stands at its floor above the residual. There, at 1e-12 of the
+/// output, a thousandth of it is the rounding of the measurements.
+VectorXd judge_noise(const Problem& problem, const StageTwo& two, double rows, double ratio) {
+  constexpr double rounding = 1e-6;  // of the floor's variance
+  if (problem.noise().size() > 0) return two.noise;
+  VectorXd judged = two.noise * std::sqrt(ratio);
+  if (problem.options().loss != Loss::squares) return judged;
+  for (Index j = 0; j < judged.size(); ++j) {
+    const MatrixXd& T = two.factors[static_cast<std::size_t>(j)].matrix();
+    const double share = T.rightCols<1>().squaredNorm() / (rows * two.noise[j] * two.noise[j]);
+    judged[j] *= std::sqrt(std::clamp(share, rounding, 1.0));
+  }
+  return judged;
+}
+
+MatrixXd symmetric(const MatrixXd& square) { return 0.5 * (square + square.transpose()); }
+
+/// The sandwich, and H^-1.
+struct Slices {
+  MatrixXd covariance;
+  MatrixXd inverse_hessian;
+};
+
+/// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
+class Sandwich {
+ public:
+  /// `judged` (n_z): the noise behind R (k x k). `ratio`: M / (M - p).
+  Sandwich(const Problem& problem, const model::Sweep& sweep, const StageTwo& two, MatrixXd R,
+           VectorXd judged, double ratio)
+      : problem_(problem),
+        sweep_(sweep),
+        two_(two),
+        R_(std::move(R)),
+        judged_(std::move(judged)),
+        ratio_(ratio),
+        residuals_(sweep.residuals(xi1(), xi2())) {
+    const FitOptions& options = problem.options();
+    if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
+    if (loss_) {
+      for (Index j = 0; j < residuals_.cols(); ++j) {
+        for (double& r : residuals_.col(j)) {
+          r = two_.noise[j] * loss_->influence(r / two_.noise[j]);
+        }
+      }
+    }
+  }
+
+  bool is_finite() const { return residuals_.allFinite() && R_.allFinite(); }
+
+  /// Gives each output's residual its noise model; whether any is coloured.
+  bool find_colours() {
+    // An estimated R above its own residual stands at its floor: what is left is rounding.
+    const bool may_be_rounding = !loss_ && problem_.noise().size() == 0;
+    colours_ = find_output_noise(residuals_, sweep_.measurements().runs(),
+                                 (may_be_rounding ? 0.99 : 0.0) * two_.noise, sweep_.pool());
+    return std::ranges::any_of(colours_, [](const std::optional<NoiseModel>& colour) {
+      return colour && !is_white(*colour);
+    });
+  }
+
+  /// The covariance (k x k); with a loss, of white residuals before find_colours() was asked.
+  Slices covariance(const std::vector<Index>& inside) const {
+    const Index k = R_.cols();
+    MatrixXd bread = MatrixXd::Identity(k, k);
+    MatrixXd middle = MatrixXd::Zero(k, k);
+    std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
+    if (loss_) {
+      weigh_each_row(std::move(tangents), inside, bread, middle);
+    } else {
+      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs(), ratio_};
+      middle = find_score_covariance(std::move(tangents), noise, inside, R_, sweep_.pool());
+    }
+    for (const Prior& prior : problem_.knowledge()) {
+      MatrixXd W = prior.weight(inside).asDiagonal();
+      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
+      middle += W.transpose() * W;
+      if (loss_) bread += W.transpose() * W;
+    }
+    const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(MatrixXd(bread.inverse()));
+    const MatrixXd outer =
+        R_.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
+    return {symmetric(inverse * middle * inverse.transpose()),
+            symmetric(inverse * outer.transpose())};
+  }
+
+ private:
+  VectorXd xi1() const { return two_.x.head(sweep_.tables().n_1()); }
+  VectorXd xi2() const { return two_.x.tail(sweep_.tables().n_2()); }
+
+  /// With a loss each row has its own slope of psi, and white rows their own square.
+  void weigh_each_row(std::vector<MatrixXd> tangents, const std::vector<Index>& inside,
+                      MatrixXd& bread, MatrixXd& middle) const {
+    std::vector<MatrixXd> breads(tangents.size());
+    std::vector<MatrixXd> middles(tangents.size());
+    sweep_.pool().for_each(tangents.size(), [&](std::size_t j) {
+      const double noise = two_.noise[static_cast<Index>(j)];
+      const double judged = judged_[static_cast<Index>(j)];
+      MatrixXd Q = tangents[j](Eigen::all, inside) / judged;
+      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
+      const VectorXd slopes =
+          tangents[j].rightCols<1>().unaryExpr([&](double r) { return loss_->slope(r / noise); });
+      breads[j] = Q.transpose() * slopes.asDiagonal() * Q;
+      std::optional<NoiseModel> colour;
+      if (!colours_.empty()) colour = colours_[j];
+      if (colour && !is_white(*colour)) {
+        colour->sigma /= judged;
+        middles[j] = ratio_ * covariance_product(*colour, sweep_.measurements().runs(), Q);
+      } else {
+        const VectorXd s = residuals_.col(static_cast<Index>(j)) / judged;
+        middles[j] = ratio_ * Q.transpose() * s.cwiseAbs2().asDiagonal() * Q;
+      }
+    });
+    bread.setZero();
+    for (std::size_t j = 0; j < breads.size(); ++j) {
+      bread += breads[j];
+      middle += middles[j];
+    }
+  }
+
+  const Problem& problem_;
+  const model::Sweep& sweep_;
+  const StageTwo& two_;
+  MatrixXd R_;
+  VectorXd judged_;
+  double ratio_;
+  MatrixXd residuals_;  // rows x n_z; with a loss, noise_j psi(r / noise_j)
+  std::optional<model::RobustLoss> loss_;
+  std::vector<std::optional<NoiseModel>> colours_;
+};
+
+}  // namespace
+
+Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
+                             const StageTwo& two) {
+  const bool noise_given = problem.noise().size() > 0;
+  const FitOptions& options = problem.options();
+  Covariances result;
+  result.inside = find_inside(two.at_bound);
+  const auto k = static_cast<Index>(result.inside.size());
+  const auto rows = static_cast<double>(sweep.measurements().rows());
+  const double count = rows * sweep.tables().n_z();
+  const double freedom = count - count_spent(problem, two, result.inside);
+  const double ratio = freedom > 0.0 ? count / freedom : undefined;
+
+  const VectorXd judged = judge_noise(problem, two, rows, freedom > 0.0 ? ratio : 1.0);
+  result.tangent = whiten(problem, two, judged);
+  const MatrixXd R = select_columns(result.tangent, result.inside);
+  result.white = noise_given || freedom > 0.0 ? inverse_of_square(R) : nothing(k);
+  result.coloured = result.inverse_hessian = result.white;
+  const bool forgiving = options.loss != Loss::squares;
+  if (k == 0 || std::isnan(ratio) || !result.white.allFinite()) return result;
+  if (!forgiving && !options.coloured_errors) return result;
+
+  Sandwich sandwich(problem, sweep, two, R, judged, ratio);
+  if (!sandwich.is_finite()) return result;
+  if (forgiving) {
+    const Slices slices = sandwich.covariance(result.inside);
+    result.coloured = result.white = slices.covariance;
+    result.inverse_hessian = slices.inverse_hessian;
+  }
+  if (!options.coloured_errors || !(sandwich.find_colours() || noise_given)) return result;
+  const MatrixXd coloured = sandwich.covariance(result.inside).covariance;
+  if (coloured.allFinite()) result.coloured = coloured;
+  return result;
+}
+
+double known_share(const MatrixXd& covariance, const VectorXd& weights) {
+  const double share = covariance.diagonal().cwiseProduct(weights.cwiseAbs2()).sum();
+  return std::isfinite(share) ? share : 0.0;
+}
+
+MatrixXd spread(const MatrixXd& covariance, const std::vector<Index>& places, Index n) {
+  MatrixXd all = nothing(n);
+  all(places, places) = covariance;
+  return all;
+}
+
+MatrixXd correlation_of(const MatrixXd& covariance) {
+  const VectorXd errors = covariance.diagonal().cwiseSqrt();
+  MatrixXd correlation = covariance.cwiseQuotient(errors * errors.transpose());
+  for (Index k = 0; k < errors.size(); ++k) {
+    if (!std::isnan(errors[k])) correlation(k, k) = 1.0;
+  }
+  return correlation;
+}
+
+}  // namespace sepcal::estimation

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much the estimates of a fit vary: of white residuals (R'R)^-1, of others the sandwich
+//   H^-1 [sum_j J_j' Sigma_j J_j / r_jj^2 + W] H^-1,   H = sum_j J_j' S_j J_j / r_jj + W,
+// Sigma_j the covariance of psi(s) over the rows of output j, S_j the slopes of psi (1 without a
+// loss, where psi(s) = s), W what is known beforehand. Huber & Ronchetti, Robust Statistics,
+// Sec. 7.6.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimation/stages.hpp"
+#include "model/sweep.hpp"
+
+namespace sepcal::estimation {
+
+struct Covariances {
+  std::vector<Eigen::Index> inside;  // k free parameters that no bound holds
+  Eigen::MatrixXd white;             // k x k, as if residuals were white
+  Eigen::MatrixXd coloured;          // k x k, as each output's residual is coloured
+  Eigen::MatrixXd inverse_hessian;   // k x k, H^-1: white where there is no loss
+  /// n x n, upper: the rows of all free parameters over the noise that white residuals are judged
+  /// to have, and those of what is known beforehand.
+  Eigen::MatrixXd tangent;
+};
+
+/// Where R was estimated, variances are M / (M - p) times what R-hat = SSE / N gives: M
+/// measurements, p parameters less what was known of them beforehand. `coloured` is `white` where
+/// every output is white at an estimated R, without FitOptions::coloured_errors, and where
+/// something is not finite.
+Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
+                             const StageTwo& two);
+
+/// How many of the parameters of a covariance were paid for by what was known beforehand, each in
+/// part: `weights` are 1 / standard deviation of that knowledge. 0 where there is no covariance.
+double known_share(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& weights);
+
+/// A covariance of some of n parameters among all of them, NaN for the others.
+Eigen::MatrixXd spread(const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& places,
+                       Eigen::Index n);
+
+/// Ones on the diagonal to the last bit, but NaN for what has no variance.
+Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance);
+
+}  // namespace sepcal::estimation

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/covariance.hpp"
+#include "estimation/knowledge.hpp"
+#include "estimation/plausibility.hpp"
+#include "estimation/stages.hpp"
+#include "sepcal/check_model.hpp"
+
+namespace sepcal {
+
+using namespace estimation;  // this room's own
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
+  std::vector<OutputValue> result;
+  for (Index j = 0; j < values.size(); ++j) {
+    result.push_back({tables.outputs[static_cast<std::size_t>(j)].name, values[j]});
+  }
+  return result;
+}
+
+/// Spreads the free parameters' estimate and covariances over all of the model's parameters.
+void fill_parameters(Fit& result, const BlockModel& model, const Problem& problem,
+                     const StageTwo& two, const Covariances& covariances) {
+  const std::vector<Variable> all = model.tables().parameters();
+  const auto n = static_cast<Index>(all.size());
+  result.n_1 = model.tables().n_1();
+  std::vector<Index> place;  // of each free parameter among all
+  for (const Variable& variable : all) {
+    Parameter parameter{.name = variable.name, .unit = variable.unit};
+    const auto fixed = problem.options().fixed.find(variable.name);
+    if (fixed != problem.options().fixed.end()) {
+      parameter.fixed = true;
+      parameter.value = parameter.lower = parameter.upper = fixed->second;
+    } else {
+      const auto k = place.size();
+      place.push_back(static_cast<Index>(result.parameters.size()));
+      parameter.value = two.x[static_cast<Index>(k)];
+      parameter.lower = problem.parameters()[k].lower;
+      parameter.upper = problem.parameters()[k].upper;
+      parameter.at_bound = two.at_bound[k];
+    }
+    result.parameters.push_back(std::move(parameter));
+  }
+  std::vector<Index> places;
+  for (const Index k : covariances.inside) places.push_back(place[static_cast<std::size_t>(k)]);
+  result.covariance = spread(covariances.coloured, places, n);
+  result.covariance_white = spread(covariances.white, places, n);
+  result.correlation = correlation_of(result.covariance);
+  for (Index k = 0; k < n; ++k) {
+    Parameter& parameter = result.parameters[static_cast<std::size_t>(k)];
+    parameter.standard_error = std::sqrt(result.covariance(k, k));
+    parameter.standard_error_white = std::sqrt(result.covariance_white(k, k));
+  }
+}
+
+/// What the record leaves open. Nothing but its bound stopped a parameter that lies on one: where
+/// it is exchanged for others, they are as open as it is unless two of its standard errors, not
+/// one, fit into half the width.
+Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& names,
+                      const VectorXd& scale, const std::vector<bool>& at_bound) {
+  constexpr double noise_factor = 1.0;  // the tangent's rows are over the noise that was judged
+  Identifiability plain = identify(tangent, names, scale, noise_factor);
+  if (std::ranges::find(at_bound, true) == at_bound.end()) return plain;
+  VectorXd halved = scale;
+  for (Index k = 0; k < halved.size(); ++k) {
+    if (at_bound[static_cast<std::size_t>(k)]) halved[k] *= 0.5;
+  }
+  Identifiability strict = identify(tangent, names, halved, noise_factor);
+  const bool exchanged = std::ranges::any_of(
+      strict.unobservable, [](const Combination& open) { return open.parameters.size() > 1; });
+  return exchanged ? strict : plain;
+}
+
+void describe(Fit& result, const BlockModel& model, const Problem& problem,
+              const model::Measurements& measurements, const StageTwo& two,
+              base::ThreadPool& pool) {
+  const auto rows = static_cast<double>(measurements.rows());
+  const model::Sweep sweep(problem.model(), measurements, pool);
+  const Covariances covariances = find_covariances(problem, sweep, two);
+  fill_parameters(result, model, problem, two, covariances);
+
+  // With the columns of parameters at a bound: a bound may hold what the record leaves open.
+  std::vector<std::string> names;
+  for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
+  const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
+  result.identifiability = judge(covariances.tangent, names, scale, two.at_bound);
+
+  const Index n_1 = problem.model().tables().n_1();
+  const Index n_2 = problem.model().tables().n_2();
+  // The factors' rows are weighted by a loss.
+  const VectorXd sums = problem.options().loss == Loss::squares
+                            ? squares(two.factors)
+                            : sweep.squared_residuals(two.x.head(n_1), two.x.tail(n_2));
+  const VectorXd rmse = (sums / rows).cwiseSqrt();
+  result.rmse = by_output(model.tables(), rmse);
+  result.noise = by_output(model.tables(), two.noise);
+  result.cost = find_cost(problem, two, rows);
+  result.method = two.method;
+  result.iterations = two.iterations;
+  result.noise_iterations = two.noise_iterations;
+  result.rows = measurements.rows();
+  result.message = two.message + result.identifiability.message();
+  if (!result.message.empty() && !result.message.ends_with("; ")) result.message += "; ";
+  result.message += judge_knowledge(result.parameters, problem.options());
+  if (result.message.ends_with("; ")) result.message.resize(result.message.size() - 2);
+  result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
+                  : two.converged                              ? FitStatus::converged
+                                                               : FitStatus::not_converged;
+}
+
+}  // namespace
+
+Fit fit(const BlockModel& model, const Record& record, const FitOptions& options) {
+  const Problem problem(model, options);
+  base::ThreadPool pool(options.threads);
+  const Record second = record.select(options.stage_two_segments);
+  const model::Measurements measurements(problem.model(), second);
+  problem.check_measurements(measurements.rows());
+  check_model(problem.model(), second, options.start);
+
+  Fit result;
+  result.stage_one = run_stage_one(problem, record, pool);
+  const StageTwo two = run_stage_two(problem, measurements, result.stage_one, pool);
+  describe(result, model, problem, measurements, two, pool);
+  return result;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/minima.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/refine.hpp"
+#include "numerics/basins.hpp"
+#include "sepcal/identifiability.hpp"
+
+namespace sepcal::estimation {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The smallest rise of the sum of squares that a record can tell from none: one standard error.
+double noticeable_rise(double square, double measurements, double parameters) {
+  return square / std::max(1.0, measurements - parameters);
+}
+
+/// Whether no point between a and b lies noticeably higher than both.
+bool joined(Objective& objective, const Descent& a, const Descent& b, const VectorXd& widths,
+            double rise) {
+  constexpr double same_point = 1e-6;  // of the widths: not worth a pass over the record
+  if ((a.x - b.x).cwiseQuotient(widths).norm() < same_point) return true;
+  // Denser towards the ends: a minimum at the edge of the box may lie behind a near, low rise.
+  for (const double t : {0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98}) {
+    const double between = objective.square(a.x + t * (b.x - a.x));
+    if (!(between <= std::max(a.square, b.square) + rise)) return false;
+  }
+  return true;
+}
+
+/// The gradient of the sum of squares (half of it) without what bounds hold, in units of the
+/// widths.
+double slope(Objective& objective, const VectorXd& x, const numerics::Box& box,
+             const VectorXd& widths) {
+  VectorXd residual;
+  MatrixXd jacobian;
+  if (!objective.linearise(x, residual, jacobian)) return infinity;
+  VectorXd gradient = widths.cwiseProduct(jacobian.transpose() * residual);
+  for (Index k = 0; k < x.size(); ++k) {
+    const bool held =
+        (x[k] <= box.lower[k] && gradient[k] > 0) || (x[k] >= box.upper[k] && gradient[k] < 0);
+    if (held) gradient[k] = 0.0;
+  }
+  return gradient.stableNorm();
+}
+
+/// Refined, unless that leads away: where residuals are as large as at a minor minimum, steps that
+/// take the curvature from the Jacobian alone may grow before they are seen to.
+VectorXd last_digits(Objective& objective, const VectorXd& x, const numerics::Box& box,
+                     const VectorXd& widths) {
+  const VectorXd refined = refine(objective, x, box, widths).x;
+  return slope(objective, refined, box, widths) <= slope(objective, x, box, widths) ? refined : x;
+}
+
+}  // namespace
+
+VectorXd half_widths(const Problem& problem) {
+  const std::vector<Variable> parameters = problem.nonlinear();
+  VectorXd widths(static_cast<Index>(parameters.size()));
+  for (Index k = 0; k < widths.size(); ++k) {
+    const Variable& parameter = parameters[static_cast<std::size_t>(k)];
+    widths[k] = 0.5 * (parameter.upper - parameter.lower);
+    const auto prior = problem.options().priors.find(parameter.name);
+    if (prior != problem.options().priors.end()) {
+      widths[k] = std::min(widths[k], 2.0 * prior->second.standard_deviation);
+    }
+    if (!std::isfinite(widths[k])) widths[k] = 1.0;
+  }
+  return widths;
+}
+
+std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
+                                 const MatrixXd& samples, const VectorXd& trace_r,
+                                 double measurements, const Descend& descend) {
+  const VectorXd widths = half_widths(problem);
+  const MatrixXd scaled = widths.cwiseInverse().asDiagonal() * samples;
+  std::vector<Descent> minima;
+  std::vector<numerics::Basin> basins =
+      numerics::find_basins(scaled, trace_r.array().log().matrix());  // depth as a ratio
+  basins.resize(std::min(basins.size(), static_cast<std::size_t>(problem.options().descents)));
+  for (const numerics::Basin& basin : basins) {
+    Descent descent = descend(samples.col(basin.lowest));
+    if (!std::isfinite(descent.square)) continue;
+    descent.x = last_digits(objective, descent.x, problem.nonlinear_box(), widths);
+    descent.square = objective.square(descent.x);
+    const auto n = static_cast<double>(problem.parameters().size());
+    const auto same = std::ranges::find_if(minima, [&](const Descent& other) {
+      const double lower = std::min(descent.square, other.square);
+      return joined(objective, descent, other, widths, noticeable_rise(lower, measurements, n));
+    });
+    if (same == minima.end()) {
+      minima.push_back(std::move(descent));
+    } else if (descent.square < same->square) {
+      *same = std::move(descent);
+    }
+  }
+  std::ranges::stable_sort(minima, {}, &Descent::square);
+  return minima;
+}
+
+std::vector<std::string> describe_flat_directions(Objective& objective, const Problem& problem,
+                                                  const VectorXd& xi2, double measurements) {
+  VectorXd residual;
+  MatrixXd jacobian;
+  if (xi2.size() == 0 || !objective.linearise(xi2, residual, jacobian)) return {};
+  const double rise = noticeable_rise(objective.square(xi2), measurements,
+                                      static_cast<double>(problem.parameters().size()));
+  const VectorXd widths = half_widths(problem);
+  const Eigen::JacobiSVD<MatrixXd> svd(jacobian * widths.asDiagonal(), Eigen::ComputeFullV);
+  const auto& singular = svd.singularValues();
+  const double epsilon = 1e-13 * singular[0];
+  const auto flat = (singular.array() <= std::max(2.0 * std::sqrt(rise), epsilon)).count();
+  const MatrixXd directions = sparsify(svd.matrixV().rightCols(flat));
+  std::vector<std::string> names;
+  for (const Variable& parameter : problem.nonlinear()) names.push_back(parameter.name);
+  std::vector<std::string> texts;
+  for (Index i = 0; i < flat; ++i) {
+    VectorXd direction = directions.col(i);
+    for (double& share : direction) share = std::abs(share) > 0.1 ? share : 0.0;
+    texts.push_back(combination_text(widths.cwiseProduct(direction), names));
+  }
+  return texts;
+}
+
+}  // namespace sepcal::estimation

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Step 4: the distinct local minima of the profile cost, by descents from the deepest basins of its
+// samples, and the directions along which the lowest one is a valley and no point.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "estimation/minimise.hpp"
+#include "estimation/objective.hpp"
+#include "estimation/problem.hpp"
+
+namespace sepcal::estimation {
+
+/// Lengths by which xi2 is measured (n_2): half the width of the bounds, or two standard deviations
+/// of an unbounded parameter's prior.
+Eigen::VectorXd half_widths(const Problem& problem);
+
+/// From a start (n_2) to where the cost is lowest nearby, within the bounds.
+using Descend = std::function<Descent(const Eigen::VectorXd& start)>;
+
+/// Lowest first; options.descents of them at most. `samples` is n_2 x S, `trace_r` (S) is Tr[R]
+/// there, infinite where no descent may begin. Ends of descents are refined, and two of them are
+/// one where the record can't tell them apart. `measurements`: rows x outputs.
+std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
+                                 const Eigen::MatrixXd& samples, const Eigen::VectorXd& trace_r,
+                                 double measurements, const Descend& descend);
+
+/// Directions, in words, along which a half width from xi2 moves the fit by less than two standard
+/// errors.
+std::vector<std::string> describe_flat_directions(Objective& objective, const Problem& problem,
+                                                  const Eigen::VectorXd& xi2, double measurements);
+
+}  // namespace sepcal::estimation

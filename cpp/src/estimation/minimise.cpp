@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/minimise.hpp"
+
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <glog/logging.h>
+
+#include <cmath>
+
+#include "sepcal/solver_log.hpp"
+
+namespace sepcal {
+
+using namespace estimation;  // this room's own
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Ceres asks a trial point for its cost alone: the record's norm then stands in one residual, and
+/// no factor is built.
+class CompressedCost final : public ceres::CostFunction {
+ public:
+  explicit CompressedCost(Objective& objective) : objective_(objective) {
+    set_num_residuals(objective.residuals());
+    mutable_parameter_block_sizes()->push_back(objective.parameters());
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const VectorXd x = Eigen::Map<const VectorXd>(parameters[0], objective_.parameters());
+    Eigen::Map<VectorXd> residual(residuals, objective_.residuals());
+    if (jacobians == nullptr || jacobians[0] == nullptr) {
+      const double square = objective_.square(x);
+      residual.setZero();
+      residual[0] = std::sqrt(square);
+      return std::isfinite(square);
+    }
+    VectorXd r;
+    MatrixXd jacobian;
+    if (!objective_.linearise(x, r, jacobian)) return false;
+    residual = r;
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(jacobians[0], jacobian.rows(), jacobian.cols()) = jacobian;
+    return true;
+  }
+
+ private:
+  Objective& objective_;
+};
+
+void set_bounds(ceres::Problem& problem, double* x, const numerics::Box& box) {
+  for (Index k = 0; k < box.lower.size(); ++k) {
+    const int index = static_cast<int>(k);
+    if (std::isfinite(box.lower[k])) problem.SetParameterLowerBound(x, index, box.lower[k]);
+    if (std::isfinite(box.upper[k])) problem.SetParameterUpperBound(x, index, box.upper[k]);
+  }
+}
+
+}  // namespace
+
+Descent estimation::minimise(Objective& objective, const VectorXd& start, const numerics::Box& box,
+                             const DescentOptions& options) {
+  Descent descent;
+  descent.x = box.clip(start);
+  if (objective.parameters() == 0) {
+    descent.square = objective.square(descent.x);
+    descent.converged = std::isfinite(descent.square);
+    return descent;
+  }
+
+  CompressedCost cost(objective);
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  problem.AddResidualBlock(&cost, nullptr, descent.x.data());
+  set_bounds(problem, descent.x.data(), box);
+
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.logging_type = ceres::SILENT;
+  solver.num_threads = 1;
+  solver.max_num_iterations = options.iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.initial_trust_region_radius = options.first_radius;
+  solver.gradient_tolerance = 0.0;
+  solver.parameter_tolerance = 1e-14;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+
+  descent.square = 2.0 * summary.final_cost;
+  descent.converged = summary.termination_type == ceres::CONVERGENCE;
+  descent.iterations = static_cast<int>(summary.iterations.size());
+  return descent;
+}
+
+void silence_solver_log() { FLAGS_minloglevel = google::GLOG_FATAL; }
+
+}  // namespace sepcal

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Seeded draws of xi2 within its bounds (Sun & Gebre-Egziabher, Step 2). All draws are made up
+// front and in order: the same seed gives the same samples on any machine and any number of
+// threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sepcal/options.hpp"
+
+namespace sepcal::estimation {
+
+/// n_2 x S. `parameters` are the nonlinear ones with their bounds, in order. A parameter with a
+/// prior is drawn from the normal distribution truncated to its bounds. Throws Error for a
+/// parameter that has neither finite bounds nor a prior, or a prior that its bounds leave no room
+/// for.
+Eigen::MatrixXd draw_samples(const std::vector<Variable>& parameters, const FitOptions& options);
+
+/// The point that stage two starts from where nothing was sampled (n_2): options.start, else the
+/// prior's mean, else the middle of the bounds, or the bound or zero that is nearest where one is
+/// infinite.
+Eigen::VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions& options);
+
+}  // namespace sepcal::estimation

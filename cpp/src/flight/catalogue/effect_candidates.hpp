@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What could be missing from a probe's model on a flight, by name.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/flight/flight.hpp"
+#include "sepcal/named_effects.hpp"
+
+namespace sepcal::catalogue {
+
+/// Every effect of the kit and every port with every channel of the record that the flight logs
+/// under its own header, with time and with the state functions; smooth and curved ones where
+/// physics is seldom straight.
+std::vector<std::string> list_candidates(const EffectKit& kit, const Record& record,
+                                         const Flight& flight);
+
+/// Channels of effects that the flight doesn't log: "throttle".
+std::vector<std::string> list_missing_channels(std::string_view probe, const Flight& flight);
+
+/// What an effect means, in plain words without its size: "the wind changes with altitude_m".
+std::string describe_effect(const std::string& name);
+
+}  // namespace sepcal::catalogue

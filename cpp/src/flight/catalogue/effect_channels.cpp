@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/catalogue/effect_channels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "flight/catalogue/effect_makers.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/units.hpp"
+
+namespace sepcal::catalogue {
+namespace {
+
+constexpr double gas_constant_of_air = 287.05287;  // [J/(kg K)], ISO 2533
+
+/// Quantities that effects read, under the names that a record gives them.
+struct State {
+  std::string_view name;    // in the record
+  std::string_view header;  // its column's base name
+  UnitKind kind;
+};
+constexpr std::array states{
+    State{"time", "time", UnitKind::time},  State{"p", "p", UnitKind::rate},
+    State{"q", "q", UnitKind::rate},        State{"r", "r", UnitKind::rate},
+    State{"ps", "ps", UnitKind::pressure},  State{"dp", "dp", UnitKind::pressure},
+    State{"rho", "rho", UnitKind::density}, State{"temperature", "temp", UnitKind::temperature}};
+
+const State& find_state(std::string_view name) {
+  return *std::ranges::find(states, name, &State::name);
+}
+
+/// The column of a state quantity in the unit used inside; empty where it isn't logged.
+std::vector<double> state_column(const Flight& flight, const State& state) {
+  for (const Flight::Column& column : flight.columns()) {
+    const std::string_view header = column.header;
+    const std::size_t split = header.rfind('_');
+    if (split == std::string_view::npos || header.substr(0, split) != state.header) continue;
+    const Unit* unit = find_unit(state.kind, header.substr(split + 1));
+    if (unit == nullptr) continue;
+    std::vector<double> values(column.values.size());
+    std::ranges::transform(column.values, values.begin(),
+                           [unit](double value) { return unit->convert(value); });
+    return values;
+  }
+  return {};
+}
+
+/// A flow angle as read [rad]; empty where the probe has none.
+std::vector<double> flow_angle(const Record& record, const Probe& probe, bool alpha) {
+  const auto settings = probe.settings();
+  const auto k = settings.find(alpha ? "k_alpha" : "k_beta");
+  if (k == settings.end()) return {};
+  const auto dp = record.column(alpha ? "dpa" : "dpb");
+  const auto pt = record.column("pt");
+  const auto ps = record.column("ps");
+  std::vector<double> angle(dp.size());
+  for (std::size_t row = 0; row < angle.size(); ++row) {
+    angle[row] = dp[row] / (k->second.front() * (pt[row] - ps[row]));
+  }
+  return angle;
+}
+
+/// Density from static pressure and temperature; empty where one of them isn't logged.
+std::vector<double> computed_density(const Flight& flight) {
+  std::vector<double> rho = state_column(flight, find_state("ps"));
+  const std::vector<double> temperature = state_column(flight, find_state("temperature"));
+  if (temperature.empty()) return {};
+  for (std::size_t row = 0; row < rho.size(); ++row) {
+    rho[row] /= gas_constant_of_air * temperature[row];
+  }
+  return rho;
+}
+
+/// The channel's values; empty where there is no way to them.
+std::vector<double> find_values(const Record& record, const Flight& flight, const Probe& probe,
+                                const std::string& channel) {
+  if (channel == "alpha" || channel == "beta") {
+    return flow_angle(record, probe, channel == "alpha");
+  }
+  if (std::ranges::find(states, channel, &State::name) == states.end()) return {};
+  std::vector<double> values = state_column(flight, find_state(channel));
+  return values.empty() && channel == "rho" ? computed_density(flight) : values;
+}
+
+bool add_channel(Record& record, const Flight& flight, const Probe& probe,
+                 const std::string& channel) {
+  if (record.has(channel)) return true;
+  std::vector<double> values = find_values(record, flight, probe, channel);
+  if (!values.empty()) {
+    record.add(channel, std::move(values));
+    return true;
+  }
+  const Flight::Column* column = flight.find(channel);
+  if (column == nullptr) return false;
+  record.view(channel, column->values, column->owner);
+  return true;
+}
+
+/// What an effect reads beside the readings themselves.
+std::vector<std::string> channels_of(const EffectName& name) {
+  static const std::map<std::string, std::vector<std::string>> own{
+      {"upwash", {"q", "rho"}},
+      {"sidewash", {"p", "rho"}},
+      {"density_error", {"temperature"}},
+      {"compressibility", {"ps", "rho"}},
+      {"bias_step", {"time"}},
+      {"warm_up", {"time"}},
+      {"icing_ramp", {"time"}},
+      {"water_blockage", {"time"}},
+      {"time_offset", {"time"}},
+      {"pneumatic_lag", {"time"}},
+      {"sensor_lag", {"time"}},
+      {"eddy_currents", {"time"}}};
+  const auto found = own.find(name.text);
+  std::vector<std::string> channels;
+  if (found != own.end()) channels = found->second;
+  if (!name.base.empty()) channels.push_back(name.base == "maneuver" ? "time" : name.base);
+  if (name.shape == EffectName::Shape::delay) channels.emplace_back("time");
+  if (name.port == "pressure_offset") channels.emplace_back("rho");
+  return channels;
+}
+
+}  // namespace
+
+bool acts_on_the_world(const EffectName& name) {
+  static const std::set<std::string> world{"wind",           "heading_bias",      "lever_arm",
+                                           "mounting_error", "field_declination", "attitude_bias"};
+  return world.contains(name.port);
+}
+
+std::vector<std::string> add_channels(Record& record, const Flight& flight, const Probe& probe,
+                                      const EffectName& effect) {
+  std::vector<std::string> channels = channels_of(effect);
+  for (const std::string& channel : channels) {
+    if (add_channel(record, flight, probe, channel)) continue;
+    throw Error(fmt::format("{}: the calibration's effect {} needs {}, which is not logged; {}",
+                            flight.name(), effect.text, channel, flight.list_columns()));
+  }
+  if (effect.text != "eddy_currents") return channels;
+  Record rates;  // a turning field is best known where all three are logged
+  for (const char* rate : {"p", "q", "r"}) {
+    if (!add_channel(rates, flight, probe, rate)) return channels;
+  }
+  if (!is_logged(rates, "p") && !is_logged(rates, "q") && !is_logged(rates, "r")) return channels;
+  for (const char* rate : {"p", "q", "r"}) {
+    add_channel(record, flight, probe, rate);
+    channels.emplace_back(rate);
+  }
+  return channels;
+}
+
+void add_all_channels(Record& record, const Flight& flight) {
+  for (const State& state : states) {
+    if (record.has(state.name)) continue;
+    std::vector<double> values = state_column(flight, state);
+    if (!values.empty()) record.add(std::string(state.name), std::move(values));
+  }
+  for (const Flight::Column& column : flight.columns()) {
+    if (!record.has(column.header)) record.view(column.header, column.values, column.owner);
+  }
+}
+
+}  // namespace sepcal::catalogue

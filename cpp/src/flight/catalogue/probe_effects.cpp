@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/probe_effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/catalogue/air_data_effects.hpp"
+#include "flight/catalogue/magnetic_effects.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace catalogue;  // this room's own
+
+namespace {
+
+EffectKit catalogued(std::string_view probe) {
+  if (probe == "five-hole") return five_hole_effects();
+  if (probe == "pitot-static") return pitot_static_effects();
+  if (probe == "magnetometer") return magnetometer_effects();
+  if (probe == "magnetometer-norm") return attitude_independent_effects();
+  throw Error(fmt::format("there is no model '{}'", probe));
+}
+
+/// Throws Error for a driver that the log has and the record does not, as a cell is no number.
+void check_driver(const EffectSetting& setting, const Flight& flight, const Record& record) {
+  const EffectName name = parse_effect_name(setting.name);
+  const Flight::Column* column = name.base.empty() ? nullptr : flight.find(name.base);
+  if (column == nullptr || record.has(name.base)) return;
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  const auto bad = std::ranges::find_if_not(column->values, is_number);
+  if (bad == column->values.end()) return;
+  const auto row = static_cast<std::size_t>(bad - column->values.begin());
+  throw Error(
+      fmt::format("effect {}: column '{}' holds no number at {}; fill it in or delete the row",
+                  setting.name, column->header, flight.locate(row)));
+}
+
+}  // namespace
+
+EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
+  EffectKit kit = catalogued(probe);
+  for (const auto& [name, maker] : own) kit.own[name] = maker;
+  return kit;
+}
+
+std::shared_ptr<const BlockModel> model_of(const Probe& probe) {
+  return {std::shared_ptr<const BlockModel>(), &probe.model()};
+}
+
+EffectiveFlight with_effects(const Probe& probe, const Record& record,
+                             std::vector<EffectSetting>& settings, const OwnEffects& own,
+                             const std::map<std::string, Interval>& bounds) {
+  EffectiveFlight result;
+  Record& extended = result.prepared.record = record;
+  const auto model = model_of(probe);
+  result.effects = make_effects(effect_kit(probe.name(), own), *model, settings, extended);
+  result.model = compose(model, result.effects, extended);
+  extended = without_edges(std::move(extended), reach(result.effects, bounds));
+  return result;
+}
+
+EffectiveFlight prepare_with_effects(const Probe& probe, const Flight& flight,
+                                     std::vector<EffectSetting>& settings, const OwnEffects& own,
+                                     bool drop_invalid,
+                                     const std::map<std::string, Interval>& bounds) {
+  ProbeRecord prepared = probe.prepare(flight, drop_invalid);
+  try {
+    for (const EffectSetting& setting : settings) check_driver(setting, flight, prepared.record);
+    EffectiveFlight result = with_effects(probe, prepared.record, settings, own, bounds);
+    prepared.record = std::move(result.prepared.record);
+    result.prepared = std::move(prepared);
+    return result;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", flight.name(), error.what()));
+  }
+}
+
+}  // namespace sepcal

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a quantity's column may be headed, and which header of a log comes near: "Roll_Deg" for
+// roll_deg.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/flight/units.hpp"
+
+namespace sepcal::files {
+
+/// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg.
+std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind);
+
+/// "column 'roll_rad' is missing (roll_deg would do as well)", and the one of `others`, a log's
+/// headers without the quantities found, that differs from one of these in case and punctuation or
+/// by a slip of a letter or two.
+std::string describe_missing(std::string_view quantity, UnitKind kind,
+                             std::span<const std::string> others);
+
+}  // namespace sepcal::files

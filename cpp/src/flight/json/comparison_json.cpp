@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/json/findings_json.hpp"
+#include "sepcal/flight/comparison.hpp"
+
+namespace sepcal {
+
+using namespace json;  // this room's own
+
+std::string to_json(const Comparison& comparison) {
+  Json root;
+  root["schema_version"] = schema_version;
+  root["model"] = comparison.model;
+  root["inputs"] = {{"file", comparison.flight.file},
+                    {"sha256", comparison.flight.sha256},
+                    {"rows", comparison.flight.rows},
+                    {"rows_used", comparison.flight.rows_used}};
+  root["status"] = to_string(comparison.status);
+  root["message"] = comparison.message;
+  root["rmse"] = Json::object();
+  root["residual"] = Json::object();
+  for (const Misfit& misfit : comparison.overall) {
+    root["rmse"][misfit.output] = number(misfit.rmse);
+    root["residual"][misfit.output] = {{"lag_one", number(misfit.lag_one)},
+                                       {"mean", number(misfit.mean)}};
+  }
+  root["where"] = Json::array();
+  for (const Misfit& misfit : comparison.where) {
+    root["where"].push_back(write_misfit(misfit));
+  }
+  root["channels"] = Json::array();
+  for (const ChannelMisfit& channel : comparison.channels) {
+    root["channels"].push_back({{"driver", channel.driver},
+                                {"output", channel.output},
+                                {"share_line", number(channel.share_line)},
+                                {"share_smooth", number(channel.share_smooth)},
+                                {"slope", number(channel.slope)},
+                                {"slope_error", number(channel.slope_error)},
+                                {"unit", channel.unit}});
+  }
+  root["windows"] = Json::array();
+  for (const Window& window : comparison.windows) {
+    root["windows"].push_back({{"first_s", number(window.first_s)},
+                               {"last_s", number(window.last_s)},
+                               {"rows", window.rows},
+                               {"rmse", by_name(window.rmse)},
+                               {"mean", by_name(window.mean)}});
+  }
+  return text_of(root);
+}
+
+}  // namespace sepcal

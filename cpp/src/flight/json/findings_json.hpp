@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a calibration found beside its parameters, as JSON: derived quantities, the history of added
+// effects, combinations that are not or hardly determined. Readers throw as nlohmann::json does.
+#pragma once
+
+#include <vector>
+
+#include "flight/json/output_values.hpp"
+#include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/comparison.hpp"
+
+namespace sepcal::json {
+
+/// {segment, output, rows, rmse, mean, lag_one}
+Json write_misfit(const Misfit& misfit);
+
+Json write_derived(const std::vector<Derived>& derived);
+std::vector<Derived> read_derived(const Json& object);
+
+Json write_history(const std::vector<HistoryEntry>& history);
+std::vector<HistoryEntry> read_history(const Json& list);
+
+Json write_combinations(const std::vector<Combination>& combinations);
+std::vector<Combination> read_combinations(const Json& list);
+
+}  // namespace sepcal::json

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/probes/ellipsoid.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "sepcal/triangular_factor.hpp"
+
+namespace sepcal::probes {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double largest_condition = 1e8;
+
+/// Coordinates about the middle of the points, in half-widths of their box: of order one.
+struct Scaling {
+  Vector3d middle;
+  double length = 1.0;
+
+  explicit Scaling(const Points& points) {
+    const PointBox box = box_of(points);
+    middle = box.middle;
+    const double widest = box.half_width.maxCoeff();
+    if (widest > 0) length = widest;
+  }
+  Vector3d operator()(const Points& points, std::size_t i) const {
+    return (Vector3d(points[0][i], points[1][i], points[2][i]) - middle) / length;
+  }
+};
+
+/// Minimises |regressors x + target| over the points, row_of(x) giving [regressors, target] of a
+/// point. Nothing where x is left open.
+template <int n, class RowOf>
+std::optional<Eigen::Vector<double, n>> regress(const Points& points, const Scaling& scaling,
+                                                const RowOf& row_of) {
+  constexpr std::size_t block = 256;
+  TriangularFactor factor(n + 1);
+  MatrixXd rows;
+  for (std::size_t first = 0; first < points[0].size(); first += block) {
+    const std::size_t count = std::min(block, points[0].size() - first);
+    rows.resize(static_cast<Index>(count), n + 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows.row(static_cast<Index>(i)) = row_of(scaling(points, first + i));
+    }
+    factor.absorb(rows);
+  }
+  if (!factor.all_finite() || !(factor.condition(n) < largest_condition)) return std::nullopt;
+  const MatrixXd& T = factor.matrix();
+  return -T.topLeftCorner<n, n>().template triangularView<Eigen::Upper>().solve(
+      T.col(n).template head<n>());
+}
+
+Matrix3d symmetric(const Vector3d& diagonal, const Vector3d& off_diagonal) {
+  Matrix3d matrix;
+  matrix << diagonal[0], off_diagonal[0], off_diagonal[1],  //
+      off_diagonal[0], diagonal[1], off_diagonal[2],        //
+      off_diagonal[1], off_diagonal[2], diagonal[2];
+  return matrix;
+}
+
+Eigen::Vector<double, 6> entries(const Matrix3d& S) {
+  return {S(0, 0), S(1, 1), S(2, 2), S(0, 1), S(0, 2), S(1, 2)};
+}
+
+}  // namespace
+
+double Ellipsoid::radius() const { return std::pow(shape.determinant(), 1.0 / 6.0); }
+
+double Ellipsoid::elongation() const {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(shape, Eigen::EigenvaluesOnly);
+  return std::sqrt(axes.eigenvalues()[2] / axes.eigenvalues()[0]);
+}
+
+PointBox box_of(const Points& points) {
+  PointBox box;
+  for (Index axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::ranges::minmax(points[static_cast<std::size_t>(axis)]);
+    box.middle[axis] = 0.5 * (low + high);
+    box.half_width[axis] = 0.5 * (high - low);
+  }
+  return box;
+}
+
+std::optional<Ellipsoid> fit_ellipsoid(const Points& points) {
+  const Scaling scaling(points);
+  const auto x = regress<9>(points, scaling, [](const Vector3d& p) {
+    return Eigen::RowVector<double, 10>{{p[0] * p[0] - p[2] * p[2], p[1] * p[1] - p[2] * p[2],
+                                         2 * p[0] * p[1], 2 * p[0] * p[2], 2 * p[1] * p[2],
+                                         2 * p[0], 2 * p[1], 2 * p[2], 1.0, p.squaredNorm()}};
+  });
+  if (!x) return std::nullopt;
+  const Vector3d a(1 + (*x)[0], 1 + (*x)[1], 1 - (*x)[0] - (*x)[1]);
+  const Matrix3d Q = symmetric(a, x->segment<3>(2));
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(Q, Eigen::EigenvaluesOnly);
+  if (!(axes.eigenvalues()[0] > 1e-6 * axes.eigenvalues()[2])) return std::nullopt;
+  const Matrix3d Q_inverse = Q.inverse();
+  const Vector3d centre = -Q_inverse * x->segment<3>(5);
+  const double square = centre.dot(Q * centre) - (*x)[8];
+  if (!(square > 0)) return std::nullopt;
+  return Ellipsoid{scaling.middle + scaling.length * centre,
+                   scaling.length * scaling.length * square * Q_inverse};
+}
+
+std::optional<Sphere> fit_sphere(const Points& points) {
+  const Scaling scaling(points);
+  const auto x = regress<4>(points, scaling, [](const Vector3d& p) {
+    return Eigen::RowVector<double, 5>{{2 * p[0], 2 * p[1], 2 * p[2], 1.0, p.squaredNorm()}};
+  });
+  if (!x) return std::nullopt;
+  const Vector3d centre = -x->head<3>();
+  const double square = centre.squaredNorm() - (*x)[3];
+  if (!(square > 0)) return std::nullopt;
+  return Sphere{scaling.middle + scaling.length * centre, scaling.length * std::sqrt(square)};
+}
+
+Coverage judge_coverage(const Points& points, const Ellipsoid& ellipsoid) {
+  const Matrix3d root = Eigen::LLT<Matrix3d>(ellipsoid.shape).matrixL();
+  const auto rows = static_cast<double>(points[0].size());
+  double square = 0.0;
+  Vector3d sum = Vector3d::Zero();
+  Matrix3d moments = Matrix3d::Zero();
+  for (std::size_t i = 0; i < points[0].size(); ++i) {
+    const Vector3d m(points[0][i], points[1][i], points[2][i]);
+    const Vector3d y = root.triangularView<Eigen::Lower>().solve(m - ellipsoid.centre);
+    const double length = y.norm();
+    square += (length - 1.0) * (length - 1.0);
+    sum += y / length;
+    moments += y * y.transpose() / (length * length);
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(moments / rows, Eigen::EigenvaluesOnly);
+  return {std::sqrt(square / rows), sum.norm() / rows, axes.eigenvalues()[0]};
+}
+
+std::optional<SoftIronAndScale> split_shape(const Matrix3d& shape) {
+  constexpr int most_steps = 50;
+  constexpr double small_step = 1e-12;  // of the largest unknown, which are of order one
+  const double unit = shape.diagonal().mean();
+  const Matrix3d S = shape / unit;
+  Vector3d d = S.diagonal();  // scale factors squared
+  Vector3d alpha = Vector3d::Zero();
+  for (int step = 0; step < most_steps; ++step) {
+    const Matrix3d A = symmetric(Vector3d::Ones(), alpha);
+    const Matrix3d AD = A * d.asDiagonal();
+    Eigen::Matrix<double, 6, 6> jacobian;
+    for (Index k = 0; k < 3; ++k) {
+      jacobian.col(k) = entries(A.col(k) * A.col(k).transpose());
+      const Matrix3d by_alpha = symmetric(Vector3d::Zero(), Vector3d::Unit(k)) * AD.transpose();
+      jacobian.col(3 + k) = entries(by_alpha + by_alpha.transpose());
+    }
+    const Eigen::Vector<double, 6> change =
+        jacobian.fullPivLu().solve(entries(S - AD * A.transpose()));
+    if (!change.allFinite()) return std::nullopt;
+    d += change.head<3>();
+    alpha += change.tail<3>();
+    if (change.cwiseAbs().maxCoeff() > small_step * std::max(1.0, d.maxCoeff())) continue;
+    if (!(d.minCoeff() > 0)) return std::nullopt;
+    return SoftIronAndScale{(unit * d).cwiseSqrt(), alpha};
+  }
+  return std::nullopt;
+}
+
+}  // namespace sepcal::probes

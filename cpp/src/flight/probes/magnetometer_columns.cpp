@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The columns of a magnetometer: its three readings and the true field in body axes, h = C_n^b b,
+// where C_n^b is the transpose of the 3-2-1 Euler sequence from body to north-east-down.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "flight/files/option_spelling.hpp"
+#include "flight/probes/record_builder.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/probe_columns.hpp"
+
+namespace sepcal {
+
+using namespace probes;  // this room's own
+
+namespace {
+
+constexpr std::array quantities{
+    ProbeQuantity{"time", UnitKind::time},   ProbeQuantity{"mx", UnitKind::field},
+    ProbeQuantity{"my", UnitKind::field},    ProbeQuantity{"mz", UnitKind::field},
+    ProbeQuantity{"hx", UnitKind::field},    ProbeQuantity{"hy", UnitKind::field},
+    ProbeQuantity{"hz", UnitKind::field},    ProbeQuantity{"roll", UnitKind::angle},
+    ProbeQuantity{"pitch", UnitKind::angle}, ProbeQuantity{"yaw", UnitKind::angle},
+    ProbeQuantity{"p", UnitKind::rate},      ProbeQuantity{"q", UnitKind::rate},
+    ProbeQuantity{"r", UnitKind::rate},      ProbeQuantity{"bn", UnitKind::field},
+    ProbeQuantity{"be", UnitKind::field},    ProbeQuantity{"bd", UnitKind::field},
+};
+
+using Vector = std::array<double, 3>;
+
+/// The components of the navigation-frame vector `b` in body axes: turn by yaw about down, by pitch
+/// about the new right, by roll about the new forward axis. Angles in rad.
+Vector rotate_to_body(const Vector& b, double roll, double pitch, double yaw) {
+  const auto [north, east, down] = b;
+  const double ahead = std::cos(yaw) * north + std::sin(yaw) * east;
+  const double abeam = std::cos(yaw) * east - std::sin(yaw) * north;
+  const double below = std::cos(pitch) * down + std::sin(pitch) * ahead;
+  return {std::cos(pitch) * ahead - std::sin(pitch) * down,
+          std::cos(roll) * abeam + std::sin(roll) * below,
+          std::cos(roll) * below - std::sin(roll) * abeam};
+}
+
+/// Adds hx, hy, hz from the attitude and a field in the navigation frame, row by row.
+template <class Field>
+void compute_true_field(RecordBuilder& builder, const Field& field_at) {
+  constexpr std::array<const char*, 3> names{"hx", "hy", "hz"};
+  for (std::size_t axis = 0; axis < names.size(); ++axis) {
+    builder.compute(names[axis], [=, roll = builder.logged("roll"), pitch = builder.logged("pitch"),
+                                  yaw = builder.logged("yaw")](std::size_t row) {
+      return rotate_to_body(field_at(row), roll.at(row), pitch.at(row), yaw.at(row))[axis];
+    });
+  }
+}
+
+void check_field(const Vector& field) {
+  if (!std::ranges::all_of(field, [](double component) { return std::isfinite(component); })) {
+    throw Error("the field given is not three finite numbers: north, east, down in uT");
+  }
+  if (std::ranges::all_of(field, [](double component) { return component == 0; })) {
+    throw Error("the field given has no strength; give the Earth's: north, east, down in uT");
+  }
+}
+
+void use_given_field(RecordBuilder& builder, const Vector& field) {
+  builder.need({"roll", "pitch", "yaw"});
+  if (builder.has({"hx", "hy", "hz"})) builder.note("the field given replaces hx, hy and hz");
+  if (builder.has({"bn", "be", "bd"})) builder.note("the field given replaces bn, be and bd");
+  constexpr std::array<const char*, 3> names{"bn", "be", "bd"};
+  for (std::size_t axis = 0; axis < names.size(); ++axis) {
+    builder.compute(names[axis], [value = field[axis]](std::size_t) { return value; });
+  }
+  compute_true_field(builder, [field](std::size_t) { return field; });
+}
+
+void use_logged_field(RecordBuilder& builder) {
+  builder.need({"roll", "pitch", "yaw", "bn", "be", "bd"});
+  compute_true_field(
+      builder, [bn = builder.logged("bn"), be = builder.logged("be"), bd = builder.logged("bd")](
+                   std::size_t row) { return Vector{bn.at(row), be.at(row), bd.at(row)}; });
+}
+
+}  // namespace
+
+ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
+  if (options.field) check_field(*options.field);
+  RecordBuilder builder(flight, quantities, options.drop_invalid);
+  builder.need({"time", "mx", "my", "mz"});
+  const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
+  if (options.field) {
+    use_given_field(builder, *options.field);
+  } else if (true_field_logged) {
+    builder.need({"hx", "hy", "hz"});
+  } else if (builder.has({"roll", "pitch", "yaw", "bn", "be", "bd"})) {
+    use_logged_field(builder);
+  } else {
+    throw Error(
+        fmt::format("{}: the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, "
+                    "pitch_rad, yaw_rad with bn_ut, be_ut, bd_ut or {} N,E,D, or give {} alone; {}",
+                    flight.name(), files::spell_option("field"),
+                    files::spell_option("field_strength"), flight.list_columns()));
+  }
+  builder.keep_valid();
+  builder.check_time();
+  builder.offer({"p", "q", "r"});
+  if (true_field_logged) {
+    builder.offer({"roll", "pitch", "yaw"});
+    builder.offer({"bn", "be", "bd"});
+  }
+  return builder.finish();
+}
+
+ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid) {
+  RecordBuilder builder(flight, quantities, drop_invalid);
+  builder.need({"time", "mx", "my", "mz"});
+  builder.keep_valid();
+  builder.check_time();
+  builder.compute("field", [](std::size_t) { return 0.0; });
+  builder.offer({"p", "q", "r"});
+  return builder.finish();
+}
+
+ProbeReadings read_magnetometer(const Flight& flight, bool drop_invalid) {
+  RecordBuilder builder(flight, quantities, drop_invalid);
+  builder.need({"mx", "my", "mz"});
+  builder.keep_valid();
+  return builder.finish_readings();
+}
+
+}  // namespace sepcal

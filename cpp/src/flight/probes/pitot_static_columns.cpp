@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The columns of a plain Pitot-static tube: ground velocity and the airspeed as read, or the
+// differential pressure that it comes from, v = sqrt(2 dp / rho).
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "flight/probes/air_columns.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/models/pitot_static.hpp"
+
+namespace sepcal {
+
+using namespace probes;  // this room's own
+
+namespace {
+
+constexpr std::array quantities{
+    ProbeQuantity{"time", UnitKind::time},
+    ProbeQuantity{"roll", UnitKind::angle},
+    ProbeQuantity{"pitch", UnitKind::angle},
+    ProbeQuantity{"yaw", UnitKind::angle},
+    ProbeQuantity{"p", UnitKind::rate},
+    ProbeQuantity{"q", UnitKind::rate},
+    ProbeQuantity{"r", UnitKind::rate},
+    ProbeQuantity{"vn", UnitKind::speed},
+    ProbeQuantity{"ve", UnitKind::speed},
+    ProbeQuantity{"vd", UnitKind::speed},
+    ProbeQuantity{"airspeed", UnitKind::speed},
+    ProbeQuantity{"dp", UnitKind::pressure},
+    ProbeQuantity{"ps", UnitKind::pressure},
+    ProbeQuantity{"rho", UnitKind::density},
+    ProbeQuantity{"temp", UnitKind::temperature, true},
+};
+
+/// A logged airspeed goes before one that would have to be computed.
+bool has_airspeed(const RecordBuilder& builder) { return builder.has({"airspeed"}); }
+
+/// The column "airspeed" [m/s] and what it takes: needed, and its rows valid.
+void need_airspeed(RecordBuilder& builder, const Flight& flight) {
+  if (has_airspeed(builder)) {
+    builder.need({"airspeed"});
+    builder.keep_valid();
+    return;
+  }
+  if (!builder.has({"dp"})) {
+    throw Error(
+        fmt::format("{}: the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3 or "
+                    "with temp_k and ps_pa; {}",
+                    flight.name(), flight.list_columns()));
+  }
+  builder.need({"dp"});
+  need_density(builder, flight, "rho_kgpm3, or temp_k and ps_pa, or airspeed_mps instead of dp_pa");
+  builder.keep_valid();
+  keep_positive_density(builder);
+  builder.compute("airspeed",
+                  [dp = builder.logged("dp"), density = density_of(builder)](std::size_t row) {
+                    return std::sqrt(2.0 * dp.at(row) / density(row));
+                  });
+}
+
+/// A tube in still air reads noise about zero, or the zero that its driver makes of it.
+RecordBuilder::RowTest air_moves(const RecordBuilder& builder) {
+  return [reading = builder.logged(has_airspeed(builder) ? "airspeed" : "dp")](std::size_t row) {
+    return reading.at(row) > 0;
+  };
+}
+
+const char* still_air(const RecordBuilder& builder) {
+  return has_airspeed(builder) ? "airspeed is not above zero" : "dp is not above zero";
+}
+
+}  // namespace
+
+ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
+  RecordBuilder builder(flight, quantities, drop_invalid);
+  builder.need({"time", "vn", "ve", "vd"});
+  need_airspeed(builder, flight);
+  builder.check_time();
+  keep_moving_air(builder, flight, air_moves(builder), still_air(builder),
+                  "check the column, or cut the log to the flight");
+  if (has_airspeed(builder)) {
+    offer_density(builder);
+    builder.offer({"dp"});
+  }
+  builder.offer({"ps"});
+  builder.offer({"roll", "pitch", "yaw"});
+  builder.offer({"p", "q", "r"});
+  offer_temperature(builder);
+  return builder.finish();
+}
+
+ProbeReadings read_pitot_static(const Flight& flight, bool drop_invalid) {
+  RecordBuilder builder(flight, quantities, drop_invalid);
+  need_airspeed(builder, flight);
+  builder.keep(air_moves(builder), still_air(builder));
+  if (has_airspeed(builder) && !offer_density(builder)) {
+    builder.compute("rho", [](std::size_t) { return PitotStatic::sea_level_density; });
+  }
+  return builder.finish_readings();
+}
+
+}  // namespace sepcal

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/probes/plausible_readings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sepcal::probes {
+namespace {
+
+struct Range {
+  double low;
+  double high;
+
+  bool contains(double value) const { return low <= value && value <= high; }
+};
+
+struct QuantityRange {
+  std::string_view quantity;
+  Range range;  // in the unit used inside
+  std::string_view unit;
+};
+
+constexpr std::array quantity_ranges{
+    QuantityRange{"roll", {-6.3, 6.3}, "rad"}, QuantityRange{"pitch", {-1.6, 1.6}, "rad"},
+    QuantityRange{"yaw", {-6.3, 6.3}, "rad"},  QuantityRange{"temp", {150, 400}, "K"},
+    QuantityRange{"rho", {0.02, 2}, "kg/m^3"}, QuantityRange{"ps", {5e3, 1.2e5}, "Pa"},
+};
+
+constexpr Range dynamic_pressures{1, 5e4};  // [Pa]: airspeeds of 1 to 290 m/s at sea level
+constexpr Range port_ratios{1e-3, 5};       // of the largest and the usual |dpa| / (pt - ps)
+constexpr Range true_fields{5, 200};        // [uT]: the Earth's is 22 to 67
+constexpr Range read_fields{5, 400};        // [uT]: iron near the sensor adds to it
+
+using Field = std::array<std::string_view, 3>;
+constexpr Field true_field_in_body{"hx", "hy", "hz"};
+constexpr Field true_field_in_navigation{"bn", "be", "bd"};
+constexpr Field read_field{"mx", "my", "mz"};
+
+/// The middle one of the values; there is at least one.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// "; if it is in hpa or torr, ...": the units of its kind that would put both values in the range.
+std::string suggest_units(const Reading& reading, const Range& range, double smallest,
+                          double largest) {
+  std::string units;
+  if (reading.relabel) {
+    for (const Unit& unit : known_units(*reading.relabel)) {
+      if (!range.contains(unit.convert(smallest)) || !range.contains(unit.convert(largest))) {
+        continue;
+      }
+      units += fmt::format("{}{}", units.empty() ? "" : " or ", unit.suffix);
+    }
+  }
+  if (units.empty()) return "; check its unit";
+  return fmt::format("; if it is in {}, its header should say so", units);
+}
+
+void check_range(const QuantityRange& entry, const FindReading& find,
+                 std::vector<std::string>& sentences) {
+  const auto reading = find(entry.quantity);
+  if (!reading || reading->values.empty()) return;
+  const bool counts_turns = entry.unit == "rad" && !reading->relabel;  // as degrees may
+  if (counts_turns) return;
+  const auto outside = std::ranges::count_if(
+      reading->values, [&](double value) { return !entry.range.contains(value); });
+  if (outside == 0) return;
+  const auto [smallest, largest] = std::ranges::minmax(reading->values);
+  sentences.push_back(
+      fmt::format("column '{}' lies outside {:g} to {:g} {} in {} of {} rows (it goes from {:.4g} "
+                  "to {:.4g}){}",
+                  reading->header, entry.range.low, entry.range.high, entry.unit, outside,
+                  reading->values.size(), smallest, largest,
+                  suggest_units(*reading, entry.range, smallest, largest)));
+}
+
+/// Returns whether the three columns are there.
+bool check_field(const Field& names, const Range& range, const FindReading& find,
+                 std::vector<std::string>& sentences) {
+  std::array<Reading, 3> field;
+  for (std::size_t axis = 0; axis < field.size(); ++axis) {
+    auto reading = find(names[axis]);
+    if (!reading || reading->values.empty()) return false;
+    field[axis] = std::move(*reading);
+  }
+  std::vector<double> strengths(field[0].values.size());
+  for (std::size_t row = 0; row < strengths.size(); ++row) {
+    strengths[row] = std::hypot(field[0].values[row], field[1].values[row], field[2].values[row]);
+  }
+  const double strength = median(std::move(strengths));
+  if (range.contains(strength)) return true;
+  sentences.push_back(fmt::format(
+      "the field of {}, {}, {} is usually {:.4g} uT strong, which lies outside {:g} to {:g} uT{}",
+      field[0].header, field[1].header, field[2].header, strength, range.low, range.high,
+      suggest_units(field[0], range, strength, strength)));
+  return true;
+}
+
+/// pt - ps, or what a plain tube reads of it; nothing where neither is in use.
+std::vector<double> find_dynamic_pressure(const FindReading& find, std::string& headers) {
+  if (auto difference = find("dp")) {
+    headers = "column '" + difference->header + "'";
+    return std::move(difference->values);
+  }
+  auto total = find("pt");
+  const auto fixed = find("ps");
+  if (!total || !fixed) return {};
+  headers = fmt::format("{} - {}", total->header, fixed->header);
+  for (std::size_t row = 0; row < total->values.size(); ++row) {
+    total->values[row] -= fixed->values[row];
+  }
+  return std::move(total->values);
+}
+
+void check_ports(std::string_view port, const std::vector<double>& dynamic,
+                 const std::string& dynamic_headers, const FindReading& find,
+                 std::vector<std::string>& sentences) {
+  const auto reading = find(port);
+  if (!reading) return;
+  std::vector<double> ratios;
+  for (std::size_t row = 0; row < dynamic.size(); ++row) {
+    if (dynamic[row] > 0) ratios.push_back(std::abs(reading->values[row]) / dynamic[row]);
+  }
+  if (ratios.empty()) return;
+  const double largest = std::ranges::max(ratios);
+  const double usual = median(std::move(ratios));
+  if (largest == 0 || (largest >= port_ratios.low && usual <= port_ratios.high)) return;
+  const bool too_large = usual > port_ratios.high;
+  sentences.push_back(
+      fmt::format("column '{}' is out of proportion: it is {} {:.3g} times {}; "
+                  "check both units",
+                  reading->header, too_large ? "usually" : "at most", too_large ? usual : largest,
+                  dynamic_headers));
+}
+
+void check_pressures(const FindReading& find, std::vector<std::string>& sentences) {
+  std::string headers;
+  const std::vector<double> dynamic = find_dynamic_pressure(find, headers);
+  if (dynamic.empty()) return;
+  const double usual = median(dynamic);
+  if (!dynamic_pressures.contains(usual)) {
+    sentences.push_back(
+        fmt::format("{} is usually {:.3g} Pa, which lies outside {:g} to {:g} Pa; check the unit",
+                    headers, usual, dynamic_pressures.low, dynamic_pressures.high));
+  }
+  for (const std::string_view port : {"dpa", "dpb"}) {
+    check_ports(port, dynamic, headers, find, sentences);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> describe_implausible(const FindReading& find) {
+  std::vector<std::string> sentences;
+  for (const QuantityRange& entry : quantity_ranges) check_range(entry, find, sentences);
+  check_pressures(find, sentences);
+  check_field(read_field, read_fields, find, sentences);
+  if (!check_field(true_field_in_navigation, true_fields, find, sentences)) {
+    check_field(true_field_in_body, true_fields, find, sentences);
+  }
+  return sentences;
+}
+
+}  // namespace sepcal::probes

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Readings that no flight has: degrees headed as radians, hectopascals as pascals, gauss as
+// microtesla. Each is worth a note and none is an error, for the log knows better than we do.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/flight/units.hpp"
+
+namespace sepcal::probes {
+
+/// A quantity of a probe as the rows in use have it.
+struct Reading {
+  std::string header;               // as logged; where it was computed, the quantity's own name
+  std::optional<UnitKind> relabel;  // where logged in the unit used inside, which may be a slip
+  std::vector<double> values;       // in the unit used inside
+};
+
+/// Looks a quantity up by its base name ("yaw"); nothing where it is not in use.
+using FindReading = std::function<std::optional<Reading>(std::string_view quantity)>;
+
+/// A sentence for each implausible quantity: angles beyond a turn (pitch: a quarter of one), an
+/// absolute temperature outside 150 to 400 K, a density outside 0.02 to 2 kg/m^3, a static pressure
+/// outside 5 to 120 kPa, a dynamic pressure outside 1 Pa to 50 kPa, flow-angle pressures out of
+/// proportion to it, a field outside 5 to 200 uT (read: 400 uT).
+std::vector<std::string> describe_implausible(const FindReading& find);
+
+}  // namespace sepcal::probes

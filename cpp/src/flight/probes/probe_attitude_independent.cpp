@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/files/option_spelling.hpp"
+#include "flight/probes/attitude_independent_start.hpp"
+#include "flight/probes/corrected_columns.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/fit.hpp"
+#include "sepcal/flight/probe.hpp"
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/static_model.hpp"
+
+namespace sepcal {
+
+using namespace probes;  // this room's own
+
+namespace {
+
+class StrengthOnlyMagnetometer final : public Probe {
+ public:
+  StrengthOnlyMagnetometer(double field_strength, double noise)
+      : setup_{field_strength, noise}, model_(setup_) {
+    if (!std::isfinite(field_strength) || !(field_strength > 0)) {
+      throw Error(fmt::format("{} is {}; give the field's strength in uT, above zero",
+                              files::spell_option("field_strength"), field_strength));
+    }
+    if (!std::isfinite(noise) || noise < 0) {
+      throw Error(fmt::format("field_noise is {}; give a standard deviation in uT", noise));
+    }
+  }
+
+  std::string_view name() const override { return "magnetometer-norm"; }
+  std::string_view app() const override { return "sepcal-mag"; }
+  const BlockModel& model() const override { return model_; }
+
+  std::map<std::string, std::vector<double>> settings() const override {
+    return {{"field_strength", {setup_.field_strength}}, {"field_noise", {setup_.noise}}};
+  }
+
+  ProbeRecord prepare(const Flight& flight, bool drop_invalid) const override {
+    return prepare_attitude_independent(flight, drop_invalid);
+  }
+
+  ProbeReadings read(const Flight& flight, bool drop_invalid) const override {
+    ProbeReadings readings = read_magnetometer(flight, drop_invalid);
+    readings.notes.push_back(flight.name() +
+                             ": the corrected field is in body axes up to a rotation, which the "
+                             "field's strength does not show");
+    return readings;
+  }
+
+  std::vector<std::string> corrected_headers() const override {
+    return {"mx_cal_ut", "my_cal_ut", "mz_cal_ut"};
+  }
+
+  /// h = C^-1 (m - n), the field in body axes up to a rotation.
+  std::vector<CorrectedColumn> correct(const ProbeReadings& readings, const Eigen::VectorXd& values,
+                                       const ReadingEffects& effects) const override {
+    const Vec<double, 9> xi2 = values.head<9>();
+    return correct_field(readings,
+                         AttitudeIndependentMagnetometer::soft_iron_and_scale<double>(xi2),
+                         xi2.tail<3>(), corrected_headers(), effects);
+  }
+
+  FitOptions complete(const FitOptions& options, const Record& record) const override {
+    return start_attitude_independent(options, record, setup_.field_strength);
+  }
+
+  std::unique_ptr<const Probe> with_noise(double standard_deviation) const override {
+    return attitude_independent_probe(setup_.field_strength, standard_deviation);
+  }
+
+  void judge(Fit& fit) const override { judge_attitude_independent(fit, setup_.field_strength); }
+
+ private:
+  AttitudeIndependentMagnetometer setup_;
+  StaticModel<AttitudeIndependentMagnetometer> model_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, double noise) {
+  return std::make_unique<const StrengthOnlyMagnetometer>(field_strength, noise);
+}
+
+}  // namespace sepcal

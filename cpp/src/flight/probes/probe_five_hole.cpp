@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/files/option_spelling.hpp"
+#include "flight/probes/corrected_columns.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/probe.hpp"
+#include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/static_model.hpp"
+
+namespace sepcal {
+
+using namespace probes;  // this room's own
+
+namespace {
+
+using Eigen::VectorXd;
+
+class FiveHole final : public Probe {
+ public:
+  FiveHole(double k_alpha, double k_beta, const std::array<double, 3>& lever_arm)
+      : setup_{k_alpha, k_beta, {lever_arm[0], lever_arm[1], lever_arm[2]}}, model_(setup_) {
+    for (const auto& [name, k] : {std::pair{"k_alpha", k_alpha}, std::pair{"k_beta", k_beta}}) {
+      if (std::isfinite(k) && k > 0) continue;
+      throw Error(fmt::format("{} is {}; give the ports' sensitivity in 1/rad, above zero",
+                              files::spell_option(name), k));
+    }
+    if (!setup_.lever_arm.allFinite()) {
+      throw Error(files::spell_option("lever_arm") + " is not finite; give X,Y,Z in metres");
+    }
+  }
+
+  std::string_view name() const override { return "five-hole"; }
+  std::string_view app() const override { return "sepcal-pitot"; }
+  const BlockModel& model() const override { return model_; }
+
+  std::map<std::string, std::vector<double>> settings() const override {
+    const auto& arm = setup_.lever_arm;
+    return {{"k_alpha", {setup_.k_alpha}},
+            {"k_beta", {setup_.k_beta}},
+            {"lever_arm", {arm[0], arm[1], arm[2]}}};
+  }
+
+  ProbeRecord prepare(const Flight& flight, bool drop_invalid) const override {
+    const bool lever_arm = setup_.lever_arm.cwiseAbs().maxCoeff() > 0;
+    return prepare_five_hole(flight, {.lever_arm = lever_arm,
+                                      .drop_invalid = drop_invalid,
+                                      .k_alpha = setup_.k_alpha,
+                                      .k_beta = setup_.k_beta});
+  }
+
+  ProbeReadings read(const Flight& flight, bool drop_invalid) const override {
+    return read_five_hole(flight, drop_invalid);
+  }
+
+  std::vector<std::string> corrected_headers() const override {
+    return {"airspeed_cal_mps", "alpha_cal_rad", "beta_cal_rad"};
+  }
+
+  /// Eq. 36 with what effects add, and the air's direction turned into body axes by C(eps): alpha =
+  /// atan2(w, u), beta = asin(v / V) at the probe.
+  std::vector<CorrectedColumn> correct(const ProbeReadings& readings, const VectorXd& values,
+                                       const ReadingEffects& effects) const override {
+    const auto pt = readings.record.column("pt");
+    const auto ps = readings.record.column("ps");
+    const auto dpa = readings.record.column("dpa");
+    const auto dpb = readings.record.column("dpb");
+    const auto rho = readings.record.column("rho");
+    const Vec<double, 5> xi2 = values.tail<5>();
+    auto columns = empty_columns(corrected_headers(), pt.size());
+    for (std::size_t i = 0; i < pt.size(); ++i) {
+      if (!readings.valid[i]) continue;
+      const double pressure = pt[i] - ps[i];
+      const auto angles = FiveHoleProbe::flow_angles<double, double>(
+          dpa[i] / (setup_.k_alpha * pressure) + effects.at("alpha_offset.s", i) +
+              effects.at("alpha_offset.k", i),
+          dpb[i] / (setup_.k_beta * pressure) + effects.at("beta_offset.s", i) +
+              effects.at("beta_offset.k", i),
+          xi2);
+      const double read =
+          std::sqrt(std::max(0.0, 2.0 * (pressure + effects.at("pressure_offset.s", i)) / rho[i])) *
+          (1.0 + effects.at("reading_scale.s", i));
+      const auto air = FiveHoleProbe::air_direction<double>(angles[0], angles[1], xi2[4]);
+      columns[0].values[i] = (1.0 + values[0] + effects.at("airspeed_scale.s", i)) * read +
+                             values[1] + effects.at("airspeed_bias.s", i);
+      columns[1].values[i] = std::atan2(air[2], air[0]);
+      columns[2].values[i] = std::asin(std::clamp(air[1], -1.0, 1.0));
+    }
+    return columns;
+  }
+
+ private:
+  FiveHoleProbe setup_;
+  StaticModel<FiveHoleProbe> model_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
+                                             const std::array<double, 3>& lever_arm) {
+  return std::make_unique<const FiveHole>(k_alpha, k_beta, lever_arm);
+}
+
+}  // namespace sepcal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/probes/corrected_columns.hpp"
+#include "sepcal/flight/probe.hpp"
+#include "sepcal/models/magnetometer.hpp"
+#include "sepcal/static_model.hpp"
+
+namespace sepcal {
+
+using namespace probes;  // this room's own
+
+namespace {
+
+using Eigen::VectorXd;
+
+class KnownFieldMagnetometer final : public Probe {
+ public:
+  explicit KnownFieldMagnetometer(const std::optional<std::array<double, 3>>& field)
+      : field_(field), model_(Magnetometer{}) {}
+
+  std::string_view name() const override { return "magnetometer"; }
+  std::string_view app() const override { return "sepcal-mag"; }
+  const BlockModel& model() const override { return model_; }
+
+  std::map<std::string, std::vector<double>> settings() const override {
+    if (!field_) return {};
+    return {{"field", {field_->begin(), field_->end()}}};
+  }
+
+  ProbeRecord prepare(const Flight& flight, bool drop_invalid) const override {
+    return prepare_magnetometer(flight, {.field = field_, .drop_invalid = drop_invalid});
+  }
+
+  ProbeReadings read(const Flight& flight, bool drop_invalid) const override {
+    return read_magnetometer(flight, drop_invalid);
+  }
+
+  std::vector<std::string> corrected_headers() const override {
+    return {"mx_cal_ut", "my_cal_ut", "mz_cal_ut"};
+  }
+
+  /// h = C^-1 (m - n), the field in body axes.
+  std::vector<CorrectedColumn> correct(const ProbeReadings& readings, const VectorXd& values,
+                                       const ReadingEffects& effects) const override {
+    const Eigen::Matrix3d CC = Magnetometer::soft_iron_and_misalignment<double>(values.tail<6>());
+    const Eigen::Vector3d scale = values.head<3>().array() + 1.0;
+    return correct_field(readings, CC * scale.asDiagonal(), values.segment<3>(3),
+                         corrected_headers(), effects);
+  }
+
+ private:
+  std::optional<std::array<double, 3>> field_;
+  StaticModel<Magnetometer> model_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Probe> magnetometer_probe(const std::optional<std::array<double, 3>>& field) {
+  return std::make_unique<const KnownFieldMagnetometer>(field);
+}
+
+}  // namespace sepcal

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/probes/record_builder.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "flight/files/headers.hpp"
+#include "flight/files/invalid_cells.hpp"
+#include "flight/files/option_spelling.hpp"
+#include "flight/probes/plausible_readings.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::probes {
+
+constexpr std::size_t most_notes = 10;  // of one kind; more of them nobody reads
+
+RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
+                             bool drop_invalid)
+    : flight_(flight), quantities_(quantities), drop_invalid_(drop_invalid), rows_(flight.rows()) {
+  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+  for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
+}
+
+/// An unknown unit is refused only where the quantity isn't there in a known one: beside time_s, a
+/// column time_utc is a column like any other, with a note.
+void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
+  LoggedQuantity found;
+  const Flight::Column* unknown = nullptr;
+  for (const Flight::Column& column : flight_.columns()) {
+    const std::string_view header = column.header;
+    const std::size_t split = std::min(header.rfind('_'), header.size());
+    if (header.substr(0, split) != quantity.name) continue;
+    const auto suffix = header.substr(std::min(split + 1, header.size()));
+    const Unit* unit = find_unit(quantity.kind, suffix);
+    if (unit == nullptr) {
+      unknown = &column;
+    } else if (found.column != nullptr) {
+      throw Error(fmt::format("{}: {} is there twice, as '{}' and '{}'; rename or delete one",
+                              flight_.name(), quantity.name, found.column->header, header));
+    } else {
+      found = {&column, unit};
+    }
+  }
+  if (found.column != nullptr) {
+    logged_.emplace(quantity.name, found);
+    if (unknown != nullptr) {
+      note(fmt::format("column '{}' is not read as {}, which '{}' logs: its unit is unknown",
+                       unknown->header, quantity.name, found.column->header));
+    }
+  } else if (unknown != nullptr) {
+    throw Error(
+        fmt::format("{}: column '{}' has no known unit; {} may be logged as: {}", flight_.name(),
+                    unknown->header, quantity.name,
+                    fmt::join(files::accepted_headers(quantity.name, quantity.kind), ", ")));
+  }
+}
+
+bool RecordBuilder::has(Names names) const {
+  return std::ranges::all_of(names, [&](std::string_view name) { return logged_.contains(name); });
+}
+
+const LoggedQuantity& RecordBuilder::logged(std::string_view name) const {
+  const auto found = logged_.find(name);
+  if (found == logged_.end()) fail_missing(name);
+  return found->second;
+}
+
+void RecordBuilder::fail_missing(std::string_view name) const {
+  const auto* quantity = std::ranges::find(quantities_, name, &ProbeQuantity::name).base();
+  std::vector<std::string> others;
+  for (const Flight::Column& column : flight_.columns()) {
+    if (!is_quantity(column)) others.push_back(column.header);
+  }
+  throw Error(fmt::format("{}: {}; {}", flight_.name(),
+                          files::describe_missing(name, quantity->kind, others),
+                          flight_.list_columns()));
+}
+
+void RecordBuilder::need(Names names) {
+  consult(names);
+  taken_.insert(taken_.end(), names);
+}
+
+void RecordBuilder::consult(Names names) {
+  for (const std::string_view name : names) logged(name);
+  checked_.insert(checked_.end(), names);
+}
+
+bool RecordBuilder::offer(Names names) {
+  if (!has(names)) return false;
+  for (const std::string_view name : names) {
+    const auto& [column, unit] = logged(name);
+    if (const std::size_t* row = files::find_invalid_row(rows_, *column, unit)) {
+      note(fmt::format("column '{}' is not used: {}", column->header,
+                       files::describe_cell(*column, *row)));
+      return false;
+    }
+  }
+  taken_.insert(taken_.end(), names);
+  return true;
+}
+
+void RecordBuilder::keep_valid() {
+  std::vector<const LoggedQuantity*> quantities;
+  quantities.reserve(checked_.size());
+  for (const std::string_view name : checked_) quantities.push_back(&logged(name));
+  const auto find_invalid = [&quantities](std::size_t row) {
+    return std::ranges::find_if(quantities, [row](const LoggedQuantity* quantity) {
+      return !std::isfinite(quantity->at(row));
+    });
+  };
+  keep_or_refuse([&](std::size_t row) { return find_invalid(row) == quantities.end(); },
+                 "a cell of a needed column is no finite number",
+                 [&](std::size_t row) {
+                   const Flight::Column& column = *(*find_invalid(row))->column;
+                   return fmt::format("column '{}' {}, not a finite number", column.header,
+                                      files::describe_cell(column, row));
+                 });
+}
+
+/// In seconds: times that differ as they were logged may be one there.
+void RecordBuilder::check_time() const {
+  const LoggedQuantity& time = logged("time");
+  for (std::size_t i = 1; i < rows_.size(); ++i) {
+    const double before = time.at(rows_[i - 1]);
+    const double now = time.at(rows_[i]);
+    if (now > before) continue;
+    throw Error(fmt::format(
+        "{}: {} {} at {}, after {}; time must increase: sort the rows and delete repeated ones",
+        flight_.locate(rows_[i]), time.column->header, now == before ? "repeats" : "runs back",
+        time.column->values[rows_[i]], time.column->values[rows_[i - 1]]));
+  }
+}
+
+RecordBuilder::Loss RecordBuilder::keep(const RowTest& test, std::string_view reason) {
+  const auto lost_from = std::ranges::find_if_not(rows_, test);
+  if (lost_from == rows_.end()) return {};
+  Loss loss{0, *lost_from};
+  const auto removed = std::ranges::remove_if(rows_, [&](std::size_t row) { return !test(row); });
+  loss.rows = removed.size();
+  rows_.erase(removed.begin(), removed.end());
+  dropped_.push_back({std::string(reason), loss.rows});
+  return loss;
+}
+
+void RecordBuilder::keep_or_refuse(const RowTest& test, std::string_view reason,
+                                   const std::function<std::string(std::size_t row)>& complaint) {
+  const Loss loss = keep(test, reason);
+  if (loss.rows == 0 || drop_invalid_) return;
+  throw Error(fmt::format("{}: {}; {} drops such rows", flight_.locate(loss.first),
+                          complaint(loss.first), files::spell_option("drop_invalid")));
+}
+
+void RecordBuilder::compute(std::string name, RowValue value) {
+  computed_.emplace_back(std::move(name), std::move(value));
+}
+
+void RecordBuilder::note(std::string_view text) {
+  notes_.push_back(fmt::format("{}: {}", flight_.name(), text));
+}
+
+/// A quantity in use, in the kept rows.
+std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const {
+  Reading reading{std::string(name), std::nullopt, std::vector<double>(rows_.size())};
+  const auto computed = std::ranges::find(
+      computed_, name, [](const auto& entry) { return std::string_view(entry.first); });
+  if (computed != computed_.end()) {
+    std::ranges::transform(rows_, reading.values.begin(), computed->second);
+    return reading;
+  }
+  const bool is_taken = std::ranges::find(taken_, name) != taken_.end();
+  if (!is_taken && std::ranges::find(checked_, name) == checked_.end()) return std::nullopt;
+  const LoggedQuantity& quantity = logged(name);
+  reading.header = quantity.column->header;
+  if (quantity.unit->is_inside()) reading.relabel = quantity.unit->kind;
+  std::ranges::transform(rows_, reading.values.begin(),
+                         [&](std::size_t row) { return quantity.at(row); });
+  return reading;
+}
+
+void RecordBuilder::note_implausible() {
+  const auto find = [this](std::string_view name) { return find_reading(name); };
+  for (const std::string& sentence : describe_implausible(find)) note(sentence);
+}
+
+ProbeRecord RecordBuilder::finish() {
+  if (rows_.empty()) {
+    throw Error(fmt::format("{}: no row is left of {}: {}", flight_.name(), flight_.rows(),
+                            dropped_.empty() ? "there was none" : dropped_.back().reason));
+  }
+  note_implausible();
+  take_quantities();
+  check_computed();
+  take_drivers();
+  std::vector<std::string> labels;
+  if (!flight_.maneuvers().empty()) {
+    labels.reserve(rows_.size());
+    for (const std::size_t row : rows_) labels.push_back(flight_.maneuvers()[row]);
+  }
+  record_.cut(find_segments(record_.column("time"), labels));
+  note_dropped("were dropped");
+  return {std::move(record_), flight_.rows(), std::move(dropped_), std::move(notes_),
+          std::move(rows_)};
+}
+
+ProbeReadings RecordBuilder::finish_readings() {
+  note_implausible();
+  std::vector<bool> valid(flight_.rows(), false);
+  for (const std::size_t row : rows_) valid[row] = true;
+  rows_.resize(flight_.rows());
+  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+  take_quantities();
+  note_dropped("can't be calibrated");
+  return {std::move(record_), std::move(valid), std::move(dropped_), std::move(notes_)};
+}
+
+/// Takes a column's kept rows; without a copy where they are all rows and in the unit used inside.
+void RecordBuilder::take(std::string name, const Flight::Column& column, const Unit* unit) {
+  const bool converts = unit != nullptr && !unit->is_inside();
+  if (!converts && rows_.size() == flight_.rows()) {
+    record_.view(std::move(name), column.values, column.owner);
+    return;
+  }
+  std::vector<double> values(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double value = column.values[rows_[i]];
+    values[i] = converts ? unit->convert(value) : value;
+  }
+  record_.add(std::move(name), std::move(values));
+}
+
+void RecordBuilder::take_quantities() {
+  for (const std::string_view name : taken_) {
+    const LoggedQuantity& quantity = logged(name);
+    take(std::string(name), *quantity.column, quantity.unit);
+  }
+  for (const auto& [name, value] : computed_) {
+    std::vector<double> values(rows_.size());
+    std::ranges::transform(rows_, values.begin(), value);
+    record_.add(name, std::move(values));
+  }
+}
+
+/// Each reading is finite; what is computed of them need not be: 1e300 Pa at 1e-300 K.
+void RecordBuilder::check_computed() const {
+  for (const auto& [name, value] : computed_) {
+    const auto column = record_.column(name);
+    const auto bad = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
+    if (bad == column.end()) continue;
+    throw Error(fmt::format("{}: {} is computed from this row's readings as {}; check them",
+                            flight_.locate(rows_[static_cast<std::size_t>(bad - column.begin())]),
+                            name, *bad));
+  }
+}
+
+/// Whether one of the probe's quantities is read from the column, and no driver.
+bool RecordBuilder::is_quantity(const Flight::Column& column) const {
+  return std::ranges::any_of(quantities_, [&](const ProbeQuantity& quantity) {
+    const auto found = logged_.find(quantity.name);
+    return !quantity.is_driver && found != logged_.end() && found->second.column == &column;
+  });
+}
+
+void RecordBuilder::take_drivers() {
+  std::vector<std::string> refused;
+  for (const Flight::Column& column : flight_.columns()) {
+    if (is_quantity(column)) continue;
+    if (const std::size_t* row = files::find_invalid_row(rows_, column, nullptr)) {
+      refused.push_back(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
+                                    flight_.locate(*row), files::describe_cell(column, *row)));
+    } else if (record_.has(column.header)) {
+      refused.push_back(
+          fmt::format("column '{}' can't drive an effect: it is named like a quantity "
+                      "of the probe; rename it",
+                      column.header));
+    } else {
+      take(column.header, column, nullptr);
+    }
+  }
+  const std::size_t told = std::min(refused.size(), most_notes);
+  for (std::size_t i = 0; i < told; ++i) note(refused[i]);
+  if (told < refused.size()) {
+    note(fmt::format("{} more columns can't drive an effect", refused.size() - told));
+  }
+}
+
+void RecordBuilder::note_dropped(std::string_view consequence) {
+  for (const Dropped& dropped : dropped_) {
+    note(fmt::format("{} of {} rows {}: {}", dropped.rows, flight_.rows(), consequence,
+                     dropped.reason));
+  }
+}
+
+}  // namespace sepcal::probes

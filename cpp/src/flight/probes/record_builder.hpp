@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The steps from a flight to a record that all probes share. A probe names its quantities, says
+// which ones it needs, drops the rows it can't use and finishes.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flight/probes/plausible_readings.hpp"
+#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/flight/units.hpp"
+
+namespace sepcal::probes {
+
+/// A quantity of a probe: the base name of its column and what kind of unit follows it.
+struct ProbeQuantity {
+  std::string_view name;
+  UnitKind kind;
+  bool is_driver = false;  // may drive effects too, then under its whole header
+};
+
+/// A probe's quantity as a flight has it.
+struct LoggedQuantity {
+  const Flight::Column* column = nullptr;
+  const Unit* unit = nullptr;
+
+  /// In the unit used inside.
+  double at(std::size_t row) const { return unit->convert(column->values[row]); }
+};
+
+class RecordBuilder {
+ public:
+  using Names = std::initializer_list<std::string_view>;
+  using RowTest = std::function<bool(std::size_t row)>;
+  using RowValue = std::function<double(std::size_t row)>;
+
+  /// Throws Error for one of the quantities in an unknown unit, or in two.
+  RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities, bool drop_invalid);
+
+  bool has(Names names) const;
+
+  /// Throws Error for a quantity that was not logged.
+  const LoggedQuantity& logged(std::string_view name) const;
+
+  /// Columns that the record has, or throws Error for one that was not logged.
+  void need(Names names);
+
+  /// Columns that need() would ask for, but that only serve to compute others.
+  void consult(Names names);
+
+  /// Columns that the record has too if all of them were logged and hold nothing but numbers;
+  /// returns whether the kept rows do. Call it after the rows were chosen.
+  bool offer(Names names);
+
+  /// Throws Error for, or drops, rows in which a needed or consulted cell is no finite number,
+  /// as it stands or once converted.
+  void keep_valid();
+
+  /// Throws Error where time does not increase from one kept row to the next.
+  void check_time() const;
+
+  struct Loss {
+    std::size_t rows = 0;
+    std::size_t first = 0;  // the flight's row
+  };
+
+  /// Drops the rows that fail `test`.
+  Loss keep(const RowTest& test, std::string_view reason);
+
+  /// As keep(), but unless drop_invalid the first lost row is an error that says `complaint(row)`.
+  void keep_or_refuse(const RowTest& test, std::string_view reason,
+                      const std::function<std::string(std::size_t row)>& complaint);
+
+  /// The flight's rows that are kept.
+  const std::vector<std::size_t>& rows() const { return rows_; }
+
+  /// A column of the probe's own making, computed from the flight's row when finishing.
+  void compute(std::string name, RowValue value);
+
+  /// A line for people; the flight's name is put before it.
+  void note(std::string_view text);
+
+  /// The kept rows, with candidate drivers and segments; readings that no flight has are noted.
+  /// Throws Error where no row is left.
+  ProbeRecord finish();
+
+  /// All rows, those kept marked as valid; no drivers, one segment. Notes as finish() does.
+  ProbeReadings finish_readings();
+
+ private:
+  void find_quantity(const ProbeQuantity& quantity);
+  [[noreturn]] void fail_missing(std::string_view name) const;
+  bool is_quantity(const Flight::Column& column) const;
+  std::optional<Reading> find_reading(std::string_view name) const;
+  void note_implausible();
+  void take(std::string name, const Flight::Column& column, const Unit* unit);
+  void take_quantities();
+  void check_computed() const;
+  void take_drivers();
+  void note_dropped(std::string_view consequence);
+
+  const Flight& flight_;
+  std::span<const ProbeQuantity> quantities_;
+  bool drop_invalid_;
+  std::map<std::string_view, LoggedQuantity> logged_;
+  std::vector<std::string_view> taken_;    // quantities that the record has
+  std::vector<std::string_view> checked_;  // quantities in which every kept cell is a number
+  std::vector<std::pair<std::string, RowValue>> computed_;
+  std::vector<std::size_t> rows_;
+  Record record_;
+  std::vector<Dropped> dropped_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace sepcal::probes

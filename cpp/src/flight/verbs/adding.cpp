@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/adding.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parameter_values.hpp"
+#include "base/thread_pool.hpp"
+#include "flight/verbs/calibrated_flight.hpp"
+#include "flight/verbs/diagnosed_flight.hpp"
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
+#include "sepcal/effect_name.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+namespace {
+
+/// RMSE of a calibration over all outputs together, on the rows of `record`.
+double total_rmse(const Calibration& calibration, const EffectiveFlight& flight,
+                  const Record& record) {
+  const model::Measurements measurements(*flight.model, record);
+  base::ThreadPool pool(calibration.options.fit.threads);
+  const model::Sweep sweep(*flight.model, measurements, pool);
+  const double square = sweep.squared_residuals(calibration.fit.xi1(), calibration.fit.xi2()).sum();
+  const auto count =
+      static_cast<double>(measurements.rows()) * static_cast<double>(flight.model->tables().n_z());
+  return std::sqrt(square / count);
+}
+
+void refuse_twice(const CalibrationOptions& options) {
+  std::vector<std::string> names;
+  for (const EffectSetting& setting : options.effects) names.push_back(setting.name);
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice == names.end()) return;
+  throw Error(fmt::format("the calibration has the effect {} already", *twice));
+}
+
+/// What the effect promised at the base's estimates; nothing where it can't be tried there.
+Promise promise_of(const Calibration& base, const Calibration& next, const Flight& flight,
+                   const std::string& effect) {
+  try {
+    const ProbeRecord prepared = base.probe->prepare(flight, base.options.drop_invalid);
+    return promise(diagnosed_fit(base, prepared.record, next.options.own_effects), effect,
+                   next.fit.by_name(), base.options.fit.threads);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
+                const OwnEffects& own, const FitProgress& progress) {
+  CalibrationOptions options = base.options;
+  options.fit.progress = progress;
+  for (const auto& [name, maker] : own) options.own_effects[name] = maker;
+  for (const std::string& name : split_effects(effect)) options.effects.push_back({.name = name});
+  options.fit.start = base.fit.nonlinear_estimates();
+  refuse_twice(options);
+  Calibration next = calibrate(base.probe, flight, options);
+  refuse_twice(next.options);  // now that aliases are resolved
+
+  const EffectiveFlight after = prepare_calibrated(next, flight);
+  const Record& record = after.prepared.record.select(options.fit.stage_two_segments);
+  EffectiveFlight before = prepare_calibrated(base, flight);
+  std::string added;
+  for (std::size_t i = base.options.effects.size(); i < next.options.effects.size(); ++i) {
+    added += (added.empty() ? "" : "+") + next.options.effects[i].name;
+  }
+  Record rows = before.prepared.record;
+  rows.cut(record.segments());
+  const Promise promised = promise_of(base, next, flight, added);
+  note_other_flight(base, flight, next.notes);
+  next.history = base.history;
+  next.history.push_back({.effect = added,
+                          .rmse_before = total_rmse(base, before, rows),
+                          .rmse_after = total_rmse(next, after, record),
+                          .held_out_before = promised.held_out_before,
+                          .held_out_after = promised.held_out_after,
+                          .predicted_drop = promised.predicted_drop});
+  return next;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <ranges>
+
+#include "base/parameter_values.hpp"
+#include "estimation/step_times.hpp"
+#include "flight/files/option_spelling.hpp"
+#include "flight/verbs/held_options.hpp"
+#include "sepcal/composition.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/output_file.hpp"
+#include "sepcal/flight/probe_effects.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+namespace {
+
+/// A fit with more parameters than rows is refused, even where three outputs a row would make it
+/// solvable: it would calibrate a flight of a few samples.
+void check_rows(const BlockModel& model, const CalibrationOptions& options, const Flight& flight,
+                std::size_t rows) {
+  const std::size_t parameters = model.tables().parameters().size() - options.fit.fixed.size();
+  if (rows >= parameters) return;
+  throw Error(
+      fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or {} some",
+                  flight.name(), rows, parameters, files::spell_option("fix")));
+}
+
+/// Rows that a stage's segments select; messages say of which flight and option.
+std::size_t count_rows(const Record& record, const std::string& segments, const Flight& flight,
+                       std::string_view stage, std::string_view option) {
+  try {
+    return record.select(segments).rows();
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: the segments of {} ({}): {}", flight.name(), stage,
+                            files::spell_option(option), error.what()));
+  }
+}
+
+/// The record with the outputs that need not be measured, as their value is always the same.
+Record with_constant_outputs(const Probe& probe, Record record) {
+  for (const Variable& output : probe.model().tables().outputs) {
+    if (record.has(output.name) || !std::isfinite(output.absent)) continue;
+    record.add(output.name, std::vector<double>(record.length(), output.absent));
+  }
+  return record;
+}
+
+/// Fits the model with its effects and, where it depends on its own output's noise, tells it that
+/// of the fit and fits again, until the two agree.
+void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
+  constexpr double tolerance = 1e-9;  // |noise / noise before - 1|
+  constexpr int most_rounds = 20;
+  const Record& record = flight.prepared.record;
+  std::shared_ptr<const Probe>& probe = calibration.probe;
+  FitOptions options = probe->complete(calibration.options.fit, record);
+  options.unsampled = beginnings(flight.effects);
+  std::shared_ptr<const BlockModel> model = flight.model;
+  const auto tell = [&](double noise) {
+    std::shared_ptr<const Probe> told = probe->with_noise(noise);
+    if (!told) return false;
+    model = compose(model_of(*told), flight.effects, record);
+    probe = std::move(told);
+    return true;
+  };
+  double noise = 0.0;
+  if (options.noise.size() == 1) {
+    noise = options.noise.begin()->second;
+    tell(noise);
+  }
+  std::optional<StageOne> stage_one;  // of the first round: the others start where it ended
+  for (int round = 0; round < most_rounds; ++round) {
+    calibration.fit = estimation::fit_with_steps(*model, probe->model(), flight.effects,
+                                                 calibration.options.effects, record, options);
+    if (!stage_one) stage_one = calibration.fit.stage_one;
+    const double next = calibration.fit.noise.front().value;
+    const bool settled = std::abs(next - noise) < tolerance * next;
+    const bool hopeless = calibration.fit.status != FitStatus::converged && round >= 4;
+    if (settled || hopeless) break;
+    if (round + 1 == most_rounds) {
+      calibration.fit.status = FitStatus::not_converged;
+      calibration.fit.message +=
+          fmt::format("{}the noise did not settle within {} fits",
+                      calibration.fit.message.empty() ? "" : "; ", most_rounds);
+      break;
+    }
+    if (!tell(next)) break;
+    noise = next;
+    options.start = calibration.fit.nonlinear_estimates();
+  }
+  if (stage_one) calibration.fit.stage_one = std::move(*stage_one);
+  if (!options.start.empty()) calibration.options.fit.samples = 0;
+  probe->judge(calibration.fit);
+}
+
+/// Standard errors by the delta method. What a fixed parameter gives is certain.
+std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
+  std::vector<Derived> derived;
+  for (const DerivedQuantity& quantity : probe.derive(fit)) {
+    std::vector<Eigen::Index> from;
+    std::vector<double> slopes;
+    for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+      const auto slope = quantity.slopes.find(fit.parameters[k].name);
+      if (slope == quantity.slopes.end() || fit.parameters[k].fixed) continue;
+      from.push_back(static_cast<Eigen::Index>(k));
+      slopes.push_back(slope->second);
+    }
+    const auto n = static_cast<Eigen::Index>(slopes.size());
+    const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(slopes.data(), n);
+    const auto error = [&](const Eigen::MatrixXd& covariance) {
+      return n == 0 ? not_a_number : std::sqrt(g.dot(covariance(from, from) * g));
+    };
+    derived.push_back({quantity.name, quantity.unit, quantity.value, error(fit.covariance),
+                       error(fit.covariance_white)});
+  }
+  return derived;
+}
+
+/// The fit itself, once the flight has been brought to the model.
+Calibration calibrate_prepared(std::shared_ptr<const Probe> probe, CalibrationOptions options,
+                               FittedFlight fitted, const EffectiveFlight& flight) {
+  Calibration calibration;
+  calibration.options = std::move(options);
+  calibration.probe = std::move(probe);
+  fit_with_noise(calibration, flight);
+  calibration.flight = std::move(fitted);
+  calibration.flight.rows_used = calibration.fit.rows;
+  calibration.notes = flight.prepared.notes;
+  calibration.derived = derive(*calibration.probe, calibration.fit);
+  return calibration;
+}
+
+}  // namespace
+
+Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
+                      const CalibrationOptions& options) {
+  CalibrationOptions held = hold(*probe, options);
+  const EffectiveFlight effective = prepare_with_effects(
+      *probe, flight, held.effects, options.own_effects, options.drop_invalid, options.fit.bounds);
+  const Record& record = effective.prepared.record;
+  count_rows(record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
+  check_rows(*effective.model, held, flight,
+             count_rows(record, options.fit.stage_two_segments, flight, "stage two", "stage_two"));
+  return calibrate_prepared(std::move(probe), std::move(held),
+                            {flight.name(), flight.sha256(), flight.rows(), 0}, effective);
+}
+
+Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
+                      const CalibrationOptions& options) {
+  CalibrationOptions held = hold(*probe, options);
+  const EffectiveFlight effective =
+      with_effects(*probe, with_constant_outputs(*probe, record), held.effects, options.own_effects,
+                   options.fit.bounds);
+  return calibrate_prepared(std::move(probe), std::move(held), {{}, {}, record.length(), 0},
+                            effective);
+}
+
+void write_calibration(const Calibration& calibration, const std::string& file) {
+  OutputFile output(file);
+  output.write(to_json(calibration));
+  output.commit();
+}
+
+}  // namespace sepcal

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/comparison.hpp"
+
+#include "base/parts_of_record.hpp"
+#include "base/thread_pool.hpp"
+#include "flight/verbs/calibrated_flight.hpp"
+#include "flight/verbs/misfits.hpp"
+#include "flight/verbs/residual_channels.hpp"
+#include "flight/verbs/worst_windows.hpp"
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+Comparison compare(const Calibration& calibration, const Flight& flight) {
+  const Probe& probe = *calibration.probe;
+  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const Record& record = effective.prepared.record;
+  const model::Measurements measurements(*effective.model, record);
+  base::ThreadPool pool(calibration.options.fit.threads);
+  const model::Sweep sweep(*effective.model, measurements, pool);
+
+  Comparison result;
+  result.model = probe.name();
+  result.flight = {flight.name(), flight.sha256(), flight.rows(), measurements.rows()};
+  result.status = calibration.fit.status;
+  result.message = calibration.fit.message;
+  result.notes = effective.prepared.notes;
+  note_other_flight(calibration, flight, result.notes);
+  result.residuals = sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());
+  result.time = base::gather_time(record);
+  const auto& outputs = probe.model().tables().outputs;
+  result.overall = measure_whole(record, outputs, result.residuals);
+  result.where = measure_parts(record, outputs, result.residuals);
+  result.channels = compare_channels(record, probe.model().tables(), result.residuals, pool);
+  result.windows =
+      find_worst_windows(result.time, result.residuals, result.overall, calibration.fit.noise);
+  return result;
+}
+
+}  // namespace sepcal

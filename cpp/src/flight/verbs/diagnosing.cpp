@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/diagnosing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parameter_values.hpp"
+#include "base/thread_pool.hpp"
+#include "flight/catalogue/effect_candidates.hpp"
+#include "flight/verbs/calibrated_flight.hpp"
+#include "flight/verbs/diagnosed_flight.hpp"
+#include "flight/verbs/misfits.hpp"
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
+#include "sepcal/composition.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/flight/probe_effects.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A flight as both the candidates and the refit after an injection take it.
+struct Ground {
+  ProbeRecord prepared;  // before effects in time cut its edges
+  OwnEffects own;        // the calibration's and the caller's
+};
+
+Ground prepare_ground(const Calibration& calibration, const Flight& flight, const OwnEffects& own) {
+  Ground ground{calibration.probe->prepare(flight, calibration.options.drop_invalid),
+                calibration.options.own_effects};
+  for (const auto& [name, maker] : own) ground.own[name] = maker;
+  return ground;
+}
+
+/// Those of the catalogue that the calibration doesn't have yet.
+std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Flight& flight) {
+  std::vector<std::string> names = catalogue::list_candidates(fitted.kit, fitted.record, flight);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::ranges::find(fitted.effects, name, &EffectSetting::name) != fitted.effects.end();
+  });
+  return names;
+}
+
+/// Among effects that the flight can't tell apart, and that explain as much as surely, the one of
+/// the catalogue comes first: the wind goes with the height and not, as it does as well, with the
+/// temperature.
+void prefer_catalogued(std::string_view model, std::vector<EffectFinding>& effects) {
+  if (effects.empty() || effects.front().status != FindingStatus::found) return;
+  constexpr double margin = 0.05;  // of log10 p, and of what the error falls by
+  const EffectFinding first = effects.front();
+  const auto is_catalogued = [&](const EffectFinding& effect) {
+    return std::ranges::find(effect_catalogue(model), effect.name, &CataloguedEffect::name) !=
+           effect_catalogue(model).end();
+  };
+  if (is_catalogued(first)) return;
+  const auto preferred = std::ranges::find_if(effects, [&](const EffectFinding& effect) {
+    return effect.status == FindingStatus::found && is_catalogued(effect) &&
+           effect.log10_p < (1.0 - margin) * first.log10_p &&
+           effect.predicted_drop > (1.0 - margin) * first.predicted_drop &&
+           std::ranges::find(first.family, effect.name) != first.family.end();
+  });
+  if (preferred != effects.end()) std::rotate(effects.begin(), preferred, preferred + 1);
+}
+
+/// The misfit of the fitted rows, part by part.
+std::vector<Misfit> find_where(const DiagnosedFit& fitted) {
+  Record rows = fitted.record;
+  std::vector<EffectSetting> settings = fitted.effects;
+  const auto model =
+      compose(fitted.model, make_effects(fitted.kit, *fitted.model, settings, rows), rows);
+  rows.cut(fitted.rows);
+  const model::Measurements measurements(*model, rows);
+  base::ThreadPool pool(1);
+  const model::Sweep sweep(*model, measurements, pool);
+  return measure_parts(rows, fitted.model->tables().outputs,
+                       sweep.residuals(fitted.fit.xi1(), fitted.fit.xi2()));
+}
+
+FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const Flight& flight,
+                    const DiagnosisOptions& options) {
+  const DiagnosedFit fitted = diagnosed_fit(calibration, ground.prepared.record, ground.own);
+  FlightDiagnosis result;
+  result.model = calibration.probe->name();
+  result.status = calibration.fit.status;
+  result.message = calibration.fit.message;
+  result.notes = ground.prepared.notes;
+  note_other_flight(calibration, flight, result.notes);
+  result.diagnosis = diagnose(fitted, candidates_for(fitted, flight), options);
+  prefer_catalogued(result.model, result.diagnosis.effects);
+  for (const EffectFinding& effect : result.diagnosis.effects) {
+    result.sentences.push_back(catalogue::describe_effect(effect.name));
+  }
+  std::size_t used = 0;
+  for (const Segment& segment : fitted.rows) used += segment.rows();
+  result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
+  result.missing_channels = catalogue::list_missing_channels(result.model, flight);
+  result.where = find_where(fitted);
+  return result;
+}
+
+/// Errors name the flight.
+template <class Task>
+FlightDiagnosis name_errors(const Flight& flight, Task task) {
+  try {
+    return task();
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    if (what.starts_with(flight.name())) throw;
+    throw Error(fmt::format("{}: {}", flight.name(), what));
+  }
+}
+
+/// What the effect adds to every output at the calibration's estimates (rows x n_z, of the whole
+/// record), zero outside its segments.
+MatrixXd added_outputs(const Calibration& calibration, const Ground& ground,
+                       const SizedEffect& injected, Injection& injection) {
+  const Probe& probe = *calibration.probe;
+  const EffectKit kit = effect_kit(probe.name(), ground.own);
+  Record record = ground.prepared.record;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  settings.push_back({.name = injected.name});
+  const std::vector<Effect> effects = make_effects(kit, *model_of(probe), settings, record);
+  injection.effect = settings.back().name;
+  for (std::size_t i = 0; i + 1 < settings.size(); ++i) {
+    if (settings[i].name != injection.effect) continue;
+    throw Error(fmt::format("the calibration has the effect {} already", injection.effect));
+  }
+  const auto model = compose(model_of(probe), effects, record);
+  base::ParameterValues values = calibration.fit.by_name();
+  std::vector<std::string> added;
+  for (const Variable& parameter : model->tables().parameters()) {
+    if (!values.contains(parameter.name)) added.push_back(parameter.name);
+  }
+  std::vector<double> sizes = injected.sizes;
+  if (sizes.size() == 1) sizes.assign(added.size(), sizes.front());
+  if (sizes.size() != added.size()) {
+    throw Error(fmt::format("inject {}: {} sizes for the {} parameters {}", injection.effect,
+                            injected.sizes.size(), added.size(), fmt::join(added, ", ")));
+  }
+  injection.sizes = sizes;
+  base::ParameterValues without = values;
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    values[added[i]] = sizes[i];
+    const bool is_shape = effects.back().driver && effects.back().driver->shape() &&
+                          added[i].ends_with("." + effects.back().driver->shape()->name);
+    without[added[i]] = is_shape ? sizes[i] : 0.0;
+  }
+  const model::Measurements measurements(*model, record);
+  base::ThreadPool pool(calibration.options.fit.threads);
+  const model::Sweep sweep(*model, measurements, pool);
+  const auto residuals = [&](const base::ParameterValues& at) {
+    return sweep.residuals(base::in_order(model->tables().linear, at),
+                           base::in_order(model->tables().nonlinear, at));
+  };
+  const MatrixXd difference = residuals(without) - residuals(values);
+  MatrixXd whole = MatrixXd::Constant(static_cast<Index>(record.length()), difference.cols(), 0.0);
+  Index at = 0;
+  for (const Segment& segment : record.segments()) {
+    const auto rows = static_cast<Index>(segment.rows());
+    whole.middleRows(static_cast<Index>(segment.first), rows) = difference.middleRows(at, rows);
+    at += rows;
+  }
+  return whole;
+}
+
+/// The record with something added to its outputs.
+Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
+                    const MatrixXd& added) {
+  Record changed;
+  for (const std::string& name : record.names()) {
+    const auto output = std::ranges::find(outputs, name, &Variable::name);
+    if (output == outputs.end()) {
+      changed.view(name, record.column(name));
+      continue;
+    }
+    const auto column = record.column(name);
+    std::vector<double> values(column.begin(), column.end());
+    const VectorXd shift = added.col(output - outputs.begin());
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      values[row] += shift[static_cast<Index>(row)];
+    }
+    changed.add(name, std::move(values));
+  }
+  changed.cut(record.segments());
+  return changed;
+}
+
+}  // namespace
+
+DiagnosedFit verbs::diagnosed_fit(const Calibration& calibration, const Record& record,
+                                  const OwnEffects& own) {
+  const Probe& probe = *calibration.probe;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  const EffectiveFlight effective =
+      with_effects(probe, record, settings, own, calibration.options.fit.bounds);
+  return {
+      .model = model_of(probe),
+      .kit = effect_kit(probe.name(), own),
+      .effects = std::move(settings),
+      .record = record,
+      .rows =
+          effective.prepared.record.select(calibration.options.fit.stage_two_segments).segments(),
+      .fit = calibration.fit};
+}
+
+FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
+                         const OwnEffects& own, const DiagnosisOptions& options) {
+  return name_errors(flight, [&] {
+    return run(calibration, prepare_ground(calibration, flight, own), flight, options);
+  });
+}
+
+namespace {
+
+FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibration,
+                       const Flight& flight, const OwnEffects& own,
+                       const DiagnosisOptions& options) {
+  Ground ground = prepare_ground(calibration, flight, own);
+  Injection injection;
+  const MatrixXd added = added_outputs(calibration, ground, injected, injection);
+  const Record original = ground.prepared.record;
+  ground.prepared.record =
+      with_outputs(original, calibration.probe->model().tables().outputs, added);
+  CalibrationOptions refit = calibration.options;
+  refit.fit.start = calibration.fit.nonlinear_estimates();
+  refit.fit.progress = options.progress;
+  refit.own_effects = ground.own;
+  const Calibration again = calibrate(calibration.probe, ground.prepared.record, refit);
+  FlightDiagnosis result = run(again, ground, flight, options);
+  std::vector<std::string> relatives{injection.effect};
+  for (const EffectFinding& effect : result.diagnosis.effects) {
+    if (effect.name != injection.effect) continue;
+    relatives = effect.family;
+    injection.estimate = effect.coefficients;
+    injection.p_adjusted = effect.p_adjusted;
+  }
+  for (std::size_t i = 0; i < result.diagnosis.effects.size(); ++i) {
+    const EffectFinding& effect = result.diagnosis.effects[i];
+    if (effect.status == FindingStatus::cannot_be_seen) continue;
+    if (std::ranges::find(relatives, effect.name) == relatives.end()) continue;
+    if (injection.rank == 0) injection.rank = i + 1;
+    injection.found = injection.found || effect.status == FindingStatus::found;
+  }
+  result.injection = std::move(injection);
+  return result;
+}
+
+}  // namespace
+
+FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& calibration,
+                              const Flight& flight, const OwnEffects& own,
+                              const DiagnosisOptions& options) {
+  return name_errors(flight, [&] { return inject(injected, calibration, flight, own, options); });
+}
+
+std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
+  const Diagnosis& found = diagnosis.diagnosis;
+  if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
+  const std::string& unit = found.residual.front().unit;
+  const std::string injected =
+      diagnosis.injection ? fmt::format("with {} injected, ", diagnosis.injection->effect) : "";
+  const std::string left =
+      fmt::format("{}{:.3g} {} of error are left; noise alone would leave {:.3g} {}", injected,
+                  found.rmse, unit, found.floor, unit);
+  if (found.verdict == Verdict::unexplained) {
+    return fmt::format(
+        "Something is missing that no candidate explains: {}; it shows as offsets of {} from "
+        "window to window (p = {:.1g}).",
+        left, found.omnibus.where, found.omnibus.p_value);
+  }
+  if (found.verdict == Verdict::adequate) {
+    return fmt::format("Nothing is missing that this flight can show: {}.", left);
+  }
+  const EffectFinding& best = found.effects.front();
+  return fmt::format(
+      "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less, {:.0f} % on rows "
+      "held out).",
+      best.name, diagnosis.sentences.front(), left, found.rmse * (1.0 - best.predicted_drop), unit,
+      100.0 * best.predicted_drop, 100.0 * best.held_out_gain);
+}
+
+}  // namespace sepcal

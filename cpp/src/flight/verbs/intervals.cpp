@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/intervals.hpp"
+
+#include <fmt/format.h>
+
+#include "base/parts_of_record.hpp"
+#include "flight/verbs/calibrated_flight.hpp"
+#include "sepcal/composition.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+namespace {
+
+void check_fitted(const Calibration& calibration, const Flight& flight) {
+  const FittedFlight& fitted = calibration.flight;
+  if (fitted.sha256.empty() || flight.sha256().empty() || fitted.sha256 == flight.sha256()) return;
+  throw Error(fmt::format(
+      "{}: not the flight that the calibration was fitted to, {}; intervals are of a fit: give its "
+      "flight, or fit this one",
+      flight.name(), fitted.file));
+}
+
+}  // namespace
+
+FlightIntervals find_intervals(const Calibration& calibration, const Flight& flight,
+                               const ProfileOptions& asked) {
+  check_fitted(calibration, flight);
+  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const Record& record = effective.prepared.record;
+  FitOptions options = calibration.probe->complete(calibration.options.fit, record);
+  options.unsampled = beginnings(effective.effects);
+  return {
+      .model = std::string(calibration.probe->name()),
+      .flight = {flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows},
+      .status = calibration.fit.status,
+      .message = calibration.fit.message,
+      .level = asked.level,
+      .parameters = profile_intervals(*effective.model, record, calibration.fit, options, asked),
+      .notes = effective.prepared.notes};
+}
+
+FlightPrediction predict(const Calibration& calibration, const Flight& flight, double level) {
+  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const Record& record = effective.prepared.record;
+  return {base::gather_time(record),
+          predict(*effective.model, record, calibration.fit, calibration.options.fit, level)};
+}
+
+}  // namespace sepcal

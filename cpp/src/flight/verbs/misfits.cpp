@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/verbs/misfits.hpp"
+
+#include <cmath>
+
+#include "base/parts_of_record.hpp"
+
+namespace sepcal::verbs {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Sums of one output over stretches; lag-one correlation is about the common mean.
+Misfit measure(const base::Part& part, const MatrixXd& residuals, Index output,
+               const Variable& quantity) {
+  Misfit misfit{.segment = part.name, .output = quantity.name, .unit = quantity.unit};
+  const auto r = residuals.col(output);
+  double sum = 0.0;
+  double square = 0.0;
+  for (const Segment& stretch : part.stretches) {
+    const auto values =
+        r.segment(static_cast<Index>(stretch.first), static_cast<Index>(stretch.rows()));
+    sum += values.sum();
+    square += values.squaredNorm();
+    misfit.rows += stretch.rows();
+  }
+  const auto rows = static_cast<double>(misfit.rows);
+  misfit.mean = sum / rows;
+  misfit.rmse = std::sqrt(square / rows);
+  double product = 0.0;
+  for (const Segment& stretch : part.stretches) {
+    const auto n = static_cast<Index>(stretch.rows());
+    const auto centred =
+        (r.segment(static_cast<Index>(stretch.first), n).array() - misfit.mean).eval();
+    product += (centred.head(n - 1) * centred.tail(n - 1)).sum();
+  }
+  const double variance = square - rows * misfit.mean * misfit.mean;
+  misfit.lag_one = misfit.rows > 2 && variance > 0 ? product / variance : not_a_number;
+  return misfit;
+}
+
+std::vector<Misfit> measure_each(const std::vector<base::Part>& parts,
+                                 const std::vector<Variable>& outputs, const MatrixXd& residuals) {
+  std::vector<Misfit> misfits;
+  for (const base::Part& part : parts) {
+    for (std::size_t j = 0; j < outputs.size(); ++j) {
+      misfits.push_back(measure(part, residuals, static_cast<Index>(j), outputs[j]));
+    }
+  }
+  return misfits;
+}
+
+}  // namespace
+
+std::vector<Misfit> measure_whole(const Record& record, const std::vector<Variable>& outputs,
+                                  const MatrixXd& residuals) {
+  return measure_each({{"", base::join_segments(record.segments())}}, outputs, residuals);
+}
+
+std::vector<Misfit> measure_parts(const Record& record, const std::vector<Variable>& outputs,
+                                  const MatrixXd& residuals) {
+  constexpr std::size_t spans_without_labels = 10;
+  const std::vector<Segment> joined = base::join_segments(record.segments());
+  std::vector<base::Part> parts = base::parts_by_label(joined);
+  if (parts.size() < 2)
+    parts = base::parts_by_time(joined, base::gather_time(record), spans_without_labels);
+  return measure_each(parts, outputs, residuals);
+}
+
+}  // namespace sepcal::verbs

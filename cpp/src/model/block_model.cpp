@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/block_model.hpp"
+
+#include <utility>
+
+#include "model/differences.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace model;  // this room's own
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+BlockModel::BlockModel(Tables tables) : tables_(std::move(tables)) { tables_.check_names(); }
+
+void BlockModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
+                               std::span<const int> inputs,
+                               // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
+                               Eigen::Ref<Eigen::MatrixXd> columns) const {
+  if (inputs.empty()) return;
+  if (new_carry() != nullptr) {
+    throw Error("a model that carries a state can't be differentiated by its input '" +
+                tables_.inputs[static_cast<std::size_t>(inputs.front())].name +
+                "'; no effect can correct it");
+  }
+  const Index n_1 = tables_.n_1();
+  const Map<const VectorXd> linear(xi1, n_1);
+  MatrixXd rows(static_cast<Index>(block.rows) * tables_.n_z(), n_1 + 1);
+  const auto predict = [&](const Block& moved) {
+    evaluate(moved, xi2, nullptr, nullptr, rows);
+    return VectorXd(rows.leftCols(n_1) * linear + rows.col(n_1));
+  };
+  differentiate_by_inputs(predict, block, inputs, columns);
+}
+
+bool BlockModel::add_second_derivatives(
+    const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
+    Eigen::Ref<Eigen::MatrixXd> /*sum*/) const {
+  return false;
+}
+
+}  // namespace sepcal

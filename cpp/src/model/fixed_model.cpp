@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/fixed_model.hpp"
+
+namespace sepcal::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Tables without(const Tables& tables, const std::map<std::string, double>& fixed) {
+  Tables left = tables;
+  const auto held = [&](const Variable& parameter) { return fixed.contains(parameter.name); };
+  std::erase_if(left.linear, held);
+  std::erase_if(left.nonlinear, held);
+  return left;
+}
+
+void split(const std::vector<Variable>& parameters, const std::map<std::string, double>& fixed,
+           VectorXd& values, std::vector<Index>& free) {
+  values = VectorXd::Zero(static_cast<Index>(parameters.size()));
+  for (Index k = 0; k < values.size(); ++k) {
+    const auto at = fixed.find(parameters[static_cast<std::size_t>(k)].name);
+    if (at == fixed.end()) {
+      free.push_back(k);
+    } else {
+      values[k] = at->second;
+    }
+  }
+}
+
+VectorXd fill_in(VectorXd whole, const std::vector<Index>& free, const double* values) {
+  for (std::size_t i = 0; i < free.size(); ++i) whole[free[i]] = values[i];
+  return whole;
+}
+
+}  // namespace
+
+FixedModel::FixedModel(const BlockModel& model, const std::map<std::string, double>& fixed)
+    : BlockModel(without(model.tables(), fixed)), model_(model) {
+  split(model.tables().linear, fixed, xi1_, free_1_);
+  split(model.tables().nonlinear, fixed, xi2_, free_2_);
+}
+
+void FixedModel::evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
+                          Eigen::Ref<MatrixXd> rows) const {
+  const VectorXd whole_2 = fill_in(xi2_, free_2_, xi2);
+  const Index n_1 = xi1_.size();
+  const Index n_2 = xi1 == nullptr ? 0 : xi2_.size();
+  MatrixXd whole(rows.rows(), n_1 + n_2 + 1);
+  if (xi1 == nullptr) {
+    model_.evaluate(block, whole_2.data(), nullptr, carry, whole);
+  } else {
+    const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
+    model_.evaluate(block, values_of(whole_2), values_of(whole_1), carry, whole);
+  }
+  Index column = 0;
+  for (const Index k : free_1_) rows.col(column++) = whole.col(k);
+  if (xi1 != nullptr) {
+    for (const Index k : free_2_) rows.col(column++) = whole.col(n_1 + k);
+  }
+  rows.col(column).noalias() = whole.rightCols<1>() + whole.leftCols(n_1) * xi1_;
+}
+
+void FixedModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
+                               std::span<const int> inputs, Eigen::Ref<MatrixXd> columns) const {
+  const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
+  const VectorXd whole_2 = fill_in(xi2_, free_2_, xi2);
+  model_.input_tangent(block, values_of(whole_2), values_of(whole_1), inputs, columns);
+}
+
+bool FixedModel::add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                                        Eigen::Ref<MatrixXd> sum) const {
+  const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
+  const VectorXd whole_2 = fill_in(xi2_, free_2_, xi2);
+  MatrixXd whole = MatrixXd::Zero(xi2_.size(), xi2_.size());
+  if (!model_.add_second_derivatives(block, values_of(whole_2), values_of(whole_1), whole)) {
+    return false;
+  }
+  sum += whole(free_2_, free_2_);
+  return true;
+}
+
+}  // namespace sepcal::model

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A model with some of its parameters held: a fixed linear parameter's column joins b, a fixed
+// nonlinear one disappears from xi2. The result is a model like any other.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "sepcal/block_model.hpp"
+
+namespace sepcal::model {
+
+class FixedModel final : public BlockModel {
+ public:
+  /// `fixed`: name and value; names the model doesn't have are the caller's to refuse. `model` must
+  /// outlive this.
+  FixedModel(const BlockModel& model, const std::map<std::string, double>& fixed);
+
+  void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
+                Eigen::Ref<Eigen::MatrixXd> rows) const override;
+
+  void input_tangent(const Block& block, const double* xi2, const double* xi1,
+                     std::span<const int> inputs,
+                     Eigen::Ref<Eigen::MatrixXd> columns) const override;
+
+  bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                              Eigen::Ref<Eigen::MatrixXd> sum) const override;
+
+  std::unique_ptr<Carry> new_carry() const override { return model_.new_carry(); }
+
+ private:
+  const BlockModel& model_;
+  Eigen::VectorXd xi1_;  // n_1 and n_2 of the whole model: fixed values, zero where free
+  Eigen::VectorXd xi2_;
+  std::vector<Eigen::Index> free_1_;  // which parameters of the whole model are free
+  std::vector<Eigen::Index> free_2_;
+};
+
+}  // namespace sepcal::model

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/measurements.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal::model {
+namespace {
+
+void check_finite(const std::string& name, std::span<const double> values, const Record& record) {
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t row = segment.first; row < segment.last; ++row) {
+      if (std::isfinite(values[row])) continue;
+      throw Error("column '" + name + "' is not a finite number in row " + std::to_string(row) +
+                  " (counted from 0); remove that row or mend it");
+    }
+  }
+}
+
+}  // namespace
+
+Measurements::Measurements(const BlockModel& model, const Record& record)
+    : runs_(find_runs(record)), rows_(record.rows()) {
+  const auto find = [&](const Variable& variable) {
+    const std::span<const double> column = record.column(variable.name);
+    check_finite(variable.name, column, record);
+    return column;
+  };
+  for (const Variable& input : model.tables().inputs) {
+    if (!record.has(input.name) && std::isfinite(input.absent)) {
+      constants_.emplace_back(block_rows, input.absent);
+      inputs_.push_back({constants_.back().data(), true});
+    } else {
+      inputs_.push_back({find(input).data(), false});
+    }
+  }
+  for (const Variable& output : model.tables().outputs) outputs_.push_back(find(output));
+
+  const bool in_order = model.new_carry() != nullptr;
+  std::size_t in_chunk = chunk_rows;
+  std::size_t offset = 0;
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t first = segment.first; first < segment.last; first += block_rows) {
+      const Range range{first, std::min(block_rows, segment.last - first), offset,
+                        first == segment.first};
+      offset += range.rows;
+      if (in_chunk >= chunk_rows && (range.starts_segment || !in_order)) {
+        chunks_.emplace_back();
+        in_chunk = 0;
+      }
+      chunks_.back().push_back(range);
+      in_chunk += range.rows;
+    }
+  }
+  for (const std::span<const double> z : outputs_) {
+    double sum = 0.0;
+    for (const Segment& segment : record.segments()) {
+      for (const double value : z.subspan(segment.first, segment.rows())) sum += value * value;
+    }
+    output_squares_.push_back(sum);
+  }
+}
+
+Block Measurements::block(const Range& range, std::vector<const double*>& pointers) const {
+  pointers.clear();
+  for (const Input& input : inputs_) {
+    pointers.push_back(input.constant ? input.values : input.values + range.first);
+  }
+  return {pointers, range.rows, range.first, range.starts_segment};
+}
+
+std::span<const double> Measurements::output(int j, const Range& range) const {
+  return outputs_[static_cast<std::size_t>(j)].subspan(range.first, range.rows);
+}
+
+}  // namespace sepcal::model

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A record as one model sees it: u and z in the order of the model's tables, cut into blocks that
+// never cross a segment's edge, and the blocks into chunks that threads share.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal::model {
+
+class Measurements {
+ public:
+  struct Range {
+    std::size_t first = 0;  // row of the record
+    std::size_t rows = 0;
+    std::size_t offset = 0;  // selected rows before it
+    bool starts_segment = true;
+  };
+
+  /// Finds the model's inputs and outputs by name; the record's memory must outlive this. An input
+  /// that the record doesn't have takes its `absent` value in every row. Throws Error for another
+  /// column that is missing and for a value that is not finite in a selected row.
+  Measurements(const BlockModel& model, const Record& record);
+
+  /// Rows in the record's segments, N.
+  std::size_t rows() const { return rows_; }
+
+  /// The rows cut where there are gaps, find_runs() of the record.
+  const std::vector<Segment>& runs() const { return runs_; }
+
+  /// Blocks of at most block_rows samples, grouped into chunks: what one task works through in
+  /// order. The grouping depends on the record alone, never on the number of threads.
+  const std::vector<std::vector<Range>>& chunks() const { return chunks_; }
+
+  /// The model's view of a range; `pointers` is scratch that the block refers to.
+  Block block(const Range& range, std::vector<const double*>& pointers) const;
+
+  /// z of output j over a range.
+  std::span<const double> output(int j, const Range& range) const;
+
+  /// Sum of z^2 of output j.
+  double output_square(int j) const { return output_squares_[static_cast<std::size_t>(j)]; }
+
+  static constexpr std::size_t block_rows = 256;   // one output's [A D r] stays in the first cache
+  static constexpr std::size_t chunk_rows = 4096;  // enough work to be worth a thread's while
+
+ private:
+  /// Where an input's values are: a column, or one block of a constant.
+  struct Input {
+    const double* values = nullptr;
+    bool constant = false;
+  };
+
+  std::vector<Input> inputs_;
+  std::vector<std::vector<double>> constants_;
+  std::vector<std::span<const double>> outputs_;
+  std::vector<double> output_squares_;
+  std::vector<std::vector<Range>> chunks_;
+  std::vector<Segment> runs_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace sepcal::model

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace sepcal::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Ref;
+using Eigen::VectorXd;
+using Factors = std::vector<TriangularFactor>;
+
+Index rows_of(const Measurements::Range& range) { return static_cast<Index>(range.rows); }
+
+/// One factor an output, from rows stacked output by output.
+void absorb_by_output(Ref<MatrixXd> rows, Index block_rows, Factors& factors) {
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    factors[j].absorb(rows.middleRows(static_cast<Index>(j) * block_rows, block_rows));
+  }
+}
+
+Factors merge_in_order(const std::vector<Factors>& chunks, int outputs, int columns) {
+  Factors merged(static_cast<std::size_t>(outputs), TriangularFactor(columns));
+  for (const Factors& chunk : chunks) {
+    for (std::size_t j = 0; j < merged.size(); ++j) merged[j].merge(chunk[j]);
+  }
+  return merged;
+}
+
+std::vector<Factors> empty_factors(std::size_t chunks, int outputs, int columns) {
+  return {chunks, Factors(static_cast<std::size_t>(outputs), TriangularFactor(columns))};
+}
+
+}  // namespace
+
+void Sweep::subtract_from_outputs(const Measurements::Range& range, Ref<VectorXd> values) const {
+  for (int j = 0; j < tables().n_z(); ++j) {
+    const auto z = measurements_.output(j, range);
+    auto part = values.segment(j * rows_of(range), rows_of(range));
+    part = Eigen::Map<const VectorXd>(z.data(), rows_of(range)) - part;
+  }
+}
+
+void Sweep::fill_linear(const Block& block, const Measurements::Range& range, const double* xi2,
+                        Carry* carry, Ref<MatrixXd> rows) const {
+  model_.evaluate(block, xi2, nullptr, carry, rows);
+  subtract_from_outputs(range, rows.rightCols<1>().col(0));
+}
+
+void Sweep::fill_tangent(const Block& block, const Measurements::Range& range, const VectorXd& xi1,
+                         const VectorXd& xi2, Carry* carry, Ref<MatrixXd> rows) const {
+  model_.evaluate(block, values_of(xi2), values_of(xi1), carry, rows);
+  subtract_from_outputs(range, rows.rightCols<1>().col(0));
+  rows.rightCols<1>().noalias() -= rows.leftCols(tables().n_1()) * xi1;
+}
+
+void Sweep::for_each_block(const Visit& visit) const {
+  const auto& chunks = measurements_.chunks();
+  pool_.for_each(chunks.size(), [&](std::size_t c) {
+    const auto carry = model_.new_carry();
+    std::vector<const double*> pointers;
+    MatrixXd rows;
+    for (const Measurements::Range& range : chunks[c]) {
+      visit(c, range, measurements_.block(range, pointers), carry.get(), rows);
+    }
+  });
+}
+
+std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
+  const int columns = tables().n_1() + 1;
+  const int n_z = tables().n_z();
+  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
+  for_each_block(
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        rows.resize(n_z * rows_of(range), columns);
+        fill_linear(block, range, xi2.data(), carry, rows);
+        absorb_by_output(rows, rows_of(range), parts[c]);
+      });
+  return merge_in_order(parts, n_z, columns);
+}
+
+std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
+                                                     const VectorXd& xi2) const {
+  const int columns = tables().n_1() + tables().n_2() + 1;
+  const int n_z = tables().n_z();
+  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
+  for_each_block(
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        rows.resize(n_z * rows_of(range), columns);
+        fill_tangent(block, range, xi1, xi2, carry, rows);
+        absorb_by_output(rows, rows_of(range), parts[c]);
+      });
+  return merge_in_order(parts, n_z, columns);
+}
+
+std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, const VectorXd& xi2,
+                                                       const RobustLoss& loss,
+                                                       const VectorXd& weights) const {
+  const int columns = tables().n_1() + tables().n_2() + 1;
+  const int n_z = tables().n_z();
+  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
+  MatrixXd excesses = MatrixXd::Zero(n_z, static_cast<Index>(parts.size()));
+  for_each_block(
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        const Index N = rows_of(range);
+        rows.resize(n_z * N, columns);
+        fill_tangent(block, range, xi1, xi2, carry, rows);
+        for (Index row = 0; row < rows.rows(); ++row) {
+          const Index j = row / N;
+          const double s = weights[j] * rows(row, columns - 1);
+          const double w = loss.weight(s);
+          excesses(j, static_cast<Index>(c)) += std::max(0.0, loss.cost(s) - w * s * s);
+          rows.row(row) *= std::sqrt(w);
+        }
+        absorb_by_output(rows, N, parts[c]);
+      });
+  Factors factors = merge_in_order(parts, n_z, columns);
+  for (int j = 0; j < n_z; ++j) {
+    MatrixXd excess = MatrixXd::Zero(1, columns);
+    excess(0, columns - 1) = std::sqrt(excesses.row(j).sum()) / weights[j];
+    factors[static_cast<std::size_t>(j)].absorb(excess);
+  }
+  return factors;
+}
+
+std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd& xi2) const {
+  const Index n_1 = tables().n_1();
+  const Index n_2 = tables().n_2();
+  const Index n_z = tables().n_z();
+  std::vector<VectorXd> points{xi1, VectorXd::Zero(n_1)};
+  for (Index p = 0; p < n_1; ++p) points.emplace_back(VectorXd::Unit(n_1, p));
+  const auto& chunks = measurements_.chunks();
+  std::vector<MatrixXd> parts(chunks.size(), MatrixXd::Zero(n_1, n_z * n_2));
+  pool_.for_each(chunks.size(), [&](std::size_t c) {
+    std::vector<std::unique_ptr<Carry>> carries;  // each tangent is a pass of its own
+    for (std::size_t k = 0; k < points.size(); ++k) carries.push_back(model_.new_carry());
+    std::vector<const double*> pointers;
+    for (const Measurements::Range& range : chunks[c]) {
+      const Index N = rows_of(range);
+      const Block block = measurements_.block(range, pointers);
+      std::vector<MatrixXd> tangents;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        MatrixXd rows(n_z * N, n_1 + n_2 + 1);
+        fill_tangent(block, range, points[k], xi2, carries[k].get(), rows);
+        tangents.emplace_back(rows.rightCols(n_2 + 1));
+      }
+      const VectorXd r = tangents[0].col(n_2);
+      for (Index p = 0; p < n_1; ++p) {
+        const MatrixXd slope =
+            (tangents[static_cast<std::size_t>(p) + 2] - tangents[1]).leftCols(n_2);
+        for (Index j = 0; j < n_z; ++j) {
+          parts[c].row(p).segment(j * n_2, n_2) +=
+              r.segment(j * N, N).transpose() * slope.middleRows(j * N, N);
+        }
+      }
+    }
+  });
+  std::vector<MatrixXd> products(static_cast<std::size_t>(n_z), MatrixXd::Zero(n_1, n_2));
+  for (const MatrixXd& part : parts) {
+    for (Index j = 0; j < n_z; ++j) {
+      products[static_cast<std::size_t>(j)] += part.middleCols(j * n_2, n_2);
+    }
+  }
+  return products;
+}
+
+std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
+  const int columns = tables().n_1() + tables().n_2() + 1;
+  const int n_z = tables().n_z();
+  std::vector<MatrixXd> outputs(
+      static_cast<std::size_t>(n_z),
+      MatrixXd(static_cast<Index>(measurements_.rows()), static_cast<Index>(columns)));
+  for_each_block(
+      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        rows.resize(n_z * rows_of(range), columns);
+        fill_tangent(block, range, xi1, xi2, carry, rows);
+        for (int j = 0; j < n_z; ++j) {
+          outputs[static_cast<std::size_t>(j)].middleRows(static_cast<Index>(range.offset),
+                                                          rows_of(range)) =
+              rows.middleRows(j * rows_of(range), rows_of(range));
+        }
+      });
+  return outputs;
+}
+
+MatrixXd Sweep::block_residuals(const Block& block, const Measurements::Range& range,
+                                const VectorXd& xi1, const VectorXd& xi2, Carry* carry,
+                                MatrixXd& rows) const {
+  const int n_1 = tables().n_1();
+  rows.resize(tables().n_z() * rows_of(range), n_1 + 1);
+  fill_linear(block, range, xi2.data(), carry, rows);
+  VectorXd r = rows.col(n_1);
+  r.noalias() -= rows.leftCols(n_1) * xi1;
+  return r.reshaped(rows_of(range), tables().n_z());
+}
+
+VectorXd Sweep::sum_residuals(const VectorXd& xi1, const VectorXd& xi2,
+                              const std::function<VectorXd(const MatrixXd&)>& of_block) const {
+  const auto chunks = static_cast<Index>(measurements_.chunks().size());
+  MatrixXd parts = MatrixXd::Zero(tables().n_z(), chunks);
+  for_each_block(
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        parts.col(static_cast<Index>(c)) +=
+            of_block(block_residuals(block, range, xi1, xi2, carry, rows));
+      });
+  return parts.rowwise().sum();
+}
+
+VectorXd Sweep::squared_residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+  return sum_residuals(xi1, xi2, [](const MatrixXd& r) -> VectorXd {
+    return r.colwise().squaredNorm().transpose();
+  });
+}
+
+VectorXd Sweep::losses(const VectorXd& xi1, const VectorXd& xi2, const RobustLoss& loss,
+                       const VectorXd& weights) const {
+  return sum_residuals(xi1, xi2, [&](const MatrixXd& r) -> VectorXd {
+    const MatrixXd s = r * weights.asDiagonal();
+    return s.unaryExpr([&](double each) { return loss.cost(each); }).colwise().sum().transpose();
+  });
+}
+
+MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+  MatrixXd all(static_cast<Index>(measurements_.rows()), tables().n_z());
+  for_each_block(
+      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+        all.middleRows(static_cast<Index>(range.offset), rows_of(range)) =
+            block_residuals(block, range, xi1, xi2, carry, rows);
+      });
+  return all;
+}
+
+std::vector<TriangularFactor> Sweep::sample_factors(
+    const MatrixXd& samples, const std::function<void(double)>& on_progress) const {
+  constexpr Index tile = 25;  // samples that share a block while it is in the cache
+  const int columns = tables().n_1() + 1;
+  const int n_z = tables().n_z();
+  Factors factors(static_cast<std::size_t>(samples.cols()), TriangularFactor(columns));
+  const Index tiles = (samples.cols() + tile - 1) / tile;
+  const auto& chunks = measurements_.chunks();
+  std::mutex mutex;
+  std::size_t done = 0;
+  const auto total = static_cast<double>(tiles) * static_cast<double>(chunks.size());
+  pool_.for_each(static_cast<std::size_t>(tiles), [&](std::size_t t) {
+    const Index first = static_cast<Index>(t) * tile;
+    const Index count = std::min(tile, samples.cols() - first);
+    std::vector<std::unique_ptr<Carry>> carries;
+    for (Index s = 0; s < count; ++s) carries.push_back(model_.new_carry());
+    std::vector<const double*> pointers;
+    MatrixXd rows;
+    for (const auto& chunk : chunks) {
+      for (const Measurements::Range& range : chunk) {
+        rows.resize(n_z * rows_of(range), columns);
+        const Block block = measurements_.block(range, pointers);
+        for (Index s = 0; s < count; ++s) {
+          fill_linear(block, range, samples.col(first + s).data(),
+                      carries[static_cast<std::size_t>(s)].get(), rows);
+          factors[static_cast<std::size_t>(first + s)].absorb(rows);
+        }
+      }
+      if (on_progress) {
+        const std::lock_guard lock(mutex);
+        on_progress(static_cast<double>(++done) / total);
+      }
+    }
+  });
+  return factors;
+}
+
+}  // namespace sepcal::model

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Passes over a record: the rows that a model gives for every block, reduced to one triangular
+// factor an output or to sums. Chunks are reduced apart and merged in the record's order, so that
+// the result is the same, bit for bit, on any number of threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "base/thread_pool.hpp"
+#include "model/loss.hpp"
+#include "model/measurements.hpp"
+#include "sepcal/block_model.hpp"
+#include "sepcal/triangular_factor.hpp"
+
+namespace sepcal::model {
+
+class Sweep {
+ public:
+  /// All three must outlive the sweep.
+  Sweep(const BlockModel& model, const Measurements& measurements, base::ThreadPool& pool)
+      : model_(model), measurements_(measurements), pool_(pool) {}
+
+  const Tables& tables() const { return model_.tables(); }
+  const Measurements& measurements() const { return measurements_; }
+  base::ThreadPool& pool() const { return pool_; }
+
+  /// [A | z - b] at xi2: n_z factors of n_1 + 1 columns.
+  std::vector<TriangularFactor> linear_factors(const Eigen::VectorXd& xi2) const;
+
+  /// [A | D | r] at (xi1, xi2), r = z - A xi1 - b: n_z factors of n_1 + n_2 + 1 columns.
+  std::vector<TriangularFactor> tangent_factors(const Eigen::VectorXd& xi1,
+                                                const Eigen::VectorXd& xi2) const;
+
+  /// The same of rows multiplied by sqrt(w(s)), s = weights_j r, and of one row more, whose
+  /// residual makes the square of the last column sum rho(s) / weights_j^2: still not whitened.
+  std::vector<TriangularFactor> forgiving_factors(const Eigen::VectorXd& xi1,
+                                                  const Eigen::VectorXd& xi2,
+                                                  const RobustLoss& loss,
+                                                  const Eigen::VectorXd& weights) const;
+
+  /// G by output (n_z, each n_1 x n_2), not whitened: G_pi = sum of r dA_p/dxi2_i over the rows, r
+  /// at (xi1, xi2). D is affine in xi1, so that n_1 + 1 more tangents give it, of any model.
+  std::vector<Eigen::MatrixXd> slope_products(const Eigen::VectorXd& xi1,
+                                              const Eigen::VectorXd& xi2) const;
+
+  /// [A | D | r] at (xi1, xi2) of every selected row, output by output (n_z matrices of rows() rows
+  /// in the record's order): what depends on the order of rows, which a factor forgets.
+  std::vector<Eigen::MatrixXd> tangent_rows(const Eigen::VectorXd& xi1,
+                                            const Eigen::VectorXd& xi2) const;
+
+  /// Sum of r^2 by output (n_z).
+  Eigen::VectorXd squared_residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
+
+  /// Sum of rho(weights_j r) by output (n_z).
+  Eigen::VectorXd losses(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                         const RobustLoss& loss, const Eigen::VectorXd& weights) const;
+
+  /// r of every selected row, in the record's order: rows() x n_z.
+  Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
+
+  /// One unweighted factor of [A | z - b] over all outputs for every column of `samples`
+  /// (n_2 x S). A block of data stays in the cache while all samples pass over it.
+  /// `on_progress` hears the fraction done, from any thread, one call at a time.
+  std::vector<TriangularFactor> sample_factors(
+      const Eigen::MatrixXd& samples, const std::function<void(double)>& on_progress) const;
+
+ private:
+  using Visit = std::function<void(std::size_t chunk, const Measurements::Range& range,
+                                   const Block& block, Carry* carry, Eigen::MatrixXd& rows)>;
+
+  /// Visits every block, a chunk's blocks in order; `rows` is scratch of the chunk's own.
+  void for_each_block(const Visit& visit) const;
+
+  /// Sums over the rows by output (n_z) of what `of_block` makes of a block's r (rows x n_z).
+  Eigen::VectorXd sum_residuals(
+      const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+      const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& of_block) const;
+
+  /// A block's rows, (n_z * rows) x (n_1 + 1): [A | z - b].
+  void fill_linear(const Block& block, const Measurements::Range& range, const double* xi2,
+                   Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows) const;
+  /// r of a block, its rows x n_z; `rows` is scratch.
+  Eigen::MatrixXd block_residuals(const Block& block, const Measurements::Range& range,
+                                  const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                                  Carry* carry, Eigen::MatrixXd& rows) const;
+  /// A block's rows, (n_z * rows) x (n_1 + n_2 + 1): [A | D | r].
+  void fill_tangent(const Block& block, const Measurements::Range& range,
+                    const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2, Carry* carry,
+                    Eigen::Ref<Eigen::MatrixXd> rows) const;
+  void subtract_from_outputs(const Measurements::Range& range,
+                             Eigen::Ref<Eigen::VectorXd> values) const;
+
+  const BlockModel& model_;
+  const Measurements& measurements_;
+  base::ThreadPool& pool_;
+};
+
+}  // namespace sepcal::model

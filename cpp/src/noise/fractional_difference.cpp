@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "noise/fractional_difference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace sepcal::noise {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index near_rows = Index{2} * Exponentials::count;
+// Trapezoids in ln(lambda) converge like e^{-pi^2 / step}: 2e-11 here.
+constexpr double step = 0.4;
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+// The loop in the widest registers that the processor has.
+#define SEPCAL_EVERY_WIDTH \
+  __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+#define SEPCAL_EVERY_WIDTH
+#endif
+
+// NOLINTBEGIN(*-pointer-arithmetic,*-c-arrays,*-constant-array-index): lanes of a register.
+
+using Lanes [[gnu::vector_size(sizeof(Exponentials::decay))]] = double;
+constexpr std::size_t most_groups = 16;
+
+inline void load(const double* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); }
+
+/// y_t from the last near_rows of x, by `near` (the oldest first), and from all before, by the
+/// exponentials.
+SEPCAL_EVERY_WIDTH void filter(const double* near, const Exponentials* distant, std::size_t groups,
+                               double* x, Index rows) {
+  Lanes state[most_groups] = {};
+  Lanes decay[most_groups];
+  Lanes weight[most_groups];
+  for (std::size_t g = 0; g < groups; ++g) {
+    load(distant[g].decay, decay[g]);
+    load(distant[g].weight, weight[g]);
+  }
+  Lanes older;
+  Lanes newer;
+  load(near, older);
+  load(near + Exponentials::count, newer);
+  constexpr Index chunk = 512;
+  double past[near_rows + chunk] = {};  // the rows as they were, behind those before them
+  for (Index first = 0; first < rows; first += chunk) {
+    const Index count = std::min(chunk, rows - first);
+    std::copy_n(x + first, count, past + near_rows);
+    for (Index t = 0; t < count; ++t) {
+      const Lanes leaving = Lanes{} + past[t];
+      Lanes old_rows;
+      Lanes new_rows;
+      load(past + t + 1, old_rows);
+      load(past + t + 1 + Exponentials::count, new_rows);
+      Lanes sum = older * old_rows + newer * new_rows;
+      for (std::size_t g = 0; g < groups; ++g) {
+        state[g] = decay[g] * state[g] + leaving;
+        sum += weight[g] * state[g];
+      }
+      x[first + t] =
+          ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+    }
+    std::copy_n(past + count, near_rows, past);
+  }
+}
+
+// NOLINTEND(*-pointer-arithmetic,*-c-arrays,*-constant-array-index)
+
+}  // namespace
+
+FractionalDifference::FractionalDifference(double d, Index rows)
+    : d_(d < 0.0 ? d + 1.0 : d), summed_(d < 0.0) {
+  if (d_ <= 0.0) return;
+  near_.resize(std::max<Index>(1, std::min(rows, near_rows)));
+  near_[0] = 1.0;
+  for (Index k = 1; k < near_.size(); ++k) {
+    near_[k] = near_[k - 1] * (static_cast<double>(k - 1) - d_) / static_cast<double>(k);
+  }
+  near_.reverseInPlace();
+  if (rows <= near_rows) return;
+  constexpr double pi = std::numbers::pi;
+  const double scale = std::sin(pi * d_) / pi;
+  // What lies below `lowest` adds less than 1e-10 over all rows; above `highest`, e^{-45}.
+  const double lowest = std::log(1e-10 / static_cast<double>(rows) / scale) / (1.0 + d_);
+  const double highest = std::log(45.0 / (static_cast<double>(near_rows) - d_));
+  const auto nodes = static_cast<Index>(std::ceil((highest - lowest) / step)) + 1;
+  const auto groups = static_cast<std::size_t>((nodes - 1) / Exponentials::count + 1);
+  distant_.resize(groups);
+  for (Index i = 0; i < nodes; ++i) {
+    const double lambda = std::exp(lowest + step * static_cast<double>(i));
+    Exponentials& group = distant_[static_cast<std::size_t>(i / Exponentials::count)];
+    group.decay[i % Exponentials::count] = std::exp(-lambda);
+    group.weight[i % Exponentials::count] =
+        -scale * step * lambda * std::pow(-std::expm1(-lambda), d_) *
+        std::exp(-(static_cast<double>(near_rows) - d_) * lambda);
+  }
+}
+
+void FractionalDifference::apply(Eigen::Ref<VectorXd> x) const {
+  if (d_ > 0.0) {
+    if (distant_.empty()) {
+      for (Index t = x.size() - 1; t >= 0; --t) {
+        const Index span = std::min(t + 1, near_.size());
+        x[t] = near_.tail(span).dot(x.segment(t + 1 - span, span));
+      }
+    } else {
+      filter(near_.data(), distant_.data(), distant_.size(), x.data(), x.size());
+    }
+  }
+  if (!summed_) return;
+  double sum = 0.0;
+  for (double& value : x) value = sum += value;
+}
+
+}  // namespace sepcal::noise

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What follows from a noise model: draws of it, and X' Sigma X. Where the level is free the noise
+// is zero n rows before a segment of n rows; with V(h) the variance of its change over h rows,
+//   cov(e_s, e_t) = [V(s + n) + V(t + n) - V(|t - s|)] / 2.
+#include <unsupported/Eigen/FFT>
+
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+
+#include "noise/arfima_factor.hpp"
+#include "noise/noise_autocovariance.hpp"
+#include "noise/noise_room.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace noise;  // this room's own
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Ref;
+using Eigen::VectorXd;
+
+/// Box & Muller on 53 bits: std::normal_distribution differs between libraries.
+void draw_normals(std::mt19937_64& generator, Ref<VectorXd> out) {
+  const auto uniform = [&] { return (static_cast<double>(generator() >> 11U) + 0.5) * 0x1p-53; };
+  for (Index i = 0; i < out.size(); i += 2) {
+    const double radius = std::sqrt(-2.0 * std::log(uniform()));
+    const double angle = 2.0 * std::numbers::pi * uniform();
+    out[i] = radius * std::cos(angle);
+    if (i + 1 < out.size()) out[i + 1] = radius * std::sin(angle);
+  }
+}
+
+/// V(0), ..., V(most) of differences with autocovariance gamma (most of them or more).
+VectorXd find_variogram(const VectorXd& gamma, Index most) {
+  VectorXd variogram = VectorXd::Zero(most + 1);
+  double slope = gamma[0];
+  for (Index h = 0; h < most; ++h) {
+    if (h > 0) slope += 2.0 * gamma[h];
+    variogram[h + 1] = variogram[h] + slope;
+  }
+  return variogram;
+}
+
+/// S X for the symmetric Toeplitz matrix S whose first column is `lags` (X.rows() or more).
+MatrixXd multiply_toeplitz(const VectorXd& lags, const Ref<const MatrixXd>& X) {
+  constexpr Index few_rows = 64;
+  const Index rows = X.rows();
+  if (rows <= few_rows) {
+    MatrixXd S(rows, rows);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < rows; ++j) S(i, j) = lags[std::abs(i - j)];
+    }
+    return S * X;
+  }
+  Index length = 128;
+  while (length < 2 * rows) length *= 2;
+  Eigen::FFT<double> fft;
+  VectorXd circle = VectorXd::Zero(length);
+  circle.head(rows) = lags.head(rows);
+  circle.tail(rows - 1) = lags.segment(1, rows - 1).reverse();
+  Eigen::VectorXcd spectrum;
+  fft.fwd(spectrum, circle);
+  MatrixXd product(rows, X.cols());
+  VectorXd padded(length);
+  Eigen::VectorXcd transformed;
+  for (Index j = 0; j < X.cols(); ++j) {
+    padded.setZero();
+    padded.head(rows) = X.col(j);
+    fft.fwd(transformed, padded);
+    transformed.array() *= spectrum.array();
+    fft.inv(padded, transformed);
+    product.col(j) = padded.head(rows);
+  }
+  return product;
+}
+
+/// The sizes of `innovations` with the signs of `x`; x where they are zero.
+void keep_sizes(const Ref<const VectorXd>& innovations, Ref<VectorXd> x) {
+  for (Index t = 0; t < x.size(); ++t) {
+    if (innovations[t] != 0.0) x[t] = std::copysign(innovations[t], x[t]);
+  }
+}
+
+}  // namespace
+
+MatrixXd simulate_noise(const NoiseModel& model, const std::vector<Segment>& segments, Index draws,
+                        std::mt19937_64& generator, const VectorXd& innovations) {
+  check_noise_model(model);
+  const std::vector<Index> lengths = find_lengths(segments);
+  const bool free = model.level_is_free();
+  // A free level takes the changes over the n rows before the segment too: as many as 2n - 1.
+  std::vector<Index> blocks = lengths;
+  Index rows = 0;
+  for (Index& block : blocks) {
+    rows += block;
+    if (free) block = 2 * block - 1;
+  }
+  if (innovations.size() > 0 && innovations.size() != rows) {
+    throw Error("there are " + std::to_string(innovations.size()) +
+                " innovations; the segments have " + std::to_string(rows) + " rows");
+  }
+  const ArfimaFactor factor(model.d - (free ? 1.0 : 0.0), model.phi, blocks);
+  MatrixXd noise(rows, draws);
+  VectorXd x;
+  for (Index j = 0; j < draws; ++j) {
+    Index first = 0;
+    for (std::size_t k = 0; k < lengths.size(); ++k) {
+      x.resize(blocks[k]);
+      draw_normals(generator, x);
+      if (innovations.size() > 0) {
+        keep_sizes(innovations.segment(first, lengths[k]), x.tail(lengths[k]));
+      }
+      factor.colour(x);
+      if (free) {
+        for (Index t = 1; t < x.size(); ++t) x[t] += x[t - 1];
+      }
+      noise.col(j).segment(first, lengths[k]) = model.sigma * x.tail(lengths[k]);
+      first += lengths[k];
+    }
+  }
+  return noise;
+}
+
+MatrixXd covariance_product(const NoiseModel& model, const std::vector<Segment>& segments,
+                            const Ref<const MatrixXd>& X) {
+  check_noise_model(model);
+  const std::vector<Index> lengths = find_lengths(segments);
+  Index rows = 0;
+  Index longest = 0;
+  for (const Index length : lengths) {
+    rows += length;
+    longest = std::max(longest, length);
+  }
+  if (X.rows() != rows) {
+    throw Error("X has " + std::to_string(X.rows()) + " rows; the segments have " +
+                std::to_string(rows));
+  }
+  const bool free = model.level_is_free();
+  const VectorXd gamma =
+      find_moments(model.d - (free ? 1.0 : 0.0), model.phi, 2 * longest).autocovariance;
+  const VectorXd variogram = free ? find_variogram(gamma, 2 * longest) : VectorXd();
+  MatrixXd product = MatrixXd::Zero(X.cols(), X.cols());
+  Index first = 0;
+  for (const Index n : lengths) {
+    const auto part = X.middleRows(first, n);
+    first += n;
+    if (free) {
+      // The first row follows n - 1 steps after a row at zero: 2n - 1 changes reach the last row.
+      const MatrixXd since = part.transpose() * variogram.segment(n, n);
+      const MatrixXd both = since * part.colwise().sum();
+      product += 0.5 * (both + both.transpose()) -
+                 0.5 * part.transpose() * multiply_toeplitz(variogram, part);
+    } else {
+      product += part.transpose() * multiply_toeplitz(gamma, part);
+    }
+  }
+  return model.sigma * model.sigma * 0.5 * (product + product.transpose());
+}
+
+}  // namespace sepcal

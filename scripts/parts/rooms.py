@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rooms of the C++ sources: who may include whom, and how large they are.
+
+Usage: rooms.py check [FOLDER]   every include against FOLDER/rooms.toml (cpp); 1 where one is wrong
+       rooms.py count [FOLDER]   files, lines and includes of every room
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+UMBRELLA = "sepcal"  # includes every public header, in reading order
+
+
+@dataclass(frozen=True)
+class House:
+    """The table of rooms, and where they are."""
+
+    folder: Path
+    reach: dict[str, set[str]]  # what a room may include, itself among it
+    of_public: dict[str, str]  # the room of a public header, by its name below include/sepcal
+
+    def room_of(self, include: str) -> str | None:
+        """The room of a header as it is included; None for one that isn't ours."""
+        name = include.removesuffix(".hpp")
+        if name.startswith("sepcal/"):
+            return self.of_public.get(name.removeprefix("sepcal/"))
+        room = str(Path(name).parent)
+        return room if room in self.reach else None
+
+    def files(self) -> Iterator[tuple[Path, str | None]]:
+        """Every source and header with its room; None for one that has no room."""
+        public = self.folder / "include/sepcal"
+        for file in sorted(public.rglob("*.hpp")):
+            name = str(file.relative_to(public).with_suffix(""))
+            if name != UMBRELLA:
+                yield file, self.of_public.get(name)
+        source = self.folder / "src"
+        for file in sorted(source.rglob("*.?pp")):
+            room = str(file.relative_to(source).parent)
+            if room != "bindings":
+                yield file, room if room in self.reach else None
+
+
+def read_house(folder: Path) -> House:
+    """Reads FOLDER/rooms.toml. Raises ValueError where a room may include one that isn't there."""
+    table = tomllib.loads((folder / "rooms.toml").read_text())
+    reach: dict[str, set[str]] = {}
+    for room, entry in table.items():  # a room stands below those that it may include
+        reach[room] = {room}
+        for name in entry["may_include"]:
+            if name not in reach:
+                raise ValueError(
+                    f"rooms.toml: {room} may include {name}, which stands not above it"
+                )
+            reach[room] |= reach[name]
+    of_public = {name: room for room, entry in table.items() for name in entry["public"]}
+    return House(folder, reach, of_public)
+
+
+def includes(file: Path) -> list[str]:
+    """What a file includes in quotes."""
+    return INCLUDE.findall(file.read_text())
+
+
+def find_faults(house: House) -> list[str]:
+    """One line for each include that goes the wrong way and each file without a room."""
+    faults = []
+    for name, room in house.of_public.items():
+        if not (house.folder / "include/sepcal" / f"{name}.hpp").is_file():
+            faults.append(f"rooms.toml: {room}'s public header sepcal/{name}.hpp is not there")
+    for file, room in house.files():
+        if room is None:
+            faults.append(f"{file}: it has no room in rooms.toml")
+            continue
+        for include in includes(file):
+            target = house.room_of(include)
+            if target is None:
+                faults.append(f'{file}: "{include}" is in no room of rooms.toml')
+            elif target not in house.reach[room]:
+                faults.append(f'{file}: {room} may not include {target} ("{include}")')
+    return faults
+
+
+def count(house: House) -> str:
+    """A table of the rooms in Markdown."""
+    files: Counter[str] = Counter()
+    lines: Counter[str] = Counter()
+    crossing: Counter[str] = Counter()
+    for file, room in house.files():
+        name = room or "-"
+        files[name] += 1
+        lines[name] += len(file.read_text().splitlines())
+        rooms = [house.room_of(include) for include in includes(file)]
+        crossing[name] += sum(target != room for target in rooms)
+    public = Counter(house.of_public.values())
+    rows = [
+        f"| {room} | {files[room]} | {lines[room]} | {crossing[room]} | {public[room]} |"
+        for room in [*house.reach, *(files.keys() - house.reach.keys())]
+    ]
+    total = f"| all | {files.total()} | {lines.total()} | {crossing.total()} | {public.total()} |"
+    head = (
+        "| room | files | lines | includes of other rooms | public headers |\n|---|---|---|---|---|"
+    )
+    return "\n".join([head, *rows, total])
+
+
+def main(verb: str, folder: Path) -> int:
+    """Prints what the verb asks for."""
+    house = read_house(folder)
+    if verb == "count":
+        print(count(house))
+        return 0
+    faults = find_faults(house)
+    print("\n".join(faults), end="\n" if faults else "")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3) or sys.argv[1] not in ("check", "count"):
+        sys.exit((__doc__ or "").strip())
+    sys.exit(main(sys.argv[1], Path(sys.argv[2] if len(sys.argv) == 3 else "cpp")))
