@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "estimation/model_trial.hpp"
 #include "estimation/sampling.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/error.hpp"
@@ -169,7 +170,11 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
 
 void check_model(const BlockModel& model, const Record& record,
                  const std::map<std::string, double>& start) {
-  const model::Measurements measurements(model, record);
+  try_model(model, model::Measurements(model, record), start);
+}
+
+void estimation::try_model(const BlockModel& model, const model::Measurements& measurements,
+                           const std::map<std::string, double>& start) {
   if (measurements.chunks().empty()) {
     throw Error("the record has no rows; a model can't be tried on it");
   }

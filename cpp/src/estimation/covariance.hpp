@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "estimation/stages.hpp"
+#include "estimation/stage_two.hpp"
 #include "model/sweep.hpp"
 
 namespace sepcal::estimation {

@@ -6,9 +6,11 @@
 
 #include "estimation/covariance.hpp"
 #include "estimation/knowledge.hpp"
+#include "estimation/likelihood.hpp"
+#include "estimation/model_trial.hpp"
 #include "estimation/plausibility.hpp"
-#include "estimation/stages.hpp"
-#include "sepcal/check_model.hpp"
+#include "estimation/stage_one.hpp"
+#include "estimation/stage_two.hpp"
 
 namespace sepcal {
 
@@ -104,17 +106,18 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   const VectorXd rmse = (sums / rows).cwiseSqrt();
   result.rmse = by_output(model.tables(), rmse);
   result.noise = by_output(model.tables(), two.noise);
-  result.cost = find_cost(problem, two, rows);
+  result.cost = two.cost;
   result.method = two.method;
   result.iterations = two.iterations;
   result.noise_iterations = two.noise_iterations;
   result.rows = measurements.rows();
-  result.message = two.message + result.identifiability.message();
+  for (const std::string& sentence : two.sentences) result.message += sentence + "; ";
+  result.message += result.identifiability.message();
   if (!result.message.empty() && !result.message.ends_with("; ")) result.message += "; ";
   result.message += judge_knowledge(result.parameters, problem.options());
   if (result.message.ends_with("; ")) result.message.resize(result.message.size() - 2);
   result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
-                  : two.converged                              ? FitStatus::converged
+                  : two.converged()                            ? FitStatus::converged
                                                                : FitStatus::not_converged;
 }
 
@@ -123,15 +126,19 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
 Fit fit(const BlockModel& model, const Record& record, const FitOptions& options) {
   const Problem problem(model, options);
   base::ThreadPool pool(options.threads);
-  const Record second = record.select(options.stage_two_segments);
-  const model::Measurements measurements(problem.model(), second);
-  problem.check_measurements(measurements.rows());
-  check_model(problem.model(), second, options.start);
+  const model::Measurements second(problem.model(), record.select(options.stage_two_segments));
+  problem.check_measurements(second.rows());
+  try_model(problem.model(), second, options.start);
 
   Fit result;
-  result.stage_one = run_stage_one(problem, record, pool);
-  const StageTwo two = run_stage_two(problem, measurements, result.stage_one, pool);
-  describe(result, model, problem, measurements, two, pool);
+  if (options.stage_one_segments == options.stage_two_segments) {
+    result.stage_one = run_stage_one(problem, second, pool);
+  } else {
+    const model::Measurements first(problem.model(), record.select(options.stage_one_segments));
+    result.stage_one = run_stage_one(problem, first, pool);
+  }
+  const StageTwo two = run_stage_two(problem, second, result.stage_one, pool);
+  describe(result, model, problem, second, two, pool);
   return result;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/step_length.hpp"
 #include "numerics/bounded_least_squares.hpp"
 
 namespace sepcal::estimation {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/stage_one.hpp"
+#include "estimation/stage_one.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "estimation/objective.hpp"
 #include "estimation/sampling.hpp"
 #include "estimation/screens.hpp"
-#include "estimation/stages.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -70,10 +69,10 @@ MatrixXd insert_held(const Problem& problem, const std::map<std::string, double>
   return points;
 }
 
-StageOne run_without_unsampled(const Problem& problem, const Record& record,
+StageOne run_without_unsampled(const Problem& problem, const model::Measurements& measurements,
                                base::ThreadPool& pool) {
   const FitOptions reduced = hold_unsampled(problem);
-  StageOne result = run_stage_one(Problem(problem.model(), reduced), record, pool);
+  StageOne result = run_stage_one(Problem(problem.model(), reduced), measurements, pool);
   const auto insert = [&](const auto& points) {
     return insert_held(problem, reduced.fixed, points);
   };
@@ -130,17 +129,15 @@ VectorXd choose_best(const Problem& problem, const model::Measurements& measurem
 
 }  // namespace
 
-StageOne estimation::run_stage_one(const Problem& problem, const Record& record,
+StageOne estimation::run_stage_one(const Problem& problem, const model::Measurements& measurements,
                                    base::ThreadPool& pool) {
   const FitOptions& options = problem.options();
   const auto is_unsampled = [&](const Variable& parameter) {
     return options.unsampled.contains(parameter.name);
   };
   if (options.start.empty() && std::ranges::any_of(problem.nonlinear(), is_unsampled)) {
-    return run_without_unsampled(problem, record, pool);
+    return run_without_unsampled(problem, measurements, pool);
   }
-  const Record selected = record.select(options.stage_one_segments);
-  const model::Measurements measurements(problem.model(), selected);
   problem.check_measurements(measurements.rows());
   const model::Sweep sweep(problem.model(), measurements, pool);
   const auto rows = static_cast<double>(measurements.rows());
@@ -193,8 +190,10 @@ StageOne estimation::run_stage_one(const Problem& problem, const Record& record,
 
 StageOne stage_one(const BlockModel& model, const Record& record, const FitOptions& options) {
   const Problem problem(model, options);
+  const model::Measurements measurements(problem.model(),
+                                         record.select(options.stage_one_segments));
   base::ThreadPool pool(options.threads);
-  return run_stage_one(problem, record, pool);
+  return run_stage_one(problem, measurements, pool);
 }
 
 }  // namespace sepcal

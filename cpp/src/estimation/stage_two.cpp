@@ -1,112 +1,94 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stage two: the constrained maximum-likelihood fit (Sun & Gebre-Egziabher, Step 5, Eqs. 6, 20,
-// 24-27). Ceres descends; Gauss-Newton steps then take the last digits that a comparison of costs
-// can't see; R and the parameters alternate until Eq. 26 holds.
-#include <string>
+#include "estimation/stage_two.hpp"
+
+#include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "estimation/alternation.hpp"
-#include "estimation/attempts.hpp"
-#include "estimation/stages.hpp"
+#include "estimation/likelihood.hpp"
 
 namespace sepcal::estimation {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+// First radii. One over them is Marquardt's damping of columns of unit length.
+constexpr double gauss_newton = 1e4;  // the first step is all but Gauss-Newton's
+constexpr double customary = 1e3;     // a damping of 0.001, the customary first one
+constexpr double short_steps = 10.0;
+constexpr double within_the_basin = 0.1;  // a fraction of Gauss-Newton's, as in stage one
 
-struct Outcome {
-  bool refined = false;
-  bool settled = false;
+/// A loss is minimised jointly.
+SecondStage possible(const FitOptions& options, SecondStage method) {
+  return options.loss == Loss::squares ? method : SecondStage::joint;
+}
+
+/// The turns of an attempt: xi at R, and R at xi.
+struct Turns {
+  const Likelihood& likelihood;
+  const Attempt& attempt;
+
+  bool noise_given() const { return likelihood.problem().noise().size() > 0; }
+
+  StageTwo find_minimum(StageTwo at) const {
+    if (attempt.near) {
+      if (auto there = likelihood.refine_downhill(at)) return std::move(*there);
+    }
+    return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius));
+  }
+
+  StageTwo follow_minimum(StageTwo at) const {
+    at = likelihood.refine(std::move(at));
+    if (at.refined) return at;
+    return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius));
+  }
+
+  double update_noise(StageTwo& at) const {
+    const Eigen::VectorXd before = std::exchange(at.noise, likelihood.noise_at(at));
+    return (at.noise.cwiseQuotient(before).array().square() - 1.0).abs().maxCoeff();
+  }
 };
 
-/// The parameters at R, R at the parameters, and so on until Eq. 26 holds. `near`: the parameters
-/// are all but there.
-Outcome alternate(Alternation& alternation, StageTwo& result, const FitOptions& options,
-                  bool noise_given, bool near) {
-  constexpr int most_failures = 3;  // then another R will not help
-  Outcome outcome{near && alternation.refine_downhill(), noise_given};
-  if (!outcome.refined) {
-    alternation.descend();
-    outcome.refined = alternation.refine();
+/// Why it did not converge, if it did not.
+void explain(StageTwo& end, const FitOptions& options) {
+  if (!end.refined) {
+    end.sentences.emplace_back(
+        "the minimisation did not converge: no minimum was found near where it ended");
+    end.sentences.emplace_back("look for a wrong unit or sign, or bounds that are too wide");
+  } else if (!end.settled) {
+    end.sentences.push_back("R did not settle within " + std::to_string(options.noise_iterations) +
+                            " iterations");
   }
-  int failures = outcome.refined ? 0 : 1;
-  int updates = 0;
-  while (!outcome.settled && failures < most_failures && updates < options.noise_iterations) {
-    outcome.settled = alternation.update_noise() < options.noise_tolerance;
-    ++updates;
-    if (options.progress) {
-      options.progress("stage two", static_cast<double>(updates) /
-                                        static_cast<double>(options.noise_iterations));
-    }
-    if (outcome.settled) break;
-    outcome.refined = alternation.refine();
-    if (outcome.refined) continue;
-    alternation.descend();
-    outcome.refined = alternation.refine();
-    if (!outcome.refined) ++failures;
-  }
-  if (!outcome.settled) alternation.update_noise();  // the noise of the parameters returned
-  result.noise_iterations += updates;
-  return outcome;
 }
 
-constexpr auto fell_back_from_failure =
-    "projected fell back to joint, because it did not converge; ";
+/// Step 5 in one way.
+StageTwo fit_once(const Likelihood& likelihood, const StageOne& start, const Attempt& attempt) {
+  const FitOptions& options = likelihood.problem().options();
+  Turns turns{likelihood, attempt};
+  // 1. Begin where stage one ended, with the noise of its residuals (Eq. 24).
+  StageTwo at = likelihood.begin(start, attempt.method);
+  // 2. What the record leaves open there is held by a loose prior.
+  if (attempt.hold) at = likelihood.hold_open(std::move(at), attempt.near);
+  // 3. xi at R (Eqs. 6, 20, 27), R at xi (Eq. 25), and so on until R settles (Eq. 26).
+  at = alternate(turns, std::move(at), options);
+  // 4. A poor start may have seen less than the solution does: what holds nothing open has to go.
+  if (at.hold && !likelihood.leaves_open(at)) {
+    at.hold.reset();
+    at = alternate(turns, std::move(at), options);
+  }
+  at.cost = likelihood.cost(at);
+  explain(at, options);
+  return at;
+}
+
+Ending ending_of(const Likelihood& likelihood, const StageTwo& end) {
+  return {end.converged(), likelihood.leaves_open(end), end.hold.has_value(), end.cost};
+}
+
+constexpr auto fell_back_from_failure = "projected fell back to joint, because it did not converge";
 constexpr auto fell_back_from_open =
-    "projected fell back to joint, because the record leaves something open where it ended; ";
-
-/// Stage two in one way; fills `result`.
-Ending try_once(const Problem& problem, const model::Sweep& sweep, const StageOne& start,
-                const Attempt& attempt, StageTwo& result) {
-  const bool noise_given = problem.noise().size() > 0;
-  result.method = attempt.method;
-  result.x.resize(start.xi1.size() + start.xi2.size());
-  result.x << start.xi1, start.xi2;
-  result.x = problem.box().clip(result.x);
-  result.noise = noise_given ? problem.noise() : start.noise;
-
-  Alternation alternation(problem, sweep, attempt.first_radius, result);
-  if (!noise_given) alternation.begin_noise();
-  alternation.look_around(attempt);
-  Outcome outcome = alternate(alternation, result, problem.options(), noise_given, attempt.near);
-  // A poor start may have seen less than the solution does: what holds nothing open has to go.
-  if (alternation.release_what_is_determined()) {
-    outcome = alternate(alternation, result, problem.options(), noise_given, attempt.near);
-  }
-  result.converged = outcome.refined && outcome.settled;
-  result.held = alternation.holds();
-  if (!outcome.refined) {
-    result.message +=
-        "the minimisation did not converge: no minimum was found near where it ended; "
-        "look for a wrong unit or sign, or bounds that are too wide; ";
-  } else if (!outcome.settled) {
-    result.message += "R did not settle within " +
-                      std::to_string(problem.options().noise_iterations) + " iterations; ";
-  }
-  const auto rows = static_cast<double>(sweep.measurements().rows());
-  return {result.converged, alternation.ends_open(), alternation.holds(),
-          find_cost(problem, result, rows)};
-}
+    "projected fell back to joint, because the record leaves something open where it ended";
 
 }  // namespace
-
-VectorXd squares(const std::vector<TriangularFactor>& factors) {
-  VectorXd sums(static_cast<Index>(factors.size()));
-  for (std::size_t j = 0; j < factors.size(); ++j) {
-    const MatrixXd& T = factors[j].matrix();
-    sums[static_cast<Index>(j)] = T.col(T.cols() - 1).squaredNorm();
-  }
-  return sums;
-}
-
-double find_cost(const Problem& problem, const StageTwo& two, double rows) {
-  const VectorXd sums = squares(two.factors).cwiseQuotient(two.noise.cwiseAbs2());
-  double J = 0.5 * sums.sum() + rows * two.noise.array().log().sum();
-  for (const Prior& prior : problem.knowledge()) J += 0.5 * prior.square(two.x);
-  return J;
-}
 
 StageTwo run_stage_two(const Problem& problem, const model::Measurements& measurements,
                        const StageOne& start, base::ThreadPool& pool) {
@@ -117,28 +99,73 @@ StageTwo run_stage_two(const Problem& problem, const model::Measurements& measur
                        const StageOne& start, const std::vector<Attempt>& attempts,
                        base::ThreadPool& pool) {
   const model::Sweep sweep(problem.model(), measurements, pool);
+  const Likelihood likelihood(problem, sweep);
   const bool start_given = !problem.options().start.empty();
-  StageTwo best;
-  const Ending first = try_once(problem, sweep, start, attempts.front(), best);
+  StageTwo best = fit_once(likelihood, start, attempts.front());
+  const Ending first = ending_of(likelihood, best);
   Ending best_ending = first;
   int iterations = best.iterations;
   for (std::size_t i = 1; i < attempts.size() && !is_enough(best_ending, start_given); ++i) {
     if (attempts[i].hold && best_ending.held) break;  // that was joint already
-    StageTwo result;
-    const Ending ending = try_once(problem, sweep, start, attempts[i], result);
-    iterations += result.iterations;
+    StageTwo next = fit_once(likelihood, start, attempts[i]);
+    const Ending ending = ending_of(likelihood, next);
+    iterations += next.iterations;
     const bool settled = agree(ending, best_ending);
     if (is_better(ending, best_ending)) {
-      best = std::move(result);
+      best = std::move(next);
       best_ending = ending;
       if (attempts.front().method == SecondStage::projected && best.method == SecondStage::joint) {
-        best.message.insert(0, first.converged ? fell_back_from_open : fell_back_from_failure);
+        best.sentences.insert(best.sentences.begin(),
+                              first.converged ? fell_back_from_open : fell_back_from_failure);
       }
     }
     if (settled) break;
   }
   best.iterations = iterations;
   return best;
+}
+
+std::vector<Attempt> list_attempts(const FitOptions& options, const StageOne& start) {
+  const SecondStage asked = possible(options, options.second_stage);
+  const bool automatic = asked == SecondStage::automatic;
+  const bool separable = start.xi1.size() > 0;
+  if (options.start.empty()) {
+    if (!automatic) return {{asked}};
+    if (!start.unique_minimum) return {{SecondStage::joint}};
+    return {{SecondStage::projected}, {SecondStage::joint}};
+  }
+  const SecondStage method = !automatic  ? asked
+                             : separable ? SecondStage::projected
+                                         : SecondStage::joint;
+  return {{method, customary, false},
+          {automatic ? SecondStage::joint : method, gauss_newton, true},
+          {method, short_steps, false},
+          {method, within_the_basin, false}};
+}
+
+Attempt from_neighbour(const FitOptions& options, SecondStage method, bool hold) {
+  return {possible(options, method), customary, hold, true};
+}
+
+Attempt within_basin(const FitOptions& options, SecondStage method) {
+  return {possible(options, method), within_the_basin, false};
+}
+
+bool is_enough(const Ending& ending, bool start_given) {
+  return ending.converged && !(start_given && ending.open);
+}
+
+bool is_better(const Ending& next, const Ending& best) {
+  const auto merits = [](const Ending& ending) {
+    return std::tuple(ending.converged, !ending.open, ending.held);
+  };
+  if (merits(next) != merits(best)) return merits(next) > merits(best);
+  return next.cost < best.cost;
+}
+
+bool agree(const Ending& one, const Ending& other) {
+  constexpr double one_standard_error = 0.5;  // of J
+  return one.converged && other.converged && std::abs(one.cost - other.cost) <= one_standard_error;
 }
 
 }  // namespace sepcal::estimation

@@ -135,11 +135,11 @@ class Profiles {
     if (!found) return;
     minimum_ = *found;
     converged_ = true;
-    check_same(problem, fit, x, minimum_.two);
-    scale_ = estimation::plausible_scale(problem.parameters(), minimum_.two.factors, measurements);
-    factor_ = combine(minimum_.two.factors, minimum_.two.noise.cwiseInverse()).matrix();
+    check_same(problem, fit, x, minimum_);
+    scale_ = estimation::plausible_scale(problem.parameters(), minimum_.factors, measurements);
+    factor_ = combine(minimum_.factors, minimum_.noise.cwiseInverse()).matrix();
     colours_ = find_colours(problem, fit,
-                            find_curvature_errors(problem, measurements, fit, minimum_.two, pool));
+                            find_curvature_errors(problem, measurements, fit, minimum_, pool));
   }
 
   ProfileInterval describe(Index k) const {
@@ -162,8 +162,7 @@ class Profiles {
     const double inflation = noise_given_ ? 1.0 : count_ / freedom_;
     const double gaussian = std::sqrt(square * inflation) * standard_error(k);
     constexpr double far = 1e4;  // plausible lengths
-    const double length =
-        usable(scale_[k]) ? scale_[k] : std::max(1.0, std::abs(minimum_.two.x[k]));
+    const double length = usable(scale_[k]) ? scale_[k] : std::max(1.0, std::abs(minimum_.x[k]));
     const double first = usable(gaussian) ? std::min(gaussian, length) : 1e-2 * length;
     return {.root = freedom_ > 0 ? std::sqrt(q) : infinity,
             .first = first,
@@ -184,7 +183,7 @@ class Profiles {
   double standard_error(Index k) const {
     std::vector<Index> columns;
     for (Index i = 0; i < scale_.size(); ++i) {
-      if (i != k && !minimum_.two.at_bound[static_cast<std::size_t>(i)]) columns.push_back(i);
+      if (i != k && !minimum_.at_bound[static_cast<std::size_t>(i)]) columns.push_back(i);
     }
     columns.push_back(k);
     TriangularFactor factor(static_cast<int>(columns.size()));
@@ -197,7 +196,7 @@ class Profiles {
   const model::Measurements& measurements_;
   const estimation::Problem& problem_;
   const Fit& fit_;
-  ProfileMinimum minimum_;
+  estimation::StageTwo minimum_;
   MatrixXd factor_;  // whitened, [A | D | r]
   VectorXd scale_;   // plausible lengths
   VectorXd colours_;

@@ -73,51 +73,50 @@ double share_within(const numerics::Box& box, const VectorXd& x, const VectorXd&
 
 }  // namespace
 
-std::optional<ProfileMinimum> find_minimum(const estimation::Problem& problem,
-                                           const model::Measurements& measurements, StageOne start,
-                                           const estimation::Attempt& attempt,
-                                           base::ThreadPool& pool) {
+std::optional<estimation::StageTwo> find_minimum(const estimation::Problem& problem,
+                                                 const model::Measurements& measurements,
+                                                 StageOne start, const estimation::Attempt& attempt,
+                                                 base::ThreadPool& pool) {
   constexpr int most_rounds = 15;
-  const auto rows = static_cast<double>(measurements.rows());
   const Index n_1 = problem.model().tables().n_1();
   double before = infinity;
   double gain = infinity;
   for (int round = 0; round < most_rounds; ++round) {
-    ProfileMinimum now{estimation::run_stage_two(problem, measurements, start, {attempt}, pool)};
-    now.cost = estimation::find_cost(problem, now.two, rows);
+    const estimation::StageTwo now =
+        estimation::run_stage_two(problem, measurements, start, {attempt}, pool);
     if (!std::isfinite(now.cost)) return {};
-    if (now.two.converged || std::abs(now.cost - before) < settled) return now;
+    if (now.converged() || std::abs(now.cost - before) < settled) return now;
     const double gain_before = std::exchange(gain, before - now.cost);
     if (goes_on_gaining(gain_before, gain, most_rounds - round - 1)) return {};
     before = now.cost;
-    start.xi1 = now.two.x.head(n_1);
-    start.xi2 = now.two.x.tail(now.two.x.size() - n_1);
-    start.noise = now.two.noise;
+    start.xi1 = now.x.head(n_1);
+    start.xi2 = now.x.tail(now.x.size() - n_1);
+    start.noise = now.noise;
   }
   return {};
 }
 
 ProfilePath::ProfilePath(const BlockModel& model, const estimation::Problem& problem,
-                         const model::Measurements& measurements, const ProfileMinimum& minimum,
-                         Index k, bool up)
+                         const model::Measurements& measurements,
+                         const estimation::StageTwo& minimum, Index k, bool up)
     : model_(model),
       problem_(problem),
       measurements_(measurements),
       minimum_(minimum),
       k_(k),
       up_(up),
-      points_{{0.0, 0.0, true, minimum.two.x, minimum.two.noise}},
-      lowest_at_(minimum.two.x[k]) {}
+      points_{{0.0, 0.0, true, minimum.x, minimum.noise}},
+      lowest_at_(minimum.x[k]) {}
 
 double ProfilePath::edge() const {
   const Variable& parameter = problem_.parameters()[static_cast<std::size_t>(k_)];
-  const double from = minimum_.two.x[k_];
+  const double from = minimum_.x[k_];
   return up_ ? parameter.upper - from : from - parameter.lower;
 }
 
 double ProfilePath::at(double distance) const {
   const Variable& parameter = problem_.parameters()[static_cast<std::size_t>(k_)];
-  const double value = minimum_.two.x[k_] + (up_ ? distance : -distance);
+  const double value = minimum_.x[k_] + (up_ ? distance : -distance);
   return std::clamp(value, parameter.lower, parameter.upper);
 }
 
@@ -161,18 +160,18 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
     options.bounds[name] = {value, value + 1e-15 * (std::abs(value) + distance)};
   }
   const estimation::Problem problem(model_, options);
-  const std::optional<ProfileMinimum> best =
+  const std::optional<estimation::StageTwo> best =
       find_minimum(problem, measurements_, start_of(from, held), attempt, pool_);
   if (!best) return {};
-  const estimation::StageTwo& two = best->two;
-  double cost = best->cost;
+  const estimation::StageTwo& two = *best;
+  double cost = two.cost;
   if (held) cost += known_cost(problem_.options(), name, value);
   if (minimum_.cost - cost > deficit_) {
     deficit_ = minimum_.cost - cost;
     lowest_at_ = value;
   }
-  ProfilePoint point{distance, std::sqrt(2.0 * std::max(0.0, cost - minimum_.cost)), two.converged,
-                     from.x, two.noise};
+  ProfilePoint point{distance, std::sqrt(2.0 * std::max(0.0, cost - minimum_.cost)),
+                     two.converged(), from.x, two.noise};
   if (held) {
     point.x.head(k_) = two.x.head(k_);
     point.x.tail(two.x.size() - k_) = two.x.tail(two.x.size() - k_);
@@ -201,11 +200,12 @@ ProfilePoint ProfilePath::predict(double distance) const {
 
 std::optional<ProfilePoint> ProfilePath::evaluate(double distance) {
   const FitOptions& options = problem_.options();
-  const SecondStage method = minimum_.two.method;
+  const SecondStage method = minimum_.method;
   const SecondStage other =
       method == SecondStage::joint ? SecondStage::projected : SecondStage::joint;
-  std::optional<ProfilePoint> point = refit(
-      distance, predict(distance), estimation::from_neighbour(options, method, minimum_.two.held));
+  std::optional<ProfilePoint> point =
+      refit(distance, predict(distance),
+            estimation::from_neighbour(options, method, minimum_.hold.has_value()));
   if (!point)
     point = refit(distance, nearest(distance), estimation::from_neighbour(options, other, true));
   if (!point) point = refit(distance, nearest(distance), estimation::within_basin(options, method));
@@ -214,7 +214,7 @@ std::optional<ProfilePoint> ProfilePath::evaluate(double distance) {
 
 std::optional<ProfilePoint> ProfilePath::evaluate_within_basin(double distance) {
   return refit(distance, nearest(distance),
-               estimation::within_basin(problem_.options(), minimum_.two.method));
+               estimation::within_basin(problem_.options(), minimum_.method));
 }
 
 ProfilePath::End ProfilePath::walk(const ProfileReach& reach) {

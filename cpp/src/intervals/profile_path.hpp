@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "base/thread_pool.hpp"
-#include "estimation/attempts.hpp"
 #include "estimation/problem.hpp"
-#include "estimation/stages.hpp"
+#include "estimation/stage_two.hpp"
 #include "model/measurements.hpp"
 #include "numerics/crossing_bracket.hpp"
 #include "sepcal/profile.hpp"
@@ -26,18 +25,12 @@ struct ProfilePoint {
   Eigen::VectorXd noise;  // n_z
 };
 
-/// Where stage two ended, and J there.
-struct ProfileMinimum {
-  estimation::StageTwo two;
-  double cost = 0.0;
-};
-
 /// Stage two, repeated where it stops in a flat valley, which it calls not converged, until that
 /// gains nothing. Nothing where it goes on gaining or the model is not finite.
-std::optional<ProfileMinimum> find_minimum(const estimation::Problem& problem,
-                                           const model::Measurements& measurements, StageOne start,
-                                           const estimation::Attempt& attempt,
-                                           base::ThreadPool& pool);
+std::optional<estimation::StageTwo> find_minimum(const estimation::Problem& problem,
+                                                 const model::Measurements& measurements,
+                                                 StageOne start, const estimation::Attempt& attempt,
+                                                 base::ThreadPool& pool);
 
 /// How far the walk goes.
 struct ProfileReach {
@@ -51,7 +44,7 @@ class ProfilePath {
   /// Along parameter k of `problem`, up or down. `model`, `problem`, `measurements` and `minimum`
   /// must outlive it.
   ProfilePath(const BlockModel& model, const estimation::Problem& problem,
-              const model::Measurements& measurements, const ProfileMinimum& minimum,
+              const model::Measurements& measurements, const estimation::StageTwo& minimum,
               Eigen::Index k, bool up);
 
   struct End {
@@ -84,7 +77,7 @@ class ProfilePath {
   const BlockModel& model_;
   const estimation::Problem& problem_;
   const model::Measurements& measurements_;
-  const ProfileMinimum& minimum_;
+  const estimation::StageTwo& minimum_;
   Eigen::Index k_;
   bool up_;
   base::ThreadPool pool_{1};

@@ -62,7 +62,7 @@ class Description {
     }
     describe_departures();
     describe_noise();
-    result_.message = stage_.message;
+    for (const std::string& sentence : stage_.sentences) result_.message += sentence + "; ";
     judge();
     if (!result_.message.empty() && !result_.message.ends_with("; ")) result_.message += "; ";
     result_.message += estimation::judge_knowledge(result_.shared, joint_.problem.options());
@@ -186,9 +186,9 @@ class Description {
             "; the same or more in " + std::to_string(open_flights.size() - 1) + " other flights";
       }
     }
-    result_.status = open               ? FitStatus::not_identifiable
-                     : stage_.converged ? FitStatus::converged
-                                        : FitStatus::not_converged;
+    result_.status = open                 ? FitStatus::not_identifiable
+                     : stage_.converged() ? FitStatus::converged
+                                          : FitStatus::not_converged;
   }
 
   const BlockModel& model_;

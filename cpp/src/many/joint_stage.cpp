@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "estimation/alternation.hpp"
 #include "many/joint_start.hpp"
 #include "many/minimise_many.hpp"
 #include "sepcal/identifiability.hpp"
@@ -17,21 +18,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-class JointAlternation {
+/// J of many flights, at the objective's point and noise, and the steps to its minimum.
+class JointLikelihood {
  public:
-  JointAlternation(const JointProblem& joint, ManyObjective& objective, JointStage& result)
-      : joint_(joint), objective_(objective), result_(result) {}
+  JointLikelihood(const JointProblem& joint, ManyObjective& objective)
+      : joint_(joint), objective_(objective) {}
 
-  void begin() {
-    result_.noise = joint_.noise_given() ? joint_.problem.noise() : pooled_noise(joint_.starts);
-    for (Index j = 0; j < result_.noise.size() && !joint_.noise_given(); ++j) {
-      result_.noise[j] = std::max(result_.noise[j], joint_.noise_floor(j));
+  /// The flights' own ends, with their pooled noise; what they leave open is held by loose priors.
+  JointStage begin() {
+    JointStage at;
+    at.noise = joint_.noise_given() ? joint_.problem.noise() : pooled_noise(joint_.starts);
+    for (Index j = 0; j < at.noise.size() && !joint_.noise_given(); ++j) {
+      at.noise[j] = std::max(at.noise[j], joint_.noise_floor(j));
     }
-    objective_.weigh(result_.noise.cwiseInverse());
+    objective_.weigh(at.noise.cwiseInverse());
     for (const estimation::Prior& prior : joint_.knowledge()) objective_.know(prior);
-    result_.x = find_joint_start(objective_, joint_.starts, joint_.box);
+    at.x = find_joint_start(objective_, joint_.starts, joint_.box);
     scale_ = plausible_lengths(joint_, objective_);
-    if (leaves_something_open()) objective_.hold(loose_priors());
+    held_ = leaves_something_open();
+    if (held_) objective_.hold(loose_priors());
+    return at;
   }
 
   /// Drops the priors; whether the fit has to be repeated without them, as the solution turns out
@@ -42,74 +48,46 @@ class JointAlternation {
     return !leaves_something_open();
   }
 
-  /// The parameters at R, R at the parameters, and so on until Eq. 26 holds.
-  void alternate() {
-    constexpr int most_failures = 3;  // then another R will not help
-    const FitOptions& options = joint_.problem.options();
-    descend();
-    refined_ = refine();
-    settled_ = joint_.noise_given();
-    int failures = refined_ ? 0 : 1;
-    int updates = 0;
-    while (!settled_ && failures < most_failures && updates < options.noise_iterations) {
-      settled_ = update_noise() < options.noise_tolerance;
-      ++updates;
-      if (options.progress) {
-        options.progress("stage two", static_cast<double>(updates) / options.noise_iterations);
-      }
-      if (settled_) break;
-      refined_ = refine();
-      if (refined_) continue;
-      descend();
-      refined_ = refine();
-      if (!refined_) ++failures;
-    }
-    if (!settled_) update_noise();
-    result_.noise_iterations += updates;
-  }
+  bool noise_given() const { return joint_.noise_given(); }
 
-  void conclude() const {
-    result_.converged = refined_ && settled_;
-    if (!refined_) {
-      result_.message =
-          "the minimisation did not converge: no minimum was found near where it ended; look for a "
-          "wrong unit or sign in one of the flights, or bounds that are too wide; ";
-    } else if (!settled_) {
-      result_.message = "R did not settle within " +
-                        std::to_string(joint_.problem.options().noise_iterations) + " iterations; ";
-    }
-  }
+  JointStage find_minimum(JointStage at) const { return refine(descend(std::move(at))); }
 
- private:
-  void descend() {
-    const estimation::Descent descent =
-        minimise_many(objective_, result_.x, joint_.box, joint_.problem.options().iterations);
-    result_.iterations += descent.iterations;
-    result_.x = descent.x;
-  }
-
-  bool refine() {
-    const estimation::Refinement refinement =
-        refine_many(objective_, result_.x, joint_.box, scale_);
-    result_.x = refinement.x;
-    result_.at_bound = refinement.at_bound;
-    result_.iterations += refinement.iterations;
-    return refinement.converged;
+  JointStage follow_minimum(JointStage at) const {
+    at = refine(std::move(at));
+    return at.refined ? at : find_minimum(std::move(at));
   }
 
   /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
-  double update_noise() {
-    VectorXd sums = VectorXd::Zero(result_.noise.size());
+  double update_noise(JointStage& at) const {
+    VectorXd sums = VectorXd::Zero(at.noise.size());
     for (Index i = 0; i < joint_.layout.flights; ++i) sums += objective_.squares(i);
     double change = 0.0;
     for (Index j = 0; j < sums.size(); ++j) {
       const double next = std::max(std::sqrt(sums[j] / joint_.rows), joint_.noise_floor(j));
-      const double ratio = next / result_.noise[j];
+      const double ratio = next / at.noise[j];
       change = std::max(change, std::abs(ratio * ratio - 1.0));
-      result_.noise[j] = next;
+      at.noise[j] = next;
     }
-    objective_.weigh(result_.noise.cwiseInverse());
+    objective_.weigh(at.noise.cwiseInverse());
     return change;
+  }
+
+ private:
+  JointStage descend(JointStage at) const {
+    const estimation::Descent descent =
+        minimise_many(objective_, at.x, joint_.box, joint_.problem.options().iterations);
+    at.iterations += descent.iterations;
+    at.x = descent.x;
+    return at;
+  }
+
+  JointStage refine(JointStage at) const {
+    const estimation::Refinement refinement = refine_many(objective_, at.x, joint_.box, scale_);
+    at.x = refinement.x;
+    at.at_bound = refinement.at_bound;
+    at.iterations += refinement.iterations;
+    at.refined = refinement.converged;
+    return at;
   }
 
   bool leaves_something_open() const {
@@ -123,8 +101,7 @@ class JointAlternation {
   }
 
   /// Of the shared parameters it stands in the first flight's.
-  std::vector<estimation::Prior> loose_priors() {
-    held_ = true;
+  std::vector<estimation::Prior> loose_priors() const {
     std::vector<estimation::Prior> priors;
     for (Index i = 0; i < joint_.layout.flights; ++i) {
       priors.push_back(estimation::loose_prior(variables(joint_.problem, joint_.parting),
@@ -136,12 +113,19 @@ class JointAlternation {
 
   const JointProblem& joint_;
   ManyObjective& objective_;
-  JointStage& result_;
   VectorXd scale_;
   bool held_ = false;
-  bool refined_ = false;
-  bool settled_ = false;
 };
+
+/// Why it did not converge, if it did not.
+std::vector<std::string> explain(const JointStage& end, const FitOptions& options) {
+  if (!end.refined) {
+    return {"the minimisation did not converge: no minimum was found near where it ended",
+            "look for a wrong unit or sign in one of the flights, or bounds that are too wide"};
+  }
+  if (end.settled) return {};
+  return {"R did not settle within " + std::to_string(options.noise_iterations) + " iterations"};
+}
 
 }  // namespace
 
@@ -184,14 +168,13 @@ VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objec
 }
 
 JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective) {
-  JointStage result;
-  JointAlternation alternation(joint, objective, result);
-  alternation.begin();
-  alternation.alternate();
-  if (alternation.release()) alternation.alternate();
-  alternation.conclude();
-  objective.linearise(result.x);
-  return result;
+  const FitOptions& options = joint.problem.options();
+  JointLikelihood likelihood(joint, objective);
+  JointStage end = estimation::alternate(likelihood, likelihood.begin(), options);
+  if (likelihood.release()) end = estimation::alternate(likelihood, std::move(end), options);
+  end.sentences = explain(end, options);
+  objective.linearise(end.x);
+  return end;
 }
 
 }  // namespace sepcal::many

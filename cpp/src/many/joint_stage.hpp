@@ -35,10 +35,13 @@ struct JointStage {
   Eigen::VectorXd x;
   Eigen::VectorXd noise;
   std::vector<bool> at_bound;
-  bool converged = false;
+  bool refined = false;  // x is a minimum at this noise, to the last digit
+  bool settled = false;  // the noise is that of x (Eq. 26), or was given
   int iterations = 0;
   int noise_iterations = 0;
-  std::string message;
+  std::vector<std::string> sentences;  // what a reader has to know
+
+  bool converged() const { return refined && settled; }
 };
 
 /// At the objective's point: each flight without its own parameters, and all flights together with

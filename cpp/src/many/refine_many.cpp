@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
-#include "estimation/step_length.hpp"
+#include "estimation/refine.hpp"
 #include "many/arrowhead.hpp"
 #include "many/minimise_many.hpp"
 #include "numerics/bounded_least_squares.hpp"

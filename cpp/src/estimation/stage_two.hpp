@@ -1,12 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In which ways stage two looks for a minimum, one after the other until one of them finds it.
+// Stage two: the constrained maximum-likelihood fit (Sun & Gebre-Egziabher, Step 5, Eqs. 6, 20,
+// 24-27), and in which ways it looks for the minimum, one after the other until one finds it.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "estimation/stages.hpp"
+#include "base/thread_pool.hpp"
+#include "estimation/problem.hpp"
+#include "model/measurements.hpp"
+#include "sepcal/stage_one.hpp"
+#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
+
+/// Where stage two stands, over the n free parameters.
+struct StageTwo {
+  Eigen::VectorXd x;                        // n: xi1, xi2
+  Eigen::VectorXd noise;                    // n_z standard deviations
+  std::vector<bool> at_bound;               // n
+  std::vector<TriangularFactor> factors;    // n_z, [A | D | r] at x, not whitened
+  Eigen::VectorXd scale;                    // n, plausible lengths at the factors
+  std::optional<Prior> hold;                // a loose prior on what the record leaves open
+  SecondStage method = SecondStage::joint;  // joint or projected: what was used in the end
+  bool refined = false;                     // x is a minimum at this noise, to the last digit
+  bool settled = false;                     // the noise is that of x (Eq. 26), or was given
+  double cost = 0.0;                        // J of Eq. 6, without its constant, with the priors
+  int iterations = 0;
+  int noise_iterations = 0;
+  std::vector<std::string> sentences;  // what a reader has to know
+
+  bool converged() const { return refined && settled; }
+};
 
 struct Attempt {
   SecondStage method = SecondStage::joint;  // joint or projected
@@ -49,5 +76,14 @@ bool is_better(const Ending& next, const Ending& best);
 /// Whether both converged and the record can't tell their ends apart: then what they leave open is
 /// the record's doing.
 bool agree(const Ending& one, const Ending& other);
+
+/// Step 5, from where stage one ended.
+StageTwo run_stage_two(const Problem& problem, const model::Measurements& measurements,
+                       const StageOne& start, base::ThreadPool& pool);
+
+/// The same in the ways given (at least one), until one of them is enough.
+StageTwo run_stage_two(const Problem& problem, const model::Measurements& measurements,
+                       const StageOne& start, const std::vector<Attempt>& attempts,
+                       base::ThreadPool& pool);
 
 }  // namespace sepcal::estimation

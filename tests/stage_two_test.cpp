@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The order in which stage two tries, and which end it keeps.
-#include "estimation/attempts.hpp"
+#include "estimation/stage_two.hpp"
 
 #include <doctest/doctest.h>
 
