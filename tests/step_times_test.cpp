@@ -109,8 +109,9 @@ TEST_CASE("only effects that step have a time to be found") {
   const auto probe = make_probe_called("magnetometer");
   std::vector<EffectSetting> settings{
       {.name = "bias_step"}, {.name = "warm_up"}, {.name = "scale[step(time)]"}};
+  const Flight flight = make_flight(fly("magnetometer", {}));
   const EffectiveFlight made =
-      prepare_with_effects(*probe, make_flight(fly("magnetometer", {})), settings, {}, false);
+      with_effects(*probe, flight, probe->prepare(flight, false), settings, {});
   const auto times = estimation::step_times(settings, made.effects);
   REQUIRE(times.size() == 2);
   CHECK(times.at("bias_step.t0") == settings.data());

@@ -53,13 +53,14 @@ void check_list(std::string_view text, std::vector<std::string>& names) {
 void make_effects(const std::shared_ptr<const Probe>& probe,
                   const std::vector<std::string>& names) {
   const Flight& flight = flight_for(*probe);
+  const ProbeRecord prepared = probe->prepare(flight, false);
   std::vector<EffectSetting> settings;
   for (const std::string& name : names) settings.push_back({.name = name});
-  const EffectiveFlight first = prepare_with_effects(*probe, flight, settings, {}, false);
+  const EffectiveFlight first = with_effects(*probe, flight, prepared, settings, {});
   require(first.effects.size() == names.size(), "every name makes an effect");
   for (EffectSetting& setting : settings) setting.known = true;
   std::vector<EffectSetting> known = settings;
-  const EffectiveFlight second = prepare_with_effects(*probe, flight, known, {}, false);
+  const EffectiveFlight second = with_effects(*probe, flight, prepared, known, {});
   require(known == settings, "settings that are known stay as they are");
   require(
       std::ranges::equal(first.model->tables().parameters(), second.model->tables().parameters(),

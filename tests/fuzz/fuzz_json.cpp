@@ -2,7 +2,7 @@
 // Calibrations and truth files, whatever they hold. What parses is written, parses again and is
 // written as the same text; and a calibration is put to use on a short log, as `apply` and
 // `compare` do first.
-#include "flight/verbs/calibrated_flight.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "fuzzing.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/simulation/truth.hpp"
@@ -34,7 +34,8 @@ void use(const Calibration& calibration) {
     }
   });
   accepts([&] {
-    const EffectiveFlight prepared = prepare_calibrated(calibration, flight);
+    const EffectiveFlight prepared =
+        verbs::with_effects_of(calibration, verbs::prepare(calibration, flight));
     require(prepared.prepared.record.length() <= flight_rows, "effects add no rows");
   });
 }

@@ -23,15 +23,14 @@ struct EffectiveFlight {
   std::shared_ptr<const BlockModel> model;
 };
 
-/// Prepares a flight for a probe with effects; what `settings` lack is taken from it. `own`:
-/// effects that the caller made. `bounds` replace those of the effects' parameters. Throws Error as
-/// Probe::prepare(), make_effects(), compose() and without_edges() do.
-EffectiveFlight prepare_with_effects(const Probe& probe, const Flight& flight,
-                                     std::vector<EffectSetting>& settings, const OwnEffects& own,
-                                     bool drop_invalid,
-                                     const std::map<std::string, Interval>& bounds = {});
+/// What Probe::prepare() gave for `flight`, with effects; what `settings` lack is taken from it.
+/// `own`: effects that the caller made. `bounds` replace those of the effects' parameters. Throws
+/// Error, opened by the flight's name, as make_effects(), compose() and without_edges() do.
+EffectiveFlight with_effects(const Probe& probe, const Flight& flight, const ProbeRecord& prepared,
+                             std::vector<EffectSetting>& settings, const OwnEffects& own,
+                             const std::map<std::string, Interval>& bounds = {});
 
-/// The same from the record that Probe::prepare() gave.
+/// The same of a record alone, whose errors name no flight.
 EffectiveFlight with_effects(const Probe& probe, const Record& record,
                              std::vector<EffectSetting>& settings, const OwnEffects& own,
                              const std::map<std::string, Interval>& bounds = {});

@@ -62,16 +62,13 @@ EffectiveFlight with_effects(const Probe& probe, const Record& record,
   return result;
 }
 
-EffectiveFlight prepare_with_effects(const Probe& probe, const Flight& flight,
-                                     std::vector<EffectSetting>& settings, const OwnEffects& own,
-                                     bool drop_invalid,
-                                     const std::map<std::string, Interval>& bounds) {
-  ProbeRecord prepared = probe.prepare(flight, drop_invalid);
+EffectiveFlight with_effects(const Probe& probe, const Flight& flight, const ProbeRecord& prepared,
+                             std::vector<EffectSetting>& settings, const OwnEffects& own,
+                             const std::map<std::string, Interval>& bounds) {
   try {
     for (const EffectSetting& setting : settings) check_driver(setting, flight, prepared.record);
     EffectiveFlight result = with_effects(probe, prepared.record, settings, own, bounds);
-    prepared.record = std::move(result.prepared.record);
-    result.prepared = std::move(prepared);
+    result.prepared.notes = prepared.notes;
     return result;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", flight.name(), error.what()));

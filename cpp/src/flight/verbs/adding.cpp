@@ -8,8 +8,7 @@
 
 #include "base/parameter_values.hpp"
 #include "base/thread_pool.hpp"
-#include "flight/verbs/calibrated_flight.hpp"
-#include "flight/verbs/diagnosed_flight.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
 #include "sepcal/effect_name.hpp"
@@ -43,11 +42,10 @@ void refuse_twice(const CalibrationOptions& options) {
 }
 
 /// What the effect promised at the base's estimates; nothing where it can't be tried there.
-Promise promise_of(const Calibration& base, const Calibration& next, const Flight& flight,
+Promise promise_of(const Calibration& base, const Calibration& next, const PreparedFlight& prepared,
                    const std::string& effect) {
   try {
-    const ProbeRecord prepared = base.probe->prepare(flight, base.options.drop_invalid);
-    return promise(diagnosed_fit(base, prepared.record, next.options.own_effects), effect,
+    return promise(diagnosed_fit(base, prepared.readings.record, next.options.own_effects), effect,
                    next.fit.by_name(), base.options.fit.threads);
   } catch (const Error&) {
     return {};
@@ -64,19 +62,20 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
   for (const std::string& name : split_effects(effect)) options.effects.push_back({.name = name});
   options.fit.start = base.fit.nonlinear_estimates();
   refuse_twice(options);
-  Calibration next = calibrate(base.probe, flight, options);
+  const PreparedFlight prepared = prepare(base, flight);
+  Calibration next = calibrate(base.probe, prepared, options);
   refuse_twice(next.options);  // now that aliases are resolved
 
-  const EffectiveFlight after = prepare_calibrated(next, flight);
+  const EffectiveFlight after = with_effects_of(next, prepared);
   const Record& record = after.prepared.record.select(options.fit.stage_two_segments);
-  EffectiveFlight before = prepare_calibrated(base, flight);
+  const EffectiveFlight before = with_effects_of(base, prepared);
   std::string added;
   for (std::size_t i = base.options.effects.size(); i < next.options.effects.size(); ++i) {
     added += (added.empty() ? "" : "+") + next.options.effects[i].name;
   }
   Record rows = before.prepared.record;
   rows.cut(record.segments());
-  const Promise promised = promise_of(base, next, flight, added);
+  const Promise promised = promise_of(base, next, prepared, added);
   note_other_flight(base, flight, next.notes);
   next.history = base.history;
   next.history.push_back({.effect = added,

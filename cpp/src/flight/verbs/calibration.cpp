@@ -13,6 +13,7 @@
 #include "estimation/step_times.hpp"
 #include "flight/files/option_spelling.hpp"
 #include "flight/verbs/held_options.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
@@ -143,9 +144,16 @@ Calibration calibrate_prepared(std::shared_ptr<const Probe> probe, CalibrationOp
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
+  const PreparedFlight prepared = prepare(*probe, flight, options.drop_invalid);
+  return calibrate(std::move(probe), prepared, options);
+}
+
+Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
+                             const CalibrationOptions& options) {
+  const Flight& flight = prepared.flight;
   CalibrationOptions held = hold(*probe, options);
-  const EffectiveFlight effective = prepare_with_effects(
-      *probe, flight, held.effects, options.own_effects, options.drop_invalid, options.fit.bounds);
+  const EffectiveFlight effective = with_effects(*probe, flight, prepared.readings, held.effects,
+                                                 options.own_effects, options.fit.bounds);
   const Record& record = effective.prepared.record;
   count_rows(record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
   check_rows(*effective.model, held, flight,
@@ -162,6 +170,11 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                    options.fit.bounds);
   return calibrate_prepared(std::move(probe), std::move(held), {{}, {}, record.length(), 0},
                             effective);
+}
+
+Eigen::VectorXd own_values(const Calibration& calibration) {
+  return base::in_order(calibration.probe->model().tables().parameters(),
+                        calibration.fit.by_name());
 }
 
 void write_calibration(const Calibration& calibration, const std::string& file) {

@@ -3,8 +3,8 @@
 
 #include "base/parts_of_record.hpp"
 #include "base/thread_pool.hpp"
-#include "flight/verbs/calibrated_flight.hpp"
 #include "flight/verbs/misfits.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "flight/verbs/residual_channels.hpp"
 #include "flight/verbs/worst_windows.hpp"
 #include "model/measurements.hpp"
@@ -16,7 +16,7 @@ using namespace verbs;  // this room's own
 
 Comparison compare(const Calibration& calibration, const Flight& flight) {
   const Probe& probe = *calibration.probe;
-  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
   const Record& record = effective.prepared.record;
   const model::Measurements measurements(*effective.model, record);
   base::ThreadPool pool(calibration.options.fit.threads);

@@ -9,9 +9,8 @@
 #include "base/parameter_values.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_candidates.hpp"
-#include "flight/verbs/calibrated_flight.hpp"
-#include "flight/verbs/diagnosed_flight.hpp"
 #include "flight/verbs/misfits.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
@@ -29,17 +28,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A flight as both the candidates and the refit after an injection take it.
-struct Ground {
-  ProbeRecord prepared;  // before effects in time cut its edges
-  OwnEffects own;        // the calibration's and the caller's
-};
-
-Ground prepare_ground(const Calibration& calibration, const Flight& flight, const OwnEffects& own) {
-  Ground ground{calibration.probe->prepare(flight, calibration.options.drop_invalid),
-                calibration.options.own_effects};
-  for (const auto& [name, maker] : own) ground.own[name] = maker;
-  return ground;
+/// The calibration's own effects and the caller's.
+OwnEffects all_own(const Calibration& calibration, const OwnEffects& own) {
+  OwnEffects all = calibration.options.own_effects;
+  for (const auto& [name, maker] : own) all[name] = maker;
+  return all;
 }
 
 /// Those of the catalogue that the calibration doesn't have yet.
@@ -86,14 +79,15 @@ std::vector<Misfit> find_where(const DiagnosedFit& fitted) {
                        sweep.residuals(fitted.fit.xi1(), fitted.fit.xi2()));
 }
 
-FlightDiagnosis run(const Calibration& calibration, const Ground& ground, const Flight& flight,
-                    const DiagnosisOptions& options) {
-  const DiagnosedFit fitted = diagnosed_fit(calibration, ground.prepared.record, ground.own);
+FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepared,
+                    const OwnEffects& own, const DiagnosisOptions& options) {
+  const Flight& flight = prepared.flight;
+  const DiagnosedFit fitted = diagnosed_fit(calibration, prepared.readings.record, own);
   FlightDiagnosis result;
   result.model = calibration.probe->name();
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
-  result.notes = ground.prepared.notes;
+  result.notes = prepared.readings.notes;
   note_other_flight(calibration, flight, result.notes);
   result.diagnosis = diagnose(fitted, candidates_for(fitted, flight), options);
   prefer_catalogued(result.model, result.diagnosis.effects);
@@ -122,11 +116,11 @@ FlightDiagnosis name_errors(const Flight& flight, Task task) {
 
 /// What the effect adds to every output at the calibration's estimates (rows x n_z, of the whole
 /// record), zero outside its segments.
-MatrixXd added_outputs(const Calibration& calibration, const Ground& ground,
-                       const SizedEffect& injected, Injection& injection) {
+MatrixXd added_outputs(const Calibration& calibration, const PreparedFlight& prepared,
+                       const OwnEffects& own, const SizedEffect& injected, Injection& injection) {
   const Probe& probe = *calibration.probe;
-  const EffectKit kit = effect_kit(probe.name(), ground.own);
-  Record record = ground.prepared.record;
+  const EffectKit kit = effect_kit(probe.name(), own);
+  Record record = prepared.readings.record;
   std::vector<EffectSetting> settings = calibration.options.effects;
   settings.push_back({.name = injected.name});
   const std::vector<Effect> effects = make_effects(kit, *model_of(probe), settings, record);
@@ -197,26 +191,10 @@ Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
 
 }  // namespace
 
-DiagnosedFit verbs::diagnosed_fit(const Calibration& calibration, const Record& record,
-                                  const OwnEffects& own) {
-  const Probe& probe = *calibration.probe;
-  std::vector<EffectSetting> settings = calibration.options.effects;
-  const EffectiveFlight effective =
-      with_effects(probe, record, settings, own, calibration.options.fit.bounds);
-  return {
-      .model = model_of(probe),
-      .kit = effect_kit(probe.name(), own),
-      .effects = std::move(settings),
-      .record = record,
-      .rows =
-          effective.prepared.record.select(calibration.options.fit.stage_two_segments).segments(),
-      .fit = calibration.fit};
-}
-
 FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
                          const OwnEffects& own, const DiagnosisOptions& options) {
   return name_errors(flight, [&] {
-    return run(calibration, prepare_ground(calibration, flight, own), flight, options);
+    return run(calibration, prepare(calibration, flight), all_own(calibration, own), options);
   });
 }
 
@@ -225,18 +203,19 @@ namespace {
 FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibration,
                        const Flight& flight, const OwnEffects& own,
                        const DiagnosisOptions& options) {
-  Ground ground = prepare_ground(calibration, flight, own);
+  PreparedFlight prepared = prepare(calibration, flight);
+  const OwnEffects all = all_own(calibration, own);
   Injection injection;
-  const MatrixXd added = added_outputs(calibration, ground, injected, injection);
-  const Record original = ground.prepared.record;
-  ground.prepared.record =
+  const MatrixXd added = added_outputs(calibration, prepared, all, injected, injection);
+  const Record original = prepared.readings.record;
+  prepared.readings.record =
       with_outputs(original, calibration.probe->model().tables().outputs, added);
   CalibrationOptions refit = calibration.options;
   refit.fit.start = calibration.fit.nonlinear_estimates();
   refit.fit.progress = options.progress;
-  refit.own_effects = ground.own;
-  const Calibration again = calibrate(calibration.probe, ground.prepared.record, refit);
-  FlightDiagnosis result = run(again, ground, flight, options);
+  refit.own_effects = all;
+  const Calibration again = calibrate(calibration.probe, prepared.readings.record, refit);
+  FlightDiagnosis result = run(again, prepared, all, options);
   std::vector<std::string> relatives{injection.effect};
   for (const EffectFinding& effect : result.diagnosis.effects) {
     if (effect.name != injection.effect) continue;

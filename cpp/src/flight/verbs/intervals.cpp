@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/parts_of_record.hpp"
-#include "flight/verbs/calibrated_flight.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 
@@ -28,7 +28,7 @@ void check_fitted(const Calibration& calibration, const Flight& flight) {
 FlightIntervals find_intervals(const Calibration& calibration, const Flight& flight,
                                const ProfileOptions& asked) {
   check_fitted(calibration, flight);
-  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
   const Record& record = effective.prepared.record;
   FitOptions options = calibration.probe->complete(calibration.options.fit, record);
   options.unsampled = beginnings(effective.effects);
@@ -43,7 +43,7 @@ FlightIntervals find_intervals(const Calibration& calibration, const Flight& fli
 }
 
 FlightPrediction predict(const Calibration& calibration, const Flight& flight, double level) {
-  const EffectiveFlight effective = prepare_calibrated(calibration, flight);
+  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
   const Record& record = effective.prepared.record;
   return {base::gather_time(record),
           predict(*effective.model, record, calibration.fit, calibration.options.fit, level)};

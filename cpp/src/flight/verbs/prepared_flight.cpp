@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/verbs/prepared_flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal::verbs {
+
+PreparedFlight prepare(const Probe& probe, const Flight& flight, bool drop_invalid) {
+  return {flight, probe.prepare(flight, drop_invalid)};
+}
+
+PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
+  return prepare(*calibration.probe, flight, calibration.options.drop_invalid);
+}
+
+EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFlight& prepared) {
+  const CalibrationOptions& options = calibration.options;
+  std::vector<EffectSetting> settings = options.effects;
+  EffectiveFlight effective = with_effects(*calibration.probe, prepared.flight, prepared.readings,
+                                           settings, options.own_effects, options.fit.bounds);
+  if (!std::ranges::equal(calibration.fit.parameters, effective.model->tables().parameters(), {},
+                          &Parameter::name, &Variable::name)) {
+    throw Error(
+        "the calibration's parameters are not those of its model with its effects; fit the "
+        "flight again");
+  }
+  return effective;
+}
+
+DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,
+                           const OwnEffects& own) {
+  const Probe& probe = *calibration.probe;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  const EffectiveFlight effective =
+      with_effects(probe, readings, settings, own, calibration.options.fit.bounds);
+  return {
+      .model = model_of(probe),
+      .kit = effect_kit(probe.name(), own),
+      .effects = std::move(settings),
+      .record = readings,
+      .rows =
+          effective.prepared.record.select(calibration.options.fit.stage_two_segments).segments(),
+      .fit = calibration.fit};
+}
+
+void note_other_flight(const Calibration& calibration, const Flight& flight,
+                       std::vector<std::string>& notes) {
+  const FittedFlight& fitted = calibration.flight;
+  if (fitted.sha256.empty() || flight.sha256().empty() || fitted.sha256 == flight.sha256()) return;
+  notes.push_back(fmt::format(
+      "{}: not the flight that the calibration was fitted to, {}; the errors here are those of a "
+      "prediction",
+      flight.name(), fitted.file));
+}
+
+}  // namespace sepcal::verbs

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flight brought to a probe once, for whatever a verb asks of it: a fit, the model of a
+// calibration that is there already, a diagnosis.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sepcal/diagnosis.hpp"
+#include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/probe_effects.hpp"
+
+namespace sepcal::verbs {
+
+struct PreparedFlight {
+  const Flight& flight;  // must outlive this
+  ProbeRecord readings;  // before effects in time cut its edges
+};
+
+/// Throws Error as Probe::prepare() does.
+PreparedFlight prepare(const Probe& probe, const Flight& flight, bool drop_invalid);
+PreparedFlight prepare(const Calibration& calibration, const Flight& flight);
+
+/// As the model with the calibration's effects takes it; they mean what they meant on the flight
+/// that was fitted. Throws Error as with_effects() does, and where the calibration's parameters are
+/// not those of its model with its effects.
+EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFlight& prepared);
+
+/// As the public calibrate().
+Calibration calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
+                      const CalibrationOptions& options);
+
+/// As the engine's diagnosis takes it. `own`: effects that the calibration or the caller made.
+DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,
+                           const OwnEffects& own);
+
+/// Adds a note where the flight is another file than the calibration was fitted to: its errors are
+/// no longer those of a fit.
+void note_other_flight(const Calibration& calibration, const Flight& flight,
+                       std::vector<std::string>& notes);
+
+}  // namespace sepcal::verbs
