@@ -1,65 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps in a fit: their times found over many seeds, held where the caller holds them, two at once,
-// and with coefficients that are linear or not.
+// Steps in a fit: their times held where the caller holds them, and two at once.
 #include "estimation/step_times.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "flights_with_effects.hpp"
+#include "flights_with_steps.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
 using namespace sepcal;
 using namespace sepcal::test;
-
-namespace {
-
-const SizedEffect bias_step{"bias_step", {2.0, -1.0, 3.0}};
-
-/// The longest time between two rows [s].
-double row_interval(const SimulatedFlight& flight) {
-  const auto& time = flight.column("time_s");
-  double longest = 0.0;
-  for (std::size_t k = 1; k < time.size(); ++k) longest = std::max(longest, time[k] - time[k - 1]);
-  return longest;
-}
-
-double error_of(const Calibration& calibration, const SimulatedFlight& flight, const char* name) {
-  return std::abs(calibration.fit[name].value - flight.truth.at(name));
-}
-
-}  // namespace
-
-TEST_CASE("the time of a step is found within one row over 20 seeds") {
-  // A row on the wrong side costs |(2, -1, 3)|^2 / 0.3^2 = 155 in the sum of squares: the noise
-  // makes up for it less than once in 10^9 times.
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    CAPTURE(seed);
-    const SimulatedFlight flight =
-        fly("magnetometer", {bias_step}, {.rows = 300, .noise = 0.3, .seed = seed});
-    const Calibration calibration = calibrate_with("magnetometer", flight, {"bias_step"});
-    CHECK(error_of(calibration, flight, "bias_step.t0") < row_interval(flight));
-    CHECK(calibration.fit["bias_step.t0"].fixed);
-    CHECK(calibration.options.effects[0].t0 == calibration.fit["bias_step.t0"].value);
-    CHECK(!calibration.options.fit.fixed.contains("bias_step.t0"));
-  }
-}
-
-TEST_CASE("so it is where its coefficient is nonlinear") {
-  for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    CAPTURE(seed);
-    const Conditions conditions{.rows = 300, .noise = 0.3, .seed = seed};
-    const SimulatedFlight turning = fly("magnetometer-norm", {bias_step}, conditions);
-    const Calibration strength = calibrate_with("magnetometer-norm", turning, {"bias_step"});
-    // A step seen in the strength alone may be hidden for a few rows, where it is across the field.
-    CHECK(error_of(strength, turning, "bias_step.t0") < 3.0 * row_interval(turning));
-    CHECK(error_of(strength, turning, "bias_step.x") < 0.5);
-    const SimulatedFlight air = fly("pitot-static", {{"water_blockage", {-0.15}}}, conditions);
-    const Calibration tube = calibrate_with("pitot-static", air, {"water_blockage"});
-    CHECK(error_of(tube, air, "water_blockage.t0") < row_interval(air));
-    CHECK(error_of(tube, air, "water_blockage.s") < 0.02);
-  }
-}
 
 TEST_CASE("a time that the caller holds stays, and one outside the bounds is not found") {
   const SimulatedFlight flight =

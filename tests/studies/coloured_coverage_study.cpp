@@ -9,15 +9,17 @@
 #include "noises.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"
+#include "studies/seeds.hpp"
 
 using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::Record;
 using sepcal::test::Draws;
+using sepcal::test::whole_study;
 
 namespace {
 
-constexpr int seeds = 400;
+constexpr int seeds = sepcal::test::seeds(400);
 const std::map<std::string, double> truth{{"a", 0.3}, {"b", 0.1}, {"c", -0.4}};
 
 struct Coverage {
@@ -54,9 +56,15 @@ Coverage study(const std::string& kind, Eigen::Index rows) {
   for (const auto& [name, value] : truth) {
     MESSAGE(kind << ", " << name << ": " << coverage.coloured[name] << " of " << seeds
                  << " intervals hold the truth, " << coverage.white[name]
-                 << " of the white ones; ratio " << coverage.ratio[name]);
+                 << " of the white ones, ratio " << coverage.ratio[name]);
   }
   return coverage;
+}
+
+/// Of eight white intervals at 36 % and less all hold once in 3,500.
+void check_white_fail(Coverage& coverage, const std::string& name) {
+  CHECK(coverage.white[name] < (whole_study ? 0.75 * seeds : seeds));
+  CHECK(coverage.ratio[name] > 2.0);
 }
 
 }  // namespace
@@ -75,7 +83,7 @@ TEST_CASE("AR(0.9): 95 % intervals hold where the white ones fail") {
   for (const auto& [name, value] : truth) {
     CAPTURE(name);
     CHECK_FALSE(sepcal::test::outside_binomial(seeds - coverage.coloured[name], seeds, 0.05));
-    CHECK(coverage.white[name] < 0.75 * seeds);
+    check_white_fail(coverage, name);
   }
 }
 
@@ -84,7 +92,8 @@ TEST_CASE(
   Coverage coverage = study("pink", 3000);
   for (const auto& [name, value] : truth) {
     CAPTURE(name);
-    CHECK(coverage.coloured[name] >= 0.85 * seeds);
-    CHECK(coverage.white[name] < 0.75 * seeds);
+    // Of eight at 93 % four miss once in 800, five once in 14,000.
+    CHECK(coverage.coloured[name] >= (whole_study ? 0.85 * seeds : 4));
+    check_white_fail(coverage, name);
   }
 }
