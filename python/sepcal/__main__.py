@@ -14,9 +14,8 @@ from typing import NoReturn
 
 from sepcal import _core
 from sepcal.reporting import command as report
-from sepcal.study import command as study
 
-COMMANDS = (report, study)
+COMMANDS = (report,)
 BAD_INPUT = 2
 
 

@@ -14,7 +14,7 @@ from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 from sepcal.simulation import simulate
-from sepcal.study.cases import (
+from studies.hidden_effects.cases import (
     CASES,
     INVISIBLE,
     NOISES,

@@ -9,14 +9,15 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
 from sepcal.intervals import ParameterInterval
-from sepcal.study.coverage_cases import coverage_cases
+from studies.intervals.cases import coverage_cases
 
 
 @dataclass(frozen=True)
 class Coverage:
     """Counts over the seeds of one parameter of one case."""
 
-    case: str
+    name: str  # of the case
+    case: str  # its title
     parameter: str
     seeds: int
     gaussian_given: int
@@ -63,7 +64,7 @@ def interval_coverage(
                 drawn[name].setdefault(interval.name, []).append(interval)
             tell(done / len(tasks))
     return [
-        count(cases[name].title, intervals, cases[name].truth[parameter])
+        count(name, cases[name].title, intervals, cases[name].truth[parameter])
         for name, by_parameter in drawn.items()
         for parameter, intervals in by_parameter.items()
     ]
@@ -80,11 +81,12 @@ def _draw(task: tuple[str, range]) -> list[ParameterInterval]:
     ]
 
 
-def count(case: str, intervals: Sequence[ParameterInterval], truth: float) -> Coverage:
+def count(name: str, case: str, intervals: Sequence[ParameterInterval], truth: float) -> Coverage:
     """The counts of one parameter's intervals."""
     gaussian = [at.gaussian for at in intervals if not math.isnan(at.gaussian[0])]
     profile = [at.profile for at in intervals if "failed" not in at.ends]
     return Coverage(
+        name=name,
         case=case,
         parameter=intervals[0].name,
         seeds=len(intervals),

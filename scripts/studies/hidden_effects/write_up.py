@@ -9,7 +9,7 @@ from typing import Any
 
 from sepcal._core import Error
 from sepcal.quantiles import upper_limit
-from sepcal.study.experiments import StudyOptions
+from studies.hidden_effects.experiments import StudyOptions
 
 Row = dict[str, Any]
 
@@ -46,7 +46,7 @@ def _rate(rows: list[Row], is_one: Callable[[Row], bool]) -> str:
 
 def _head(options: StudyOptions, picture: str) -> str:
     command = (
-        f"python -m sepcal study hidden-effects --seeds {options.seeds} "
+        f"scripts/study hidden-effects --seeds {options.seeds} "
         f"--null-seeds {options.null_seeds} -o docs/hidden-effects.md"
     )
     return f"""# Hidden effects: what is found, and what isn't

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from sepcal._core import Error
-from sepcal.study.coverage import Coverage, CoverageOptions
+from scipy.stats import binom
+
+from sepcal import Error
+from studies.intervals.coverage import Coverage, CoverageOptions
 
 LEVEL = 0.95
 HEADING = "## How often they hold the truth"
@@ -27,40 +28,13 @@ def write_coverage(rows: Sequence[Coverage], options: CoverageOptions, file: Pat
         raise Error(f"{file} can't be written: {error.strerror}") from error
 
 
-def expected_range(seeds: int, level: float = LEVEL, confidence: float = 0.99) -> tuple[int, int]:
-    """How often intervals of that level hold the truth in so many draws, with that confidence.
-
-    The central range of the binomial distribution, summed from its logarithms.
-    """
-    logarithms = [
-        math.lgamma(seeds + 1)
-        - math.lgamma(k + 1)
-        - math.lgamma(seeds - k + 1)
-        + k * math.log(level)
-        + (seeds - k) * math.log1p(-level)
-        for k in range(seeds + 1)
-    ]
-    tail = 0.5 * (1.0 - confidence)
-    below = 0.0
-    lowest = 0
-    while below + math.exp(logarithms[lowest]) <= tail:
-        below += math.exp(logarithms[lowest])
-        lowest += 1
-    above = 0.0
-    highest = seeds
-    while above + math.exp(logarithms[highest]) <= tail:
-        above += math.exp(logarithms[highest])
-        highest -= 1
-    return lowest, highest
-
-
 def _head(options: CoverageOptions) -> str:
-    lowest, highest = (100 * k / options.seeds for k in expected_range(options.seeds))
+    lowest, highest = (100 * k / options.seeds for k in binom.interval(0.99, options.seeds, LEVEL))
     return f"""{HEADING}
 
 From here on written by
 
-    python -m sepcal study intervals --seeds {options.seeds} -o docs/intervals.md
+    scripts/study intervals --seeds {options.seeds} -o docs/intervals.md
 
 Every record is drawn from its seed (they count from {options.first_seed}) and fitted, the noise
 unknown; both 95 % intervals of every parameter are found. Of {options.seeds} intervals that are
@@ -79,7 +53,7 @@ def _coverage(holds: int, given: int) -> str:
     """Per cent, bold outside the binomial limits."""
     if not given:
         return "-"
-    lowest, highest = expected_range(given)
+    lowest, highest = binom.interval(0.99, given, LEVEL)
     share = _share(holds, given)
     return share if lowest <= holds <= highest else f"**{share}**"
 
