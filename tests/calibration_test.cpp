@@ -67,7 +67,7 @@ TEST_CASE("so it does with every option set") {
   options.fit.fixed = {{"w_n", -3.8}, {"eps_phi", 0.05}};
   options.fit.bounds = {{"b_va", {0.0, infinity}}, {"w_e", {-infinity, 30.0}}, {"b_beta", {-1, 1}}};
   options.fit.noise = {{"vn", 0.1}, {"ve", 0.15}, {"vd", 0.2}};
-  options.fit.priors = {{"b_alpha", {-0.01, 0.05}}};
+  options.fit.sampling_distribution = {{"b_alpha", {-0.01, 0.05}}};
   options.fit.stage_one_segments = "popu,multisine_1";
   options.fit.stage_two_segments = "wind_circle_1,popu,10:110.5";
   options.fit.sampling = Sampling::low_discrepancy;
@@ -78,7 +78,7 @@ TEST_CASE("so it does with every option set") {
   options.fit.noise_iterations = 50;
   options.fit.iterations = 150;
   SUBCASE("uniform") { options.fit.sampling = Sampling::uniform; }
-  SUBCASE("low discrepancy") { options.fit.priors.clear(); }
+  SUBCASE("low discrepancy") { options.fit.sampling_distribution.clear(); }
   const Calibration calibration = calibrate_five_hole(options);
   check_round_trip(calibration);
 

@@ -63,7 +63,7 @@ TEST_CASE("a parameter without finite bounds is an error that says what to do") 
   const Simulated wave = sepcal::test::simulate_scalar_1(100);
   FitOptions options = global();
   options.bounds["b"] = {0, sepcal::infinity};
-  options.priors["b"] = {0.1, 0.3};
+  options.sampling_distribution["b"] = {0.1, 0.3};
   CHECK_THROWS_WITH_AS(stage_one(*wave.model, wave.record, options),
                        doctest::Contains("'b' has no finite bounds for a global search; give it"),
                        sepcal::Error);

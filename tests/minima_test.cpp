@@ -128,13 +128,14 @@ TEST_CASE("a descent that ends at no finite cost is no minimum") {
   CHECK(find_minima(objective, problem, samples, VectorXd::Ones(5), 100, lost).empty());
 }
 
-TEST_CASE("lengths are half the bounds, or two standard deviations of a prior if that is less") {
+TEST_CASE(
+    "lengths are half the bounds, or two standard deviations of what is sampled if that is less") {
   const Unasked unasked;
   FitOptions options;
   options.bounds["x"] = {-3.0, 7.0};
   options.bounds["y"] = {-infinity, infinity};
-  options.priors["x"] = {0.0, 10.0};
-  options.priors["y"] = {0.0, 0.4};
+  options.sampling_distribution["x"] = {0.0, 10.0};
+  options.sampling_distribution["y"] = {0.0, 0.4};
   const Problem problem(unasked.model(), options);
   CHECK(half_widths(problem) == Eigen::Vector2d(5.0, 0.8));
 }

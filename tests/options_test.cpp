@@ -59,9 +59,9 @@ TEST_CASE("an unknown name is refused with the names that there are") {
                 "no output 'vx'; the model has: vn, ve, vd");
   check_refused([](FitOptions& o) { o.knowledge = {{"w_x", {}}}; },
                 "no parameter 'w_x'; the model has: lambda_va");
-  check_refused([](FitOptions& o) { o.priors = {{"w_x", {}}}; },
+  check_refused([](FitOptions& o) { o.sampling_distribution = {{"w_x", {}}}; },
                 "'w_x'; the model has: lambda_alpha");
-  check_refused([](FitOptions& o) { o.priors = {{"w_n", {}}}; },
+  check_refused([](FitOptions& o) { o.sampling_distribution = {{"w_n", {}}}; },
                 "nonlinear parameter (only these are sampled) 'w_n'");
   check_refused([](FitOptions& o) { o.start = {{"w_x", 0}}; },
                 "'w_x'; the model has: lambda_alpha");
@@ -110,19 +110,20 @@ TEST_CASE("counts and tolerances that make no sense are refused") {
   check_refused([](FitOptions& o) { o.iterations = 0; }, "iterations");
 }
 
-TEST_CASE("a parameter without finite bounds can't be sampled without a prior") {
-  const auto with_prior = [](double mean, double standard_deviation) {
+TEST_CASE("a parameter without finite bounds can't be sampled without a distribution") {
+  const auto drawn_from = [](double mean, double standard_deviation) {
     return [=](FitOptions& o) {
       o.bounds["b_alpha"] = {-sepcal::infinity, 1};
-      o.priors["b_alpha"] = {mean, standard_deviation};
+      o.sampling_distribution["b_alpha"] = {mean, standard_deviation};
     };
   };
   const auto unbounded = [](FitOptions& o) { o.bounds["b_alpha"] = {-sepcal::infinity, 1}; };
   check_refused(unbounded, "'b_alpha' has no finite bounds to draw samples from");
-  check_refused(with_prior(0, 0), "prior of 'b_alpha'");
-  check_refused(with_prior(100, 0.1), "prior of 'b_alpha' has no weight within its bounds");
+  check_refused(drawn_from(0, 0), "sampling distribution of 'b_alpha'");
+  check_refused(drawn_from(100, 0.1),
+                "sampling distribution of 'b_alpha' has no weight within its bounds");
   FitOptions options;
-  with_prior(0, 0.1)(options);
+  drawn_from(0, 0.1)(options);
   CHECK_NOTHROW(fit_with(options));
 }
 

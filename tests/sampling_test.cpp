@@ -77,9 +77,9 @@ TEST_CASE("a low-discrepancy sequence leaves fewer cells empty than uniform draw
   }
 }
 
-TEST_CASE("a normal prior has its mean and variance, and its bounds truncate it") {
+TEST_CASE("a normal sampling distribution has its mean and variance, and its bounds truncate it") {
   FitOptions options = options_for(4000);
-  options.priors = {{"x", {1.0, 0.2}}, {"y", {10.0, 0.1}}};
+  options.sampling_distribution = {{"x", {1.0, 0.2}}, {"y", {10.0, 0.1}}};
   const MatrixXd samples = draw_samples(plane, options);
   const double mean = samples.row(0).mean();
   CHECK(std::abs(mean - 1.0) < 5 * 0.2 / std::sqrt(4000.0));
@@ -91,9 +91,9 @@ TEST_CASE("a normal prior has its mean and variance, and its bounds truncate it"
   CHECK(std::abs(half_mean - 0.0797885) < 5 * 0.1 * 0.603 / std::sqrt(4000.0));
 }
 
-TEST_CASE("both tails of a prior are drawn alike, however far out the bounds are") {
+TEST_CASE("both tails of a normal are drawn alike, however far out the bounds are") {
   FitOptions options = options_for(200);
-  options.priors = {{"x", {0, 1}}};
+  options.sampling_distribution = {{"x", {0, 1}}};
   MatrixXd below = draw_samples({{"x", "1", -9, -8}}, options);
   MatrixXd above = draw_samples({{"x", "1", 8, 9}}, options);
   CHECK(below.minCoeff() >= -9);
@@ -123,12 +123,13 @@ TEST_CASE("the quantile is odd about the median, into the far tail") {
   }
 }
 
-TEST_CASE("the nominal point is the middle of the bounds, the prior's mean, or what is near zero") {
+TEST_CASE(
+    "the nominal point is the middle of the bounds, the mean of what is drawn from, or near zero") {
   const double inf = sepcal::infinity;
   const std::vector<Variable> parameters{
       {"a", "1", -2, 6}, {"b", "1"}, {"c", "1", 3, inf}, {"d", "1", 0, 1}, {"e", "1", 0, 1}};
   FitOptions options;
-  options.priors = {{"d", {0.2, 1}}, {"e", {5, 1}}};
+  options.sampling_distribution = {{"d", {0.2, 1}}, {"e", {5, 1}}};
   Eigen::VectorXd expected(5);
   expected << 2, 0, 3, 0.2, 1;
   CHECK(sepcal::estimation::nominal_point(parameters, options) == expected);

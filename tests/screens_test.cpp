@@ -283,7 +283,7 @@ TEST_CASE("thresholds that mean nothing, and l_2 without bounds, are errors") {
   refused({.l_2 = -1}, "l_2 must be positive, or 0");
   FitOptions options = screened({});
   options.bounds["b"] = {-sepcal::infinity, sepcal::infinity};
-  options.priors["b"] = {0.1, 0.3};
+  options.sampling_distribution["b"] = {0.1, 0.3};
   CHECK_THROWS_WITH_AS(stage_one(*wave.model, wave.record, options),
                        doctest::Contains("'b' has no finite bounds, from which the screens' l_2"),
                        sepcal::Error);

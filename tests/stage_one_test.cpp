@@ -209,12 +209,12 @@ TEST_CASE("stage two frees what was not sampled") {
   CHECK((unsampled.xi2() - sampled.xi2()).cwiseAbs().maxCoeff() < 1e-8);
 }
 
-TEST_CASE("a single sample is enough, and a prior alone will do instead of bounds") {
+TEST_CASE("a single sample is enough, and a distribution alone will do instead of bounds") {
   const Simulated wave = sepcal::test::simulate_scalar_1(100);
   CHECK(stage_one(*wave.model, wave.record, samples(1)).minima.size() == 1);
   FitOptions options = samples(50);
   options.bounds["b"] = {-sepcal::infinity, sepcal::infinity};
-  options.priors["b"] = {0.1, 0.3};
+  options.sampling_distribution["b"] = {0.1, 0.3};
   const StageOne result = stage_one(*wave.model, wave.record, options);
   CHECK(result.xi2[0] == Approx(0.2).epsilon(0.3));
 }

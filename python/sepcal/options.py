@@ -10,7 +10,7 @@ from sepcal.own_effect import Effect
 SHAPES = {
     "bounds": "{name: (lower, upper)}",
     "knowledge": "{name: (mean, standard deviation)}",
-    "priors": "{name: (mean, standard deviation)}",
+    "sampling_distribution": "{name: (mean, standard deviation)}",
 }
 APP_NAMES = {"know": "knowledge", "fix": "fixed", "effect": "effects"}  # of the apps' --know, ...
 
@@ -31,8 +31,8 @@ class FitOptions(TypedDict, total=False):
             beforehand: as much as one more measurement of each [none].
         search: How stage one looks for minima: among samples, or by NLopt's global search, which
             asks for the profile cost at most `samples` times, "global" ["sampling"].
-        priors: (mean, standard deviation) of nonlinear parameters, for drawing samples; the fit
-            does not know them [none].
+        sampling_distribution: (mean, standard deviation) of nonlinear parameters: their samples are
+            normal, cut at the bounds; it has no part in the fit itself [uniform].
         screens: Evaluates Eqs. 17 and 18 at every sample, and uses only those with ratios of at
             most t_1 and t_2 within l_2, and, with convex, positive second derivatives: any of
             {"t_1", "t_2", "l_2", "convex"} [not evaluated].
@@ -72,7 +72,7 @@ class FitOptions(TypedDict, total=False):
     knowledge: Mapping[str, tuple[float, float]] | None
     search: Literal["sampling", "global"] | str | None
     screens: Mapping[str, float | bool] | None
-    priors: Mapping[str, tuple[float, float]] | None
+    sampling_distribution: Mapping[str, tuple[float, float]] | None
     stage_one: str | None
     stage_two: str | None
     samples: int | None

@@ -135,7 +135,7 @@ def test_options_arrive(record: dict[str, np.ndarray]) -> None:
     assert fit(second_stage="projected").method == "projected"
     assert fit(samples=0).stage_one.samples.shape[0] == 0
     assert fit(noise_iterations=1).noise_iterations == 1
-    narrow = fit(priors={"b": (0.2, 1e-3)}).stage_one.samples
+    narrow = fit(sampling_distribution={"b": (0.2, 1e-3)}).stage_one.samples
     assert np.all(np.abs(narrow - 0.2) < 0.01)
     even = np.sort(fit(sampling="low_discrepancy").stage_one.samples[:, 0])
     assert np.all(np.diff(even) < 2.5 / 32)  # a Halton sequence leaves no wide gap in a width of 1

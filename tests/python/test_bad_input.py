@@ -142,7 +142,7 @@ def test_options_out_of_place_for_records() -> None:
         ({"bounds": {"b": (1, 0)}}, ["'b'"]),
         ({"fixed": {"x": 0.0}}, ["'x'"]),
         ({"noise": {"z": -1.0}}, ["'z'"]),
-        ({"priors": {"x": (0.0, 1.0)}}, ["'x'"]),
+        ({"sampling_distribution": {"x": (0.0, 1.0)}}, ["'x'"]),
         ({"stage_two": "popu"}, ["'popu'"]),
         ({"samples": -1}, ["samples"]),
         ({"sampling": "even"}, ["sampling 'even'", "'low_discrepancy'"]),
@@ -182,7 +182,7 @@ def test_an_option_of_the_apps_is_translated() -> None:
         sepcal.fit(SCALAR, RECORD, know={"b": (0.0, 0.1)})
 
 
-@pytest.mark.parametrize("option", ["knowledge", "priors"])
+@pytest.mark.parametrize("option", ["knowledge", "sampling_distribution"])
 def test_a_number_in_place_of_mean_and_deviation(option: str) -> None:
     words = rf"{option}=.*'b': 0.01.; give .name: \(mean, standard deviation\).;"
     with pytest.raises(TypeError, match=words):

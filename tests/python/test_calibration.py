@@ -40,7 +40,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "jacobian": "golub_pereyra",
         "loss": "huber",
         "loss_width": 1.5,
-        "priors": {"b_beta": (0.01, 0.02)},
+        "sampling_distribution": {"b_beta": (0.01, 0.02)},
         "stage_one": "popu,wind_circle_1",
         "stage_two": "0:100",
         "samples": 20,
@@ -59,6 +59,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     assert set(options) == set(sepcal.FitOptions.__annotations__)
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
     stored["fixed"] = stored.pop("fix")
+    stored["sampling_distribution"] = stored.pop("priors")
     stored["effects"] = [effect["name"] for effect in stored["effects"]]
     options["samples"] = 0  # with a start nothing is sampled
     for name, value in options.items():

@@ -21,7 +21,7 @@ enum class Search {
 
 /// How stage one spreads its samples of xi2 within the bounds.
 enum class Sampling {
-  uniform,          // independent draws; normal where options.priors names the parameter
+  uniform,          // independent draws; normal where options.sampling_distribution names one
   low_discrepancy,  // a Halton sequence, shifted at random: fills the box more evenly
 };
 

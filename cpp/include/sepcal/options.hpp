@@ -57,9 +57,9 @@ struct FitOptions {
   /// global search: how often it may ask for the profile cost.
   int samples = 500;
   Sampling sampling = Sampling::uniform;
-  /// Priors of nonlinear parameters for drawing samples (the paper's N(0, 2^2)); they take no part
-  /// in the fit, as `knowledge` does.
-  std::map<std::string, Normal> priors = {};
+  /// What samples of nonlinear parameters are drawn from instead of uniformly within the bounds
+  /// (the paper's N(0, 2^2)); it takes no part in the fit, as `knowledge` does.
+  std::map<std::string, Normal> sampling_distribution = {};
   /// Unset: Eqs. 17 and 18 are not evaluated.
   std::optional<Screens> screens = {};
   std::uint64_t seed = 0;

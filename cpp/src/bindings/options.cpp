@@ -90,7 +90,7 @@ void define_options(py::module_& module) {
   options.def_property("effects", nullptr, &set_effects);
   options.def_property("bounds", nullptr, &set_bounds);
   options.def_property("screens", nullptr, &set_screens);
-  define_normals<&FitOptions::priors>(options, "priors");
+  define_normals<&FitOptions::sampling_distribution>(options, "sampling_distribution");
   define_normals<&FitOptions::knowledge>(options, "knowledge");
   define_named<&FitOptions::search>(options, "search");
   define_named<&FitOptions::sampling>(options, "sampling");

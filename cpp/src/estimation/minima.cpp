@@ -66,9 +66,9 @@ VectorXd half_widths(const Problem& problem) {
   for (Index k = 0; k < widths.size(); ++k) {
     const Variable& parameter = parameters[static_cast<std::size_t>(k)];
     widths[k] = 0.5 * (parameter.upper - parameter.lower);
-    const auto prior = problem.options().priors.find(parameter.name);
-    if (prior != problem.options().priors.end()) {
-      widths[k] = std::min(widths[k], 2.0 * prior->second.standard_deviation);
+    const auto drawn = problem.options().sampling_distribution.find(parameter.name);
+    if (drawn != problem.options().sampling_distribution.end()) {
+      widths[k] = std::min(widths[k], 2.0 * drawn->second.standard_deviation);
     }
     if (!std::isfinite(widths[k])) widths[k] = 1.0;
   }

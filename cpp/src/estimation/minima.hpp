@@ -15,7 +15,7 @@
 namespace sepcal::estimation {
 
 /// Lengths by which xi2 is measured (n_2): half the width of the bounds, or two standard deviations
-/// of an unbounded parameter's prior.
+/// of an unbounded parameter's sampling distribution.
 Eigen::VectorXd half_widths(const Problem& problem);
 
 /// From a start (n_2) to where the cost is lowest nearby, within the bounds.

@@ -63,7 +63,7 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
     parameter.lower = bounds.lower;
     parameter.upper = bounds.upper;
   }
-  for (const auto& [name, prior] : options.priors) {
+  for (const auto& [name, drawn] : options.sampling_distribution) {
     std::vector<Variable> nonlinear = model.tables().nonlinear;
     find(nonlinear, name, "nonlinear parameter (only these are sampled)");
   }

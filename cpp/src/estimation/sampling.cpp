@@ -66,21 +66,21 @@ MatrixXd unit_points(Index n, const FitOptions& options) {
 std::function<double(double)> quantile_of(const Variable& parameter, const FitOptions& options) {
   const double lower = parameter.lower;
   const double upper = parameter.upper;
-  const auto prior = options.priors.find(parameter.name);
-  if (prior != options.priors.end()) {
-    const auto [mean, sd] = prior->second;
+  const auto drawn = options.sampling_distribution.find(parameter.name);
+  if (drawn != options.sampling_distribution.end()) {
+    const auto [mean, sd] = drawn->second;
     if (lower > mean) {
       // In the upper tail probabilities crowd against one: draw the mirror image.
       FitOptions mirrored;
-      mirrored.priors[parameter.name] = {-mean, sd};
+      mirrored.sampling_distribution[parameter.name] = {-mean, sd};
       const auto image = quantile_of({parameter.name, parameter.unit, -upper, -lower}, mirrored);
       return [image](double u) { return -image(1.0 - u); };
     }
     const double p_lower = numerics::normal_probability((lower - mean) / sd);
     const double p_upper = numerics::normal_probability((upper - mean) / sd);
     if (!(sd > 0) || !(p_upper > p_lower)) {
-      throw Error("the prior of '" + parameter.name +
-                  "' has no weight within its bounds; move the prior or widen the bounds");
+      throw Error("the sampling distribution of '" + parameter.name +
+                  "' has no weight within its bounds; move it or widen the bounds");
     }
     return [=](double u) {
       const double p = std::clamp(p_lower + u * (p_upper - p_lower), 1e-300, 1.0 - 0x1p-53);
@@ -89,7 +89,8 @@ std::function<double(double)> quantile_of(const Variable& parameter, const FitOp
   }
   if (!std::isfinite(lower) || !std::isfinite(upper)) {
     throw Error("nonlinear parameter '" + parameter.name +
-                "' has no finite bounds to draw samples from; give it bounds or a normal prior");
+                "' has no finite bounds to draw samples from; give it bounds or a normal "
+                "sampling distribution");
   }
   return [=](double u) { return lower + u * (upper - lower); };
 }
@@ -110,12 +111,12 @@ VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions
   VectorXd point(static_cast<Index>(parameters.size()));
   for (Index k = 0; k < point.size(); ++k) {
     const Variable& parameter = parameters[static_cast<std::size_t>(k)];
-    const auto prior = options.priors.find(parameter.name);
+    const auto drawn = options.sampling_distribution.find(parameter.name);
     const auto start = options.start.find(parameter.name);
     if (start != options.start.end()) {
       point[k] = std::clamp(start->second, parameter.lower, parameter.upper);
-    } else if (prior != options.priors.end()) {
-      point[k] = std::clamp(prior->second.mean, parameter.lower, parameter.upper);
+    } else if (drawn != options.sampling_distribution.end()) {
+      point[k] = std::clamp(drawn->second.mean, parameter.lower, parameter.upper);
     } else if (std::isfinite(parameter.lower) && std::isfinite(parameter.upper)) {
       point[k] = 0.5 * (parameter.lower + parameter.upper);
     } else {

@@ -11,15 +11,15 @@
 
 namespace sepcal::estimation {
 
-/// n_2 x S. `parameters` are the nonlinear ones with their bounds, in order. A parameter with a
-/// prior is drawn from the normal distribution truncated to its bounds. Throws Error for a
-/// parameter that has neither finite bounds nor a prior, or a prior that its bounds leave no room
-/// for.
+/// n_2 x S. `parameters` are the nonlinear ones with their bounds, in order. One with a
+/// sampling distribution is drawn from that normal, truncated to its bounds. Throws Error for a
+/// parameter that has neither finite bounds nor a sampling distribution, or one without weight
+/// within the bounds.
 Eigen::MatrixXd draw_samples(const std::vector<Variable>& parameters, const FitOptions& options);
 
 /// The point that stage two starts from where nothing was sampled (n_2): options.start, else the
-/// prior's mean, else the middle of the bounds, or the bound or zero that is nearest where one is
-/// infinite.
+/// mean of the sampling distribution, else the middle of the bounds, or the bound or zero that is
+/// nearest where one is infinite.
 Eigen::VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions& options);
 
 }  // namespace sepcal::estimation

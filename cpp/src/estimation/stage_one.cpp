@@ -36,18 +36,18 @@ FitOptions hold_unsampled(const Problem& problem) {
   options.fixed.clear();
   options.bounds.clear();
   std::map<std::string, double> held;
-  std::map<std::string, Normal> priors;
+  std::map<std::string, Normal> distributions;
   for (const Variable& parameter : problem.parameters()) {
     options.bounds[parameter.name] = {parameter.lower, parameter.upper};
     const auto value = options.unsampled.find(parameter.name);
     if (value != options.unsampled.end()) {
       options.fixed[parameter.name] = std::clamp(value->second, parameter.lower, parameter.upper);
-    } else if (const auto prior = options.priors.find(parameter.name);
-               prior != options.priors.end()) {
-      priors.insert(*prior);
+    } else if (const auto drawn = options.sampling_distribution.find(parameter.name);
+               drawn != options.sampling_distribution.end()) {
+      distributions.insert(*drawn);
     }
   }
-  options.priors = std::move(priors);
+  options.sampling_distribution = std::move(distributions);
   options.unsampled.clear();
   return options;
 }

@@ -23,7 +23,7 @@ FitOptions without_sought(FitOptions options, const Times& sought) {
   };
   std::erase_if(options.bounds, is_of_one);
   std::erase_if(options.fixed, is_of_one);
-  std::erase_if(options.priors, is_of_one);
+  std::erase_if(options.sampling_distribution, is_of_one);
   std::erase_if(options.start, is_of_one);
   std::erase_if(options.unsampled, is_of_one);
   return options;

@@ -111,7 +111,7 @@ Json write_options(const Calibration& calibration) {
   options["search"] = to_string(fit.search);
   options["samples"] = fit.samples;
   options["sampling"] = to_string(fit.sampling);
-  options["priors"] = write_normals(fit.priors);
+  options["priors"] = write_normals(fit.sampling_distribution);
   if (fit.screens) options["screens"] = write_screens(*fit.screens);
   options["seed"] = fit.seed;
   options["descents"] = fit.descents;
@@ -145,7 +145,7 @@ CalibrationOptions read_options(const Json& options) {
   fit.noise = options.at("noise").get<std::map<std::string, double>>();
   fit.samples = whole_number<int>(options.at("samples"));
   read_choice(options, "sampling", fit.sampling);
-  fit.priors = read_normals(options.at("priors"));
+  fit.sampling_distribution = read_normals(options.at("priors"));
   fit.seed = whole_number<std::uint64_t>(options.at("seed"));
   fit.descents = whole_number<int>(options.at("descents"));
   read_choice(options, "second_stage", fit.second_stage);
