@@ -48,19 +48,19 @@ void add_choice(CLI::App& fit, const std::string& name, std::string& text,
       ->capture_default_str();
 }
 
-std::map<std::string, Normal> parse_normals(const std::vector<std::string>& texts) {
-  std::map<std::string, Normal> normals;
+std::map<std::string, Normal> parse_priors(const std::vector<std::string>& texts) {
+  std::map<std::string, Normal> priors;
   for (const std::string& text : texts) {
-    const auto [name, value] = parse_assignment("--know", text, "NAME=MEAN:SD");
-    refuse_repeated("--know", normals, name);
+    const auto [name, value] = parse_assignment("--prior", text, "NAME=MEAN:SD");
+    refuse_repeated("--prior", priors, name);
     const std::vector<std::string> numbers = split(value, ':');
     if (numbers.size() != 2) {
-      throw Error(fmt::format("--know {}: write it as NAME=MEAN:SD", text));
+      throw Error(fmt::format("--prior {}: write it as NAME=MEAN:SD", text));
     }
-    const std::string option = "--know " + name;
-    normals[name] = {parse_value(option, numbers[0]), parse_value(option, numbers[1])};
+    const std::string option = "--prior " + name;
+    priors[name] = {parse_value(option, numbers[0]), parse_value(option, numbers[1])};
   }
-  return normals;
+  return priors;
 }
 
 }  // namespace
@@ -76,8 +76,8 @@ void FitArguments::add_to(CLI::App& fit) {
   add_repeated(fit, "--bounds", bounds_, "NAME=LO,HI", "bounds in the parameter's unit");
   add_repeated(fit, "--fix", fixed_, "NAME=VALUE", "holds a parameter at a value");
   add_repeated(fit, "--free", options_.free, "NAME", "frees a parameter that is held by default");
-  add_repeated(fit, "--know", knowledge_, "NAME=MEAN:SD",
-               "what is known of a parameter beforehand");
+  add_repeated(fit, "--prior", priors_, "NAME=MEAN:SD",
+               "a normal prior: what is known of a parameter beforehand");
   add_repeated(fit, "--noise", noise_, "OUTPUT=SD",
                "holds an output's noise at a standard deviation");
   add_whole_number(fit, "--samples", engine.samples, "samples of stage one");
@@ -126,7 +126,7 @@ CalibrationOptions FitArguments::resolve() const {
     refuse_repeated("--noise", engine.noise, name);
     engine.noise[name] = parse_value("--noise " + name, value);
   }
-  engine.knowledge = parse_normals(knowledge_);
+  engine.prior = parse_priors(priors_);
   engine.second_stage = choice_of<SecondStage>("--second-stage", second_stage_);
   engine.jacobian = choice_of<ProjectedJacobian>("--jacobian", jacobian_);
   engine.loss = choice_of<Loss>("--loss", loss_);

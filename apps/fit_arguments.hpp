@@ -24,7 +24,7 @@ class FitArguments {
   std::vector<std::string> bounds_;
   std::vector<std::string> fixed_;
   std::vector<std::string> noise_;
-  std::vector<std::string> knowledge_;
+  std::vector<std::string> priors_;
   std::string search_ = std::string(to_string(Search::sampling));
   std::string sampling_ = std::string(to_string(Sampling::uniform));
   std::string second_stage_ = std::string(to_string(SecondStage::automatic));

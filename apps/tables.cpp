@@ -71,16 +71,16 @@ std::string verdict_on_noise(const Misfit& misfit) {
                      misfit.lag_one > 0 ? "correlate" : "alternate", misfit.lag_one, limit);
 }
 
-/// Bounds, and what was known beforehand.
+/// Bounds, and the prior.
 std::string remark(const Calibration& calibration, const Parameter& parameter) {
   if (is_scanned(calibration, parameter)) return "by a scan";
   std::string text = limits(parameter);
-  const auto& knowledge = calibration.options.fit.knowledge;
-  const auto known = knowledge.find(parameter.name);
-  if (known == knowledge.end()) return text;
+  const auto& priors = calibration.options.fit.prior;
+  const auto prior = priors.find(parameter.name);
+  if (prior == priors.end()) return text;
   if (!text.empty()) text += "  ";
-  return text + fmt::format("known {:.6g} +- {:.2g}", known->second.mean,
-                            known->second.standard_deviation);
+  return text + fmt::format("prior {:.6g} +- {:.2g}", prior->second.mean,
+                            prior->second.standard_deviation);
 }
 
 std::string stage_line(const Fit& fit, const CalibrationOptions& options) {

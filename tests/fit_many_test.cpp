@@ -168,33 +168,33 @@ TEST_CASE("a bound of a flight's own parameter may be active in one flight and n
   CHECK(held == 1);
 }
 
-TEST_CASE("what is known of a shared parameter counts once, of an own one in every flight") {
+TEST_CASE("the prior of a shared parameter counts once, of an own one in every flight") {
   const Flights flights = simulate_fleet({});
   ManyOptions options = wind_a_flight();
   SUBCASE("of a linear and a nonlinear shared one") {
-    options.fit.knowledge = {{"lambda_va", {0.06, 0.01}}, {"eps_phi", {0.0, 0.02}}};
+    options.fit.prior = {{"lambda_va", {0.06, 0.01}}, {"eps_phi", {0.0, 0.02}}};
   }
-  SUBCASE("of an own one") { options.fit.knowledge = {{"w_d", {0.5, 0.05}}}; }
+  SUBCASE("of an own one") { options.fit.prior = {{"w_d", {0.5, 0.05}}}; }
   SUBCASE("of both, with R given") {
-    options.fit.knowledge = {{"b_va", {-0.5, 0.1}}, {"w_e", {0.0, 0.3}}};
+    options.fit.prior = {{"b_va", {-0.5, 0.1}}, {"w_e", {0.0, 0.3}}};
     options.fit.noise = {{"vn", 0.1}, {"ve", 0.25}, {"vd", 0.3}};
   }
   SUBCASE("of one that a bound holds") {
-    options.fit.knowledge = {{"b_va", {-0.5, 0.1}}, {"w_d", {0.5, 0.05}}};
+    options.fit.prior = {{"b_va", {-0.5, 0.1}}, {"w_d", {0.5, 0.05}}};
     options.fit.bounds["b_va"] = {-0.4, 2.0};
   }
   FitOptions stacked = options.fit;
   for (const std::string& name : options.own) {
-    const auto known = stacked.knowledge.find(name);
-    if (known == stacked.knowledge.end()) continue;
+    const auto prior = stacked.prior.find(name);
+    if (prior == stacked.prior.end()) continue;
     for (const char* flight : {"_0", "_1", "_2"}) {
-      stacked.knowledge[name + flight] = known->second;
+      stacked.prior[name + flight] = prior->second;
     }
-    stacked.knowledge.erase(known);
+    stacked.prior.erase(prior);
   }
   const ManyFit joint = fit_many(fleet_probe, flights, options);
   check_same(joint, fit(StackedProbe{}, stack(flights), stacked));
-  options.fit.knowledge.clear();
+  options.fit.prior.clear();
   const ManyFit ignorant = fit_many(fleet_probe, flights, options);
   const FlightFit& first = joint.flights.front();
   CHECK((joint.shared[1].value != ignorant.shared[1].value ||
@@ -235,8 +235,8 @@ TEST_CASE("one flight is fit(), its errors for coloured residuals too") {
   ManyOptions options;
   options.own = {"c"};
   options.fit.threads = 1;
-  SUBCASE("nothing known") {}
-  SUBCASE("both known") { options.fit.knowledge = {{"a", {0.25, 0.02}}, {"c", {-0.5, 0.03}}}; }
+  SUBCASE("without a prior") {}
+  SUBCASE("priors of both") { options.fit.prior = {{"a", {0.25, 0.02}}, {"c", {-0.5, 0.03}}}; }
   const Fit alone = fit(ScalarExample1{}, record, options.fit);
   const ManyFit joint = fit_many(ScalarExample1{}, {{"wave", record}}, options);
   REQUIRE(alone["a"].standard_error > 1.5 * alone["a"].standard_error_white);

@@ -158,8 +158,8 @@ void check_golub_pereyra(const Simulated& simulated) {
   CHECK((without.transpose() * without - hessian).norm() > 1e-5 * hessian.norm());
 }
 
-/// Knowledge of one linear and one nonlinear parameter, as two more dense rows.
-void check_with_knowledge(const Simulated& simulated) {
+/// Priors of one linear and one nonlinear parameter, as two more dense rows.
+void check_with_priors(const Simulated& simulated) {
   const Index n_1 = simulated.xi1.size();
   const Index n = n_1 + simulated.xi2.size();
   const Index n_z = simulated.model->tables().n_z();
@@ -256,10 +256,10 @@ TEST_CASE("projected: Golub and Pereyra's Jacobian is that of the projected resi
                        VectorXd::Constant(1, 0.3), sepcal::test::simulate_scalar_1(200).record});
 }
 
-TEST_CASE("what is known beforehand is one more measurement") {
+TEST_CASE("a prior is one more measurement") {
   for (const Simulated& simulated : sepcal::test::simulate_all(300)) {
     CAPTURE(simulated.name);
-    check_with_knowledge(simulated);
+    check_with_priors(simulated);
   }
 }
 

@@ -46,7 +46,7 @@ TEST_CASE("the defaults are those of the documentation") {
   CHECK(options.jacobian == sepcal::ProjectedJacobian::kaufman);
   CHECK(options.loss == sepcal::Loss::squares);
   CHECK(options.loss_width == 0.0);
-  CHECK(options.knowledge.empty());
+  CHECK(options.prior.empty());
   CHECK_FALSE(options.screens.has_value());
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("an unknown name is refused with the names that there are") {
                 "no parameter 'w_x'; the model has: lambda_va");
   check_refused([](FitOptions& o) { o.noise = {{"vx", 1}}; },
                 "no output 'vx'; the model has: vn, ve, vd");
-  check_refused([](FitOptions& o) { o.knowledge = {{"w_x", {}}}; },
+  check_refused([](FitOptions& o) { o.prior = {{"w_x", {}}}; },
                 "no parameter 'w_x'; the model has: lambda_va");
   check_refused([](FitOptions& o) { o.sampling_distribution = {{"w_x", {}}}; },
                 "'w_x'; the model has: lambda_alpha");

@@ -195,7 +195,7 @@ TEST_CASE("with a loss a linear model's profile has the width of its sandwich, o
   }
 }
 
-TEST_CASE("what is known of the profiled parameter itself narrows its interval") {
+TEST_CASE("the prior of the profiled parameter itself narrows its interval") {
   Draws draws(78);
   std::vector<double> u = draws.uniform_column(30, -1.0, 1.0);
   std::vector<double> z;
@@ -205,7 +205,7 @@ TEST_CASE("what is known of the profiled parameter itself narrows its interval")
   FitOptions options;
   options.noise = {{"z", 0.5}};
   options.coloured_errors = false;
-  options.knowledge = {{"s", {2.0, 0.1}}};
+  options.prior = {{"s", {2.0, 0.1}}};
   const Fit fit = sepcal::fit(Line{}, record, options);
   for (const ProfileInterval& interval : sepcal::profile_intervals(Line{}, record, fit, options)) {
     const double half = z_95 * fit[interval.name].standard_error;  // linear, R given: exact

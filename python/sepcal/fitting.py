@@ -38,7 +38,7 @@ def fit(
             DataFrame. There "time" [s] and "maneuver" (labels) are optional and cut the record at
             gaps and changes of label; other columns are ignored but by effects. C-contiguous
             float64 arrays are not copied.
-        **options: effects, bounds, fixed, noise, knowledge, loss, start, search, samples and more;
+        **options: effects, bounds, fixed, noise, prior, loss, start, search, samples and more;
             FitOptions says what each is.
 
     Returns:

@@ -53,7 +53,7 @@ def fit_many(
             function that makes one, ProcessPoolExecutor itself. Work that a dying worker took
             with it is done again.
         leave_out: Leave out flights that can't be used, and list them, instead of refusing all.
-        **options: Those of fit() but effects and a loss; they hold for every flight. `knowledge`
+        **options: Those of fit() but effects and a loss; they hold for every flight. `prior`
             of a shared parameter counts once, that of an own one in every flight.
 
     Raises:

@@ -9,10 +9,10 @@ from sepcal.own_effect import Effect
 
 SHAPES = {
     "bounds": "{name: (lower, upper)}",
-    "knowledge": "{name: (mean, standard deviation)}",
+    "prior": "{name: (mean, standard deviation)}",
     "sampling_distribution": "{name: (mean, standard deviation)}",
 }
-APP_NAMES = {"know": "knowledge", "fix": "fixed", "effect": "effects"}  # of the apps' --know, ...
+APP_NAMES = {"fix": "fixed", "effect": "effects"}  # of the apps' --fix, ...
 
 
 class FitOptions(TypedDict, total=False):
@@ -27,8 +27,8 @@ class FitOptions(TypedDict, total=False):
             of the model's [the model's].
         fixed: Parameters held at a value and not estimated [none].
         noise: Noise standard deviation of every output; without it R is estimated, Eqs. 24-26.
-        knowledge: (mean, standard deviation) of parameters, linear or nonlinear, that is known
-            beforehand: as much as one more measurement of each [none].
+        prior: (mean, standard deviation) of parameters, linear or nonlinear: a normal prior, which
+            counts as one more measurement of each [none].
         search: How stage one looks for minima: among samples, or by NLopt's global search, which
             asks for the profile cost at most `samples` times, "global" ["sampling"].
         sampling_distribution: (mean, standard deviation) of nonlinear parameters: their samples are
@@ -69,7 +69,7 @@ class FitOptions(TypedDict, total=False):
     bounds: Mapping[str, tuple[float | None, float | None]] | None
     fixed: Mapping[str, float] | None
     noise: Mapping[str, float] | None
-    knowledge: Mapping[str, tuple[float, float]] | None
+    prior: Mapping[str, tuple[float, float]] | None
     search: Literal["sampling", "global"] | str | None
     screens: Mapping[str, float | bool] | None
     sampling_distribution: Mapping[str, tuple[float, float]] | None

@@ -178,11 +178,11 @@ def test_an_unknown_option_is_named() -> None:
 
 
 def test_an_option_of_the_apps_is_translated() -> None:
-    with pytest.raises(TypeError, match=r"no option 'know'; --know of the apps is knowledge; it"):
-        sepcal.fit(SCALAR, RECORD, know={"b": (0.0, 0.1)})
+    with pytest.raises(TypeError, match=r"no option 'fix'; --fix of the apps is fixed; it"):
+        sepcal.fit(SCALAR, RECORD, fix={"b": 0.1})
 
 
-@pytest.mark.parametrize("option", ["knowledge", "sampling_distribution"])
+@pytest.mark.parametrize("option", ["prior", "sampling_distribution"])
 def test_a_number_in_place_of_mean_and_deviation(option: str) -> None:
     words = rf"{option}=.*'b': 0.01.; give .name: \(mean, standard deviation\).;"
     with pytest.raises(TypeError, match=words):

@@ -33,7 +33,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "bounds": {"b_va": (-5.0, 5.0)},
         "fixed": {"w_d": 0.3},
         "noise": {"vn": 0.1, "ve": 0.2, "vd": 0.3},
-        "knowledge": {"eps_phi": (0.01, 0.02), "b_va": (0.0, 3.0)},
+        "prior": {"eps_phi": (0.01, 0.02), "b_va": (0.0, 3.0)},
         "start": {"eps_phi": 0.01},
         "search": "global",
         "screens": {"t_1": 1e3, "t_2": 1e4, "l_2": 2.0, "convex": False},
@@ -59,6 +59,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     assert set(options) == set(sepcal.FitOptions.__annotations__)
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
     stored["fixed"] = stored.pop("fix")
+    stored["prior"] = stored.pop("knowledge")
     stored["sampling_distribution"] = stored.pop("priors")
     stored["effects"] = [effect["name"] for effect in stored["effects"]]
     options["samples"] = 0  # with a start nothing is sampled

@@ -134,7 +134,7 @@ def test_options_are_carried(pitot: Bench):
         *("--free", "w_e", "--samples", "60", "--sampling", "low_discrepancy", "--seed", "7"),
         *("--second-stage", "joint", "--noise", "vn=0.15", "--noise", "ve=0.15"),
         *("--noise", "vd=0.2", "--noise-tolerance", "0.05", "--threads", "1", "-o", "next.json"),
-        *("--know", "b_va=0.1:2", "--loss", "huber", "--loss-width", "1.5"),
+        *("--prior", "b_va=0.1:2", "--loss", "huber", "--loss-width", "1.5"),
         *("--jacobian", "golub_pereyra"),
     )
     assert fitted.code == 0, fitted.err

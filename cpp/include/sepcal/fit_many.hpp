@@ -29,8 +29,8 @@ struct ManyOptions {
   /// Names of the parameters that every flight has for itself, linear or not. The others are
   /// shared.
   std::vector<std::string> own = {};
-  /// Every choice of a fit but a loss; it holds for each flight. R is common to all flights. What
-  /// is known of an own parameter is known of each flight's; of a shared one it counts once.
+  /// Every choice of a fit but a loss; it holds for each flight. R is common to all flights. The
+  /// prior of an own parameter holds for each flight's; that of a shared one counts once.
   FitOptions fit = {};
   /// A flight that can't be used is left out and listed; else it is an Error.
   bool leave_out = false;

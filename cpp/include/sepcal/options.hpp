@@ -44,9 +44,9 @@ struct FitOptions {
   std::map<std::string, double> fixed = {};
   /// Noise standard deviation of every output; empty: R is estimated (Eqs. 24-26).
   std::map<std::string, double> noise = {};
-  /// What is known of parameters beforehand, linear or nonlinear: each adds the square of (x -
-  /// mean) / standard_deviation to the cost, as one more measurement would (a row of the factor).
-  std::map<std::string, Normal> knowledge = {};
+  /// Normal priors of parameters, linear or nonlinear: each adds the square of (x - mean) /
+  /// standard_deviation to the cost, as one more measurement would (a row of the factor).
+  std::map<std::string, Normal> prior = {};
 
   /// Segments that each stage uses, as in Record::select(); empty: all.
   std::string stage_one_segments = {};
@@ -58,7 +58,7 @@ struct FitOptions {
   int samples = 500;
   Sampling sampling = Sampling::uniform;
   /// What samples of nonlinear parameters are drawn from instead of uniformly within the bounds
-  /// (the paper's N(0, 2^2)); it takes no part in the fit, as `knowledge` does.
+  /// (the paper's N(0, 2^2)); it takes no part in the fit, as `prior` does.
   std::map<std::string, Normal> sampling_distribution = {};
   /// Unset: Eqs. 17 and 18 are not evaluated.
   std::optional<Screens> screens = {};

@@ -91,7 +91,7 @@ void define_options(py::module_& module) {
   options.def_property("bounds", nullptr, &set_bounds);
   options.def_property("screens", nullptr, &set_screens);
   define_normals<&FitOptions::sampling_distribution>(options, "sampling_distribution");
-  define_normals<&FitOptions::knowledge>(options, "knowledge");
+  define_normals<&FitOptions::prior>(options, "prior");
   define_named<&FitOptions::search>(options, "search");
   define_named<&FitOptions::sampling>(options, "sampling");
   define_named<&FitOptions::second_stage>(options, "second_stage");

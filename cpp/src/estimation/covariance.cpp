@@ -49,20 +49,20 @@ MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
   return factor.matrix();
 }
 
-/// Rows over `noise`, those of what is known among them: n x n.
+/// Rows over `noise`, those of the prior among them: n x n.
 MatrixXd whiten(const Problem& problem, const StageTwo& two, const VectorXd& noise) {
   TriangularFactor factor = combine(two.factors, noise.cwiseInverse());
-  for (const Prior& prior : problem.knowledge()) prior.join(factor, two.x);
+  for (const Prior& prior : problem.prior()) prior.join(factor, two.x);
   return factor.matrix().topLeftCorner(two.x.size(), two.x.size());
 }
 
-/// Parameters that the measurements had to pay for: all of them, less the share of each that was
-/// known beforehand.
+/// Parameters that the measurements had to pay for: all of them, less the share of each that its
+/// prior paid.
 double count_spent(const Problem& problem, const StageTwo& two, const std::vector<Index>& inside) {
   auto spent = static_cast<double>(two.x.size());
-  for (const Prior& prior : problem.knowledge()) {
+  for (const Prior& prior : problem.prior()) {
     const MatrixXd R = select_columns(whiten(problem, two, two.noise), inside);
-    spent -= known_share(inverse_of_square(R), prior.weight(inside));
+    spent -= prior_share(inverse_of_square(R), prior.weight(inside));
   }
   return spent;
 }
@@ -140,7 +140,7 @@ class Sandwich {
       const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs(), ratio_};
       middle = find_score_covariance(std::move(tangents), noise, inside, R_, sweep_.pool());
     }
-    for (const Prior& prior : problem_.knowledge()) {
+    for (const Prior& prior : problem_.prior()) {
       MatrixXd W = prior.weight(inside).asDiagonal();
       R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
       middle += W.transpose() * W;
@@ -234,7 +234,7 @@ Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
   return result;
 }
 
-double known_share(const MatrixXd& covariance, const VectorXd& weights) {
+double prior_share(const MatrixXd& covariance, const VectorXd& weights) {
   const double share = covariance.diagonal().cwiseProduct(weights.cwiseAbs2()).sum();
   return std::isfinite(share) ? share : 0.0;
 }

@@ -2,7 +2,7 @@
 // How much the estimates of a fit vary: of white residuals (R'R)^-1, of others the sandwich
 //   H^-1 [sum_j J_j' Sigma_j J_j / r_jj^2 + W] H^-1,   H = sum_j J_j' S_j J_j / r_jj + W,
 // Sigma_j the covariance of psi(s) over the rows of output j, S_j the slopes of psi (1 without a
-// loss, where psi(s) = s), W what is known beforehand. Huber & Ronchetti, Robust Statistics,
+// loss, where psi(s) = s), W the prior. Huber & Ronchetti, Robust Statistics,
 // Sec. 7.6.
 #pragma once
 
@@ -20,20 +20,20 @@ struct Covariances {
   Eigen::MatrixXd coloured;          // k x k, as each output's residual is coloured
   Eigen::MatrixXd inverse_hessian;   // k x k, H^-1: white where there is no loss
   /// n x n, upper: the rows of all free parameters over the noise that white residuals are judged
-  /// to have, and those of what is known beforehand.
+  /// to have, and those of the prior.
   Eigen::MatrixXd tangent;
 };
 
 /// Where R was estimated, variances are M / (M - p) times what R-hat = SSE / N gives: M
-/// measurements, p parameters less what was known of them beforehand. `coloured` is `white` where
+/// measurements, p parameters less what their prior paid. `coloured` is `white` where
 /// every output is white at an estimated R, without FitOptions::coloured_errors, and where
 /// something is not finite.
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
                              const StageTwo& two);
 
-/// How many of the parameters of a covariance were paid for by what was known beforehand, each in
-/// part: `weights` are 1 / standard deviation of that knowledge. 0 where there is no covariance.
-double known_share(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& weights);
+/// How many of the parameters of a covariance were paid for by the prior, each in part:
+/// `weights` are its 1 / standard deviation. 0 where there is no covariance.
+double prior_share(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& weights);
 
 /// A covariance of some of n parameters among all of them, NaN for the others.
 Eigen::MatrixXd spread(const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& places,

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "estimation/covariance.hpp"
-#include "estimation/knowledge.hpp"
 #include "estimation/likelihood.hpp"
 #include "estimation/model_trial.hpp"
 #include "estimation/plausibility.hpp"
+#include "estimation/prior_checks.hpp"
 #include "estimation/stage_one.hpp"
 #include "estimation/stage_two.hpp"
 
@@ -114,7 +114,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   for (const std::string& sentence : two.sentences) result.message += sentence + "; ";
   result.message += result.identifiability.message();
   if (!result.message.empty() && !result.message.ends_with("; ")) result.message += "; ";
-  result.message += judge_knowledge(result.parameters, problem.options());
+  result.message += judge_priors(result.parameters, problem.options());
   if (result.message.ends_with("; ")) result.message.resize(result.message.size() - 2);
   result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
                   : two.converged()                            ? FitStatus::converged

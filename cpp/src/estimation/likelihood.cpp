@@ -99,7 +99,7 @@ bool Likelihood::leaves_open(const StageTwo& at) const {
 double Likelihood::cost(const StageTwo& at) const {
   const VectorXd sums = squares(at.factors).cwiseQuotient(at.noise.cwiseAbs2());
   double J = 0.5 * sums.sum() + rows() * at.noise.array().log().sum();
-  for (const Prior& prior : problem_.knowledge()) J += 0.5 * prior.square(at.x);
+  for (const Prior& prior : problem_.prior()) J += 0.5 * prior.square(at.x);
   return J;
 }
 
@@ -108,14 +108,14 @@ DescentOptions Likelihood::descent(double first_radius) const {
 }
 
 std::vector<Prior> Likelihood::priors(const StageTwo& at) const {
-  std::vector<Prior> all = problem_.knowledge();
+  std::vector<Prior> all = problem_.prior();
   if (at.hold) all.push_back(*at.hold);
   return all;
 }
 
 TriangularFactor Likelihood::whiten(const StageTwo& at) const {
   TriangularFactor factor = combine(at.factors, at.noise.cwiseInverse());
-  for (const Prior& known : problem_.knowledge()) known.join(factor, at.x);
+  for (const Prior& prior : problem_.prior()) prior.join(factor, at.x);
   return factor;
 }
 

@@ -46,7 +46,7 @@ class Likelihood {
   /// Whether the record leaves a combination open at the point.
   bool leaves_open(const StageTwo& at) const;
 
-  /// J of Eq. 6 at the point, without its constant, with what is known beforehand.
+  /// J of Eq. 6 at the point, without its constant, with the prior.
   double cost(const StageTwo& at) const;
 
   const Problem& problem() const { return problem_; }
@@ -59,7 +59,7 @@ class Likelihood {
 
   /// What is known, and what holds open combinations for a while.
   std::vector<Prior> priors(const StageTwo& at) const;
-  /// One factor of all outputs, with what is known beforehand.
+  /// One factor of all outputs, with the prior.
   TriangularFactor whiten(const StageTwo& at) const;
   StageTwo take(StageTwo at, const Refinement& refinement, const JointObjective& objective) const;
   JointObjective joint_objective(const StageTwo& at) const;

@@ -21,10 +21,10 @@ Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
 Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
                                 const std::vector<TriangularFactor>& factors, double z_square);
 
-/// Independent normal knowledge of the parameters: each is one row of the factor.
+/// Independent normal priors of the parameters: each is one row of the factor.
 struct Prior {
   Eigen::VectorXd mean;    // n
-  Eigen::VectorXd weight;  // n, 1 / standard deviation; 0: nothing known
+  Eigen::VectorXd weight;  // n, 1 / standard deviation; 0: none
 
   /// Sum of squares that the prior adds at x.
   double square(const Eigen::VectorXd& x) const {

@@ -76,15 +76,15 @@ Problem::Problem(const BlockModel& model, const FitOptions& options)
     std::vector<Variable> nonlinear = model.tables().nonlinear;
     find(nonlinear, name, "nonlinear parameter (only these are sampled)");
   }
-  for (const auto& [name, normal] : options.knowledge) {
+  for (const auto& [name, normal] : options.prior) {
     find(all, name, "parameter");
     const double sd = normal.standard_deviation;
     if (!std::isfinite(normal.mean) || !(sd > 0) || !std::isfinite(sd)) {
-      throw Error("what is known of '" + name +
-                  "' must be a finite mean and a positive standard deviation");
+      throw Error("the prior of '" + name +
+                  "' must have a finite mean and a positive standard deviation");
     }
     if (options.fixed.contains(name)) {
-      throw Error("'" + name + "' is fixed, so that what is known of it has no part; drop one");
+      throw Error("'" + name + "' is fixed, so that its prior has no part; drop one");
     }
   }
   for (const auto& [name, value] : options.fixed) {
@@ -147,15 +147,15 @@ numerics::Box Problem::nonlinear_box() const {
   return box_of(parameters_, static_cast<std::size_t>(model().tables().n_1()));
 }
 
-std::vector<Prior> Problem::knowledge() const {
-  if (options_.knowledge.empty()) return {};
+std::vector<Prior> Problem::prior() const {
+  if (options_.prior.empty()) return {};
   const auto n = static_cast<Index>(parameters_.size());
   Prior prior{VectorXd::Zero(n), VectorXd::Zero(n)};
   for (Index k = 0; k < n; ++k) {
-    const auto known = options_.knowledge.find(parameters_[static_cast<std::size_t>(k)].name);
-    if (known == options_.knowledge.end()) continue;
-    prior.mean[k] = known->second.mean;
-    prior.weight[k] = 1.0 / known->second.standard_deviation;
+    const auto given = options_.prior.find(parameters_[static_cast<std::size_t>(k)].name);
+    if (given == options_.prior.end()) continue;
+    prior.mean[k] = given->second.mean;
+    prior.weight[k] = 1.0 / given->second.standard_deviation;
   }
   return {prior};
 }

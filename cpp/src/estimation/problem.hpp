@@ -32,8 +32,8 @@ class Problem {
   numerics::Box box() const;            // of all free parameters
   numerics::Box nonlinear_box() const;  // of xi2
 
-  /// What is known of the free parameters beforehand: one prior over all of them, or none.
-  std::vector<Prior> knowledge() const;
+  /// Of the free parameters: one prior over all of them, or none.
+  std::vector<Prior> prior() const;
 
   /// Given noise standard deviations (n_z), or empty where R is to be estimated.
   const Eigen::VectorXd& noise() const { return noise_; }

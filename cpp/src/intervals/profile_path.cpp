@@ -33,11 +33,11 @@ FitOptions refit_options(const estimation::Problem& problem, SecondStage method)
   return options;
 }
 
-/// What a normal knowledge of the parameter adds to J while it is held.
-double known_cost(const FitOptions& options, const std::string& name, double value) {
-  const auto known = options.knowledge.find(name);
-  if (known == options.knowledge.end()) return 0.0;
-  const double r = (value - known->second.mean) / known->second.standard_deviation;
+/// What the prior of the parameter adds to J while it is held.
+double prior_cost(const FitOptions& options, const std::string& name, double value) {
+  const auto prior = options.prior.find(name);
+  if (prior == options.prior.end()) return 0.0;
+  const double r = (value - prior->second.mean) / prior->second.standard_deviation;
   return 0.5 * r * r;
 }
 
@@ -155,7 +155,7 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
   const bool held = problem_.parameters().size() > 1;
   if (held) {
     options.fixed[name] = value;
-    options.knowledge.erase(name);
+    options.prior.erase(name);
   } else {
     options.bounds[name] = {value, value + 1e-15 * (std::abs(value) + distance)};
   }
@@ -165,7 +165,7 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
   if (!best) return {};
   const estimation::StageTwo& two = *best;
   double cost = two.cost;
-  if (held) cost += known_cost(problem_.options(), name, value);
+  if (held) cost += prior_cost(problem_.options(), name, value);
   if (minimum_.cost - cost > deficit_) {
     deficit_ = minimum_.cost - cost;
     lowest_at_ = value;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "estimation/covariance.hpp"
-#include "estimation/knowledge.hpp"
+#include "estimation/prior_checks.hpp"
 #include "many/departure.hpp"
 #include "sepcal/identifiability.hpp"
 
@@ -65,7 +65,7 @@ class Description {
     for (const std::string& sentence : stage_.sentences) result_.message += sentence + "; ";
     judge();
     if (!result_.message.empty() && !result_.message.ends_with("; ")) result_.message += "; ";
-    result_.message += estimation::judge_knowledge(result_.shared, joint_.problem.options());
+    result_.message += estimation::judge_priors(result_.shared, joint_.problem.options());
     if (result_.message.ends_with("; ")) result_.message.resize(result_.message.size() - 2);
     result_.iterations = stage_.iterations;
     result_.noise_iterations = stage_.noise_iterations;

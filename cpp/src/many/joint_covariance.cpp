@@ -52,14 +52,14 @@ JudgedFlight judge_flight(const JointProblem& joint, const JointStage& stage,
   return judged;
 }
 
-/// Rows of what is known in the coordinates of K.
+/// Rows of the prior in the coordinates of K.
 MatrixXd known_rows(const VectorXd& weights, const MatrixXd& K) {
   return divide(weights.asDiagonal(), K);
 }
 
 /// Of [own | shared], the own ones alone.
 VectorXd own_weights(const JudgedFlight& judged, const ManyObjective& objective) {
-  VectorXd weights = objective.known_weights()(judged.columns);
+  VectorXd weights = objective.prior_weights()(judged.columns);
   weights.tail(weights.size() - judged.share.own.cols()).setZero();
   return weights;
 }
@@ -106,24 +106,24 @@ JointCovariance factorise(const JointProblem& joint, const JointStage& stage,
   // Own parameters at their bounds differ from flight to flight, the shared ones don't.
   std::vector<Index> columns = result.shared;
   columns.push_back(joint.layout.shared);
-  result.joint = shared_factor(shares, objective.shared_knowledge().matrix()(Eigen::all, columns));
+  result.joint = shared_factor(shares, objective.shared_prior().matrix()(Eigen::all, columns));
   result.singular = is_singular(result.joint);
   return result;
 }
 
-/// Parameters that the measurements had to pay for: all of them, less the share of each that was
-/// known beforehand.
+/// Parameters that the measurements had to pay for: all of them, less the share of each that its
+/// prior paid.
 double count_spent(const JointProblem& joint, const JointStage& stage,
                    const ManyObjective& objective) {
   auto spent = static_cast<double>(joint.layout.size());
-  const VectorXd& weights = objective.known_weights();
+  const VectorXd& weights = objective.prior_weights();
   if (weights.isZero(0.0)) return spent;
   const JointCovariance all = factorise(joint, stage, objective, stage.noise);
   spent -=
-      estimation::known_share(all.shared_white(), weights.tail(joint.layout.shared)(all.shared));
+      estimation::prior_share(all.shared_white(), weights.tail(joint.layout.shared)(all.shared));
   for (Index i = 0; i < joint.layout.flights; ++i) {
     const JudgedFlight& judged = all.flights[static_cast<std::size_t>(i)];
-    spent -= estimation::known_share(all.own_white(i),
+    spent -= estimation::prior_share(all.own_white(i),
                                      own_weights(judged, objective).head(judged.share.own.cols()));
   }
   return spent;
@@ -198,7 +198,7 @@ JointCovariance find_joint_covariance(const JointProblem& joint, const JointStag
   if (joint.problem.options().coloured_errors) {
     ask_for_middles(result, joint, stage, objective, fleet);
   }
-  const VectorXd weights = objective.known_weights().tail(joint.layout.shared)(result.shared);
+  const VectorXd weights = objective.prior_weights().tail(joint.layout.shared)(result.shared);
   const MatrixXd known = known_rows(weights, result.joint);
   result.middle_sum = known.transpose() * known;
   for (Index i = 0; i < joint.layout.flights; ++i) result.middle_sum += result.shared_middle(i);

@@ -28,7 +28,7 @@ struct JointCovariance {
   bool singular = false;             // then every covariance is NaN
   double ratio = 1.0;                // of the noise judged behind all of this to R, squared:
                                      // M / (M - n) where R was estimated; NaN: nothing is defined
-  Eigen::MatrixXd middle_sum;        // of shared_middle() over all flights, and what is known
+  Eigen::MatrixXd middle_sum;        // of shared_middle() over all flights, and the prior
 
   bool is_defined() const { return !singular && !std::isnan(ratio); }
 
@@ -47,7 +47,7 @@ struct JointCovariance {
   Eigen::MatrixXd contribution(Eigen::Index flight) const;
 };
 
-/// The objective stands at the solution, where nothing holds it but what is known. With
+/// The objective stands at the solution, where no loose prior holds it. With
 /// FitOptions::coloured_errors the fleet is asked once more.
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
                                       const ManyObjective& objective, Fleet& fleet);

@@ -32,7 +32,7 @@ class JointLikelihood {
       at.noise[j] = std::max(at.noise[j], joint_.noise_floor(j));
     }
     objective_.weigh(at.noise.cwiseInverse());
-    for (const estimation::Prior& prior : joint_.knowledge()) objective_.know(prior);
+    for (const estimation::Prior& prior : joint_.prior()) objective_.set_prior(prior);
     at.x = find_joint_start(objective_, joint_.starts, joint_.box);
     scale_ = plausible_lengths(joint_, objective_);
     held_ = leaves_something_open();
@@ -129,11 +129,11 @@ std::vector<std::string> explain(const JointStage& end, const FitOptions& option
 
 }  // namespace
 
-std::vector<estimation::Prior> JointProblem::knowledge() const {
-  std::vector<estimation::Prior> known = problem.knowledge();
+std::vector<estimation::Prior> JointProblem::prior() const {
+  std::vector<estimation::Prior> priors = problem.prior();
   const std::vector<Index> order = parting.order();
-  for (estimation::Prior& prior : known) prior = {prior.mean(order), prior.weight(order)};
-  return known;
+  for (estimation::Prior& prior : priors) prior = {prior.mean(order), prior.weight(order)};
+  return priors;
 }
 
 double JointProblem::noise_floor(Index j) const {
@@ -146,7 +146,7 @@ Eliminated eliminate_own(const ManyObjective& objective) {
   for (const TriangularFactor& block : objective.flight_blocks()) {
     shares.push_back(eliminate_own(block.matrix(), objective.layout().own));
   }
-  const MatrixXd shared = shared_factor(shares, objective.shared_knowledge().matrix());
+  const MatrixXd shared = shared_factor(shares, objective.shared_prior().matrix());
   return {std::move(shares), shared};
 }
 

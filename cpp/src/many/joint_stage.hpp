@@ -24,8 +24,8 @@ struct JointProblem {
 
   bool noise_given() const { return problem.noise().size() > 0; }
 
-  /// What is known of [own | shared] beforehand; none or one.
-  std::vector<estimation::Prior> knowledge() const;
+  /// Over [own | shared]; none or one.
+  std::vector<estimation::Prior> prior() const;
 
   /// Below it the noise of output j is rounding.
   double noise_floor(Eigen::Index j) const;
@@ -45,7 +45,7 @@ struct JointStage {
 };
 
 /// At the objective's point: each flight without its own parameters, and all flights together with
-/// what is known of the shared ones (n_shared x n_shared, upper).
+/// the prior of the shared ones (n_shared x n_shared, upper).
 struct Eliminated {
   std::vector<Share> shares;
   Eigen::MatrixXd shared;
@@ -55,8 +55,8 @@ Eliminated eliminate_own(const ManyObjective& objective);
 /// Plausible lengths of all flights' parameters, off the factors at the objective's point.
 Eigen::VectorXd plausible_lengths(const JointProblem& joint, const ManyObjective& objective);
 
-/// From the flights' own fits; the objective ends linearised at the solution, and nothing holds it
-/// but what is known.
+/// From the flights' own fits; the objective ends linearised at the solution, and no loose
+/// prior holds it.
 JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective);
 
 }  // namespace sepcal::many

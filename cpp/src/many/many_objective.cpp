@@ -15,13 +15,13 @@ void ManyObjective::weigh(const VectorXd& weights) {
   combine_blocks();
 }
 
-void ManyObjective::know(const estimation::Prior& knowledge) {
-  known_ = knowledge;
+void ManyObjective::set_prior(const estimation::Prior& prior) {
+  prior_ = prior;
   combine_blocks();
 }
 
-void ManyObjective::hold(std::vector<estimation::Prior> priors) {
-  priors_ = std::move(priors);
+void ManyObjective::hold(std::vector<estimation::Prior> loose) {
+  loose_ = std::move(loose);
   combine_blocks();
 }
 
@@ -39,7 +39,7 @@ bool ManyObjective::linearise(const VectorXd& x) {
 }
 
 std::vector<TriangularFactor> ManyObjective::flight_blocks(const VectorXd& weights) const {
-  estimation::Prior own = known_;
+  estimation::Prior own = prior_;
   own.weight.tail(layout_.shared).setZero();
   std::vector<TriangularFactor> blocks;
   for (std::size_t i = 0; i < factors_.size(); ++i) {
@@ -50,20 +50,20 @@ std::vector<TriangularFactor> ManyObjective::flight_blocks(const VectorXd& weigh
   return blocks;
 }
 
-TriangularFactor ManyObjective::shared_knowledge() const {
+TriangularFactor ManyObjective::shared_prior() const {
   TriangularFactor factor(static_cast<int>(layout_.shared + 1));
-  known_.tail(layout_.shared).join(factor, at_.tail(layout_.shared));
+  prior_.tail(layout_.shared).join(factor, at_.tail(layout_.shared));
   return factor;
 }
 
 void ManyObjective::combine_blocks() {
   blocks_ = flight_blocks();
   if (blocks_.empty()) return;
-  estimation::Prior shared = known_;
+  estimation::Prior shared = prior_;
   shared.weight.head(layout_.own).setZero();
   if (!shared.weight.isZero(0.0)) shared.join(blocks_.front(), layout_.point(at_, 0));
-  for (std::size_t i = 0; i < priors_.size(); ++i) {
-    priors_[i].join(blocks_[i], layout_.point(at_, static_cast<Index>(i)));
+  for (std::size_t i = 0; i < loose_.size(); ++i) {
+    loose_[i].join(blocks_[i], layout_.point(at_, static_cast<Index>(i)));
   }
 }
 

@@ -20,7 +20,7 @@ class ManyObjective {
       : fleet_(fleet),
         flights_(std::move(flights)),
         layout_(layout),
-        known_{Eigen::VectorXd::Zero(layout.own + layout.shared),
+        prior_{Eigen::VectorXd::Zero(layout.own + layout.shared),
                Eigen::VectorXd::Zero(layout.own + layout.shared)} {}
 
   const Layout& layout() const { return layout_; }
@@ -29,30 +29,29 @@ class ManyObjective {
   /// 1 / noise standard deviation of each output (n_z). Needs no pass.
   void weigh(const Eigen::VectorXd& weights);
 
-  /// What is known beforehand of [own | shared]: of every flight's own ones, and once of those that
-  /// are shared.
-  void know(const estimation::Prior& knowledge);
+  /// The prior of [own | shared]: that of own ones holds in every flight, that of shared ones once.
+  void set_prior(const estimation::Prior& prior);
 
-  /// What holds [own | shared] of each flight for a while; empty: nothing.
-  void hold(std::vector<estimation::Prior> priors);
+  /// Loose priors that hold [own | shared] of each flight for a while; empty: none.
+  void hold(std::vector<estimation::Prior> loose);
 
   /// Goes to x; a pass over the data unless it is there already. False where a model is not finite.
   bool linearise(const Eigen::VectorXd& x);
 
   /// At the point linearised last: a whitened factor of [own | shared | r] a flight. Their sum is
-  /// the whole problem: what is known of shared parameters and what holds them stand in the first.
+  /// the whole problem: the prior of shared parameters and what holds them stand in the first.
   const std::vector<TriangularFactor>& blocks() const { return blocks_; }
 
-  /// What each flight has to say, whitened by `weights`: its data, and what is known of its own
+  /// What each flight has to say, whitened by `weights`: its data, and the prior of its own
   /// parameters.
   std::vector<TriangularFactor> flight_blocks(const Eigen::VectorXd& weights) const;
   std::vector<TriangularFactor> flight_blocks() const { return flight_blocks(weights_); }
 
-  /// What is known of the shared parameters: the factor of [shared | r].
-  TriangularFactor shared_knowledge() const;
+  /// The prior of the shared parameters: the factor of [shared | r].
+  TriangularFactor shared_prior() const;
 
-  /// 1 / standard deviation of what is known of [own | shared], 0 where nothing is.
-  const Eigen::VectorXd& known_weights() const { return known_.weight; }
+  /// 1 / standard deviation of the prior of [own | shared], 0 where there is none.
+  const Eigen::VectorXd& prior_weights() const { return prior_.weight; }
 
   /// n_z factors of each flight, not whitened.
   const std::vector<std::vector<TriangularFactor>>& factors() const { return factors_; }
@@ -60,7 +59,7 @@ class ManyObjective {
   /// Sum of squared residuals of a flight by output (n_z).
   Eigen::VectorXd squares(Eigen::Index i) const;
 
-  /// Sum of whitened squares over all flights, with what is known and what holds.
+  /// Sum of whitened squares over all flights, with the prior and what holds.
   double square() const;
 
   int passes() const { return passes_; }
@@ -72,8 +71,8 @@ class ManyObjective {
   std::vector<std::size_t> flights_;
   Layout layout_;
   Eigen::VectorXd weights_;
-  estimation::Prior known_;
-  std::vector<estimation::Prior> priors_;
+  estimation::Prior prior_;
+  std::vector<estimation::Prior> loose_;
   Eigen::VectorXd at_;
   std::vector<std::vector<TriangularFactor>> factors_;
   std::vector<TriangularFactor> blocks_;

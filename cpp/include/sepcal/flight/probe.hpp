@@ -88,8 +88,8 @@ class Probe {
   /// Parameters that a fit holds at a value unless they are freed.
   virtual std::map<std::string, double> held() const { return {}; }
 
-  /// The options with what a record says beforehand: bounds and a start. Throws Error where the
-  /// record can't be this probe's.
+  /// The options with what a record says before it is fitted: bounds and a start. Throws Error
+  /// where the record can't be this probe's.
   virtual FitOptions complete(const FitOptions& options, const Record& /*record*/) const {
     return options;
   }

@@ -52,7 +52,7 @@ void read_later_options(const Json& options, FitOptions& fit) {
   constexpr std::array later{"knowledge", "search", "jacobian", "loss", "loss_width"};
   const auto is_there = [&](const char* name) { return options.contains(name); };
   if (std::ranges::none_of(later, is_there)) return;
-  fit.knowledge = read_normals(options.at("knowledge"));
+  fit.prior = read_normals(options.at("knowledge"));
   read_choice(options, "search", fit.search);
   if (options.contains("screens")) fit.screens = read_screens(options.at("screens"));
   read_choice(options, "jacobian", fit.jacobian);
@@ -107,7 +107,7 @@ Json write_options(const Calibration& calibration) {
   options["fix"] = fit.fixed;
   options["free"] = calibration.options.free;
   options["noise"] = fit.noise;
-  options["knowledge"] = write_normals(fit.knowledge);
+  options["knowledge"] = write_normals(fit.prior);
   options["search"] = to_string(fit.search);
   options["samples"] = fit.samples;
   options["sampling"] = to_string(fit.sampling);

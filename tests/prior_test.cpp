@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of parameters beforehand, against the closed form of a linear model.
+// Priors of parameters, against the closed form of a linear model.
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
@@ -64,7 +64,7 @@ TEST_CASE("with R given the estimate and its covariance are Bayes'") {
   FitOptions options;
   options.noise = {{"z", 0.5}};
   options.coloured_errors = false;
-  options.knowledge = {{"s", {2.5, 0.05}}};
+  options.prior = {{"s", {2.5, 0.05}}};
   const Fit fit = sepcal::fit(Line{}, line.record, options);
   const MatrixXd W = Vector2d(1.0 / (0.05 * 0.05), 0.0).asDiagonal();
   const MatrixXd H = line.J.transpose() * line.J / 0.25 + W;
@@ -78,13 +78,13 @@ TEST_CASE("with R given the estimate and its covariance are Bayes'") {
   CHECK(fit.rmse[0].value == Approx(r.norm() / std::sqrt(double{rows})).epsilon(1e-12));
 }
 
-TEST_CASE("with R estimated what is known keeps its own size, and spends less of the freedom") {
+TEST_CASE("with R estimated a prior keeps its own size, and spends less of the freedom") {
   const LineRecord line;
   FitOptions options;
   options.coloured_errors = false;
   for (const double sd : {1e-6, 0.1, 1e6}) {
     CAPTURE(sd);
-    options.knowledge = {{"s", {2.0, sd}}};
+    options.prior = {{"s", {2.0, sd}}};
     const Fit fit = sepcal::fit(Line{}, line.record, options);
     const VectorXd r = line.z - line.J * fit.values();
     const double variance = r.squaredNorm() / rows;  // Eq. 24
@@ -100,7 +100,7 @@ TEST_CASE("with R estimated what is known keeps its own size, and spends less of
   }
 }
 
-TEST_CASE("a result far from what was known, or less sure, is said") {
+TEST_CASE("a result far from its prior, or less sure, is said") {
   sepcal::test::Draws draws(31);
   std::vector<double> u = draws.uniform_column(600, -1, 1);
   std::ranges::sort(u);  // slow, so that coloured noise matters
@@ -117,11 +117,11 @@ TEST_CASE("a result far from what was known, or less sure, is said") {
   const double sure = 0.5 * ignorant["s"].standard_error;
   REQUIRE(sure > 2.0 * ignorant["s"].standard_error_white);
 
-  options.knowledge = {{"s", {ignorant["s"].value, 2.0 * ignorant["s"].standard_error}}};
+  options.prior = {{"s", {ignorant["s"].value, 2.0 * ignorant["s"].standard_error}}};
   CHECK(sepcal::fit(Line{}, record, options).message.empty());
-  options.knowledge = {{"s", {ignorant["s"].value, sure}}};
+  options.prior = {{"s", {ignorant["s"].value, sure}}};
   const Fit loud = sepcal::fit(Line{}, record, options);
-  CHECK(loud.message.find("'s' is less sure than it was known") != std::string::npos);
+  CHECK(loud.message.find("'s' is less sure than its prior") != std::string::npos);
   // Weighed as it says, both are as sure as their precisions' sum.
   const double factor = ignorant["s"].standard_error / ignorant["s"].standard_error_white;
   options.noise = {{"z", factor * ignorant.noise[0].value}};
@@ -130,32 +130,32 @@ TEST_CASE("a result far from what was known, or less sure, is said") {
   CHECK(weighed["s"].standard_error == Approx(sure / std::sqrt(1.25)).epsilon(0.05));
 
   options.noise.clear();
-  options.knowledge = {{"s", {ignorant["s"].value + 30.0 * sure, sure}}};
-  CHECK(sepcal::fit(Line{}, record, options).message.find("far from what is known of it") !=
+  options.prior = {{"s", {ignorant["s"].value + 30.0 * sure, sure}}};
+  CHECK(sepcal::fit(Line{}, record, options).message.find("far from its prior") !=
         std::string::npos);
 }
 
-TEST_CASE("known for certain is fixed, hardly known is free") {
+TEST_CASE("a prior that is certain fixes, a loose one leaves free") {
   const LineRecord line;
   FitOptions free;
   const Fit without = sepcal::fit(Line{}, line.record, free);
-  free.knowledge = {{"s", {7.0, 1e6}}};
+  free.prior = {{"s", {7.0, 1e6}}};
   CHECK((sepcal::fit(Line{}, line.record, free).values() - without.values()).norm() < 1e-8);
   FitOptions held;
   held.fixed = {{"s", 2.2}};
   FitOptions certain;
-  certain.knowledge = {{"s", {2.2, 1e-7}}};
+  certain.prior = {{"s", {2.2, 1e-7}}};
   const Fit fixed = sepcal::fit(Line{}, line.record, held);
   const Fit known = sepcal::fit(Line{}, line.record, certain);
   CHECK(known["c"].value == Approx(fixed["c"].value).epsilon(1e-9));
   CHECK(known["c"].standard_error == Approx(fixed["c"].standard_error).epsilon(1e-6));
 }
 
-TEST_CASE("knowledge determines what a record leaves open") {
+TEST_CASE("a prior determines what a record leaves open") {
   const LineRecord line;
   CHECK(sepcal::fit(Sum{}, line.record).status == FitStatus::not_identifiable);
   FitOptions options;
-  options.knowledge = {{"a", {0.5, 0.1}}};
+  options.prior = {{"a", {0.5, 0.1}}};
   const Fit fit = sepcal::fit(Sum{}, line.record, options);
   CHECK(fit.status == FitStatus::converged);
   CHECK(fit.identifiability.unobservable.empty());
@@ -167,7 +167,7 @@ TEST_CASE("joint and projected agree about a nonlinear model") {
   const auto flight = sepcal::test::simulate_five_hole(300);
   FitOptions options;
   options.samples = 50;
-  options.knowledge = {{"b_va", {-0.2, 0.1}}, {"eps_phi", {0.05, 0.002}}};
+  options.prior = {{"b_va", {-0.2, 0.1}}, {"eps_phi", {0.05, 0.002}}};
   options.second_stage = sepcal::SecondStage::joint;
   const Fit joint = sepcal::fit(*flight.model, flight.record, options);
   options.second_stage = sepcal::SecondStage::projected;
@@ -179,20 +179,20 @@ TEST_CASE("joint and projected agree about a nonlinear model") {
     CHECK(std::abs(projected[parameter.name].value - parameter.value) <
           1e-7 * parameter.standard_error);
   }
-  options.knowledge.clear();
+  options.prior.clear();
   const Fit without = sepcal::fit(*flight.model, flight.record, options);
   CHECK(projected["eps_phi"].standard_error < 0.95 * without["eps_phi"].standard_error);
 }
 
-TEST_CASE("what is known of a fixed parameter, or of a kind that no normal has, is refused") {
+TEST_CASE("the prior of a fixed parameter, or one that is no normal, is refused") {
   const LineRecord line;
   FitOptions options;
   options.fixed = {{"s", 2.0}};
-  options.knowledge = {{"s", {2.0, 1.0}}};
+  options.prior = {{"s", {2.0, 1.0}}};
   CHECK_THROWS_WITH_AS(sepcal::fit(Line{}, line.record, options), doctest::Contains("'s' is fixed"),
                        sepcal::Error);
   options.fixed.clear();
-  options.knowledge = {{"s", {2.0, 0.0}}};
+  options.prior = {{"s", {2.0, 0.0}}};
   CHECK_THROWS_WITH_AS(sepcal::fit(Line{}, line.record, options),
                        doctest::Contains("positive standard deviation"), sepcal::Error);
 }
