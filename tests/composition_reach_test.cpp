@@ -40,9 +40,9 @@ TEST_CASE("a fit with effects begins where they do nothing: coefficients at zero
   wash.corrections.push_back(sepcal::driven_inputs("wash", curve, {{"s", {"dpa", "Pa"}}}, "Pa", 1));
   Effect wind = follows("wind", curve);
   wind.driver = curve;
-  const auto zeros =
-      sepcal::beginnings({wash, wind, in_time("late", Delay::Kind::outputs_late, 1),
-                          sepcal::effect("mounting_error", sepcal::effects::MountingError{})});
+  const auto zeros = sepcal::initial_corrections(
+      {wash, wind, in_time("late", Delay::Kind::outputs_late, 1),
+       sepcal::effect("mounting_error", sepcal::effects::MountingError{})});
   CHECK(zeros == std::map<std::string, double>{{"wash.s", 0},
                                                {"late.tau", 0},
                                                {"mounting_error.pitch", 0},

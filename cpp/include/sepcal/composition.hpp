@@ -26,7 +26,7 @@ std::shared_ptr<const BlockModel> compose(std::shared_ptr<const BlockModel> mode
 
 /// The nonlinear coefficients of effects that correct something, all zero: where a fit with effects
 /// begins (FitOptions::unsampled). Shapes (exponents, delays of a driver) are not among them.
-std::map<std::string, double> beginnings(const std::vector<Effect>& effects);
+std::map<std::string, double> initial_corrections(const std::vector<Effect>& effects);
 
 /// How near a row may lie to a segment's edge [s] without a delay reaching across it: its longest
 /// shift within its bounds. `bounds` replace a parameter's own. 0 where nothing is shifted. Throws

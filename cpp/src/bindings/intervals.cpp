@@ -91,7 +91,7 @@ Prepared prepare(const Model& model, Record record, const CalibrationOptions& op
   const std::vector<Effect> effects = make_effects(kit, *result.model, settings, result.record);
   result.model = compose(result.model, effects, result.record);
   result.record = without_edges(std::move(result.record), reach(effects, options.fit.bounds));
-  result.options.unsampled.merge(beginnings(effects));
+  result.options.unsampled.merge(initial_corrections(effects));
   return result;
 }
 

@@ -34,7 +34,7 @@ std::shared_ptr<const BlockModel> compose(std::shared_ptr<const BlockModel> mode
   return std::make_shared<const ComposedModel>(std::move(model), effects, record);
 }
 
-std::map<std::string, double> beginnings(const std::vector<Effect>& effects) {
+std::map<std::string, double> initial_corrections(const std::vector<Effect>& effects) {
   std::map<std::string, double> zeros;
   for (const Effect& effect : effects) {
     std::string shape;

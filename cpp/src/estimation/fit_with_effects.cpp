@@ -17,7 +17,7 @@ Fit fit_with_effects(const std::shared_ptr<const BlockModel>& model, const Effec
   const auto composed = compose(model, effects, record);
   record = without_edges(std::move(record), reach(effects, options.bounds));
   FitOptions with_effects = options;
-  with_effects.unsampled.merge(beginnings(effects));
+  with_effects.unsampled.merge(initial_corrections(effects));
   return fit_with_steps(*composed, *model, effects, settings, record, std::move(with_effects));
 }
 

@@ -64,7 +64,7 @@ void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
   const Record& record = flight.prepared.record;
   std::shared_ptr<const Probe>& probe = calibration.probe;
   FitOptions options = probe->complete(calibration.options.fit, record);
-  options.unsampled = beginnings(flight.effects);
+  options.unsampled = initial_corrections(flight.effects);
   std::shared_ptr<const BlockModel> model = flight.model;
   const auto tell = [&](double noise) {
     std::shared_ptr<const Probe> told = probe->with_noise(noise);

@@ -31,7 +31,7 @@ FlightIntervals find_intervals(const Calibration& calibration, const Flight& fli
   const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
   const Record& record = effective.prepared.record;
   FitOptions options = calibration.probe->complete(calibration.options.fit, record);
-  options.unsampled = beginnings(effective.effects);
+  options.unsampled = initial_corrections(effective.effects);
   return {
       .model = std::string(calibration.probe->name()),
       .flight = {flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows},
