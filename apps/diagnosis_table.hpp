@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sepcal/flight/diagnosing.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 
 namespace sepcal::app {
 

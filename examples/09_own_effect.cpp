@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <random>
-#include <sepcal/compose.hpp>
 #include <sepcal/composition.hpp>
 #include <sepcal/sepcal.hpp>
+#include <sepcal/static_composition.hpp>
 #include <utility>
 #include <vector>
 using namespace sepcal;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "flights_with_effects.hpp"
-#include "sepcal/flight/diagnosing.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 
 namespace sepcal::test {
 

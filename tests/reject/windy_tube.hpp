@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "pitot_tube.hpp"
-#include "sepcal/compose.hpp"
+#include "sepcal/static_composition.hpp"
 
 namespace sepcal {
 

@@ -5,7 +5,7 @@
 //   corrections inputs replaced before the model sees them, by nonlinear parameters
 //   delays      the record's time axis shifted or smoothed, by interpolation within a segment
 // At zero an effect vanishes. Model + effects is again a model (composition.hpp at run time,
-// compose.hpp at compile time).
+// static_composition.hpp at compile time).
 #pragma once
 
 #include <memory>

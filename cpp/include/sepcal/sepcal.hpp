@@ -22,7 +22,7 @@
 #include "sepcal/driver.hpp"             // what drives an effect
 #include "sepcal/effect.hpp"             // a physical term that a model lacks
 #include "sepcal/static_effect.hpp"      // an effect written as a struct
-#include "sepcal/compose.hpp"            // model + effects, while compiling
+#include "sepcal/static_composition.hpp" // model + effects, while compiling
 #include "sepcal/composition.hpp"        // the same at run time
 #include "sepcal/effect_name.hpp"        // port[driver]
 #include "sepcal/named_effects.hpp"      // effects by name

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An effect written as a struct, like a model: tables and one function. A term gives columns, an
-// input correction gives inputs. compose.hpp joins them to a model at compile time; here they
-// become run-time effects.
+// input correction gives inputs. static_composition.hpp joins them to a model at compile time; here
+// they become run-time effects.
 #pragma once
 
 #include <ceres/jet.h>

@@ -15,7 +15,7 @@
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
-#include "sepcal/flight/diagnosing.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::bindings {

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "sepcal/compose.hpp"
+#include "sepcal/static_composition.hpp"
 
 namespace sepcal::effects {
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "flight/json/findings_json.hpp"
-#include "sepcal/flight/diagnosing.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 
 namespace sepcal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/diagnosing.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // model + effects at compile time: the joined tables, and the same rows as at run time, each effect
 // alone and several together in both orders.
-#include "sepcal/compose.hpp"
+#include "sepcal/static_composition.hpp"
 
 #include <doctest/doctest.h>
 

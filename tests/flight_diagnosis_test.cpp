@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flights of every probe with one effect hidden by the simulator, which shares no code with the
 // candidates: the effect is found, an invisible one is called so, and nothing where nothing is.
-#include "sepcal/flight/diagnosing.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
