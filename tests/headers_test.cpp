@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-using sepcal::UnitKind;
 using sepcal::files::accepted_headers;
 using sepcal::files::describe_missing;
+using sepcal::files::UnitKind;
 using Headers = std::vector<std::string>;
 
 namespace {

@@ -11,7 +11,7 @@
 #include "flight_log.hpp"
 
 using doctest::Contains;
-using sepcal::UnitKind;
+using sepcal::files::UnitKind;
 using sepcal::probes::describe_implausible;
 using sepcal::probes::Reading;
 using sepcal::test::Log;
@@ -24,7 +24,8 @@ struct Readings {
   std::map<std::string, Reading, std::less<>> readings;
 
   Readings& add(const std::string& quantity, UnitKind kind, const Values& values) {
-    const std::string header = quantity + "_" + std::string(sepcal::known_units(kind)[0].suffix);
+    const std::string header =
+        quantity + "_" + std::string(sepcal::files::known_units(kind)[0].suffix);
     readings[quantity] = {header, kind, values};
     return *this;
   }

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Units: factors from their definitions, and values in the inside unit bit for bit.
-#include "sepcal/flight/units.hpp"
+#include "flight/files/units.hpp"
 
 #include <doctest/doctest.h>
 
 #include <bit>
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "sepcal/error.hpp"
-
 using doctest::Approx;
-using doctest::Contains;
-using sepcal::find_unit;
-using sepcal::UnitKind;
+using sepcal::files::find_unit;
+using sepcal::files::UnitKind;
 
 namespace {
 
@@ -29,7 +27,7 @@ const std::vector<UnitKind> kinds{UnitKind::time,        UnitKind::angle,    Uni
 
 std::string list_suffixes(UnitKind kind) {
   std::string list;
-  for (const auto& unit : sepcal::known_units(kind)) list += std::string(unit.suffix) + " ";
+  for (const auto& unit : sepcal::files::known_units(kind)) list += std::string(unit.suffix) + " ";
   return list;
 }
 
@@ -44,7 +42,7 @@ TEST_CASE("each kind has its units, the inside one first") {
   CHECK(list_suffixes(UnitKind::field) == "ut nt gauss mgauss ");
   CHECK(list_suffixes(UnitKind::temperature) == "k degc ");
   CHECK(list_suffixes(UnitKind::density) == "kgpm3 ");
-  for (const UnitKind kind : kinds) CHECK(sepcal::known_units(kind).front().is_inside());
+  for (const UnitKind kind : kinds) CHECK(sepcal::files::known_units(kind).front().is_inside());
 }
 
 TEST_CASE("conversions") {
@@ -70,7 +68,7 @@ TEST_CASE("conversions") {
 TEST_CASE("a value in the inside unit passes bit for bit") {
   for (const UnitKind kind : kinds) {
     for (const double value : {-0.0, 0.1, 1.7e308, 5e-324}) {
-      const double converted = sepcal::known_units(kind).front().convert(value);
+      const double converted = sepcal::files::known_units(kind).front().convert(value);
       CHECK(std::bit_cast<std::uint64_t>(converted) == std::bit_cast<std::uint64_t>(value));
     }
   }
@@ -81,19 +79,4 @@ TEST_CASE("unknown units are not found") {
   CHECK(find_unit(UnitKind::angle, "") == nullptr);
   CHECK(find_unit(UnitKind::angle, "RAD") == nullptr);
   CHECK(find_unit(UnitKind::speed, "rad") == nullptr);
-  CHECK_FALSE(sepcal::find_kind("ft").has_value());
-}
-
-TEST_CASE("a model's unit and a CSV suffix") {
-  CHECK(sepcal::csv_header("time", "s") == "time_s");
-  CHECK(sepcal::csv_header("roll", "rad") == "roll_rad");
-  CHECK(sepcal::csv_header("p", "rad/s") == "p_radps");
-  CHECK(sepcal::csv_header("vn", "m/s") == "vn_mps");
-  CHECK(sepcal::csv_header("pt", "Pa") == "pt_pa");
-  CHECK(sepcal::csv_header("mx", "uT") == "mx_ut");
-  CHECK(sepcal::csv_header("temp", "K") == "temp_k");
-  CHECK(sepcal::csv_header("rho", "kg/m^3") == "rho_kgpm3");
-  CHECK(sepcal::find_kind("m/s") == UnitKind::speed);
-  CHECK_THROWS_WITH_AS(sepcal::csv_header("lambda", "1"), Contains("'lambda' is in '1'"),
-                       sepcal::Error);
 }

@@ -10,11 +10,13 @@
 #include <utility>
 
 #include "flight/catalogue/effect_makers.hpp"
+#include "flight/files/units.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/units.hpp"
 
 namespace sepcal::catalogue {
 namespace {
+
+using files::UnitKind;
 
 constexpr double gas_constant_of_air = 287.05287;  // [J/(kg K)], ISO 2533
 
@@ -40,7 +42,7 @@ std::vector<double> state_column(const Flight& flight, const State& state) {
     const std::string_view header = column.header;
     const std::size_t split = header.rfind('_');
     if (split == std::string_view::npos || header.substr(0, split) != state.header) continue;
-    const Unit* unit = find_unit(state.kind, header.substr(split + 1));
+    const files::Unit* unit = files::find_unit(state.kind, header.substr(split + 1));
     if (unit == nullptr) continue;
     std::vector<double> values(column.values.size());
     std::ranges::transform(column.values, values.begin(),

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/flight/units.hpp"
+#include "flight/files/units.hpp"
 
 namespace sepcal::files {
 

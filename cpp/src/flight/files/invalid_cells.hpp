@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
+#include "flight/files/units.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/units.hpp"
 
 namespace sepcal::files {
 

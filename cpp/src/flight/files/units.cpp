@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/units.hpp"
-
-#include <fmt/format.h>
+#include "flight/files/units.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numbers>
 
-#include "sepcal/error.hpp"
-
-namespace sepcal {
+namespace sepcal::files {
 namespace {
 
 using enum UnitKind;
@@ -41,17 +37,6 @@ constexpr std::array units{
     Unit{"kgpm3", density},
 };
 
-struct ModelUnit {
-  std::string_view text;
-  UnitKind kind;
-};
-
-constexpr std::array model_units{
-    ModelUnit{"s", time},        ModelUnit{"rad", angle},      ModelUnit{"rad/s", rate},
-    ModelUnit{"m/s", speed},     ModelUnit{"Pa", pressure},    ModelUnit{"uT", field},
-    ModelUnit{"K", temperature}, ModelUnit{"kg/m^3", density},
-};
-
 }  // namespace
 
 std::span<const Unit> known_units(UnitKind kind) {
@@ -66,20 +51,4 @@ const Unit* find_unit(UnitKind kind, std::string_view suffix) {
   return nullptr;
 }
 
-std::optional<UnitKind> find_kind(std::string_view model_unit) {
-  const auto* found = std::ranges::find(model_units, model_unit, &ModelUnit::text);
-  return found == model_units.end() ? std::nullopt : std::optional(found->kind);
-}
-
-std::string csv_header(std::string_view quantity, std::string_view model_unit) {
-  const auto kind = find_kind(model_unit);
-  if (!kind) {
-    throw Error(
-        fmt::format("'{}' is in '{}', which no CSV column can be in; the units are s, rad, "
-                    "rad/s, m/s, Pa, uT, K, kg/m^3",
-                    quantity, model_unit));
-  }
-  return fmt::format("{}_{}", quantity, known_units(*kind).front().suffix);
-}
-
-}  // namespace sepcal
+}  // namespace sepcal::files

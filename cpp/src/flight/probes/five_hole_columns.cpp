@@ -13,6 +13,8 @@ using namespace probes;  // this room's own
 
 namespace {
 
+using files::UnitKind;
+
 constexpr std::array quantities{
     ProbeQuantity{"time", UnitKind::time},    ProbeQuantity{"roll", UnitKind::angle},
     ProbeQuantity{"pitch", UnitKind::angle},  ProbeQuantity{"yaw", UnitKind::angle},

@@ -18,6 +18,8 @@ using namespace probes;  // this room's own
 
 namespace {
 
+using files::UnitKind;
+
 constexpr std::array quantities{
     ProbeQuantity{"time", UnitKind::time},   ProbeQuantity{"mx", UnitKind::field},
     ProbeQuantity{"my", UnitKind::field},    ProbeQuantity{"mz", UnitKind::field},

@@ -17,6 +17,8 @@ using namespace probes;  // this room's own
 
 namespace {
 
+using files::UnitKind;
+
 constexpr std::array quantities{
     ProbeQuantity{"time", UnitKind::time},
     ProbeQuantity{"roll", UnitKind::angle},

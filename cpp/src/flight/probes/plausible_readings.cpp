@@ -51,7 +51,7 @@ std::string suggest_units(const Reading& reading, const Range& range, double sma
                           double largest) {
   std::string units;
   if (reading.relabel) {
-    for (const Unit& unit : known_units(*reading.relabel)) {
+    for (const files::Unit& unit : files::known_units(*reading.relabel)) {
       if (!range.contains(unit.convert(smallest)) || !range.contains(unit.convert(largest))) {
         continue;
       }

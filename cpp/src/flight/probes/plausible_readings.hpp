@@ -9,15 +9,16 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/flight/units.hpp"
+#include "flight/files/units.hpp"
 
 namespace sepcal::probes {
 
 /// A quantity of a probe as the rows in use have it.
 struct Reading {
-  std::string header;               // as logged; where it was computed, the quantity's own name
-  std::optional<UnitKind> relabel;  // where logged in the unit used inside, which may be a slip
-  std::vector<double> values;       // in the unit used inside
+  std::string header;  // as logged; where it was computed, the quantity's own name
+  /// Where logged in the unit used inside, which may be a slip.
+  std::optional<files::UnitKind> relabel;
+  std::vector<double> values;  // in the unit used inside
 };
 
 /// Looks a quantity up by its base name ("yaw"); nothing where it is not in use.

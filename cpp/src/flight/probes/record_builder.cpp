@@ -35,7 +35,7 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
     const std::size_t split = std::min(header.rfind('_'), header.size());
     if (header.substr(0, split) != quantity.name) continue;
     const auto suffix = header.substr(std::min(split + 1, header.size()));
-    const Unit* unit = find_unit(quantity.kind, suffix);
+    const files::Unit* unit = files::find_unit(quantity.kind, suffix);
     if (unit == nullptr) {
       unknown = &column;
     } else if (found.column != nullptr) {
@@ -219,7 +219,7 @@ ProbeReadings RecordBuilder::finish_readings() {
 }
 
 /// Takes a column's kept rows; without a copy where they are all rows and in the unit used inside.
-void RecordBuilder::take(std::string name, const Flight::Column& column, const Unit* unit) {
+void RecordBuilder::take(std::string name, const Flight::Column& column, const files::Unit* unit) {
   const bool converts = unit != nullptr && !unit->is_inside();
   if (!converts && rows_.size() == flight_.rows()) {
     record_.view(std::move(name), column.values, column.owner);

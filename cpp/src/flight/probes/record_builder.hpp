@@ -12,23 +12,23 @@
 #include <string_view>
 #include <vector>
 
+#include "flight/files/units.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "sepcal/flight/probe_columns.hpp"
-#include "sepcal/flight/units.hpp"
 
 namespace sepcal::probes {
 
 /// A quantity of a probe: the base name of its column and what kind of unit follows it.
 struct ProbeQuantity {
   std::string_view name;
-  UnitKind kind;
+  files::UnitKind kind;
   bool is_driver = false;  // may drive effects too, then under its whole header
 };
 
 /// A probe's quantity as a flight has it.
 struct LoggedQuantity {
   const Flight::Column* column = nullptr;
-  const Unit* unit = nullptr;
+  const files::Unit* unit = nullptr;
 
   /// In the unit used inside.
   double at(std::size_t row) const { return unit->convert(column->values[row]); }
@@ -99,7 +99,7 @@ class RecordBuilder {
   bool is_quantity(const Flight::Column& column) const;
   std::optional<Reading> find_reading(std::string_view name) const;
   void note_implausible();
-  void take(std::string name, const Flight::Column& column, const Unit* unit);
+  void take(std::string name, const Flight::Column& column, const files::Unit* unit);
   void take_quantities();
   void check_computed() const;
   void take_drivers();

@@ -4,12 +4,10 @@
 // definition (The International System of Units, 9th ed., BIPM; 1 lbf = 4.4482216152605 N).
 #pragma once
 
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
-namespace sepcal {
+namespace sepcal::files {
 
 /// Kinds of physical quantity that a probe's columns have.
 enum class UnitKind { time, angle, rate, speed, pressure, field, temperature, density };
@@ -39,11 +37,4 @@ std::span<const Unit> known_units(UnitKind kind);
 /// The unit of `kind` with that suffix ("kt"), or nullptr.
 const Unit* find_unit(UnitKind kind, std::string_view suffix);
 
-/// The kind whose inside unit a model's table spells so ("m/s", "rad", "uT"), or nothing.
-std::optional<UnitKind> find_kind(std::string_view model_unit);
-
-/// The CSV header of a quantity in a model's unit: ("vn", "m/s") is "vn_mps". Throws Error for a
-/// unit that no CSV suffix stands for.
-std::string csv_header(std::string_view quantity, std::string_view model_unit);
-
-}  // namespace sepcal
+}  // namespace sepcal::files
