@@ -16,7 +16,7 @@ def progress_bar(shown: bool | None = None) -> Iterator[Callable[[float], None]]
     is_shown = sys.stderr.isatty() if shown is None else shown
     drawn = -1
 
-    def tell(fraction: float) -> None:
+    def report_progress(fraction: float) -> None:
         nonlocal drawn
         percent = int(100 * fraction)
         if not is_shown or percent == drawn:
@@ -27,7 +27,7 @@ def progress_bar(shown: bool | None = None) -> Iterator[Callable[[float], None]]
         sys.stderr.flush()
 
     try:
-        yield tell
+        yield report_progress
     finally:
         if drawn >= 0:
             sys.stderr.write("\n")

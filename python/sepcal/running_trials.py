@@ -72,13 +72,13 @@ def monte_carlo(
         trial, indices, seed=seed, executor=executor, batch=batch, keep_fits=keep_fits
     )
     unchecked = truth
-    with closing(streamed), _told(progress) as tell:
+    with closing(streamed), _progress_of(progress) as report_progress:
         for record in streamed:
             if record.failure is None:
                 check_truth(unchecked, [record.value])
                 unchecked = None
             records.append(record)
-            tell(len(records), len(indices))
+            report_progress(len(records), len(indices))
     return MonteCarlo(records, truth)
 
 
@@ -134,10 +134,10 @@ def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
 
 
 @contextmanager
-def _told(progress: bool | Progress | None) -> Iterator[Progress]:
+def _progress_of(progress: bool | Progress | None) -> Iterator[Progress]:
     """What to call after each trial."""
     if callable(progress):
         yield progress
         return
-    with progress_bar(progress) as tell:
-        yield lambda done, total: tell(done / total)
+    with progress_bar(progress) as report_progress:
+        yield lambda done, total: report_progress(done / total)

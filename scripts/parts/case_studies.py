@@ -21,7 +21,7 @@ def octocopter(file: Path, effects: tuple[str, ...]) -> tuple[list[Bar], str]:
     """A magnetometer, with each effect added by itself."""
     flight = sepcal.read_csv(file)
     base = sepcal.fit(sepcal.Magnetometer(field=FIELD), flight)
-    return tell(file.stem, base, effects), "uT"
+    return print_steps(file.stem, base, effects), "uT"
 
 
 def tube(
@@ -30,10 +30,10 @@ def tube(
     """A Pitot-static tube, with each effect added by itself."""
     flight = sepcal.read_csv(file)
     base = sepcal.fit(sepcal.PitotStatic(), flight, bounds=bounds or {})
-    return tell(file.stem, base, effects), "m/s"
+    return print_steps(file.stem, base, effects), "m/s"
 
 
-def tell(name: str, base: sepcal.Calibration, effects: tuple[str, ...]) -> list[Bar]:
+def print_steps(name: str, base: sepcal.Calibration, effects: tuple[str, ...]) -> list[Bar]:
     """Prints the diagnosis and what adding came to; the bars of the picture."""
     print(f"\n{name}: {base.status}")
     print(base.diagnose())

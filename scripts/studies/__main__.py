@@ -36,8 +36,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     study: Study = chosen.study
     try:
         check_options(chosen)
-        with progress_bar() as tell:
-            outcome = study.run(chosen, tell)
+        with progress_bar() as report_progress:
+            outcome = study.run(chosen, report_progress)
         for finding in outcome.findings:
             print(in_words(finding))
         outside = [finding for finding in outcome.findings if not finding.holds]

@@ -19,8 +19,8 @@ from studies.hidden_effects.cases import Case
 from studies.study import (
     Finding,
     Outcome,
+    Progress,
     Study,
-    Tell,
     binomial_limits,
     pooled_limits,
     seed_range,
@@ -134,11 +134,11 @@ def together(covers: list[Cover]) -> Finding:
     return Finding(what, f"{holds} of {of}", limits, fewest <= holds <= most)
 
 
-def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
+def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     covers = []
     for done, case in enumerate(CASES, 1):
         covers.append(cover(case, seed_range(arguments), arguments.processes))
-        tell(done / len(CASES))
+        report_progress(done / len(CASES))
     counts = [count for one in covers for count in one.covered.values()]
     overall = together(covers)
     return Outcome(

@@ -16,7 +16,7 @@ from scipy.stats import t as student_t
 
 import sepcal
 from sepcal.columns import Array
-from studies.study import Finding, Outcome, Study, Tell, binomial_limits, seed_range, seeds
+from studies.study import Finding, Outcome, Progress, Study, binomial_limits, seed_range, seeds
 
 STRENGTH = 48.0
 TRUTH = {
@@ -120,7 +120,7 @@ def one_heading(refused: list[bool]) -> Finding:
     return Finding(what, f"{missed} of {len(refused)}", "0", missed == 0)
 
 
-def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
+def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     some = seed_range(arguments)
     caps = range(some.start, some.start + arguments.caps)
     findings: list[Finding] = []
@@ -135,13 +135,13 @@ def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
             found, held = cover(noise, covered, fits(noise, covered, some))
             findings += found
             counts += held
-            tell(done / steps)
+            report_progress(done / steps)
         for done, (noise, covered) in enumerate(CAPS, len(WIDE) + 1):
             findings.append(collapse(noise, covered, fits(noise, covered, caps)))
-            tell(done / steps)
+            report_progress(done / steps)
         refused = list(pool.map(is_refused, range(FIRST_HEADING, FIRST_HEADING + 30)))
         findings.append(one_heading(refused))
-        tell(1.0)
+        report_progress(1.0)
     return Outcome(
         f"of {len(some)} intervals of a parameter {min(counts)} to {max(counts)} hold; "
         f"{len(CAPS) * len(caps)} small caps and {len(refused)} flights on one heading",

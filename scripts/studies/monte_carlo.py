@@ -30,8 +30,8 @@ from sepcal.columns import Array
 from studies.study import (
     Finding,
     Outcome,
+    Progress,
     Study,
-    Tell,
     binomial_limits,
     seed_range,
     seeds,
@@ -45,7 +45,7 @@ ODDS = 2e-5  # the same of a normal number, on either side
 
 
 def fly_sensors(
-    flights: range, workers: int, tell: Tell = lambda _: None
+    flights: range, workers: int, report_progress: Progress = lambda _: None
 ) -> dict[str, sepcal.MonteCarlo]:
     """One study a sensor, at the default bounds; flight i has inputs and noise of seed i."""
     probe, sensor = FiveHoleProbe(K_ALPHA, K_BETA, LEVER_ARM), Magnetometer()
@@ -57,7 +57,7 @@ def fly_sensors(
             FIVE_HOLE_TRUTH,
             flights,
             workers,
-            lambda done: tell(0.5 * done),
+            lambda done: report_progress(0.5 * done),
         ),
         "magnetometer": _fly(
             sepcal.Magnetometer(),
@@ -65,7 +65,7 @@ def fly_sensors(
             MAGNETOMETER_TRUTH,
             flights,
             workers,
-            lambda done: tell(0.5 + 0.5 * done),
+            lambda done: report_progress(0.5 + 0.5 * done),
         ),
     }
 
@@ -76,7 +76,7 @@ def _fly(
     truth: Array,
     flights: range,
     workers: int,
-    tell: Tell,
+    report_progress: Progress,
 ) -> sepcal.MonteCarlo:
     def trial(_: np.random.Generator, seed: int) -> sepcal.Fit:
         fit: sepcal.Fit = sepcal.fit(
@@ -89,7 +89,7 @@ def _fly(
         flights,
         truth=dict(zip(model.parameters, truth, strict=True)),
         executor=partial(ThreadPoolExecutor, workers),
-        progress=lambda done, of: tell(done / of),
+        progress=lambda done, of: report_progress(done / of),
         keep_fits=True,
     )
 
@@ -153,8 +153,8 @@ def ratio_limit(study: sepcal.MonteCarlo) -> float:
     return 0.016 + 0.044 * math.sqrt(FLIGHTS / len(study))
 
 
-def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
-    sensors = fly_sensors(seed_range(arguments), arguments.processes, tell)
+def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
+    sensors = fly_sensors(seed_range(arguments), arguments.processes, report_progress)
     for study in sensors.values():
         print(study)
     coverages = [one.coverage for study in sensors.values() for one in study.summary().values()]

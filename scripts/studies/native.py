@@ -15,19 +15,19 @@ from typing import Any
 from xml.etree.ElementTree import Element, XMLPullParser
 
 from sepcal import Error
-from studies.study import Finding, Outcome, Study, Tell
+from studies.study import Finding, Outcome, Progress, Study
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
 EXECUTABLE = BUILD / "tests" / "sepcal_studies"
 
 
-def run(name: str, _: argparse.Namespace, tell: Tell) -> Outcome:
+def run(name: str, _: argparse.Namespace, report_progress: Progress) -> Outcome:
     """Builds the executable and runs the cases of one file, NAME_study.cpp.
 
     Raises Error where it can't be built or has no such cases.
     """
-    del tell  # the messages are the progress
+    del report_progress  # the messages are the progress
     _build()
     told: list[str] = []
     findings: list[Finding] = []

@@ -15,7 +15,7 @@ from scipy.stats import binom
 
 from sepcal import Error
 
-Tell: TypeAlias = Callable[[float], None]  # of the fraction done
+Progress: TypeAlias = Callable[[float], None]  # of the fraction done
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Study:
 
     name: str
     shows: str  # in one sentence
-    run: Callable[[argparse.Namespace, Tell], Outcome]
+    run: Callable[[argparse.Namespace, Progress], Outcome]
     options: Callable[[argparse.ArgumentParser], None] = field(default=lambda _: None)
 
 

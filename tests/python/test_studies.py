@@ -58,8 +58,8 @@ def test_bad_usage_is_one_line(arguments, culprit, tmp_path):
 def tossed(monkeypatch):
     """A study of coins: heads of so many seeds, three at most."""
 
-    def toss(options, tell):
-        tell(1.0)
+    def toss(options, report_progress):
+        report_progress(1.0)
         finding = Finding("heads", str(options.seeds), "0 to 3", options.seeds <= 3)
         return Outcome(f"{options.seeds} heads", [finding])
 

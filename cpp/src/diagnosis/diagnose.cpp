@@ -48,7 +48,7 @@ class Recipe {
   /// `tests`: how many could have been chosen.
   std::vector<EffectFinding> judge(Trials& trials, double tests);
   void try_pairs(const std::vector<EffectFinding>& singles);
-  void tell(std::string_view task, double fraction) const {
+  void report_progress(std::string_view task, double fraction) const {
     if (options_.progress) options_.progress(task, fraction);
   }
 
@@ -83,7 +83,7 @@ void Recipe::screen_all(Trials& trials) {
     trials[i].least_visibility = options_.least_visibility;
     screen(room_, null_, trials[i]);
     const std::lock_guard lock(mutex);
-    tell("screening effects", ++done / static_cast<double>(trials.size()));
+    report_progress("screening effects", ++done / static_cast<double>(trials.size()));
   });
 }
 
@@ -105,7 +105,7 @@ void Recipe::test_best(Trials& trials, std::size_t most) {
   pool_.for_each(chosen.size(), [&](std::size_t k) {
     test(room_, null_, trials[chosen[k]]);
     const std::lock_guard lock(mutex);
-    tell("testing effects", ++done / static_cast<double>(chosen.size()));
+    report_progress("testing effects", ++done / static_cast<double>(chosen.size()));
   });
 }
 
@@ -128,7 +128,8 @@ void Recipe::calibrate_significant(Trials& trials, double threshold) {
   std::ranges::stable_sort(significant, {}, &Trial::log10_p);
   Inflation worst;
   for (std::size_t i = 0; i < significant.size(); ++i) {
-    tell("calibrating tests", static_cast<double>(i) / static_cast<double>(significant.size()));
+    report_progress("calibrating tests",
+                    static_cast<double>(i) / static_cast<double>(significant.size()));
     Inflation inflation = worst;
     if (i < most_simulated) {
       const bool beyond_doubt = significant[i]->log10_p < doubtless;
@@ -243,7 +244,7 @@ void Recipe::try_pairs(const std::vector<EffectFinding>& singles) {
 
 Diagnosis Recipe::run(const std::vector<std::string>& names) {
   if (room_.fit().layout.outputs.empty()) return result_;  // nothing is left to explain
-  tell("fitting the noise", 0.0);
+  report_progress("fitting the noise", 0.0);
   null_ = find_null(room_.fit());
   tangent_.compute(room_.fit().tangent);
   result_.residual = describe_residual(null_);
@@ -257,7 +258,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     return finding.status == FindingStatus::found;
   };
   if (std::ranges::none_of(result_.effects, is_found)) try_pairs(result_.effects);
-  tell("looking for structure", 0.0);
+  report_progress("looking for structure", 0.0);
   if (std::ranges::any_of(result_.effects, is_found)) {
     result_.verdict = Verdict::effect_missing;
     for (const Trial& trial : trials_) {

@@ -51,7 +51,7 @@ def report(
     if not chain:
         raise _core.Error("a report needs a calibration; give one or several")
     plotly = read_plotly()
-    tell = progress or (lambda _: None)
-    material = gather(chain, flight, diagnosis, [os.fspath(at) for at in files], tell)
-    tell("drawing")
+    report_progress = progress or (lambda _: None)
+    material = gather(chain, flight, diagnosis, [os.fspath(at) for at in files], report_progress)
+    report_progress("drawing")
     write_whole(os.fspath(file), build_page(compose(material, os.fspath(file)), plotly))

@@ -44,12 +44,14 @@ def run(arguments: argparse.Namespace) -> int:
     chain = [load(file) for file in arguments.calibrations]
     live = sys.stderr.isatty()
 
-    def tell(what: str) -> None:
+    def report_progress(what: str) -> None:
         if live:
             print(f"\r\033[Ksepcal report: {what} ...", end="", file=sys.stderr, flush=True)
 
     try:
-        report(chain, arguments.output, flight, files=arguments.calibrations, progress=tell)
+        report(
+            chain, arguments.output, flight, files=arguments.calibrations, progress=report_progress
+        )
     finally:
         if live:
             print("\r\033[K", end="", file=sys.stderr, flush=True)

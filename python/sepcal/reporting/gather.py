@@ -110,7 +110,7 @@ def gather(
     flight: Flight | None,
     diagnosis: Diagnosis | None,
     files: list[str],
-    tell: Callable[[str], None],
+    report_progress: Callable[[str], None],
 ) -> Material:
     """Compares, diagnoses and tries the first candidates. Raises Error as those do."""
     last = chain[-1]
@@ -125,10 +125,10 @@ def gather(
             "a loaded calibration has no flight; give one: "
             f"report(..., flight=sepcal.read_csv({last.core.file!r}))"
         )
-    tell("comparing")
+    report_progress("comparing")
     comparisons = [calibration.compare(flight) for calibration in chain]
     if diagnosis is None:
-        tell("diagnosing, which may take a minute")
+        report_progress("diagnosing, which may take a minute")
     found = diagnosis if diagnosis is not None else last.diagnose(flight)
     rows = find_rows(flight, comparisons[-1].time)
     every = flight.maneuvers  # a list made anew at each call
@@ -147,7 +147,7 @@ def gather(
         labels=labels,
         measured=measured,
         modelled=modelled,
-        trials=try_candidates(last, flight, comparisons[-1], found, notes, tell),
+        trials=try_candidates(last, flight, comparisons[-1], found, notes, report_progress),
         notes=list(dict.fromkeys([*last.notes, *found.notes, *comparisons[-1].notes, *notes])),
     )
 
@@ -182,7 +182,7 @@ def try_candidates(
     comparison: Comparison,
     diagnosis: Diagnosis,
     notes: list[str],
-    tell: Callable[[str], None],
+    report_progress: Callable[[str], None],
 ) -> list[Trial]:
     """What each of the first candidates explains once every parameter has taken its share."""
     trials: list[Trial] = []
@@ -191,7 +191,7 @@ def try_candidates(
             break
         if finding.status == "cannot_be_seen":
             continue
-        tell(f"trying {finding.name}")
+        report_progress(f"trying {finding.name}")
         try:
             tried = calibration.add(finding.name, flight).compare(flight)
         except _core.Error as error:

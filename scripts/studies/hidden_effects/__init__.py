@@ -9,7 +9,7 @@ from pathlib import Path
 from studies.hidden_effects.experiments import StudyOptions, hidden_effects
 from studies.hidden_effects.sizes import SIZED, check_size
 from studies.hidden_effects.write_up import write_up
-from studies.study import Outcome, Study, Tell, check_folder, seeds
+from studies.study import Outcome, Progress, Study, check_folder, seeds
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +23,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=Path, default=Path("hidden-effects.md"))
 
 
-def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
+def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     output: Path = arguments.output
     check_folder(output)
     options = StudyOptions(
@@ -32,7 +32,7 @@ def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
         first_seed=arguments.first_seed,
         processes=arguments.processes,
     )
-    rows = hidden_effects(options, tell)
+    rows = hidden_effects(options, report_progress)
     write_up(rows, options, output)
     print(f"wrote {output} and {output.with_suffix('.svg')}")
     alarms = sum(row["verdict"] == "effect_missing" for row in rows["null"])

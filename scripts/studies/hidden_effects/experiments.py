@@ -46,7 +46,7 @@ class StudyOptions:
 
 
 def hidden_effects(
-    options: StudyOptions, tell: Callable[[float], None] = lambda _: None
+    options: StudyOptions, report_progress: Callable[[float], None] = lambda _: None
 ) -> dict[str, list[Row]]:
     """Runs the study.
 
@@ -60,7 +60,7 @@ def hidden_effects(
         for done, future in enumerate(as_completed(running), 1):
             experiment, row = future.result()
             rows.setdefault(experiment, []).append(row)
-            tell(done / len(tasks))
+            report_progress(done / len(tasks))
     for flights in rows.values():
         flights.sort(key=lambda row: tuple(str(value) for value in row.values()))
     return rows

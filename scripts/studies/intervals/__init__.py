@@ -9,7 +9,7 @@ from pathlib import Path
 from studies.intervals.coverage import CoverageOptions, interval_coverage
 from studies.intervals.promises import promises
 from studies.intervals.write_up import write_coverage
-from studies.study import Outcome, Study, Tell, check_folder, seeds
+from studies.study import Outcome, Progress, Study, check_folder, seeds
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -17,13 +17,13 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=Path, default=Path("intervals.md"))
 
 
-def _run(arguments: argparse.Namespace, tell: Tell) -> Outcome:
+def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     output: Path = arguments.output
     check_folder(output)
     options = CoverageOptions(
         seeds=arguments.seeds, first_seed=arguments.first_seed, processes=arguments.processes
     )
-    rows = interval_coverage(options, tell)
+    rows = interval_coverage(options, report_progress)
     write_coverage(rows, options, output)
     print(f"wrote {output}")
     right = [row for row in rows if row.name != "coloured"]

@@ -41,7 +41,7 @@ class CoverageOptions:
 
 
 def interval_coverage(
-    options: CoverageOptions, tell: Callable[[float], None] = lambda _: None
+    options: CoverageOptions, report_progress: Callable[[float], None] = lambda _: None
 ) -> list[Coverage]:
     """Runs the study, case by case, parameter by parameter."""
     chunk = 20
@@ -62,7 +62,7 @@ def interval_coverage(
         ):
             for interval in parts:
                 drawn[name].setdefault(interval.name, []).append(interval)
-            tell(done / len(tasks))
+            report_progress(done / len(tasks))
     return [
         count(name, cases[name].title, intervals, cases[name].truth[parameter])
         for name, by_parameter in drawn.items()

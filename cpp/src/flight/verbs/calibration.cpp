@@ -56,7 +56,7 @@ Record with_constant_outputs(const Probe& probe, Record record) {
   return record;
 }
 
-/// Fits the model with its effects and, where it depends on its own output's noise, tells it that
+/// Fits the model with its effects and, where it depends on its own output's noise, gives it that
 /// of the fit and fits again, until the two agree.
 void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
   constexpr double tolerance = 1e-9;  // |noise / noise before - 1|
@@ -66,17 +66,17 @@ void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
   FitOptions options = probe->complete(calibration.options.fit, record);
   options.unsampled = initial_corrections(flight.effects);
   std::shared_ptr<const BlockModel> model = flight.model;
-  const auto tell = [&](double noise) {
-    std::shared_ptr<const Probe> told = probe->with_noise(noise);
-    if (!told) return false;
-    model = compose(model_of(*told), flight.effects, record);
-    probe = std::move(told);
+  const auto set_noise = [&](double noise) {
+    std::shared_ptr<const Probe> changed = probe->with_noise(noise);
+    if (!changed) return false;
+    model = compose(model_of(*changed), flight.effects, record);
+    probe = std::move(changed);
     return true;
   };
   double noise = 0.0;
   if (options.noise.size() == 1) {
     noise = options.noise.begin()->second;
-    tell(noise);
+    set_noise(noise);
   }
   std::optional<StageOne> stage_one;  // of the first round: the others start where it ended
   for (int round = 0; round < most_rounds; ++round) {
@@ -94,7 +94,7 @@ void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
                       calibration.fit.message.empty() ? "" : "; ", most_rounds);
       break;
     }
-    if (!tell(next)) break;
+    if (!set_noise(next)) break;
     noise = next;
     options.start = calibration.fit.nonlinear_estimates();
   }
