@@ -22,10 +22,10 @@ using Dual = NestedDual<1>;
 TEST_CASE("functions of one variable have the derivatives of the tables") {
   const double x = 0.7;
   const Dual t(x, 0);
-  const auto check = [](const Dual& f, double value, double slope, double bend) {
+  const auto check = [](const Dual& f, double value, double slope, double curvature) {
     CHECK(f.value() == Approx(value).epsilon(1e-14));
     CHECK(f.slope(0) == Approx(slope).epsilon(1e-14));
-    CHECK(f.bend(0, 0) == Approx(bend).epsilon(1e-13));
+    CHECK(f.second_derivative(0, 0) == Approx(curvature).epsilon(1e-13));
   };
   check(cos(t), std::cos(x), -std::sin(x), -std::cos(x));
   check(sin(t), std::sin(x), std::cos(x), -std::sin(x));
@@ -61,7 +61,7 @@ TEST_CASE("other functions agree with central differences") {
     const auto value = [&](double x) { return functions[i](Dual(x)).value(); };
     const Dual f = functions[i](Dual(0.6, 0));
     CHECK(f.slope(0) == Approx((value(0.6 + h) - value(0.6 - h)) / (2 * h)).epsilon(1e-6));
-    CHECK(f.bend(0, 0) ==
+    CHECK(f.second_derivative(0, 0) ==
           Approx((value(0.6 + h) - 2 * value(0.6) + value(0.6 - h)) / (h * h)).epsilon(1e-5));
   }
 }
@@ -71,10 +71,10 @@ TEST_CASE("mixed derivatives of two variables") {
   const Two x(0.4, 0);
   const Two y(1.3, 1);
   const Two f = x * x * sin(y);
-  CHECK(f.bend(0, 0) == Approx(2 * std::sin(1.3)));
-  CHECK(f.bend(0, 1) == Approx(2 * 0.4 * std::cos(1.3)));
-  CHECK(f.bend(1, 0) == f.bend(0, 1));
-  CHECK(f.bend(1, 1) == Approx(-0.16 * std::sin(1.3)));
+  CHECK(f.second_derivative(0, 0) == Approx(2 * std::sin(1.3)));
+  CHECK(f.second_derivative(0, 1) == Approx(2 * 0.4 * std::cos(1.3)));
+  CHECK(f.second_derivative(1, 0) == f.second_derivative(0, 1));
+  CHECK(f.second_derivative(1, 1) == Approx(-0.16 * std::sin(1.3)));
 }
 
 namespace {
@@ -89,16 +89,16 @@ MatrixXd differenced(const sepcal::BlockModel& model, const sepcal::Block& block
     model.evaluate(block, x.data(), sepcal::values_of(xi1), nullptr, rows);
     return rows.middleCols(n_1, n_2).colwise().sum();
   };
-  MatrixXd bends(n_2, n_2);
+  MatrixXd hessian(n_2, n_2);
   for (Index k = 0; k < n_2; ++k) {
     constexpr double h = 1e-5;
     VectorXd above = xi2;
     VectorXd below = xi2;
     above[k] += h;
     below[k] -= h;
-    bends.col(k) = (slope(above) - slope(below)) / (2 * h);
+    hessian.col(k) = (slope(above) - slope(below)) / (2 * h);
   }
-  return bends;
+  return hessian;
 }
 
 void check_second_derivatives(const sepcal::BlockModel& model, const sepcal::Record& record,

@@ -30,7 +30,7 @@ class NestedDual {
   /// The derivative by variable k.
   double slope(int k) const { return jet_.a.v[k]; }
   /// The second derivative by variables i and k.
-  double bend(int i, int k) const { return jet_.v[i].v[k]; }
+  double second_derivative(int i, int k) const { return jet_.v[i].v[k]; }
 
   NestedDual& operator+=(const NestedDual& y) { return *this = *this + y; }
   NestedDual& operator-=(const NestedDual& y) { return *this = *this - y; }

@@ -73,7 +73,7 @@ class StaticModel final : public BlockModel {
   bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
                               Eigen::Ref<Eigen::MatrixXd> sum) const override {
     if constexpr (n_2 > 0 && has_nested_duals<M>()) {
-      add_bends(block, xi2, xi1, sum);
+      sum_second_derivatives(block, xi2, xi1, sum);
       return true;
     } else {
       return BlockModel::add_second_derivatives(block, xi2, xi1, sum);
@@ -124,8 +124,8 @@ class StaticModel final : public BlockModel {
     }
   }
 
-  void add_bends(const Block& block, const double* xi2, const double* xi1,
-                 Eigen::Ref<Eigen::MatrixXd> sum) const {
+  void sum_second_derivatives(const Block& block, const double* xi2, const double* xi1,
+                              Eigen::Ref<Eigen::MatrixXd> sum) const {
     using Dual = NestedDual<n_2>;
     Vec<Dual, n_2> x;
     for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[i], i);
@@ -135,7 +135,7 @@ class StaticModel final : public BlockModel {
         Dual z = b[j];
         for (int k = 0; k < n_1; ++k) z += xi1[k] * A(j, k);
         for (int i = 0; i < n_2; ++i) {
-          for (int k = 0; k < n_2; ++k) sum(i, k) += z.bend(i, k);
+          for (int k = 0; k < n_2; ++k) sum(i, k) += z.second_derivative(i, k);
         }
       }
     }
