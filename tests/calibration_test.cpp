@@ -67,6 +67,7 @@ TEST_CASE("so it does with every option set") {
   options.fit.fixed = {{"w_n", -3.8}, {"eps_phi", 0.05}};
   options.fit.bounds = {{"b_va", {0.0, infinity}}, {"w_e", {-infinity, 30.0}}, {"b_beta", {-1, 1}}};
   options.fit.noise = {{"vn", 0.1}, {"ve", 0.15}, {"vd", 0.2}};
+  options.fit.prior = {{"lambda_va", {0.1, 0.2}}, {"b_alpha", {0.01, 0.02}}};
   options.fit.sampling_distribution = {{"b_alpha", {-0.01, 0.05}}};
   options.fit.stage_one_segments = "popu,multisine_1";
   options.fit.stage_two_segments = "wind_circle_1,popu,10:110.5";
@@ -90,6 +91,9 @@ TEST_CASE("so it does with every option set") {
   CHECK(again.options.fit.bounds.at("b_va").upper == infinity);
   CHECK(again.options.fit.bounds.at("w_e").lower == -infinity);
   CHECK(again.options.fit.noise == options.fit.noise);
+  CHECK(again.options.fit.prior.at("lambda_va").mean == 0.1);
+  CHECK(again.options.fit.prior.at("lambda_va").standard_deviation == 0.2);
+  CHECK(again.options.fit.prior.at("b_alpha").mean == 0.01);
   CHECK(again.options.fit.seed == options.fit.seed);
   CHECK(again.fit["w_n"].fixed);
   CHECK(!again.fit["w_e"].fixed);
@@ -162,15 +166,65 @@ TEST_CASE("a calibration of another app or schema is refused") {
   CHECK_NOTHROW(parse_calibration(text, "mag.json", "sepcal-mag"));
   check_refused([&] { parse_calibration(text, "mag.json", "sepcal-pitot"); },
                 {"mag.json", "magnetometer", "use sepcal-mag"});
-  const std::string key = "\"schema_version\": 1";
-  for (const char* version : {"0", "2", "\"1\"", "null"}) {
+  const std::string key = "\"schema_version\": 2";
+  for (const char* version : {"0", "3", "-1", "2.5", "\"2\"", "null"}) {
     const std::string other = replaced(text, key, std::string("\"schema_version\": ") + version);
     check_refused([&] { parse_calibration(other, "mag.json"); },
-                  {"mag.json", version, "reads version 1", "fit the flight again"});
+                  {"mag.json", version, "reads versions 1 and 2", "fit the flight again"});
   }
   const std::string unknown =
       replaced(text, "\"model\": \"magnetometer\"", "\"model\": \"venturi\"");
   check_refused([&] { parse_calibration(unknown, "mag.json"); }, {"mag.json", "'venturi'"});
+}
+
+TEST_CASE("a later schema asks for a later sepcal") {
+  const std::string later =
+      replaced(to_json(calibrate_magnetometer()), "\"schema_version\": 2", "\"schema_version\": 3");
+  check_refused([&] { parse_calibration(later, "mag.json"); },
+                {"mag.json", "version 3", "update sepcal or fit the flight again"});
+}
+
+TEST_CASE("version 1 is read: its priors drew samples, and its knowledge was the prior") {
+  CalibrationOptions options = quick_options();
+  options.fit.prior = {{"lambda_va", {0.1, 0.2}}, {"b_alpha", {0.01, 0.02}}};
+  options.fit.sampling_distribution = {{"b_alpha", {-0.01, 0.05}}};
+  const std::string now = to_json(calibrate_five_hole(options));
+  // Only these words differ, and where they stand.
+  std::string before = replaced(now, "\"schema_version\": 2", "\"schema_version\": 1");
+  before = replaced(before, "\"prior\": {", "\"knowledge\": {");
+  before = replaced(before, "\"sampling_distribution\": {", "\"priors\": {");
+  const Calibration read = parse_calibration(before, "base.json");
+  CHECK(read.options.fit.prior.size() == 2);
+  CHECK(read.options.fit.prior.at("b_alpha").mean == 0.01);
+  CHECK(read.options.fit.prior.at("b_alpha").standard_deviation == 0.02);
+  CHECK(read.options.fit.sampling_distribution.size() == 1);
+  CHECK(read.options.fit.sampling_distribution.at("b_alpha").mean == -0.01);
+  CHECK(read.options.fit.sampling_distribution.at("b_alpha").standard_deviation == 0.05);
+  CHECK(to_json(read) == now);
+
+  for (const char* key : {"priors", "knowledge"}) {
+    CAPTURE(key);
+    Json damaged = Json::parse(before);
+    damaged["options"].erase(key);
+    check_refused([&] { parse_calibration(damaged.dump(), "base.json"); },
+                  {"base.json is damaged", "fit the flight again"});
+  }
+}
+
+TEST_CASE("the first files of version 1 lack what was not to be chosen yet") {
+  Json first = Json::parse(to_json(calibrate_five_hole()));
+  first["schema_version"] = 1;
+  first["options"]["priors"] = Json::object();
+  for (const char* key :
+       {"sampling_distribution", "prior", "search", "jacobian", "loss", "loss_width"}) {
+    first["options"].erase(key);
+  }
+  const Calibration read = parse_calibration(first.dump(), "base.json");
+  CHECK(read.options.fit.prior.empty());
+  CHECK(read.options.fit.search == sepcal::Search::sampling);
+  CHECK(read.options.fit.jacobian == sepcal::ProjectedJacobian::kaufman);
+  CHECK(read.options.fit.loss == sepcal::Loss::squares);
+  CHECK(read.options.fit.loss_width == 0.0);
 }
 
 TEST_CASE("what is no calibration is refused") {

@@ -13,13 +13,15 @@ def assert_calibration_refused(bench: Bench, *words: str) -> None:
     assert read_folder(bench.folder) == before
 
 
-@pytest.mark.parametrize("version", ["0", "2", '"1"', "null"])
+@pytest.mark.parametrize("version", ["0", "3", '"1"', "null"])
 def test_another_schema_version(bench: Bench, version: str):
     text = (bench.folder / "base.json").read_text()
-    other = text.replace('"schema_version": 1', f'"schema_version": {version}')
+    other = text.replace('"schema_version": 2', f'"schema_version": {version}')
     assert other != text
     (bench.folder / "other.json").write_text(other)
-    assert_calibration_refused(bench, f"schema version {version}", "version 1", "fit the flight")
+    assert_calibration_refused(
+        bench, f"schema version {version}", "versions 1 and 2", "fit the flight"
+    )
 
 
 def test_the_other_apps_calibration(prepared: dict[str, Bench], bench: Bench):

@@ -59,8 +59,6 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     assert set(options) == set(sepcal.FitOptions.__annotations__)
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
     stored["fixed"] = stored.pop("fix")
-    stored["prior"] = stored.pop("knowledge")
-    stored["sampling_distribution"] = stored.pop("priors")
     stored["effects"] = [effect["name"] for effect in stored["effects"]]
     options["samples"] = 0  # with a start nothing is sampled
     for name, value in options.items():

@@ -28,7 +28,7 @@ def test_every_key(bench: Bench):
     result = bench.base
     model = bench.model
     assert list(result) == KEYS
-    assert result["schema_version"] == 1
+    assert result["schema_version"] == 2
     assert result["model"] == {"sepcal-pitot": "five-hole", "sepcal-mag": "magnetometer"}[bench.app]
     rows = len(bench.read_log().rows)
     assert result["inputs"] == {
@@ -118,11 +118,11 @@ def test_defaults_are_carried(bench: Bench):
     probe = {"k_alpha": 4.5, "k_beta": 4.5, "lever_arm": [0.35, 0, -0.02]}
     assert options == (probe if bench.app == "sepcal-pitot" else {}) | {
         "effects": [], "stage_one": "", "stage_two": "", "bounds": {}, "start": {}, "fix": {},
-        "free": [], "noise": {}, "samples": 500, "sampling": "uniform", "priors": {}, "seed": 0,
-        "descents": 8, "second_stage": "auto", "noise_tolerance": 1e-10, "noise_iterations": 100,
-        "knowledge": {}, "search": "sampling", "jacobian": "kaufman", "loss": "squares",
-        "loss_width": 0.0, "iterations": 200, "coloured_errors": True,
-        "threads": 0, "drop_invalid": False,
+        "free": [], "noise": {}, "samples": 500, "sampling": "uniform",
+        "sampling_distribution": {}, "seed": 0, "descents": 8, "second_stage": "auto",
+        "noise_tolerance": 1e-10, "noise_iterations": 100, "prior": {}, "search": "sampling",
+        "jacobian": "kaufman", "loss": "squares", "loss_width": 0.0, "iterations": 200,
+        "coloured_errors": True, "threads": 0, "drop_invalid": False,
     }  # fmt: skip
 
 
@@ -143,7 +143,7 @@ def test_options_are_carried(pitot: Bench):
         "bounds": {"eps_phi": [-0.2, 0.15], "w_n": [-9, 9]}, "fix": {"w_d": 0.3}, "free": ["w_e"],
         "samples": 60, "sampling": "low_discrepancy", "seed": 7, "second_stage": "joint",
         "noise": {"vd": 0.2, "ve": 0.15, "vn": 0.15}, "noise_tolerance": 0.05, "threads": 1,
-        "knowledge": {"b_va": [0.1, 2]}, "loss": "huber", "loss_width": 1.5,
+        "prior": {"b_va": [0.1, 2]}, "loss": "huber", "loss_width": 1.5,
         "jacobian": "golub_pereyra",
     } == fitted.result["options"]  # fmt: skip
     assert fitted.result["noise"] == {"vn": 0.15, "ve": 0.15, "vd": 0.2}

@@ -74,15 +74,16 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
 /// The values of the probe's own parameters, in the order of its tables.
 Eigen::VectorXd own_values(const Calibration& calibration);
 
-inline constexpr int schema_version = 1;
+/// Of every JSON object that is written, whatever it is of.
+inline constexpr int schema_version = 2;
 
 /// The JSON of interface.md's "Results": one object, two-space indented, numbers that read back as
 /// the same doubles, null where a number is undefined.
 std::string to_json(const Calibration& calibration);
 
-/// Reads what to_json() wrote; to_json() of the result is the same text. `source` opens the
-/// messages. Throws Error for text that is not such an object, another schema version, or a model
-/// of another app than `app` ("sepcal-pitot"; empty: any).
+/// Reads what to_json() wrote, of which to_json() is the same text, and what it wrote as version 1.
+/// `source` opens the messages. Throws Error for text that is not such an object, any other schema
+/// version, or a model of another app than `app` ("sepcal-pitot"; empty: any).
 Calibration parse_calibration(std::string_view json, const std::string& source,
                               std::string_view app = {});
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "flight/files/text_file.hpp"
 #include "flight/json/findings_json.hpp"
 #include "flight/json/options_json.hpp"
 #include "flight/json/output_values.hpp"
+#include "flight/json/version_1.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/calibration.hpp"
 
@@ -185,17 +187,30 @@ Calibration read(const Json& root) {
   return calibration;
 }
 
-Calibration read_or_refuse(const Json& root, const std::string& source) {
+Calibration read_or_refuse(Json& root, const std::string& source) {
   const auto refuse = [&](std::string_view damage) -> Error {
     return Error(fmt::format("{} is damaged: {}; fit the flight again", source, damage));
   };
   try {
+    if (root["schema_version"] == 1) convert_version_1(root.at("options"));
     return read(root);
   } catch (const Json::exception&) {
     throw refuse("a calibration's entries are missing or of another kind");
   } catch (const Error& error) {
     throw refuse(error.what());
   }
+}
+
+/// Throws Error for a version that is neither the present one nor one that is converted.
+void check_version(const Json& version, const std::string& source) {
+  static_assert(schema_version == 2);
+  if (version == 1 || version == 2) return;
+  const bool is_later =
+      version.is_number_unsigned() && version.get<std::uint64_t>() > schema_version;
+  throw Error(
+      fmt::format("{} has schema version {}, this sepcal reads versions 1 and 2; {}fit the "
+                  "flight again",
+                  source, describe(version), is_later ? "update sepcal or " : ""));
 }
 
 }  // namespace
@@ -231,17 +246,13 @@ std::string to_json(const Calibration& calibration) {
 
 Calibration parse_calibration(std::string_view json, const std::string& source,
                               std::string_view app) {
-  const Json root = Json::parse(json, nullptr, false);
+  Json root = Json::parse(json, nullptr, false);
   if (root.is_discarded() || !root.is_object() || !root.contains("schema_version") ||
       !root.contains("model") || !root["model"].is_string()) {
     throw Error(fmt::format("{} is not a calibration; give the JSON that fit wrote with -o{}",
                             source, json.empty() ? " (it is empty)" : ""));
   }
-  if (root["schema_version"] != schema_version) {
-    throw Error(
-        fmt::format("{} has schema version {}, this sepcal reads version {}; fit the flight again",
-                    source, describe(root["schema_version"]), schema_version));
-  }
+  check_version(root["schema_version"], source);
   Calibration calibration = read_or_refuse(root, source);
   if (!app.empty() && calibration.probe->app() != app) {
     throw Error(fmt::format("{}: its model is '{}'; use {} for it", source,

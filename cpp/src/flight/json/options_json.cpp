@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/json/options_json.hpp"
 
-#include <algorithm>
-#include <array>
 #include <map>
 #include <vector>
 
@@ -45,19 +43,6 @@ Screens read_screens(const Json& object) {
           .t_2 = number_or(object.at("t_2"), infinity),
           .l_2 = object.at("l_2").get<double>(),
           .convex = object.at("convex").get<bool>()};
-}
-
-/// What the options of earlier versions lack, all of it; that keeps its defaults.
-void read_later_options(const Json& options, FitOptions& fit) {
-  constexpr std::array later{"knowledge", "search", "jacobian", "loss", "loss_width"};
-  const auto is_there = [&](const char* name) { return options.contains(name); };
-  if (std::ranges::none_of(later, is_there)) return;
-  fit.prior = read_normals(options.at("knowledge"));
-  read_choice(options, "search", fit.search);
-  if (options.contains("screens")) fit.screens = read_screens(options.at("screens"));
-  read_choice(options, "jacobian", fit.jacobian);
-  read_choice(options, "loss", fit.loss);
-  fit.loss_width = options.at("loss_width").get<double>();
 }
 
 Json write_effect(const EffectSetting& setting) {
@@ -107,11 +92,11 @@ Json write_options(const Calibration& calibration) {
   options["fix"] = fit.fixed;
   options["free"] = calibration.options.free;
   options["noise"] = fit.noise;
-  options["knowledge"] = write_normals(fit.prior);
+  options["prior"] = write_normals(fit.prior);
   options["search"] = to_string(fit.search);
   options["samples"] = fit.samples;
   options["sampling"] = to_string(fit.sampling);
-  options["priors"] = write_normals(fit.sampling_distribution);
+  options["sampling_distribution"] = write_normals(fit.sampling_distribution);
   if (fit.screens) options["screens"] = write_screens(*fit.screens);
   options["seed"] = fit.seed;
   options["descents"] = fit.descents;
@@ -143,18 +128,23 @@ CalibrationOptions read_options(const Json& options) {
   fit.fixed = options.at("fix").get<std::map<std::string, double>>();
   result.free = options.at("free").get<std::vector<std::string>>();
   fit.noise = options.at("noise").get<std::map<std::string, double>>();
+  fit.prior = read_normals(options.at("prior"));
+  read_choice(options, "search", fit.search);
   fit.samples = whole_number<int>(options.at("samples"));
   read_choice(options, "sampling", fit.sampling);
-  fit.sampling_distribution = read_normals(options.at("priors"));
+  fit.sampling_distribution = read_normals(options.at("sampling_distribution"));
+  if (options.contains("screens")) fit.screens = read_screens(options.at("screens"));
   fit.seed = whole_number<std::uint64_t>(options.at("seed"));
   fit.descents = whole_number<int>(options.at("descents"));
   read_choice(options, "second_stage", fit.second_stage);
+  read_choice(options, "jacobian", fit.jacobian);
+  read_choice(options, "loss", fit.loss);
+  fit.loss_width = options.at("loss_width").get<double>();
   fit.noise_tolerance = options.at("noise_tolerance").get<double>();
   fit.noise_iterations = whole_number<int>(options.at("noise_iterations"));
   fit.iterations = whole_number<int>(options.at("iterations"));
   fit.coloured_errors = options.at("coloured_errors").get<bool>();
   fit.threads = whole_number<int>(options.at("threads"));
-  read_later_options(options, fit);
   result.drop_invalid = options.at("drop_invalid").get<bool>();
   return result;
 }

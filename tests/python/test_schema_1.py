@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calibrations of schema version 1 are read, and mean what they meant: tests/schema_1 has them.
+
+Their flights are simulated anew. Texts are those of the release that wrote them, but for the words
+that have changed since, and numbers are its to 1e-9 standard errors.
+"""
+
+import hashlib
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from numpy.testing import assert_allclose
+
+import sepcal
+from apps import parse_json, run
+from schema_1.recorder import CASES, DRAWN, HERE, ask, simulate
+
+NEW_WORDS = {" known ": " prior ", "far from what is known of it": "far from its prior"}
+
+
+def run_in(folder: Path):
+    """A verb in `folder`, whose standard output comes back."""
+
+    def run_here(app: str, *arguments: str) -> str:
+        outcome = run(app, *arguments, folder=folder)
+        assert outcome.code == 0, outcome.err
+        return outcome.out
+
+    return run_here
+
+
+@pytest.fixture(params=list(CASES))
+def name(request: pytest.FixtureRequest) -> str:
+    """Each case in turn."""
+    return request.param
+
+
+@pytest.fixture
+def before(name: str) -> dict[str, Any]:
+    """The calibration as it was written, with its key names of then."""
+    return parse_json((HERE / f"{name}.json").read_text())
+
+
+@pytest.fixture
+def folder(name: str, before: dict[str, Any], tmp_path: Path) -> Path:
+    """The calibration, base.json, beside its flight."""
+    simulate(CASES[name], run_in(tmp_path))
+    digest = hashlib.sha256((tmp_path / "flight.csv").read_bytes()).hexdigest()
+    assert digest == before["inputs"]["sha256"]  # else the simulator has changed
+    shutil.copy(HERE / f"{name}.json", tmp_path / "base.json")
+    return tmp_path
+
+
+def test_every_verb_gives_what_it_gave(name: str, folder: Path) -> None:
+    recorded = parse_json((HERE / "recorded.json").read_text())[name]
+    now = ask(CASES[name], run_in(folder), folder)
+    for verb in ("compare", "apply"):
+        assert now["texts"][verb] == recorded["texts"][verb]
+    added = recorded["texts"]["add"]
+    for old, new in NEW_WORDS.items():
+        added = added.replace(old, new)
+    assert now["texts"]["add"] == added
+
+    assert_allclose(list(now["rmse"].values()), list(recorded["rmse"].values()), rtol=1e-12)
+    assert now["corrected"].keys() == recorded["corrected"].keys()
+    for column, values in recorded["corrected"].items():
+        assert_allclose(now["corrected"][column], values, rtol=1e-12)
+    assert now["added"].keys() == recorded["added"].keys()
+    for parameter, (value, standard_error) in recorded["added"].items():
+        got, got_error = now["added"][parameter]
+        assert abs(got - value) <= 1e-9 * (standard_error or 0.0)
+        assert got_error == pytest.approx(standard_error, rel=1e-9)  # or None, as it was
+
+
+def test_options_go_on_in_their_new_words(name: str, before: dict[str, Any], folder: Path) -> None:
+    """What was knowledge is the prior, and what was priors is what samples are drawn from."""
+    run_in(folder)(
+        CASES[name].app, "add", "flight.csv", "base.json", CASES[name].effect, "-o", "next.json"
+    )
+    now = parse_json((folder / "next.json").read_text())
+    assert now["schema_version"] == 2
+    assert now["options"]["prior"] == before["options"]["knowledge"]
+    assert now["options"]["sampling_distribution"] == before["options"]["priors"]
+    assert not {"knowledge", "priors"} & now["options"].keys()
+
+
+def test_python_reads_both_kinds_of_normals() -> None:
+    """Both filled, with other numbers for one parameter: neither stands for the other."""
+    options = sepcal.load(HERE / "drawn_samples.json").to_dict()["options"]
+    as_lists = json.loads(json.dumps(DRAWN))
+    assert options["prior"] == as_lists["knowledge"]
+    assert options["sampling_distribution"] == as_lists["priors"]
+    assert options["prior"]["eps_phi"] != options["sampling_distribution"]["eps_phi"]
