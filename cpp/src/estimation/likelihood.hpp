@@ -57,7 +57,7 @@ class Likelihood {
   double rows() const { return static_cast<double>(sweep_.measurements().rows()); }
   DescentOptions descent(double first_radius) const;
 
-  /// What is known, and what holds open combinations for a while.
+  /// The fit's, and what holds open combinations for a while.
   std::vector<Prior> priors(const StageTwo& at) const;
   /// One factor of all outputs, with the prior.
   TriangularFactor whiten(const StageTwo& at) const;
