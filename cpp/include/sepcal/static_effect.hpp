@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sepcal/effect.hpp"
 #include "sepcal/named_effects.hpp"
@@ -76,8 +77,11 @@ template <InputCorrection T>
 class StaticCorrection final : public Correction {
  public:
   explicit StaticCorrection(T effect)
-      : Correction({T::inputs.begin(), T::inputs.end()}, T::corrected,
-                   {T::nonlinear.begin(), T::nonlinear.end()}),
+      : StaticCorrection(std::move(effect), {T::nonlinear.begin(), T::nonlinear.end()}) {}
+
+  /// With names for T's parameters that are known only at run time.
+  StaticCorrection(T effect, std::vector<Variable> nonlinear)
+      : Correction({T::inputs.begin(), T::inputs.end()}, T::corrected, std::move(nonlinear)),
         effect_(std::move(effect)) {}
 
   void evaluate(const Block& block, const double* xi2, Eigen::Ref<Eigen::MatrixXd> values,
@@ -129,11 +133,18 @@ Effect effect(std::string name, T made) {
   return result;
 }
 
+/// Makes an effect, called as its setting, of a term or an input correction written as a struct.
+template <class T>
+EffectKit::Maker maker_of(T made) {
+  return [made](const BlockModel& /*model*/, EffectSetting& setting, Record& /*record*/) {
+    return effect(setting.name, made);
+  };
+}
+
 /// A term or an input correction written as a struct, by its name among a kit's or the caller's.
 template <class T>
 OwnEffects::value_type own_effect(const std::string& name, T made) {
-  return {name, [name, made](const BlockModel& /*model*/, EffectSetting& /*setting*/,
-                             Record& /*record*/) { return effect(name, made); }};
+  return {name, maker_of(std::move(made))};
 }
 
 }  // namespace sepcal

@@ -68,20 +68,6 @@ struct LeverArm {
   }
 };
 
-/// The logged temperature, from which the density comes, is s [K] below the true one: v by the
-/// factor 1 + s / 2T. Its second input is 1 / 2T.
-struct DensityError {
-  static constexpr int corrected = 1;
-  static constexpr std::array inputs{Quantity{"rho", "kg/m^3"}, Quantity{"1 / 2T", "1/K"}};
-  static constexpr std::array nonlinear{Quantity{"density_error.s", "K", -50.0, 50.0}};
-
-  template <class T>
-  Vec<T, 1> correct(const Vec<T, 2>& u, const Vec<T, 1>& xi2) const {
-    const T factor = 1.0 + xi2[0] * u[1];
-    return Vec<T, 1>(u[0] / (factor * factor));
-  }
-};
-
 /// The probe, its arm with it, is turned against the vehicle by small angles about body y and z:
 /// C_b^n R_z(yaw) R_y(pitch) stands for C_b^n. b_alpha and b_beta absorb it.
 struct MountingError {

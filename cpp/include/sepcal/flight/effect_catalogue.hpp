@@ -4,15 +4,16 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace sepcal {
 
 struct CataloguedEffect {
-  std::string_view name;      // as `port[driver]`, or a name of its own
-  std::string_view equation;  // what joins the model
-  std::string_view drivers;   // the columns it needs
-  std::string_view unit;      // of its coefficient, per unit of the driver where it has one
+  std::string name;      // as `port[driver]`, or a name of its own
+  std::string equation;  // what joins the model
+  std::string drivers;   // the columns it needs
+  std::string unit;      // of its coefficient, per unit of the driver where it has one
 };
 
 /// The catalogue of a model by its Probe::name(); empty for another name.

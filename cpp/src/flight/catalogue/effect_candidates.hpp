@@ -3,24 +3,23 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "flight/catalogue/effect_table.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal::catalogue {
 
-/// Every effect of the kit and every port with every channel of the record that the flight logs
-/// under its own header, with time and with the state functions; smooth and curved ones where
-/// physics is seldom straight.
-std::vector<std::string> list_candidates(const EffectKit& kit, const Record& record,
-                                         const Flight& flight);
+/// Every effect of the kit and every port of the table with every channel of the record that the
+/// flight logs under its own header, with time and with the state functions; smooth and curved ones
+/// where physics is seldom straight.
+std::vector<std::string> list_candidates(const EffectTable& table, const EffectKit& kit,
+                                         const Record& record, const Flight& flight);
 
 /// Channels of effects that the flight doesn't log: "throttle".
-std::vector<std::string> list_missing_channels(std::string_view probe, const Flight& flight);
+std::vector<std::string> list_missing_channels(const EffectTable& table, const Flight& flight);
 
 /// What an effect means, in plain words without its size: "the wind changes with altitude_m".
-std::string describe_effect(const std::string& name);
+std::string describe_effect(const EffectTable& table, const std::string& name);
 
 }  // namespace sepcal::catalogue

@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <set>
 #include <utility>
 
-#include "flight/catalogue/effect_makers.hpp"
 #include "flight/files/units.hpp"
 #include "sepcal/error.hpp"
 
@@ -104,54 +101,57 @@ bool add_channel(Record& record, const Flight& flight, const Probe& probe,
 }
 
 /// What an effect reads beside the readings themselves.
-std::vector<std::string> channels_of(const EffectName& name) {
-  static const std::map<std::string, std::vector<std::string>> own{
-      {"upwash", {"q", "rho"}},
-      {"sidewash", {"p", "rho"}},
-      {"density_error", {"temperature"}},
-      {"compressibility", {"ps", "rho"}},
-      {"bias_step", {"time"}},
-      {"warm_up", {"time"}},
-      {"icing_ramp", {"time"}},
-      {"water_blockage", {"time"}},
-      {"time_offset", {"time"}},
-      {"pneumatic_lag", {"time"}},
-      {"sensor_lag", {"time"}},
-      {"eddy_currents", {"time"}}};
-  const auto found = own.find(name.text);
+std::vector<std::string> channels_of(const EffectTable& table, const EffectName& name) {
+  if (const EffectRow* own = table.find_effect(name.text)) return own->channels;
   std::vector<std::string> channels;
-  if (found != own.end()) channels = found->second;
   if (!name.base.empty()) channels.push_back(name.base == "maneuver" ? "time" : name.base);
   if (name.shape == EffectName::Shape::delay) channels.emplace_back("time");
-  if (name.port == "pressure_offset") channels.emplace_back("rho");
+  if (const PortRow* row = table.find_port(name.port)) {
+    channels.insert(channels.end(), row->channels.begin(), row->channels.end());
+  }
   return channels;
+}
+
+/// Adds what makes the effect better known, where all of it is logged, and its names to `channels`.
+void add_better(Record& record, const Flight& flight, const Probe& probe, const EffectRow& effect,
+                std::vector<std::string>& channels) {
+  Record better;
+  for (const std::string& channel : effect.better_with) {
+    if (!add_channel(better, flight, probe, channel)) return;
+  }
+  const auto logged = [&](const std::string& channel) { return is_logged(better, channel); };
+  if (std::ranges::none_of(effect.better_with, logged)) return;
+  for (const std::string& channel : effect.better_with) {
+    add_channel(record, flight, probe, channel);
+    channels.push_back(channel);
+  }
 }
 
 }  // namespace
 
-bool acts_on_the_world(const EffectName& name) {
-  static const std::set<std::string> world{"wind",           "heading_bias",      "lever_arm",
-                                           "mounting_error", "field_declination", "attitude_bias"};
-  return world.contains(name.port);
+bool is_logged(const Record& record, const std::string& name) {
+  if (!record.has(name)) return false;
+  if (name != "p" && name != "q" && name != "r") return true;
+  return std::ranges::any_of(record.column(name), [](double rate) { return rate != 0.0; });
+}
+
+bool acts_on_the_world(const EffectTable& table, const EffectName& name) {
+  if (const EffectRow* own = table.find_effect(name.text)) return own->acts_on == ActsOn::world;
+  const PortRow* row = table.find_port(name.port);
+  return row != nullptr && row->acts_on == ActsOn::world;
 }
 
 std::vector<std::string> add_channels(Record& record, const Flight& flight, const Probe& probe,
                                       const EffectName& effect) {
-  std::vector<std::string> channels = channels_of(effect);
+  const EffectTable& table = effect_table(probe.name());
+  std::vector<std::string> channels = channels_of(table, effect);
   for (const std::string& channel : channels) {
     if (add_channel(record, flight, probe, channel)) continue;
     throw Error(fmt::format("{}: the calibration's effect {} needs {}, which is not logged; {}",
                             flight.name(), effect.text, channel, flight.list_columns()));
   }
-  if (effect.text != "eddy_currents") return channels;
-  Record rates;  // a turning field is best known where all three are logged
-  for (const char* rate : {"p", "q", "r"}) {
-    if (!add_channel(rates, flight, probe, rate)) return channels;
-  }
-  if (!is_logged(rates, "p") && !is_logged(rates, "q") && !is_logged(rates, "r")) return channels;
-  for (const char* rate : {"p", "q", "r"}) {
-    add_channel(record, flight, probe, rate);
-    channels.emplace_back(rate);
+  if (const EffectRow* own = table.find_effect(effect.text)) {
+    add_better(record, flight, probe, *own, channels);
   }
   return channels;
 }

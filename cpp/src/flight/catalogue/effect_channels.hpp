@@ -5,14 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/effect_name.hpp"
+#include "flight/catalogue/effect_table.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
 
 namespace sepcal::catalogue {
 
+/// Whether the record has a column that means something: body rates that are zero throughout stand
+/// for rates that aren't logged.
+bool is_logged(const Record& record, const std::string& name);
+
 /// Effects on the world, which a reading is not corrected for.
-bool acts_on_the_world(const EffectName& name);
+bool acts_on_the_world(const EffectTable& table, const EffectName& name);
 
 /// Adds the channels that an effect needs to a record of the flight's rows, each under its name in
 /// a fit's record, and returns their names. Throws Error naming the effect and the channel where

@@ -6,23 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight/catalogue/air_data_effects.hpp"
-#include "flight/catalogue/magnetic_effects.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
 
-using namespace catalogue;  // this room's own
-
 namespace {
-
-EffectKit catalogued(std::string_view probe) {
-  if (probe == "five-hole") return five_hole_effects();
-  if (probe == "pitot-static") return pitot_static_effects();
-  if (probe == "magnetometer") return magnetometer_effects();
-  if (probe == "magnetometer-norm") return attitude_independent_effects();
-  throw Error(fmt::format("there is no model '{}'", probe));
-}
 
 /// Throws Error for a driver that the log has and the record does not, as a cell is no number.
 void check_driver(const EffectSetting& setting, const Flight& flight, const Record& record) {
@@ -39,12 +27,6 @@ void check_driver(const EffectSetting& setting, const Flight& flight, const Reco
 }
 
 }  // namespace
-
-EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
-  EffectKit kit = catalogued(probe);
-  for (const auto& [name, maker] : own) kit.own[name] = maker;
-  return kit;
-}
 
 std::shared_ptr<const BlockModel> model_of(const Probe& probe) {
   return {std::shared_ptr<const BlockModel>(), &probe.model()};

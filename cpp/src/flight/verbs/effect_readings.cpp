@@ -197,11 +197,12 @@ std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration
   if (calibration.options.effects.empty()) {
     return probe.correct(readings, own_values(calibration), {});
   }
+  const catalogue::EffectTable& table = catalogue::effect_table(probe.name());
   std::vector<EffectSetting> settings;
   std::set<std::string> needed;
   for (const EffectSetting& setting : calibration.options.effects) {
     const EffectName name = parse_effect_name(setting.name);
-    if (catalogue::acts_on_the_world(name)) continue;
+    if (catalogue::acts_on_the_world(table, name)) continue;
     settings.push_back(setting);
     if (calibration.options.own_effects.contains(setting.name)) {
       catalogue::add_all_channels(readings.record, flight);

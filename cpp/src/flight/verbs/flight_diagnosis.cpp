@@ -36,8 +36,10 @@ OwnEffects all_own(const Calibration& calibration, const OwnEffects& own) {
 }
 
 /// Those of the catalogue that the calibration doesn't have yet.
-std::vector<std::string> candidates_for(const DiagnosedFit& fitted, const Flight& flight) {
-  std::vector<std::string> names = catalogue::list_candidates(fitted.kit, fitted.record, flight);
+std::vector<std::string> candidates_for(const catalogue::EffectTable& table,
+                                        const DiagnosedFit& fitted, const Flight& flight) {
+  std::vector<std::string> names =
+      catalogue::list_candidates(table, fitted.kit, fitted.record, flight);
   std::erase_if(names, [&](const std::string& name) {
     return std::ranges::find(fitted.effects, name, &EffectSetting::name) != fitted.effects.end();
   });
@@ -83,21 +85,22 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
                     const OwnEffects& own, const DiagnosisOptions& options) {
   const Flight& flight = prepared.flight;
   const DiagnosedFit fitted = diagnosed_fit(calibration, prepared.readings.record, own);
+  const catalogue::EffectTable& table = catalogue::effect_table(calibration.probe->name());
   FlightDiagnosis result;
   result.model = calibration.probe->name();
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
   result.notes = prepared.readings.notes;
   note_other_flight(calibration, flight, result.notes);
-  result.diagnosis = diagnose(fitted, candidates_for(fitted, flight), options);
+  result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight), options);
   prefer_catalogued(result.model, result.diagnosis.effects);
   for (const EffectFinding& effect : result.diagnosis.effects) {
-    result.sentences.push_back(catalogue::describe_effect(effect.name));
+    result.sentences.push_back(catalogue::describe_effect(table, effect.name));
   }
   std::size_t used = 0;
   for (const Segment& segment : fitted.rows) used += segment.rows();
   result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
-  result.missing_channels = catalogue::list_missing_channels(result.model, flight);
+  result.missing_channels = catalogue::list_missing_channels(table, flight);
   result.where = find_where(fitted);
   return result;
 }

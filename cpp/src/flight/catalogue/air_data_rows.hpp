@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the five-hole probe's table and the pitot-static tube's have in common.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flight/catalogue/effect_table.hpp"
+
+namespace sepcal::catalogue {
+
+/// A port with the one component s, which is added to the input of that name.
+Port on_input(const std::string& name, const std::string& unit, double plausible);
+
+PortRow wind_row(const std::vector<Port::Component>& components, double plausible);
+PortRow airspeed_scale_row(const Port& port, const std::vector<Form>& forms);
+PortRow airspeed_bias_row(const Port& port, const std::vector<Form>& forms);
+PortRow pressure_offset_row(const std::vector<Form>& forms);
+
+EffectRow icing_ramp_row(const std::string& equation, const Port& airspeed_scale);
+EffectRow water_blockage_row(const std::string& equation, const Port& airspeed_scale);
+
+std::vector<AliasRow> air_data_aliases(const std::string& drivers_of_propwash);
+
+std::vector<Channel> air_data_channels();
+
+/// The half of 1 / T [1/K] of the logged temperature, by which an error of the temperature changes
+/// the airspeed.
+DriverPointer derive_half_coldness(Record& record);
+
+}  // namespace sepcal::catalogue

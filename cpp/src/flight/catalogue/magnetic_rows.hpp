@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the magnetometers' tables, with attitude and without, have in common.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "flight/catalogue/effect_table.hpp"
+
+namespace sepcal::catalogue {
+
+inline constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+
+/// `forms` beside the one for any driver.
+PortRow bias_row(const Port& bias, std::vector<Form> forms = {});
+PortRow scale_row(const Port& scale, const std::string& equation);
+PortRow axis_scale_row(const Port& axis_scale, const std::string& equation);
+
+EffectRow bias_step_row(const Port& bias);
+EffectRow warm_up_row(const Port& bias);
+
+std::vector<AliasRow> magnetic_aliases();
+
+std::vector<Channel> magnetic_channels();
+
+}  // namespace sepcal::catalogue

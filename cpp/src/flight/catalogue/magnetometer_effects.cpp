@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The effects on a magnetometer with attitude. x is a driver about its centre, s a coefficient, h
+// the true field in body axes.
+#include <array>
+#include <utility>
+
+#include "flight/catalogue/effect_channels.hpp"
+#include "flight/catalogue/effect_makers.hpp"
+#include "flight/catalogue/magnetic_rows.hpp"
+#include "numerics/interpolated_column.hpp"
+#include "sepcal/effects/magnetic.hpp"
+#include "sepcal/static_effect.hpp"
+
+namespace sepcal::catalogue {
+namespace {
+
+constexpr double longest_offset = 0.5;  // [s]
+constexpr double longest_lag = 0.2;     // [s]
+
+constexpr std::array<const char*, 3> field{"hx", "hy", "hz"};
+constexpr std::array<const char*, 3> field_rate{"hx_dot", "hy_dot", "hz_dot"};
+
+/// dh/dt in body axes: -w x h where the rates are logged, else from the field itself. Nothing where
+/// there is no field: who corrects a reading finds both.
+void derive_field_rate(Record& record) {
+  if (record.has(field_rate[0]) || !record.has(field[0])) return;
+  std::array<std::vector<double>, 3> rate;
+  for (std::vector<double>& column : rate) column.assign(record.length(), 0.0);
+  const auto logged = [&](const char* rate_name) { return is_logged(record, rate_name); };
+  if (record.has("r") && (logged("p") || logged("q") || logged("r"))) {
+    const std::array w{record.column("p"), record.column("q"), record.column("r")};
+    const std::array h{record.column("hx"), record.column("hy"), record.column("hz")};
+    for (std::size_t row = 0; row < record.length(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const std::size_t k = (i + 2) % 3;
+        rate[i][row] = w[k][row] * h[j][row] - w[j][row] * h[k][row];
+      }
+    }
+  } else {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const numerics::InterpolatedColumn column(record, field[i]);
+      for (const Segment& segment : record.segments()) {
+        std::vector<NaturalSpline::Value> values(segment.rows());
+        column.fill(segment.first, 0.0, values);
+        for (std::size_t n = 0; n < values.size(); ++n) {
+          rate[i][segment.first + n] = values[n].slope;
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) record.add(field_rate[i], std::move(rate[i]));
+}
+
+Effect eddy_currents(const BlockModel& /*model*/, EffectSetting& setting, Record& record) {
+  derive_field_rate(record);
+  return effect(setting.name, effects::EddyCurrents{});
+}
+
+}  // namespace
+
+EffectTable magnetometer_effects() {
+  Port bias{"bias", "uT", {}};
+  Port scale{"scale", "1", {{.name = "s"}}};
+  Port axis_scale{"axis_scale", "1", {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Varying::Share share{static_cast<int>(i), {field[i], "uT"}};
+    bias.components.push_back({.name = axes[i], .linear = std::string("n_") + axes[i]});
+    scale.components.front().shares.push_back(share);
+    axis_scale.components.push_back({.name = axes[i], .shares = {share}});
+  }
+  EffectTable table;
+  table.ports = {
+      bias_row(bias, {{"current_a", "field of a current: m + s I (x, y, z)", "current_a"},
+                      {"throttle^n", "m + s T^n (x, y, z), n fitted", "throttle"},
+                      {"delay(current_a)", "m + s I(t - tau) (x, y, z), tau fitted", "current_a"},
+                      {"temp_degc", "m + s dT (x, y, z)", "temp_degc"},
+                      {"temp_degc^2", "m + s dT^2 (x, y, z)", "temp_degc"},
+                      {"time", "drift: m + s (t - t0) (x, y, z)", "time"}}),
+      scale_row(scale, "m + s x h"), axis_scale_row(axis_scale, "m_i + s_i x h_i (x, y, z)")};
+  table.effects = {
+      bias_step_row(bias),
+      warm_up_row(bias),
+      {.entry = {"cubic_nonlinearity", "m_i + d_i h_i^3 + c_i h_i^2", "none", "1/uT^2, 1/uT"},
+       .sentence = "the sensor's response is curved",
+       .maker = maker_of(effects::CubicNonlinearity{})},
+      {.entry = {"eddy_currents", "m + E dh/dt, E 3 x 3", "p, q, r or attitude", "s"},
+       .sentence = "eddy currents follow the turning field",
+       .channels = {"time"},
+       .maker = eddy_currents,
+       .better_with = {"p", "q", "r"}},
+      {.entry = {"time_offset", "magnetometer late by tau", "attitude", "s"},
+       .sentence = "the sensor's time is late",
+       .channels = {"time"},
+       .maker = in_time(Delay::Kind::outputs_late, longest_offset)},
+      {.entry = {"sensor_lag", "tau dm/dt + m = m0", "attitude", "s"},
+       .sentence = "the sensor lags",
+       .channels = {"time"},
+       .maker = in_time(Delay::Kind::outputs_lagging, longest_lag)},
+      {.entry = {"field_declination", "h turned by delta about down", "attitude", "rad"},
+       .sentence = "the field's declination is off",
+       .channels = {"roll", "pitch"},
+       .acts_on = ActsOn::world,
+       .maker = maker_of(effects::FieldDeclination{})},
+      {.entry = {"attitude_bias", "h + h x (x, y, 0): a misalignment absorbs it", "none", "rad"},
+       .sentence = "the logged roll or pitch is off by a constant",
+       .acts_on = ActsOn::world,
+       .maker = maker_of(effects::AttitudeBias{})}};
+  table.aliases = magnetic_aliases();
+  table.channels = magnetic_channels();
+  return table;
+}
+
+}  // namespace sepcal::catalogue

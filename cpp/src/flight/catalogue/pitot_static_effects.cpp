@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The effects on a pitot-static tube, where they act before its own scale and bias. x is a driver
+// about its centre, s a coefficient, V the true airspeed and V_met the one that the tube meets.
+#include "flight/catalogue/air_data_rows.hpp"
+#include "flight/catalogue/effect_makers.hpp"
+
+namespace sepcal::catalogue {
+namespace {
+
+constexpr double largest_wind = 200.0;  // [m/s]
+constexpr double largest_scale = 0.5;   // [1]
+constexpr double largest_speed = 50.0;  // [m/s] of a bias
+constexpr double longest_offset = 0.5;  // [s]
+constexpr double longest_lag = 0.2;     // [s]
+
+EffectKit::Maker temperature_error(const Port& airspeed_scale) {
+  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
+    return make_driven(setting.name, airspeed_scale, derive_half_coldness(record), "K", model,
+                       record);
+  };
+}
+
+}  // namespace
+
+EffectTable pitot_static_effects() {
+  const Port airspeed_scale = on_input("airspeed_scale", "1", largest_scale);
+  const Port airspeed_bias = on_input("airspeed_bias", "m/s", largest_speed);
+  EffectTable table;
+  table.ports = {wind_row({{.name = "n", .input = "vn", .sign = -1.0},
+                           {.name = "e", .input = "ve", .sign = -1.0}},
+                          largest_wind),
+                 airspeed_scale_row(airspeed_scale, {{any_driver, "V = V_met + s x V_met"}}),
+                 airspeed_bias_row(airspeed_bias, {{any_driver, "V = V_met + s x"}}),
+                 pressure_offset_row({{any_driver, "rho V^2 / 2 = rho V_met^2 / 2 + s x",
+                                       "any DRIVER, and density"}})};
+  table.effects = {
+      {.entry = {"time_offset", "airspeed late by tau", "none", "s"},
+       .sentence = "the sensor's time is late",
+       .channels = {"time"},
+       .maker = in_time(Delay::Kind::outputs_late, longest_offset)},
+      {.entry = {"pneumatic_lag", "tau dz/dt + z = z0", "none", "s"},
+       .sentence = "the pressures lag in their tubes",
+       .channels = {"time"},
+       .maker = in_time(Delay::Kind::outputs_lagging, longest_lag)},
+      {.entry = {"density_error", "V = V_met + s V_met / 2T: the temperature is off by s", "temp_k",
+                 "K"},
+       .sentence = "the temperature behind the density is off",
+       .channels = {"temperature"},
+       .maker = temperature_error(airspeed_scale)},
+      icing_ramp_row("V = V_met + s (t - t0)+ V_met, t0 fitted", airspeed_scale),
+      water_blockage_row("V = V_met + s V_met from t0 on, t0 by a scan", airspeed_scale)};
+  table.aliases = air_data_aliases("throttle, density");
+  table.channels = air_data_channels();
+  return table;
+}
+
+}  // namespace sepcal::catalogue
