@@ -2,7 +2,7 @@
 """The rooms of the C++ sources: who may include whom, and how large they are.
 
 Usage: rooms.py check [FOLDER]   every include against FOLDER/rooms.toml (cpp); 1 where one is wrong
-       rooms.py count [FOLDER]   files, lines and includes of every room
+       rooms.py count [FOLDER]   files, lines and includes of every room; the longest functions
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+FUNCTION = re.compile(
+    r"^(  )?(?!namespace|class|struct|enum|union|using|if|for|while|switch)[\w~:].*\("
+)
 UMBRELLA = "sepcal"  # includes every public header, in reading order
 
 
@@ -112,11 +115,34 @@ def count(house: House) -> str:
     return "\n".join([head, *rows, total])
 
 
+def functions(file: Path) -> Iterator[tuple[int, str]]:
+    """The functions of a formatted source: how many lines each has, and its first line."""
+    lines = file.read_text().splitlines()
+    for indent in ("", "  "):  # of a file, and of a class
+        first = None
+        for at, line in enumerate(lines):
+            if first is None and FUNCTION.match(line) and not line.startswith(indent + " "):
+                first = at
+            elif first is not None and line == f"{indent}}}":
+                yield at - first + 1, lines[first].strip()
+                first = None
+            if first is not None and line.endswith(";") and not line.startswith(indent + " "):
+                first = None  # a declaration
+
+
+def longest_functions(house: House, most: int = 5) -> str:
+    """A list in Markdown."""
+    found = [(*entry, file) for file, _ in house.files() for entry in functions(file)]
+    found.sort(key=lambda entry: -entry[0])
+    return "\n".join(f"- {length} lines, {file}: `{line}`" for length, line, file in found[:most])
+
+
 def main(verb: str, folder: Path) -> int:
     """Prints what the verb asks for."""
     house = read_house(folder)
     if verb == "count":
         print(count(house))
+        print(f"\nThe longest functions:\n\n{longest_functions(house)}")
         return 0
     faults = find_faults(house)
     print("\n".join(faults), end="\n" if faults else "")

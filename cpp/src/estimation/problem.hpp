@@ -14,9 +14,7 @@
 
 namespace sepcal::estimation {
 
-/// Throws Error for a name in bounds, sampling distribution, fixed or noise that the model doesn't
-/// have, an interval that is empty, a fixed value outside its bounds, noise that is not positive or
-/// is not given for every output, screens without a positive threshold.
+/// Throws Error as check_options() does.
 class Problem {
  public:
   Problem(const BlockModel& model, const FitOptions& options);
