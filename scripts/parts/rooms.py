@@ -97,8 +97,8 @@ def count(house: House) -> str:
     files: Counter[str] = Counter()
     lines: Counter[str] = Counter()
     crossing: Counter[str] = Counter()
-    for file, room in house.files():
-        name = room or "-"
+    for file, found in house.files():
+        name = found or "-"
         files[name] += 1
         lines[name] += len(file.read_text().splitlines())
         rooms = [house.room_of(include) for include in includes(file)]
