@@ -79,16 +79,16 @@ def find_faults(house: House) -> list[str]:
     for name, room in house.of_public.items():
         if not (house.folder / "include/sepcal" / f"{name}.hpp").is_file():
             faults.append(f"rooms.toml: {room}'s public header sepcal/{name}.hpp is not there")
-    for file, room in house.files():
-        if room is None:
+    for file, found in house.files():
+        if found is None:
             faults.append(f"{file}: it has no room in rooms.toml")
             continue
         for include in includes(file):
             target = house.room_of(include)
             if target is None:
                 faults.append(f'{file}: "{include}" is in no room of rooms.toml')
-            elif target not in house.reach[room]:
-                faults.append(f'{file}: {room} may not include {target} ("{include}")')
+            elif target not in house.reach[found]:
+                faults.append(f'{file}: {found} may not include {target} ("{include}")')
     return faults
 
 
@@ -102,7 +102,7 @@ def count(house: House) -> str:
         files[name] += 1
         lines[name] += len(file.read_text().splitlines())
         rooms = [house.room_of(include) for include in includes(file)]
-        crossing[name] += sum(target != room for target in rooms)
+        crossing[name] += sum(target != found for target in rooms)
     public = Counter(house.of_public.values())
     rows = [
         f"| {room} | {files[room]} | {lines[room]} | {crossing[room]} | {public[room]} |"
