@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <initializer_list>
 #include <optional>
 
-#include "diagnosis_table.hpp"
 #include "flight/files/text_file.hpp"
-#include "interval_table.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
@@ -19,7 +17,6 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/output_file.hpp"
-#include "tables.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -34,6 +31,39 @@ void print(const std::string& text) {
 void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
 }
+
+FitProgress shown_on(ProgressLine& line) {
+  return [&line](std::string_view task, double fraction) { line.show(task, fraction); };
+}
+
+/// The way of a result: to -o's file, which is opened before the work, so that one that can't be
+/// written is refused at once; then to standard output.
+class Delivery {
+ public:
+  /// Throws Error where -o names one of `inputs` or can't be written.
+  Delivery(const Arguments& arguments, std::initializer_list<std::string> inputs)
+      : arguments_(arguments) {
+    if (arguments.output.empty()) return;
+    for (const std::string& input : inputs) check_not_input(arguments.output, input);
+    file_.emplace(arguments.output);
+  }
+
+  template <class Result>
+  void deliver(const Result& result) {
+    print_notes(result.notes);
+    const std::string json = to_json(result);
+    if (file_) {
+      file_->write(json);
+      file_->commit();
+    }
+    print(arguments_.json ? json : to_text(result));
+    if (file_ && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  }
+
+ private:
+  const Arguments& arguments_;
+  std::optional<OutputFile> file_;
+};
 
 int exit_code(FitStatus status) {
   switch (status) {
@@ -72,69 +102,38 @@ Calibration Verbs::read_base() const {
 }
 
 int Verbs::fit(CalibrationOptions options) const {
-  std::optional<OutputFile> output;
-  if (!arguments_.output.empty()) {
-    check_not_input(arguments_.output, arguments_.flight);
-    output.emplace(arguments_.output);
-  }
+  Delivery delivery(arguments_, {arguments_.flight});
   const Flight flight = read_flight();
   ProgressLine line;
-  options.fit.progress = [&](std::string_view task, double fraction) { line.show(task, fraction); };
+  options.fit.progress = shown_on(line);
   const Calibration calibration = calibrate(instrument_.probe(flight), flight, options);
   line.clear();
-  print_notes(calibration.notes);
-  const std::string json = to_json(calibration);
-  if (output) {
-    output->write(json);
-    output->commit();
-  }
-  print(arguments_.json ? json : calibration_table(calibration));
-  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  delivery.deliver(calibration);
   return exit_code(calibration.fit.status);
 }
 
 int Verbs::compare() const {
+  Delivery delivery(arguments_, {});
   const Calibration calibration = read_base();
-  const Comparison comparison = sepcal::compare(calibration, read_flight());
-  print_notes(comparison.notes);
-  print(arguments_.json ? to_json(comparison) : comparison_table(comparison, calibration));
+  delivery.deliver(sepcal::compare(calibration, read_flight()));
   return 0;
 }
 
 int Verbs::intervals() const {
-  std::optional<OutputFile> output;
-  if (!arguments_.output.empty()) {
-    check_not_input(arguments_.output, arguments_.flight);
-    check_not_input(arguments_.output, arguments_.calibration);
-    output.emplace(arguments_.output);
-  }
+  Delivery delivery(arguments_, {arguments_.flight, arguments_.calibration});
   const Calibration base = read_base();
   const Flight flight = read_flight();
   ProgressLine line;
   const FlightIntervals intervals = find_intervals(
       base, flight,
-      {.level = arguments_.level,
-       .names = arguments_.parameters,
-       .progress = [&](std::string_view task, double fraction) { line.show(task, fraction); }});
+      {.level = arguments_.level, .names = arguments_.parameters, .progress = shown_on(line)});
   line.clear();
-  print_notes(intervals.notes);
-  const std::string json = to_json(intervals);
-  if (output) {
-    output->write(json);
-    output->commit();
-  }
-  print(arguments_.json ? json : interval_table(intervals));
-  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  delivery.deliver(intervals);
   return exit_code(intervals.status);
 }
 
 int Verbs::diagnose() const {
-  std::optional<OutputFile> output;
-  if (!arguments_.output.empty()) {
-    check_not_input(arguments_.output, arguments_.flight);
-    check_not_input(arguments_.output, arguments_.calibration);
-    output.emplace(arguments_.output);
-  }
+  Delivery delivery(arguments_, {arguments_.flight, arguments_.calibration});
   std::optional<SizedEffect> injected;
   if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
   const Calibration base = read_base();
@@ -142,43 +141,22 @@ int Verbs::diagnose() const {
   ProgressLine line;
   DiagnosisOptions options;
   options.threads = base.options.fit.threads;
-  options.progress = [&](std::string_view task, double fraction) { line.show(task, fraction); };
+  options.progress = shown_on(line);
   const FlightDiagnosis diagnosis = injected ? diagnose_with(*injected, base, flight, {}, options)
                                              : sepcal::diagnose(base, flight, {}, options);
   line.clear();
-  print_notes(diagnosis.notes);
-  const std::string json = to_json(diagnosis);
-  if (output) {
-    output->write(json);
-    output->commit();
-  }
-  print(arguments_.json ? json
-                        : diagnosis_table(diagnosis, instrument_.app(), arguments_.calibration));
-  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  delivery.deliver(diagnosis);
   return exit_code(diagnosis.diagnosis.verdict);
 }
 
 int Verbs::add() const {
-  std::optional<OutputFile> output;
-  if (!arguments_.output.empty()) {
-    check_not_input(arguments_.output, arguments_.flight);
-    output.emplace(arguments_.output);
-  }
+  Delivery delivery(arguments_, {arguments_.flight});
   const Calibration base = read_base();
   const Flight flight = read_flight();
   ProgressLine line;
-  const Calibration next =
-      sepcal::add(base, flight, arguments_.effect, {},
-                  [&](std::string_view task, double fraction) { line.show(task, fraction); });
+  const Calibration next = sepcal::add(base, flight, arguments_.effect, {}, shown_on(line));
   line.clear();
-  print_notes(next.notes);
-  const std::string json = to_json(next);
-  if (output) {
-    output->write(json);
-    output->commit();
-  }
-  print(arguments_.json ? json : calibration_table(next) + history_table(next));
-  if (output && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
+  delivery.deliver(next);
   return exit_code(next.fit.status);
 }
 
@@ -191,8 +169,7 @@ int Verbs::apply() const {
                     [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
   line.clear();
   print_notes(applied.notes);
-  print(arguments_.json ? applied_json(applied, calibration, arguments_.output)
-                        : applied_text(applied, calibration, arguments_.output));
+  print(arguments_.json ? to_json(applied, calibration) : to_text(applied, calibration));
   return 0;
 }
 
@@ -229,10 +206,10 @@ int Verbs::simulate(SimulationOrder order) const {
 
 int Verbs::effects() const {
   if (arguments_.json) {
-    print(effects_json(instrument_.models()));
+    print(catalogue_json(instrument_.models()));
     return 0;
   }
-  for (const std::string& model : instrument_.models()) print(effects_table(model));
+  for (const std::string& model : instrument_.models()) print(catalogue_text(model));
   return 0;
 }
 

@@ -60,6 +60,7 @@ struct Calibration {
   std::vector<Derived> derived;  // in the probe's order
   std::vector<HistoryEntry> history;
   std::vector<std::string> notes;  // one line each, for people; not part of the JSON
+  std::string file = {};           // that it was read from; empty: it was just fitted
 };
 
 /// Fits `probe` to `flight`. Throws Error for bad input (prepare_five_hole() and its like), fewer
@@ -80,6 +81,13 @@ inline constexpr int schema_version = 2;
 /// The JSON of interface.md's "Results": one object, two-space indented, numbers that read back as
 /// the same doubles, null where a number is undefined.
 std::string to_json(const Calibration& calibration);
+
+/// The page that the apps print: status, parameters, errors, what the stages did, and the chain of
+/// added effects, each with the error before and after.
+std::string to_text(const Calibration& calibration);
+
+/// The same of a fit without a flight, as far as it goes.
+std::string to_text(const Fit& fit, const CalibrationOptions& options);
 
 /// Reads what to_json() wrote, of which to_json() is the same text, and what it wrote as version 1.
 /// `source` opens the messages. Throws Error for text that is not such an object, any other schema

@@ -50,6 +50,7 @@ struct Comparison {
   FittedFlight flight;  // the flight compared with, not the one fitted
   FitStatus status;     // of the calibration, repeated
   std::string message;
+  std::vector<std::string> at_bound;  // parameters of the calibration that a bound stopped
   std::vector<Misfit> overall;  // one an output
   std::vector<Misfit> where;    // maneuver by maneuver, outputs within; in the flight's order
   std::vector<ChannelMisfit> channels;  // by share_smooth, largest first
@@ -69,5 +70,12 @@ Comparison compare(const Calibration& calibration, const Flight& flight);
 /// share_smooth, slope, slope_error, unit}], windows [{first_s, last_s, rows, rmse {output}, mean
 /// {output}}].
 std::string to_json(const Comparison& comparison);
+
+/// The page that the apps print: the error by maneuver, whether it is noise, the channels that
+/// explain most of it, the worst windows.
+std::string to_text(const Comparison& comparison);
+
+/// In words whether the residuals are noise: "white, as noise alone would be".
+std::string verdict_on_noise(const Misfit& misfit);
 
 }  // namespace sepcal

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sepcal {
 
@@ -18,5 +19,11 @@ struct CataloguedEffect {
 
 /// The catalogue of a model by its Probe::name(); empty for another name.
 std::span<const CataloguedEffect> effect_catalogue(std::string_view model);
+
+/// The catalogue of a model as the table that the apps print.
+std::string catalogue_text(std::string_view model);
+
+/// The catalogues of several models as one JSON object.
+std::string catalogue_json(const std::vector<std::string>& models);
 
 }  // namespace sepcal

@@ -26,6 +26,8 @@ struct Injection {
 
 struct FlightDiagnosis {
   std::string model;
+  std::string app;          // that adds what is missing: "sepcal-pitot"
+  std::string calibration;  // its file; empty where it has none yet
   FittedFlight flight;                          // the flight diagnosed, not the one fitted
   FitStatus status = FitStatus::not_converged;  // of the calibration, repeated
   std::string message;
@@ -54,5 +56,8 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis);
 
 /// The JSON object of interface.md's `diagnose`.
 std::string to_json(const FlightDiagnosis& diagnosis);
+
+/// The page that the apps print: the verdict, the ranked effects, and what to do next.
+std::string to_text(const FlightDiagnosis& diagnosis);
 
 }  // namespace sepcal

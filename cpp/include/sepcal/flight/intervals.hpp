@@ -36,6 +36,12 @@ std::string to_json(const FlightIntervals& intervals);
 /// Only schema_version, level and parameters: of a fit without a flight.
 std::string to_json(const std::vector<ProfileInterval>& parameters, double level);
 
+/// The page that the apps print: both intervals of every parameter, and what ends them.
+std::string to_text(const FlightIntervals& intervals);
+
+/// The same of a fit without a flight: the table alone.
+std::string to_text(const std::vector<ProfileInterval>& parameters, double level);
+
 struct FlightPrediction {
   std::vector<double> time;  // [s] of every row predicted
   Prediction prediction;

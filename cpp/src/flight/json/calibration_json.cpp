@@ -264,7 +264,9 @@ Calibration parse_calibration(std::string_view json, const std::string& source,
 Calibration read_calibration(const std::string& file, std::string_view app) {
   const std::string text =
       files::read_text_file(file, "as a calibration; give the JSON that fit wrote with -o");
-  return parse_calibration(text, file, app);
+  Calibration calibration = parse_calibration(text, file, app);
+  calibration.file = file;
+  return calibration;
 }
 
 }  // namespace sepcal

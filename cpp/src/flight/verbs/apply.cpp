@@ -42,7 +42,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   const auto columns = correct_with_effects(calibration, flight, readings);
 
   Applied applied{
-      .rows = flight.rows(), .headers = probe.corrected_headers(), .notes = readings.notes};
+      .output = output, .rows = flight.rows(), .headers = probe.corrected_headers(), .notes = readings.notes};
   for (const std::string& header : applied.headers) {
     if (flight.find(header) == nullptr) continue;
     throw Error(fmt::format(

@@ -3,6 +3,7 @@
 
 #include "base/parts_of_record.hpp"
 #include "base/thread_pool.hpp"
+#include "flight/verbs/at_bound.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "flight/verbs/residual_channels.hpp"
@@ -27,6 +28,7 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
   result.flight = {flight.name(), flight.sha256(), flight.rows(), measurements.rows()};
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
+  result.at_bound = names_at_bound(calibration.fit);
   result.notes = effective.prepared.notes;
   note_other_flight(calibration, flight, result.notes);
   result.residuals = sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());

@@ -88,6 +88,8 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   const catalogue::EffectTable& table = catalogue::effect_table(calibration.probe->name());
   FlightDiagnosis result;
   result.model = calibration.probe->name();
+  result.app = calibration.probe->app();
+  result.calibration = calibration.file;
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
   result.notes = prepared.readings.notes;

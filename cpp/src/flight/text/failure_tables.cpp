@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "failure_tables.hpp"
+#include "flight/text/failure_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-namespace sepcal::app {
+namespace sepcal::text {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::string window_table(const Comparison& comparison) {
   return text;
 }
 
-}  // namespace sepcal::app
+}  // namespace sepcal::text

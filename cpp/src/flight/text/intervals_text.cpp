@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "interval_table.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
-namespace sepcal::app {
+#include "sepcal/flight/intervals.hpp"
+
+namespace sepcal {
 namespace {
 
 std::string end_of(double value) { return std::isnan(value) ? "-" : fmt::format("{:.6g}", value); }
@@ -37,26 +38,31 @@ std::string remark_on(const ProfileInterval& interval) {
 
 }  // namespace
 
-std::string interval_table(const FlightIntervals& intervals) {
-  std::string text = fmt::format("{}: {} of {} rows of {}\nstatus: {}{}{}\n\n", intervals.model,
-                                 intervals.flight.rows_used, intervals.flight.rows,
-                                 intervals.flight.file, to_string(intervals.status),
-                                 intervals.message.empty() ? "" : ": ", intervals.message);
+std::string to_text(const FlightIntervals& intervals) {
+  return fmt::format("{}: {} of {} rows of {}\nstatus: {}{}{}\n\n", intervals.model,
+                     intervals.flight.rows_used, intervals.flight.rows, intervals.flight.file,
+                     to_string(intervals.status), intervals.message.empty() ? "" : ": ",
+                     intervals.message) +
+         to_text(intervals.parameters, intervals.level);
+}
+
+std::string to_text(const std::vector<ProfileInterval>& parameters, double level) {
+  std::string text;
   std::size_t name = 14;
   std::size_t unit = 5;
-  for (const ProfileInterval& interval : intervals.parameters) {
+  for (const ProfileInterval& interval : parameters) {
     name = std::max(name, interval.name.size());
     unit = std::max(unit, interval.unit.size());
   }
   const auto trimmed = [](const std::string& row) {
     return row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
   };
-  const double percent = 100.0 * intervals.level;
+  const double percent = 100.0 * level;
   text += trimmed(fmt::format("{:<{}} {:>13} {:>27} {:>27}  unit", "parameter", name, "value",
                               fmt::format("{:g} % Gaussian", percent),
                               fmt::format("{:g} % profile", percent)));
   std::string messages;
-  for (const ProfileInterval& interval : intervals.parameters) {
+  for (const ProfileInterval& interval : parameters) {
     text += trimmed(fmt::format("{:<{}} {:>13} {:>13} {:>13} {:>13} {:>13}  {:<{}} {}",
                                 interval.name, name, end_of(interval.value),
                                 end_of(interval.gaussian.lower), end_of(interval.gaussian.upper),
@@ -69,4 +75,4 @@ std::string interval_table(const FlightIntervals& intervals) {
   return messages.empty() ? text : text + "\n" + messages;
 }
 
-}  // namespace sepcal::app
+}  // namespace sepcal

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis_table.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-namespace sepcal::app {
+#include "sepcal/flight/diagnosing.hpp"
+
+namespace sepcal {
 namespace {
 
 constexpr std::size_t most_shown = 12;
@@ -89,8 +89,7 @@ std::string effect_rows(const FlightDiagnosis& result) {
   return text;
 }
 
-std::string best_effect(const FlightDiagnosis& result, const std::string& app,
-                        const std::string& calibration) {
+std::string best_effect(const FlightDiagnosis& result) {
   const EffectFinding& best = result.diagnosis.effects.front();
   std::string text =
       fmt::format("\n{}: {}\n  {}\n", best.name, result.sentences.front(), estimates(best));
@@ -102,8 +101,9 @@ std::string best_effect(const FlightDiagnosis& result, const std::string& app,
     text += '\n';
   }
   if (result.injection) return text;  // there is nothing to add: it isn't in the log
-  return text + fmt::format("\nnext: {} add {} {} '{}' -o NEXT.json\n", app, result.flight.file,
-                            calibration, best.name);
+  return text +
+         fmt::format("\nnext: {} add {} {} '{}' -o NEXT.json\n", result.app, result.flight.file,
+                     result.calibration.empty() ? "BASE.json" : result.calibration, best.name);
 }
 
 std::string unexplained_rows(const Omnibus& omnibus) {
@@ -116,8 +116,7 @@ std::string unexplained_rows(const Omnibus& omnibus) {
 
 }  // namespace
 
-std::string diagnosis_table(const FlightDiagnosis& result, const std::string& app,
-                            const std::string& calibration) {
+std::string to_text(const FlightDiagnosis& result) {
   const Diagnosis& diagnosis = result.diagnosis;
   std::string text =
       fmt::format("{}: {} of {} rows of {}\n{}\n\n", result.model, result.flight.rows_used,
@@ -127,7 +126,7 @@ std::string diagnosis_table(const FlightDiagnosis& result, const std::string& ap
                         result.message);
   }
   text += effect_rows(result);
-  if (diagnosis.verdict == Verdict::effect_missing) text += best_effect(result, app, calibration);
+  if (diagnosis.verdict == Verdict::effect_missing) text += best_effect(result);
   if (diagnosis.verdict == Verdict::unexplained) text += unexplained_rows(diagnosis.omnibus);
   if (diagnosis.verdict != Verdict::effect_missing && !diagnosis.limits.empty()) {
     text += "\na slow change over the flight would have shown from:";
@@ -154,4 +153,4 @@ std::string diagnosis_table(const FlightDiagnosis& result, const std::string& ap
   return text;
 }
 
-}  // namespace sepcal::app
+}  // namespace sepcal

@@ -6,7 +6,7 @@
 
 #include "sepcal/flight/comparison.hpp"
 
-namespace sepcal::app {
+namespace sepcal::text {
 
 /// The three channels that explain most of each output's residual, or a line saying that none does.
 std::string channel_table(const Comparison& comparison);
@@ -14,4 +14,4 @@ std::string channel_table(const Comparison& comparison);
 /// The worst windows, each with the error and the mean of every output.
 std::string window_table(const Comparison& comparison);
 
-}  // namespace sepcal::app
+}  // namespace sepcal::text

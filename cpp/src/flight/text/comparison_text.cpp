@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/text/failure_tables.hpp"
+#include "flight/text/number_text.hpp"
+#include "flight/text/status_text.hpp"
+#include "sepcal/flight/comparison.hpp"
+
+namespace sepcal {
+
+using namespace text;  // this room's own
+
+namespace {
+
+/// A mean that is rounding beside the residuals themselves is written as zero.
+double shown_mean(const Misfit& misfit) {
+  constexpr double rounding = 1e-9;
+  return std::abs(misfit.mean) < rounding * misfit.rmse ? 0.0 : misfit.mean;
+}
+
+}  // namespace
+
+std::string verdict_on_noise(const Misfit& misfit) {
+  if (std::isnan(misfit.lag_one)) return "too few rows to tell";
+  // Two standard errors of white noise's lag-one correlation about zero: one verdict in twenty on
+  // noise alone is wrong.
+  const double limit = 2.0 / std::sqrt(static_cast<double>(misfit.rows));
+  if (std::abs(misfit.lag_one) <= limit) return "white, as noise alone would be";
+  return fmt::format("not white: neighbouring residuals {} ({:.3f}, noise alone within {:.2g})",
+                     misfit.lag_one > 0 ? "correlate" : "alternate", misfit.lag_one, limit);
+}
+
+std::string to_text(const Comparison& comparison) {
+  std::string text =
+      fmt::format("{}: {} of {} rows of {}\n", comparison.model, comparison.flight.rows_used,
+                  comparison.flight.rows, comparison.flight.file);
+  text += status_line(comparison.status, comparison.at_bound, comparison.message);
+  std::size_t width = 8;
+  for (const Misfit& misfit : comparison.where) width = std::max(width, misfit.segment.size());
+  text += fmt::format("\n{:<{}}  {:<8} {:>8} {:>12} {:>12} {:>8}\n", "segment", width, "output",
+                      "rows", "rmse", "mean", "lag one");
+  const auto row = [&](const std::string& name, const Misfit& misfit) {
+    text += fmt::format("{:<{}}  {:<8} {:>8} {:>12.4g} {:>12.4g} {:>8}\n", name, width,
+                        misfit.output, misfit.rows, misfit.rmse, shown_mean(misfit),
+                        defined(misfit.lag_one, "{:.3f}"));
+  };
+  for (const Misfit& misfit : comparison.where) row(misfit.segment, misfit);
+  for (const Misfit& misfit : comparison.overall) row("all", misfit);
+  text += '\n';
+  for (const Misfit& misfit : comparison.overall) {
+    text += fmt::format("{}: {}\n", misfit.output, verdict_on_noise(misfit));
+  }
+  text += fmt::format("\n{}\n{}", channel_table(comparison), window_table(comparison));
+  text += "\nrmse and mean of measured - modelled, in";
+  for (const Misfit& misfit : comparison.overall) {
+    text += fmt::format(" {} [{}]", misfit.output, misfit.unit);
+  }
+  return text +
+         "; lag one: correlation of neighbouring residuals,\nnear 0 for noise alone, near 1 where "
+         "something slow is missing from the model\n";
+}
+
+}  // namespace sepcal

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/text/fit_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/text/number_text.hpp"
+#include "flight/text/status_text.hpp"
+
+namespace sepcal {
+
+using namespace text;  // this room's own
+
+namespace {
+
+std::string bound(double value, const char* none) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : none;
+}
+
+std::string limits(const Parameter& parameter) {
+  if (parameter.fixed) return "fixed";
+  if (!std::isfinite(parameter.lower) && !std::isfinite(parameter.upper)) return "";
+  return fmt::format("[{}, {}]{}", bound(parameter.lower, "-inf"), bound(parameter.upper, "inf"),
+                     parameter.at_bound ? "  AT ITS BOUND" : "");
+}
+
+/// A step's time, which no derivative finds.
+bool is_scanned(const CalibrationOptions& options, const Parameter& parameter) {
+  return std::ranges::any_of(options.effects, [&](const EffectSetting& setting) {
+    return setting.t0 && parameter.name == setting.name + ".t0" &&
+           !options.fit.fixed.contains(parameter.name);
+  });
+}
+
+/// Bounds, and what was known beforehand.
+std::string remark(const CalibrationOptions& options, const Parameter& parameter) {
+  if (is_scanned(options, parameter)) return "by a scan";
+  std::string text = limits(parameter);
+  const auto& knowledge = options.fit.knowledge;
+  const auto known = knowledge.find(parameter.name);
+  if (known == knowledge.end()) return text;
+  if (!text.empty()) text += "  ";
+  return text + fmt::format("known {:.6g} +- {:.2g}", known->second.mean,
+                            known->second.standard_deviation);
+}
+
+std::string stage_line(const Fit& fit, const CalibrationOptions& options) {
+  const StageOne& one = fit.stage_one;
+  const std::string_view points =
+      options.fit.search == Search::global ? "points of a global search" : "samples";
+  std::string text =
+      options.fit.samples == 0 || !options.fit.start.empty()
+          ? "stage one: nothing sampled"
+          : fmt::format("stage one: {} {}, {} local minim{}", options.fit.samples, points,
+                        one.minima.size(), one.minima.size() == 1 ? "um" : "a");
+  for (const std::string& flat : one.flat_directions) text += ", flat along " + flat;
+  return text + fmt::format("; stage two: {}, {} iteration{}, R settled in {}\n",
+                            to_string(fit.method), fit.iterations, fit.iterations == 1 ? "" : "s",
+                            fit.noise_iterations);
+}
+
+}  // namespace
+
+std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
+                            const std::vector<Derived>& derived) {
+  std::string text = status_line(fit);
+  std::size_t name = 14;
+  std::size_t unit = 5;
+  for (const Parameter& parameter : fit.parameters) {
+    name = std::max(name, parameter.name.size());
+    unit = std::max(unit, parameter.unit.size());
+  }
+  const auto add_row = [&](std::string_view what, const std::string& value, std::string_view error,
+                           std::string_view white, std::string_view of, std::string_view remark) {
+    const std::string row = fmt::format("{:<{}} {:>13} {:>12} {:>9}  {:<{}} {}", what, name, value,
+                                        error, white, of, unit, remark);
+    text += row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
+  };
+  text += '\n';
+  add_row("parameter", "value", "std. error", "white", "unit", "bounds");
+  for (const Parameter& parameter : fit.parameters) {
+    add_row(parameter.name, fmt::format("{:.6g}", parameter.value),
+            defined(parameter.standard_error, "{:.2g}"),
+            defined(parameter.standard_error_white, "{:.2g}"), parameter.unit,
+            remark(options, parameter));
+  }
+  for (const Derived& quantity : derived) {
+    add_row(quantity.name, fmt::format("{:.6g}", quantity.value),
+            defined(quantity.standard_error, "{:.2g}"),
+            defined(quantity.standard_error_white, "{:.2g}"), quantity.unit, "derived");
+  }
+  text += fmt::format("\n{:<14} {:>13} {:>12}\n", "output", "rmse", "noise");
+  for (std::size_t j = 0; j < fit.rmse.size(); ++j) {
+    text += fmt::format("{:<14} {:>13.4g} {:>12.4g}\n", fit.rmse[j].name, fit.rmse[j].value,
+                        fit.noise[j].value);
+  }
+  return text + "\n" + stage_line(fit, options);
+}
+
+std::string to_text(const Fit& fit, const CalibrationOptions& options) {
+  return fmt::format("{} rows\n", fit.rows) + fit_table(fit, options, {});
+}
+
+}  // namespace sepcal
