@@ -123,6 +123,10 @@ int run(Instrument& instrument, int argc, char** argv) {
   const auto add_json = [&](CLI::App& verb) {
     verb.add_flag("--json", arguments.json, "prints the result as JSON on standard output");
   };
+  const auto add_explain = [&](CLI::App& verb) {
+    verb.add_flag("--explain", arguments.explain,
+                  "prints all that the fit says of its status, with reasons, not the worst alone");
+  };
   const auto add_drop_invalid = [&](CLI::App& verb) {
     verb.add_flag("--drop-invalid", arguments.drop_invalid,
                   "drops rows with a cell that is no number, whatever the calibration's fit did");
@@ -132,6 +136,7 @@ int run(Instrument& instrument, int argc, char** argv) {
     add_flight(verb);
     add_calibration(verb);
     add_drop_invalid(verb);
+    add_explain(verb);
     add_json(verb);
     return verb;
   };
@@ -142,16 +147,20 @@ int run(Instrument& instrument, int argc, char** argv) {
       ->type_name("BASE.json");
   instrument.add_probe_options(fit);
   fit_arguments.add_to(fit);
+  add_explain(fit);
   add_json(fit);
 
   CLI::App& compare = add_later_verb("compare", "shows where the model fails");
+  instrument.add_flight_options(compare);
   CLI::App& intervals =
       add_later_verb("intervals", "says how far each parameter may lie, by the likelihood");
   add_interval_options(intervals, arguments);
   CLI::App& diagnose = add_later_verb("diagnose", "names the physical effect that is missing");
   add_diagnose_options(diagnose, arguments);
+  instrument.add_flight_options(diagnose);
   CLI::App& add = add_later_verb("add", "adds a physical effect and fits again");
   add_adding_options(add, arguments);
+  instrument.add_flight_options(add);
   CLI::App& apply = add_later_verb("apply", "adds the calibrated readings to a log");
   add_applying_options(apply, arguments);
 

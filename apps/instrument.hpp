@@ -57,6 +57,14 @@ class Instrument {
   /// missing or makes no sense.
   virtual std::shared_ptr<const Probe> probe(const Flight& flight) const = 0;
 
+  /// Adds what another flight than the fitted one may need to a verb that takes a calibration.
+  virtual void add_flight_options(CLI::App& /*verb*/) {}
+
+  /// The calibration's probe with these options. Throws Error where they make no sense for it.
+  virtual std::shared_ptr<const Probe> probe_for_flight(std::shared_ptr<const Probe> fitted) const {
+    return fitted;
+  }
+
   /// Adds the probe's options to `simulate`; they fill members of the instrument.
   virtual void add_simulation_options(CLI::App& simulate) = 0;
 

@@ -17,8 +17,7 @@ class Magnetometer final : public Instrument {
   std::vector<std::string> models() const override { return {"magnetometer", "magnetometer-norm"}; }
 
   void add_probe_options(CLI::App& fit) override {
-    fit.add_option("--field", field_, "the Earth's field, north, east, down [uT]")
-        ->type_name("N,E,D");
+    add_field(fit);
     fit.add_option("--field-strength", strength_,
                    "its strength alone [uT]: no attitude is needed, and no rotation is seen")
         ->type_name("F");
@@ -34,8 +33,19 @@ class Magnetometer final : public Instrument {
       return attitude_independent_probe(parse_value("--field-strength", strength_));
     }
     if (field_.empty()) return magnetometer_probe(std::nullopt);
-    return magnetometer_probe(
-        parse_triple("--field", field_, "19.7,-1.4,49.4 (north, east, down in uT)"));
+    return magnetometer_probe(parse_field());
+  }
+
+  void add_flight_options(CLI::App& verb) override { add_field(verb); }
+
+  std::shared_ptr<const Probe> probe_for_flight(
+      std::shared_ptr<const Probe> fitted) const override {
+    if (field_.empty()) return fitted;
+    if (fitted->name() != "magnetometer") {
+      throw Error(
+          "--field is of no use to a calibration against the field's strength alone; leave it out");
+    }
+    return magnetometer_probe(parse_field());
   }
 
   void add_simulation_options(CLI::App& /*simulate*/) override {}
@@ -46,6 +56,15 @@ class Magnetometer final : public Instrument {
   }
 
  private:
+  void add_field(CLI::App& verb) {
+    verb.add_option("--field", field_, "the Earth's field, north, east, down [uT]")
+        ->type_name("N,E,D");
+  }
+
+  std::array<double, 3> parse_field() const {
+    return parse_triple("--field", field_, "19.7,-1.4,49.4 (north, east, down in uT)");
+  }
+
   std::string field_;
   std::string strength_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "flight/files/headers.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
@@ -77,10 +78,13 @@ class Pitot final : public Instrument {
 
   void refuse_five_hole_options(const Flight& flight) const {
     if (!k_alpha_ && !k_beta_ && lever_arm_.empty()) return;
+    std::vector<std::string> headers;
+    for (const Flight::Column& column : flight.columns()) headers.push_back(column.header);
     throw Error(fmt::format(
         "{}: {}, so this is a Pitot-static tube: --k-alpha, --k-beta and --lever-arm are for a "
-        "five-hole probe; leave them out, or log dpa_pa and dpb_pa ({})",
+        "five-hole probe; leave them out, or log dpa_pa and dpb_pa{} ({})",
         flight.name(), probe_.empty() ? "there is no column dpa_*" : "--probe is pitot-static",
+        probe_.empty() ? files::ask_for_near_miss("dpa", UnitKind::pressure, headers) : "",
         flight.list_columns()));
   }
 

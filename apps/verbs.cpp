@@ -36,6 +36,10 @@ FitProgress shown_on(ProgressLine& line) {
   return [&line](std::string_view task, double fraction) { line.show(task, fraction); };
 }
 
+Detail detail_of(const Arguments& arguments) {
+  return arguments.explain ? Detail::explained : Detail::brief;
+}
+
 /// The way of a result: to -o's file, which is opened before the work, so that one that can't be
 /// written is refused at once; then to standard output.
 class Delivery {
@@ -56,7 +60,7 @@ class Delivery {
       file_->write(json);
       file_->commit();
     }
-    print(arguments_.json ? json : to_text(result));
+    print(arguments_.json ? json : to_text(result, detail_of(arguments_)));
     if (file_ && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
   }
 
@@ -98,6 +102,7 @@ Flight Verbs::read_flight() const {
 Calibration Verbs::read_base() const {
   Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
   if (arguments_.drop_invalid) calibration.options.drop_invalid = true;
+  calibration.probe = instrument_.probe_for_flight(calibration.probe);
   return calibration;
 }
 
@@ -169,7 +174,8 @@ int Verbs::apply() const {
                     [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
   line.clear();
   print_notes(applied.notes);
-  print(arguments_.json ? to_json(applied, calibration) : to_text(applied, calibration));
+  print(arguments_.json ? to_json(applied, calibration)
+                        : to_text(applied, calibration, detail_of(arguments_)));
   return 0;
 }
 

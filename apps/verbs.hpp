@@ -20,6 +20,7 @@ struct Arguments {
   double level = 0.95;
   std::vector<std::string> parameters;
   bool json = false;
+  bool explain = false;       // the whole message of the fit
   bool drop_invalid = false;  // of a later verb: whatever the calibration says
 };
 
@@ -44,7 +45,7 @@ class Verbs {
   /// Reads FLIGHT with its progress shown.
   Flight read_flight() const;
 
-  /// Reads CALIBRATION; --drop-invalid overrides what it says.
+  /// Reads CALIBRATION; --drop-invalid and the probe's own options override what it says.
   Calibration read_base() const;
 
   const Instrument& instrument_;

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 using sepcal::files::accepted_headers;
+using sepcal::files::ask_for_near_miss;
 using sepcal::files::describe_missing;
 using sepcal::files::UnitKind;
 using Headers = std::vector<std::string>;
@@ -44,6 +45,18 @@ TEST_CASE("case, punctuation and a slip or two are seen through") {
   for (const char* header : {"roll_rate", "bank_rad", "rpm", "altitude_m", "_"}) {
     CHECK(miss_roll(header) == roll_missing);
   }
+}
+
+TEST_CASE("upper case, and units as people write them") {
+  const auto asked = [](const char* quantity, const std::string& header) {
+    return ask_for_near_miss(quantity, UnitKind::speed, Headers{"altitude_m", header});
+  };
+  CHECK(asked("vn", "VN_MPS") == "; did you mean 'VN_MPS'? Rename it to vn_mps");
+  CHECK(asked("airspeed", "airspeed (m/s)") ==
+        "; did you mean 'airspeed (m/s)'? Rename it to airspeed_mps");
+  CHECK(asked("airspeed", "Airspeed [kt]") ==
+        "; did you mean 'Airspeed [kt]'? Rename it to airspeed_kt");
+  CHECK(asked("airspeed", "windspeed").empty());
 }
 
 TEST_CASE("of several near ones the nearest is asked about") {

@@ -49,7 +49,9 @@ def assert_written_and_printed(bench: Bench, fitted: Outcome, code: int, status:
         assert (later.code, later.err) == (0, "")
         (line,) = [line for line in later.out.splitlines() if line.startswith("status: ")]
         assert line.startswith(f"status: {status}")
-        assert line.endswith(fitted.result["message"])
+        explained = bench.run(*verb, "--explain").out.splitlines()
+        for sentence in fitted.result["message"].split("; "):
+            assert f"  {sentence}" in explained
         assert bench.run(*verb, "--json").result["status"] == status
 
 

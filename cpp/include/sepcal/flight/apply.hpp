@@ -11,7 +11,7 @@ namespace sepcal {
 
 /// What was done, for people.
 struct Applied {
-  std::string output;                // the file that was written
+  std::string output;  // the file that was written
   std::size_t rows = 0;
   std::size_t rows_left_empty = 0;   // nothing to calibrate: total below static pressure, dropped
   std::vector<std::string> headers;  // the columns added
@@ -29,7 +29,8 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
                       const std::string& output, const Progress& progress = {});
 
 /// What was written, and the status of the calibration behind it; the JSON says the same.
-std::string to_text(const Applied& applied, const Calibration& calibration);
+std::string to_text(const Applied& applied, const Calibration& calibration,
+                    Detail detail = Detail::brief);
 std::string to_json(const Applied& applied, const Calibration& calibration);
 
 }  // namespace sepcal

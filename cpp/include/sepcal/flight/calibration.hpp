@@ -82,12 +82,19 @@ inline constexpr int schema_version = 2;
 /// the same doubles, null where a number is undefined.
 std::string to_json(const Calibration& calibration);
 
+/// What to_text() gives of a fit's message, a sentence a line, the worst first.
+enum class Detail {
+  brief,      // the three worst, each without its reasons where it would not fit a line
+  explained,  // all of it
+};
+
 /// The page that the apps print: status, parameters, errors, what the stages did, and the chain of
 /// added effects, each with the error before and after.
-std::string to_text(const Calibration& calibration);
+std::string to_text(const Calibration& calibration, Detail detail = Detail::brief);
 
 /// The same of a fit without a flight, as far as it goes.
-std::string to_text(const Fit& fit, const CalibrationOptions& options);
+std::string to_text(const Fit& fit, const CalibrationOptions& options,
+                    Detail detail = Detail::brief);
 
 /// Reads what to_json() wrote, of which to_json() is the same text, and what it wrote as version 1.
 /// `source` opens the messages. Throws Error for text that is not such an object, any other schema

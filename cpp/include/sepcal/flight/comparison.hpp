@@ -51,8 +51,8 @@ struct Comparison {
   FitStatus status;     // of the calibration, repeated
   std::string message;
   std::vector<std::string> at_bound;  // parameters of the calibration that a bound stopped
-  std::vector<Misfit> overall;  // one an output
-  std::vector<Misfit> where;    // maneuver by maneuver, outputs within; in the flight's order
+  std::vector<Misfit> overall;        // one an output
+  std::vector<Misfit> where;          // maneuver by maneuver, outputs within; in the flight's order
   std::vector<ChannelMisfit> channels;  // by share_smooth, largest first
   std::vector<Window> windows;          // the five worst in units of the fit's noise, worst first
   std::vector<std::string> notes;       // for people; not part of the JSON
@@ -73,7 +73,7 @@ std::string to_json(const Comparison& comparison);
 
 /// The page that the apps print: the error by maneuver, whether it is noise, the channels that
 /// explain most of it, the worst windows.
-std::string to_text(const Comparison& comparison);
+std::string to_text(const Comparison& comparison, Detail detail = Detail::brief);
 
 /// In words whether the residuals are noise: "white, as noise alone would be".
 std::string verdict_on_noise(const Misfit& misfit);

@@ -26,8 +26,8 @@ struct Injection {
 
 struct FlightDiagnosis {
   std::string model;
-  std::string app;          // that adds what is missing: "sepcal-pitot"
-  std::string calibration;  // its file; empty where it has none yet
+  std::string app;                              // that adds what is missing: "sepcal-pitot"
+  std::string calibration;                      // its file; empty where it has none yet
   FittedFlight flight;                          // the flight diagnosed, not the one fitted
   FitStatus status = FitStatus::not_converged;  // of the calibration, repeated
   std::string message;
@@ -58,6 +58,6 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis);
 std::string to_json(const FlightDiagnosis& diagnosis);
 
 /// The page that the apps print: the verdict, the ranked effects, and what to do next.
-std::string to_text(const FlightDiagnosis& diagnosis);
+std::string to_text(const FlightDiagnosis& diagnosis, Detail detail = Detail::brief);
 
 }  // namespace sepcal

@@ -17,6 +17,7 @@ struct FlightIntervals {
   FittedFlight flight;
   FitStatus status = FitStatus::not_converged;  // of the calibration, repeated
   std::string message = {};
+  std::vector<std::string> at_bound = {};  // parameters of the calibration that a bound stopped
   double level = 0.95;
   std::vector<ProfileInterval> parameters = {};
   std::vector<std::string> notes = {};  // for people; not part of the JSON
@@ -37,7 +38,7 @@ std::string to_json(const FlightIntervals& intervals);
 std::string to_json(const std::vector<ProfileInterval>& parameters, double level);
 
 /// The page that the apps print: both intervals of every parameter, and what ends them.
-std::string to_text(const FlightIntervals& intervals);
+std::string to_text(const FlightIntervals& intervals, Detail detail = Detail::brief);
 
 /// The same of a fit without a flight: the table alone.
 std::string to_text(const std::vector<ProfileInterval>& parameters, double level);

@@ -77,6 +77,13 @@ std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind ki
   return headers;
 }
 
+std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
+                              std::span<const std::string> others) {
+  const auto near = find_near_miss(quantity, accepted_headers(quantity, kind), others);
+  if (!near) return "";
+  return fmt::format("; did you mean '{}'? Rename it to {}", near->header, near->accepted);
+}
+
 std::string describe_missing(std::string_view quantity, UnitKind kind,
                              std::span<const std::string> others) {
   const std::vector<std::string> accepted = accepted_headers(quantity, kind);
@@ -85,10 +92,7 @@ std::string describe_missing(std::string_view quantity, UnitKind kind,
     text += fmt::format(" ({} would do as well)",
                         fmt::join(accepted.begin() + 1, accepted.end(), ", "));
   }
-  if (const auto near = find_near_miss(quantity, accepted, others)) {
-    text += fmt::format("; did you mean '{}'? Rename it to {}", near->header, near->accepted);
-  }
-  return text;
+  return text + ask_for_near_miss(quantity, kind, others);
 }
 
 }  // namespace sepcal::files

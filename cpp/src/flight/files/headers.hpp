@@ -15,9 +15,13 @@ namespace sepcal::files {
 /// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg.
 std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind);
 
-/// "column 'roll_rad' is missing (roll_deg would do as well)", and the one of `others`, a log's
-/// headers without the quantities found, that differs from one of these in case and punctuation or
-/// by a slip of a letter or two.
+/// "; did you mean 'Roll_Deg'? Rename it to roll_deg": the one of `others`, a log's headers without
+/// the quantities found, that differs from an accepted one in case and punctuation or by a slip of
+/// a letter or two; empty where there is none.
+std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
+                              std::span<const std::string> others);
+
+/// "column 'roll_rad' is missing (roll_deg would do as well)", and ask_for_near_miss().
 std::string describe_missing(std::string_view quantity, UnitKind kind,
                              std::span<const std::string> others);
 

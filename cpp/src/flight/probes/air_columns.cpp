@@ -38,7 +38,8 @@ void need_density(RecordBuilder& builder, const Flight& flight, std::string_view
     builder.consult({"temp", "ps"});
     builder.compute("rho", density_of(builder));
   } else {
-    throw Error(fmt::format("{}: the density is missing: log {}; {}", flight.name(), log_what,
+    throw Error(fmt::format("{}: the density is missing: log {}{}; {}", flight.name(), log_what,
+                            builder.ask_for_near_miss({"rho", "temp", "ps"}),
                             flight.list_columns()));
   }
 }

@@ -48,10 +48,10 @@ void need_airspeed(RecordBuilder& builder, const Flight& flight) {
     return;
   }
   if (!builder.has({"dp"})) {
-    throw Error(
-        fmt::format("{}: the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3 or "
-                    "with temp_k and ps_pa; {}",
-                    flight.name(), flight.list_columns()));
+    throw Error(fmt::format(
+        "{}: the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3 or "
+        "with temp_k and ps_pa{}; {}",
+        flight.name(), builder.ask_for_near_miss({"airspeed", "dp"}), flight.list_columns()));
   }
   builder.need({"dp"});
   need_density(builder, flight, "rho_kgpm3, or temp_k and ps_pa, or airspeed_mps instead of dp_pa");

@@ -69,14 +69,32 @@ const LoggedQuantity& RecordBuilder::logged(std::string_view name) const {
   return found->second;
 }
 
-void RecordBuilder::fail_missing(std::string_view name) const {
-  const auto* quantity = std::ranges::find(quantities_, name, &ProbeQuantity::name).base();
+const ProbeQuantity& RecordBuilder::quantity_of(std::string_view name) const {
+  return *std::ranges::find(quantities_, name, &ProbeQuantity::name);
+}
+
+/// Of the columns that are none of the probe's quantities.
+std::vector<std::string> RecordBuilder::other_headers() const {
   std::vector<std::string> others;
   for (const Flight::Column& column : flight_.columns()) {
     if (!is_quantity(column)) others.push_back(column.header);
   }
+  return others;
+}
+
+std::string RecordBuilder::ask_for_near_miss(Names names) const {
+  const std::vector<std::string> others = other_headers();
+  for (const std::string_view name : names) {
+    if (has({name})) continue;
+    std::string asked = files::ask_for_near_miss(name, quantity_of(name).kind, others);
+    if (!asked.empty()) return asked;
+  }
+  return "";
+}
+
+void RecordBuilder::fail_missing(std::string_view name) const {
   throw Error(fmt::format("{}: {}; {}", flight_.name(),
-                          files::describe_missing(name, quantity->kind, others),
+                          files::describe_missing(name, quantity_of(name).kind, other_headers()),
                           flight_.list_columns()));
 }
 

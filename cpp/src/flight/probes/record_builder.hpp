@@ -45,6 +45,10 @@ class RecordBuilder {
 
   bool has(Names names) const;
 
+  /// Where one of these was not logged and a header nearly is its: "; did you mean ...?"; else
+  /// nothing.
+  std::string ask_for_near_miss(Names names) const;
+
   /// Throws Error for a quantity that was not logged.
   const LoggedQuantity& logged(std::string_view name) const;
 
@@ -95,6 +99,8 @@ class RecordBuilder {
 
  private:
   void find_quantity(const ProbeQuantity& quantity);
+  const ProbeQuantity& quantity_of(std::string_view name) const;
+  std::vector<std::string> other_headers() const;
   [[noreturn]] void fail_missing(std::string_view name) const;
   bool is_quantity(const Flight::Column& column) const;
   std::optional<Reading> find_reading(std::string_view name) const;

@@ -36,11 +36,11 @@ std::string history_table(const Calibration& calibration) {
 
 }  // namespace
 
-std::string to_text(const Calibration& calibration) {
+std::string to_text(const Calibration& calibration, Detail detail) {
   return fmt::format("{}: {} of {} rows of {}\n", calibration.probe->name(),
                      calibration.flight.rows_used, calibration.flight.rows,
                      calibration.flight.file) +
-         text::fit_table(calibration.fit, calibration.options, calibration.derived) +
+         text::fit_table(calibration.fit, calibration.options, calibration.derived, detail) +
          history_table(calibration);
 }
 

@@ -33,11 +33,11 @@ std::string verdict_on_noise(const Misfit& misfit) {
                      misfit.lag_one > 0 ? "correlate" : "alternate", misfit.lag_one, limit);
 }
 
-std::string to_text(const Comparison& comparison) {
+std::string to_text(const Comparison& comparison, Detail detail) {
   std::string text =
       fmt::format("{}: {} of {} rows of {}\n", comparison.model, comparison.flight.rows_used,
                   comparison.flight.rows, comparison.flight.file);
-  text += status_line(comparison.status, comparison.at_bound, comparison.message);
+  text += status_lines(comparison.status, comparison.at_bound, comparison.message, detail);
   std::size_t width = 8;
   for (const Misfit& misfit : comparison.where) width = std::max(width, misfit.segment.size());
   text += fmt::format("\n{:<{}}  {:<8} {:>8} {:>12} {:>12} {:>8}\n", "segment", width, "output",

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "sepcal/flight/diagnosing.hpp"
+#include "flight/text/status_text.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 
 namespace sepcal {
 namespace {
@@ -116,41 +117,41 @@ std::string unexplained_rows(const Omnibus& omnibus) {
 
 }  // namespace
 
-std::string to_text(const FlightDiagnosis& result) {
+std::string to_text(const FlightDiagnosis& result, Detail detail) {
   const Diagnosis& diagnosis = result.diagnosis;
-  std::string text =
+  std::string page =
       fmt::format("{}: {} of {} rows of {}\n{}\n\n", result.model, result.flight.rows_used,
                   result.flight.rows, result.flight.file, verdict_sentence(result));
   if (result.status != FitStatus::converged) {
-    text += fmt::format("of a fit whose status is {}: {}\n\n", to_string(result.status),
-                        result.message);
+    page += fmt::format("of a fit whose status is {}\n{}\n", to_string(result.status),
+                        text::sentence_lines(result.message, detail));
   }
-  text += effect_rows(result);
-  if (diagnosis.verdict == Verdict::effect_missing) text += best_effect(result);
-  if (diagnosis.verdict == Verdict::unexplained) text += unexplained_rows(diagnosis.omnibus);
+  page += effect_rows(result);
+  if (diagnosis.verdict == Verdict::effect_missing) page += best_effect(result);
+  if (diagnosis.verdict == Verdict::unexplained) page += unexplained_rows(diagnosis.omnibus);
   if (diagnosis.verdict != Verdict::effect_missing && !diagnosis.limits.empty()) {
-    text += "\na slow change over the flight would have shown from:";
+    page += "\na slow change over the flight would have shown from:";
     for (const DetectionLimit& limit : diagnosis.limits) {
       if (std::isfinite(limit.size)) {
-        text += fmt::format("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
+        page += fmt::format("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
       }
     }
-    text += '\n';
+    page += '\n';
   }
   if (diagnosis.verdict != Verdict::effect_missing && !result.missing_channels.empty()) {
-    text += "not logged, and could explain more:";
-    for (const std::string& channel : result.missing_channels) text += " " + channel;
-    text += '\n';
+    page += "not logged, and could explain more:";
+    for (const std::string& channel : result.missing_channels) page += " " + channel;
+    page += '\n';
   }
   if (result.injection) {
     const Injection& injection = *result.injection;
-    text += fmt::format("\ninjected {}: ", injection.effect);
-    text += injection.rank == 0 ? "cannot be seen in this flight\n"
+    page += fmt::format("\ninjected {}: ", injection.effect);
+    page += injection.rank == 0 ? "cannot be seen in this flight\n"
                                 : fmt::format("would have been {} (rank {}, p {})\n",
                                               injection.found ? "found" : "missed", injection.rank,
                                               probability(injection.p_adjusted));
   }
-  return text;
+  return page;
 }
 
 }  // namespace sepcal

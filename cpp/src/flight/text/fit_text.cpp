@@ -35,16 +35,16 @@ bool is_scanned(const CalibrationOptions& options, const Parameter& parameter) {
   });
 }
 
-/// Bounds, and what was known beforehand.
+/// Bounds, and the prior.
 std::string remark(const CalibrationOptions& options, const Parameter& parameter) {
   if (is_scanned(options, parameter)) return "by a scan";
   std::string text = limits(parameter);
-  const auto& knowledge = options.fit.knowledge;
-  const auto known = knowledge.find(parameter.name);
-  if (known == knowledge.end()) return text;
+  const auto& priors = options.fit.prior;
+  const auto prior = priors.find(parameter.name);
+  if (prior == priors.end()) return text;
   if (!text.empty()) text += "  ";
-  return text + fmt::format("known {:.6g} +- {:.2g}", known->second.mean,
-                            known->second.standard_deviation);
+  return text + fmt::format("prior {:.6g} +- {:.2g}", prior->second.mean,
+                            prior->second.standard_deviation);
 }
 
 std::string stage_line(const Fit& fit, const CalibrationOptions& options) {
@@ -65,8 +65,8 @@ std::string stage_line(const Fit& fit, const CalibrationOptions& options) {
 }  // namespace
 
 std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
-                            const std::vector<Derived>& derived) {
-  std::string text = status_line(fit);
+                            const std::vector<Derived>& derived, Detail detail) {
+  std::string text = status_lines(fit, detail);
   std::size_t name = 14;
   std::size_t unit = 5;
   for (const Parameter& parameter : fit.parameters) {
@@ -100,8 +100,8 @@ std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
   return text + "\n" + stage_line(fit, options);
 }
 
-std::string to_text(const Fit& fit, const CalibrationOptions& options) {
-  return fmt::format("{} rows\n", fit.rows) + fit_table(fit, options, {});
+std::string to_text(const Fit& fit, const CalibrationOptions& options, Detail detail) {
+  return fmt::format("{} rows\n", fit.rows) + fit_table(fit, options, {}, detail);
 }
 
 }  // namespace sepcal

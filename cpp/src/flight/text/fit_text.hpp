@@ -10,6 +10,6 @@
 namespace sepcal::text {
 
 std::string fit_table(const Fit& fit, const CalibrationOptions& options,
-                      const std::vector<Derived>& derived);
+                      const std::vector<Derived>& derived, Detail detail);
 
 }  // namespace sepcal::text

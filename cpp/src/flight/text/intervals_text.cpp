@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "flight/text/status_text.hpp"
 #include "sepcal/flight/intervals.hpp"
 
 namespace sepcal {
@@ -38,16 +39,14 @@ std::string remark_on(const ProfileInterval& interval) {
 
 }  // namespace
 
-std::string to_text(const FlightIntervals& intervals) {
-  return fmt::format("{}: {} of {} rows of {}\nstatus: {}{}{}\n\n", intervals.model,
-                     intervals.flight.rows_used, intervals.flight.rows, intervals.flight.file,
-                     to_string(intervals.status), intervals.message.empty() ? "" : ": ",
-                     intervals.message) +
-         to_text(intervals.parameters, intervals.level);
+std::string to_text(const FlightIntervals& intervals, Detail detail) {
+  return fmt::format("{}: {} of {} rows of {}\n", intervals.model, intervals.flight.rows_used,
+                     intervals.flight.rows, intervals.flight.file) +
+         text::status_lines(intervals.status, intervals.at_bound, intervals.message, detail) +
+         "\n" + to_text(intervals.parameters, intervals.level);
 }
 
 std::string to_text(const std::vector<ProfileInterval>& parameters, double level) {
-  std::string text;
   std::size_t name = 14;
   std::size_t unit = 5;
   for (const ProfileInterval& interval : parameters) {
@@ -58,9 +57,9 @@ std::string to_text(const std::vector<ProfileInterval>& parameters, double level
     return row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
   };
   const double percent = 100.0 * level;
-  text += trimmed(fmt::format("{:<{}} {:>13} {:>27} {:>27}  unit", "parameter", name, "value",
-                              fmt::format("{:g} % Gaussian", percent),
-                              fmt::format("{:g} % profile", percent)));
+  std::string text = trimmed(fmt::format("{:<{}} {:>13} {:>27} {:>27}  unit", "parameter", name,
+                                         "value", fmt::format("{:g} % Gaussian", percent),
+                                         fmt::format("{:g} % profile", percent)));
   std::string messages;
   for (const ProfileInterval& interval : parameters) {
     text += trimmed(fmt::format("{:<{}} {:>13} {:>13} {:>13} {:>13} {:>13}  {:<{}} {}",

@@ -2,13 +2,79 @@
 #include "flight/text/status_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include "flight/verbs/at_bound.hpp"
 
 namespace sepcal::text {
+namespace {
 
-std::string status_line(FitStatus status, const std::vector<std::string>& at_bound,
-                        const std::string& message) {
+constexpr std::size_t most_sentences = 3;
+constexpr std::size_t longest_line = 96;  // beside the indent, with room for a margin
+
+constexpr int serious = 1;  // a sentence that isn't listed
+
+/// How bad it is, least is worst: what nothing determines, what failed, what is poorly determined,
+/// what was done about it.
+constexpr std::array<std::pair<std::string_view, int>, 6> ranks{{
+    {" can't be told apart", 0},
+    {" can't be determined", 0},
+    {" is not determined", 0},
+    {" hard to tell apart", 2},
+    {" fell back to joint", 3},
+    {" more (see ", 4},
+}};
+
+int rank_of(std::string_view sentence) {
+  for (const auto& [words, rank] : ranks) {
+    if (sentence.find(words) != std::string_view::npos) return rank;
+  }
+  return serious;
+}
+
+/// The sentence without its reasons, which follow a colon, where it is too long for a line.
+std::string shorten(const std::string& sentence) {
+  return sentence.size() > longest_line ? sentence.substr(0, sentence.find(": ")) : sentence;
+}
+
+}  // namespace
+
+std::vector<std::string> sentences(const std::string& message) {
+  constexpr std::string_view between = "; ";
+  std::vector<std::string> result;
+  for (std::size_t at = 0; at < message.size();) {
+    const std::size_t end = std::min(message.find(between, at), message.size());
+    result.push_back(message.substr(at, end - at));
+    at = end + between.size();
+  }
+  std::ranges::stable_sort(result, {}, rank_of);
+  return result;
+}
+
+std::string sentence_lines(const std::string& message, Detail detail) {
+  std::string text;
+  bool hides = false;
+  std::size_t shown = 0;
+  for (const std::string& sentence : sentences(message)) {
+    const bool whole = detail == Detail::explained;
+    if (!whole && shown++ == most_sentences) {
+      hides = true;
+      break;
+    }
+    const std::string line = whole ? sentence : shorten(sentence);
+    hides = hides || line != sentence;
+    text += fmt::format("  {}\n", line);
+  }
+  return hides ? text + "  ... more with --explain\n" : text;
+}
+
+std::string status_lines(FitStatus status, const std::vector<std::string>& at_bound,
+                         const std::string& message, Detail detail) {
   std::string text = fmt::format("status: {}", to_string(status));
   if (!at_bound.empty()) {
     text += fmt::format(
@@ -16,12 +82,11 @@ std::string status_line(FitStatus status, const std::vector<std::string>& at_bou
         at_bound.size() == 1 ? "1 parameter" : fmt::format("{} parameters", at_bound.size()),
         at_bound.size() == 1 ? "its bound" : "their bounds", fmt::join(at_bound, ", "));
   }
-  if (!message.empty()) text += (at_bound.empty() ? ": " : "; ") + message;
-  return text + "\n";
+  return text + "\n" + sentence_lines(message, detail);
 }
 
-std::string status_line(const Fit& fit) {
-  return status_line(fit.status, verbs::names_at_bound(fit), fit.message);
+std::string status_lines(const Fit& fit, Detail detail) {
+  return status_lines(fit.status, verbs::names_at_bound(fit), fit.message, detail);
 }
 
 }  // namespace sepcal::text

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/parts_of_record.hpp"
+#include "flight/verbs/at_bound.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
@@ -37,6 +38,7 @@ FlightIntervals find_intervals(const Calibration& calibration, const Flight& fli
       .flight = {flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows},
       .status = calibration.fit.status,
       .message = calibration.fit.message,
+      .at_bound = names_at_bound(calibration.fit),
       .level = asked.level,
       .parameters = profile_intervals(*effective.model, record, calibration.fit, options, asked),
       .notes = effective.prepared.notes};
