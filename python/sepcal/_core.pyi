@@ -81,6 +81,12 @@ class FitDescription(TypedDict):
     iterations: int
     noise_iterations: int
     effects: list[EffectSettingDescription]
+    text: str
+    explained: str
+
+class PagesDescription(TypedDict):
+    text: str
+    explained: str
 
 class HistoryDescription(TypedDict):
     effect: str
@@ -105,6 +111,7 @@ class MisfitDescription(TypedDict):
     rmse: float
     mean: float
     lag_one: float
+    verdict: str
 
 class ChannelDescription(TypedDict):
     driver: str
@@ -123,6 +130,8 @@ class WindowDescription(TypedDict):
     mean: dict[str, float]
 
 class ComparisonDescription(TypedDict):
+    model: str
+    file: str
     status: str
     message: str
     overall: list[MisfitDescription]
@@ -133,6 +142,8 @@ class ComparisonDescription(TypedDict):
     residuals: Array
     notes: list[str]
     json: str
+    text: str
+    explained: str
 
 class IntervalDescription(TypedDict):
     name: str
@@ -148,6 +159,8 @@ class IntervalsDescription(TypedDict):
     parameters: dict[str, IntervalDescription]
     notes: list[str]
     json: str
+    text: str
+    explained: str
 
 class PredictionDescription(TypedDict, total=False):
     value: Array
@@ -263,6 +276,11 @@ class Calibration:
     def notes(self) -> list[str]: ...
     @property
     def file(self) -> str: ...
+    @property
+    def model(self) -> str: ...
+    @property
+    def unit(self) -> str: ...
+    def pages(self) -> PagesDescription: ...
     def compare(self, flight: Flight, /) -> ComparisonDescription: ...
     def diagnose(
         self,

@@ -76,13 +76,21 @@ class Calibration(Fit):
         cls, core: _core.Calibration, flight: Flight | None = None, own: Sequence[Effect] = ()
     ) -> Self:
         return cls(
-            **to_fields(core.fit),
+            **{**to_fields(core.fit), **core.pages()},
             derived={name: Derived(**entry) for name, entry in core.derived.items()},
             history=[HistoryEntry(**entry) for entry in core.history],
             own_effects=list(own),
             notes=core.notes,
             core=core,
             flight=flight,
+        )
+
+    def _summary(self) -> str:
+        errors = np.array(list(self.rmse.values()))
+        total = float(np.sqrt(np.mean(errors**2)))
+        return (
+            f"{self.core.model}: {self.status}, rmse {total:.3g} {self.core.unit}, "
+            f"{len(self.parameters)} parameters"
         )
 
     @property

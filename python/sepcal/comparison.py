@@ -5,14 +5,12 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Self
 
 from sepcal import _core
 from sepcal.columns import Array
-
-WORTH_A_LINE = 0.01  # of the residual's variance: a channel that explains less is not printed
-ROUNDING = 1e-9  # of the rmse: a mean below it is printed as zero
+from sepcal.pages import Page, Row
 
 
 @dataclass(frozen=True)
@@ -26,25 +24,12 @@ class Misfit:
     rmse: float
     mean: float  # of z - model: what a constant offset would explain
     lag_one: float  # correlation of neighbouring residuals, never across a segment's edge
+    verdict: str  # in words whether the residuals are noise
 
     @property
     def is_white(self) -> bool:
         """Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen times in twenty."""
         return bool(abs(self.lag_one) <= 2 / math.sqrt(self.rows))
-
-    @property
-    def verdict(self) -> str:
-        """In words whether the residuals are noise."""
-        if math.isnan(self.lag_one):
-            return "too few rows to tell"
-        if self.is_white:
-            return "white, as noise alone would be"
-        how = "correlate" if self.lag_one > 0 else "alternate"
-        limit = 2 / math.sqrt(self.rows)
-        return (
-            f"not white: neighbouring residuals {how} "
-            f"({self.lag_one:.3f}, noise alone within {limit:.2g})"
-        )
 
 
 @dataclass(frozen=True)
@@ -59,13 +44,6 @@ class ChannelMisfit:
     slope_error: float  # its standard error in the residual's own noise, rather too large
     unit: str  # of the slope
 
-    def __str__(self) -> str:
-        return (
-            f"{self.output} against {self.driver}: a line explains {self.share_line:.1%}, a smooth "
-            f"curve {self.share_smooth:.1%}; slope {self.slope:.4g} +- {self.slope_error:.2g} "
-            f"{self.unit}"
-        )
-
 
 @dataclass(frozen=True)
 class Window:
@@ -77,15 +55,15 @@ class Window:
     rmse: dict[str, float]  # by output
     mean: dict[str, float]  # by output, of z - model
 
-    def __str__(self) -> str:
-        errors = ", ".join(f"{output} {error:.4g}" for output, error in self.rmse.items())
-        return f"{self.first_s:.6g}:{self.last_s:.6g} s, {self.rows} rows: rmse {errors}"
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Page):
     """A calibration against a flight. `print(comparison)` shows the table."""
 
+    _shown = ("segment", "output", "rows", "rmse", "mean", "lag_one", "unit")
+
+    model: str
+    file: str  # of the flight
     status: str  # of the calibration, repeated
     message: str
     overall: list[Misfit]  # one an output
@@ -96,6 +74,8 @@ class Comparison:
     residuals: Array  # (N, n_z), z - model
     notes: list[str]  # one line each, for people
     json: str
+    text: str  # what print() shows: the app's page
+    explained: str  # the same with the whole message, as by the apps' --explain
 
     @classmethod
     def _of(cls, described: _core.ComparisonDescription) -> Self:
@@ -115,26 +95,10 @@ class Comparison:
         read: dict[str, Any] = json.loads(self.json)
         return read
 
-    def __str__(self) -> str:
-        width = max(len("segment"), *(len(misfit.segment) for misfit in self.where))
-        head = f"{'segment':<{width}}  output    rows        rmse        mean  lag-one  unit"
-        lines = [head]
-        for misfit in [*self.where, *self.overall]:
-            mean = 0.0 if abs(misfit.mean) < ROUNDING * misfit.rmse else misfit.mean
-            lines.append(
-                f"{misfit.segment or 'all':<{width}}  {misfit.output:<6}{misfit.rows:>8}"
-                f"{misfit.rmse:>12.4g}{mean:>12.4g}{misfit.lag_one:>9.2f}  {misfit.unit}"
-            )
-        lines += [f"{misfit.output}: {misfit.verdict}" for misfit in self.overall]
-        telling: list[ChannelMisfit] = []
-        for misfit in self.overall:
-            telling += [at for at in self.channels if at.output == misfit.output][:3]
-        shown = [channel for channel in telling if channel.share_smooth >= WORTH_A_LINE]
-        lines += map(str, shown)
-        if not shown:
-            lines.append("no channel explains a hundredth of an output's residual")
-        lines += [f"worst at {window}" for window in self.windows]
-        return "\n".join([*lines, f"the calibration: {self.status}", *self.notes])
+    def _summary(self) -> str:
+        total = math.sqrt(sum(misfit.rmse**2 for misfit in self.overall) / len(self.overall))
+        return f"{self.model} on {self.file}: rmse {total:.3g} {self.overall[0].unit}"
 
-    def __repr__(self) -> str:
-        return f"<Comparison\n{self}>"
+    def _rows(self) -> list[Row]:
+        rows = [asdict(misfit) for misfit in (*self.where, *self.overall)]
+        return [row | {"segment": row["segment"] or "all"} for row in rows]

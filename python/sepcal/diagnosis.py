@@ -9,7 +9,19 @@ from dataclasses import dataclass, fields
 from typing import Any, Self
 
 from sepcal import _core
+from sepcal.pages import Page, Row
 
+COLUMNS = (  # of the table, one number a candidate
+    "name",
+    "sentence",
+    "status",
+    "p_value",
+    "p_adjusted",
+    "p_listed",
+    "predicted_drop",
+    "held_out_gain",
+    "visibility",
+)
 SIGNIFICANT = 0.05  # p below which an effect is found, if rows held out gain as well
 
 
@@ -60,8 +72,10 @@ class Injection:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Diagnosis:
+class Diagnosis(Page):
     """A verdict and the ranked candidates. `print(diagnosis)` shows the table."""
+
+    _shown = ("name", "status", "p_adjusted", "predicted_drop", "held_out_gain", "visibility")
 
     verdict: str  # "adequate", "effect_missing", "unexplained"
     sentence: str  # the verdict in one sentence
@@ -78,6 +92,8 @@ class Diagnosis:
     message: str
     notes: list[str]  # one line each, for people
     json: str
+    text: str  # what print() shows: the app's page
+    explained: str  # the same with the whole message, as by the apps' --explain
 
     @classmethod
     def _of(cls, described: Mapping[str, Any]) -> Self:
@@ -87,7 +103,7 @@ class Diagnosis:
         values["effects"] = [EffectFinding(**effect) for effect in read["effects"]]
         injected = read.get("injected")
         values["injected"] = Injection(**injected) if injected else None
-        return cls(**values, notes=described["notes"], json=described["json"])
+        return cls(**values, **described)
 
     @property
     def found(self) -> list[EffectFinding]:
@@ -110,32 +126,9 @@ class Diagnosis:
         read: dict[str, Any] = json.loads(self.json)
         return read
 
-    def __str__(self) -> str:
-        shown = [effect for effect in self.effects if effect.status != "cannot_be_seen"][:12]
-        width = max([len("effect"), *(len(effect.name) for effect in shown)])
-        lines = [self.sentence, ""]
-        lines.append(
-            f"{'effect':<{width}}  status        p          predicted  held out  visibility"
-        )
-        for effect in shown:
-            lines.append(
-                f"{effect.name:<{width}}  {effect.in_words:<12}  "
-                f"{_probability(effect.p_adjusted):<9}  "
-                f"{_percent(effect.predicted_drop):>9}  {_percent(effect.held_out_gain):>8}  "
-                f"{effect.visibility:>10.2f}"
-            )
-        hidden = [effect.name for effect in self.effects if effect.status == "cannot_be_seen"]
-        if hidden:
-            lines.append(f"cannot be seen in this flight: {' '.join(hidden)}")
-        return "\n".join([*lines, *self.notes])
+    def _summary(self) -> str:
+        names = ", ".join(effect.name for effect in self.found)
+        return f"{self.verdict}{': ' * bool(names)}{names}, {len(self.effects)} candidates"
 
-    def __repr__(self) -> str:
-        return f"<Diagnosis\n{self}>"
-
-
-def _probability(p: float) -> str:
-    return f"{p:.2g}" if p >= 1e-99 else "<1e-99"
-
-
-def _percent(fraction: float | None) -> str:
-    return "-" if fraction is None else f"{100 * fraction:.1f} %"
+    def _rows(self) -> list[Row]:
+        return [{name: getattr(effect, name) for name in COLUMNS} for effect in self.effects]

@@ -8,7 +8,7 @@ from sepcal.calibration import Calibration
 from sepcal.columns import Columns, take_columns, take_drivers, to_labels
 from sepcal.flight import Flight
 from sepcal.models import Model
-from sepcal.options import FitOptions, to_core
+from sepcal.options import FitOptions, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.results import Fit, to_fields
@@ -22,6 +22,7 @@ def fit(model: Model, data: Flight, **options: Unpack[FitOptions]) -> Calibratio
 def fit(model: Model | SeparableModel, data: Columns, **options: Unpack[FitOptions]) -> Fit: ...
 
 
+@spelled_out()
 def fit(
     model: Model | SeparableModel, data: Flight | Columns, **options: Unpack[FitOptions]
 ) -> Fit:
@@ -38,8 +39,7 @@ def fit(
             DataFrame. There "time" [s] and "maneuver" (labels) are optional and cut the record at
             gaps and changes of label; other columns are ignored but by effects. C-contiguous
             float64 arrays are not copied.
-        **options: effects, bounds, fixed, noise, prior, loss, start, search, samples and more;
-            FitOptions says what each is.
+        **options: FitOptions.
 
     Returns:
         A Calibration for a Flight, else a Fit. Non-convergence and what the data do not determine

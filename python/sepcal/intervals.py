@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, astuple, dataclass
 from typing import Any, Self, Unpack
@@ -12,9 +11,10 @@ from typing import Any, Self, Unpack
 from sepcal import _core
 from sepcal.columns import Array, Columns, take_columns, take_drivers, to_labels
 from sepcal.models import Model
-from sepcal.options import FitOptions, to_core, to_names
+from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import name_effects, to_core_effects
 from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.pages import Page, Row
 from sepcal.results import Fit
 
 
@@ -30,30 +30,27 @@ class ParameterInterval:
     ends: tuple[str, str]  # what ends the profile's: "crossed", "bound", "open" or "failed"
     message: str  # one line; empty where there is nothing to say
 
-    @property
-    def remark(self) -> str:
-        """What ends the profile interval, where it isn't the data."""
-        words = {
-            "bound": "its bound ends it",
-            "open": "open",
-            "failed": "could not be found",
-        }
-        sides = [
-            f"{side} {words[end]}" if end == "failed" else f"{side}: {words[end]}"
-            for side, end in zip(("lower", "upper"), self.ends, strict=True)
-            if end in words
-        ]
-        return "; ".join([*sides, *([self.message] if self.message else [])])
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Intervals:
+class Intervals(Page):
     """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's."""
+
+    _shown = (
+        "name",
+        "value",
+        "gaussian_lower",
+        "gaussian_upper",
+        "profile_lower",
+        "profile_upper",
+        "unit",
+    )
 
     level: float
     parameters: dict[str, ParameterInterval]
     notes: list[str]  # one line each, for people
     json: str
+    text: str  # what print() shows: of a calibration's, the app's page
+    explained: str  # the same with the whole message, as by the apps' --explain
 
     @classmethod
     def _of(cls, described: _core.IntervalsDescription) -> Self:
@@ -79,21 +76,25 @@ class Intervals:
         read: dict[str, Any] = json.loads(self.json)
         return read
 
-    def __str__(self) -> str:
-        width = max(map(len, ["parameter", *self.parameters]))
-        kinds = [f"{100 * self.level:g} % {kind}" for kind in ("Gaussian", "profile")]
-        lines = [f"{'parameter':<{width}}{'value':>14}{kinds[0]:>26}{kinds[1]:>26}  unit"]
-        for at in self.parameters.values():
-            ends = [
-                f"{'-' if math.isnan(end) else format(end, '.6g'):>13}"
-                for end in (*at.gaussian, *at.profile)
-            ]
-            line = f"{at.name:<{width}}{at.value:>14.6g}{''.join(ends)}  {at.unit:<6}{at.remark}"
-            lines.append(line.rstrip())
-        return "\n".join([*lines, *self.notes])
+    def _summary(self) -> str:
+        return f"of {100 * self.level:g} %: {len(self.parameters)} parameters"
 
-    def __repr__(self) -> str:
-        return f"<Intervals\n{self}>"
+    def _rows(self) -> list[Row]:
+        return [
+            {
+                "name": at.name,
+                "value": at.value,
+                "unit": at.unit,
+                "gaussian_lower": at.gaussian[0],
+                "gaussian_upper": at.gaussian[1],
+                "profile_lower": at.profile[0],
+                "profile_upper": at.profile[1],
+                "lower_end": at.ends[0],
+                "upper_end": at.ends[1],
+                "message": at.message,
+            }
+            for at in self.parameters.values()
+        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +124,7 @@ class Prediction:
         return self.value - half, self.value + half
 
 
+@spelled_out()
 def profile_intervals(
     model: Model | SeparableModel,
     data: Columns,
@@ -158,6 +160,7 @@ def profile_intervals(
     return Intervals._of(described)
 
 
+@spelled_out()
 def predict(
     model: Model | SeparableModel,
     data: Columns,

@@ -16,7 +16,7 @@ from sepcal.flight import Flight
 from sepcal.many_results import ManyFit, to_many_fit
 from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask
 from sepcal.models import Model
-from sepcal.options import FitOptions, to_core, to_names
+from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_model import OwnModel, SeparableModel
 
 Executors: TypeAlias = Executor | Callable[[], Executor] | None
@@ -24,6 +24,7 @@ Executors: TypeAlias = Executor | Callable[[], Executor] | None
 TASKS = 64  # that one pass over all flights is cut into, at most
 
 
+@spelled_out(without=("effects", "loss", "loss_width"))
 def fit_many(
     model: Model | SeparableModel,
     flights: Mapping[str, Source] | Sequence[Source],

@@ -81,6 +81,11 @@ class ManyFit:
         """The shared parameter of that name. Raises KeyError listing the names."""
         return _find(self.shared, name, "shared parameter", "the fit")
 
+    @property
+    def success(self) -> bool:
+        """Whether the status is "converged"."""
+        return self.status == "converged"
+
     def departed(self, level: float = 0.01) -> list[str]:
         """Flights that depart from the others, by p_holm below `level`; the surest first."""
         found = [name for name, one in self.flights.items() if one.departure.p_holm < level]
@@ -113,7 +118,10 @@ class ManyFit:
         return "\n".join(lines)
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {self.status}\n{self}>"
+        return (
+            f"<sepcal.ManyFit {self.status}: {len(self.flights)} flights, {self.rows} rows, "
+            f"{len(self.shared)} shared parameters>"
+        )
 
 
 def to_many_fit(described: _core.ManyFitDescription) -> ManyFit:

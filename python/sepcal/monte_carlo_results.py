@@ -164,7 +164,7 @@ class MonteCarlo:
         return "\n".join(lines)
 
     def __repr__(self) -> str:
-        return f"<MonteCarlo: {self}>"
+        return f"<sepcal.MonteCarlo {_headline(self)}>"
 
 
 def check_truth(truth: Mapping[str, float] | None, values: Sequence[Any]) -> None:

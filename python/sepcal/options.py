@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The keyword arguments of fit(). Their defaults are the engine's own and stand nowhere else."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal, TypedDict
+import inspect
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any, Literal, TypedDict, TypeVar
 
 from sepcal import _core
 from sepcal.own_effect import Effect
@@ -91,6 +92,43 @@ class FitOptions(TypedDict, total=False):
     threads: int | None
     free: Sequence[str] | None
     drop_invalid: bool | None
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def spelled_out(*, without: Collection[str] = ()) -> Callable[[Function], Function]:
+    """A decorator: help() shows every option in the place of **options, with its default.
+
+    Where the docstring's whole entry of **options is FitOptions.__doc__ by name, it becomes what
+    FitOptions says of each.
+    """
+
+    def spell_out(function: Function) -> Function:
+        signature = inspect.signature(function)
+        kept = [at for at in signature.parameters.values() if at.kind is not at.VAR_KEYWORD]
+        options = [
+            inspect.Parameter(
+                name, inspect.Parameter.KEYWORD_ONLY, default=default_of(name), annotation=kind
+            )
+            for name, kind in FitOptions.__annotations__.items()
+            if name not in without
+        ]
+        spelled = signature.replace(parameters=[*kept, *options])
+        function.__signature__ = spelled  # type: ignore[attr-defined]
+        if function.__doc__ and FitOptions.__doc__:  # none under python -OO
+            each = inspect.getdoc(FitOptions).partition("Attributes:\n")[2]  # type: ignore[union-attr]
+            text = inspect.cleandoc(function.__doc__)
+            function.__doc__ = text.replace("    **options: FitOptions.", each)
+        return function
+
+    return spell_out
+
+
+def default_of(name: str) -> Any:  # noqa: ANN401
+    """The engine's own; None where nothing is set."""
+    default = getattr(_core.Options(), name, None)
+    return None if isinstance(default, str | Mapping | list) and not default else default
 
 
 def to_core(options: Mapping[str, Any]) -> _core.Options:

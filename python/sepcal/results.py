@@ -7,7 +7,7 @@ Undefined numbers (the standard error of a fixed parameter, say) are NaN.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sepcal import _core
 from sepcal.columns import Array
+from sepcal.pages import Page, Row
 
 
 @dataclass(frozen=True)
@@ -100,8 +101,10 @@ class EffectSetting:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit:
+class Fit(Page):
     """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter."""
+
+    _shown = ("name", "value", "standard_error", "unit")
 
     status: str  # "converged", "not_converged" or "not_identifiable"
     message: str  # one line; empty where there is nothing to say
@@ -120,6 +123,13 @@ class Fit:
     iterations: int  # of stage two's minimisations
     noise_iterations: int  # of R against the parameters
     effects: list[EffectSetting]  # that joined the model, in order
+    text: str  # what print() shows: the app's page
+    explained: str  # the same with the whole message, as by the apps' --explain
+
+    @property
+    def success(self) -> bool:
+        """Whether the status is "converged"."""
+        return self.status == "converged"
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -142,36 +152,11 @@ class Fit:
         """Names of the parameters that a bound stopped."""
         return [name for name, parameter in self.parameters.items() if parameter.at_bound]
 
-    def __str__(self) -> str:
-        width = max(map(len, self.names))
-        lines = [f"{'parameter':<{width}}{'value':>14}{'std. error':>12}{'white':>10}  unit"]
-        for parameter in self.parameters.values():
-            errors = [
-                f"{error:.2g}" if error >= 0 else "-"
-                for error in (parameter.standard_error, parameter.standard_error_white)
-            ]
-            line = (
-                f"{parameter.name:<{width}}{parameter.value:>14.6g}{errors[0]:>12}{errors[1]:>10}"
-            )
-            remark = parameter.remark
-            if parameter.at_bound:
-                remark += f", [{parameter.lower:.4g}, {parameter.upper:.4g}]"
-            lines.append(f"{line}  {parameter.unit:<6}{remark}".rstrip())
-        rmse = ", ".join(f"{name} {value:.4g}" for name, value in self.rmse.items())
-        lines += [f"rmse: {rmse}; {self.rows} rows", f"{self.status}, {self.method}"]
-        if stopped := self.at_bound:
-            bounds = (
-                "1 parameter at its bound"
-                if len(stopped) == 1
-                else f"{len(stopped)} parameters at their bounds"
-            )
-            lines[-1] += f", {bounds}: {', '.join(stopped)}"
-        if self.message:
-            lines[-1] += f"{';' if stopped else ':'} {self.message}"
-        return "\n".join(lines)
+    def _summary(self) -> str:
+        return f"{self.status}, {len(self.parameters)} parameters, {self.rows} rows"
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {self.status}\n{self}>"
+    def _rows(self) -> list[Row]:
+        return [asdict(parameter) for parameter in self.parameters.values()]
 
 
 def to_fields(described: _core.FitDescription) -> dict[str, Any]:

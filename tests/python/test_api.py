@@ -162,7 +162,8 @@ def test_an_active_bound_is_told(record: dict[str, np.ndarray]) -> None:
     assert fit["a"].at_bound
     assert fit["a"].remark == "at its upper bound"
     assert np.isnan(fit["a"].standard_error)
-    assert "at its upper bound" in str(fit)
+    assert "status: converged, 1 parameter at its bound: a" in str(fit).splitlines()
+    assert "[0, 0.5]  AT ITS BOUND" in str(fit)
 
 
 def test_what_the_record_leaves_open_is_told() -> None:
@@ -174,7 +175,8 @@ def test_what_the_record_leaves_open_is_told() -> None:
     assert len(fit.unobservable) == 2
     assert {name for one in fit.unobservable for name in one.parameters} <= {"a", "b", "c"}
     assert all(one.text in fit.message for one in fit.unobservable)
-    assert "not_identifiable" in str(fit)
+    assert "status: not_identifiable" in str(fit).splitlines()
+    assert not fit.success
 
 
 def test_time_and_labels_cut_a_record(record: dict[str, np.ndarray]) -> None:

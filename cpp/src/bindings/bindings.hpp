@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sepcal/block_model.hpp"
@@ -29,10 +30,23 @@ struct Model {
 };
 
 /// Keys as the fields of sepcal.Fit; its parts are dictionaries in turn.
-py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects);
+py::dict describe(const Fit& fit, const CalibrationOptions& options);
 py::list describe(const std::vector<Parameter>& parameters);
 py::list describe(const std::vector<Combination>& combinations);
 py::dict describe(const std::vector<OutputValue>& values);
+
+/// A page as print() takes it: print() ends the last line itself.
+inline std::string without_last_end(std::string page) {
+  page.pop_back();
+  return page;
+}
+
+/// Adds what the apps print of a result: `text`, and `explained`, as with --explain.
+template <class... Result>
+void add_pages(py::dict& described, const Result&... result) {
+  described["text"] = without_last_end(to_text(result..., Detail::brief));
+  described["explained"] = without_last_end(to_text(result..., Detail::explained));
+}
 
 /// Intervals by both kinds and predictions: for fits on columns, functions of the module; for
 /// calibrations, what their class has as methods.

@@ -120,7 +120,7 @@ py::dict fit_columns(const Model& model, const py::dict& columns,
     return fit_with_effects(model.block, kit, options.effects, std::move(record), options.fit);
   };
   const Fit fitted = run();
-  return describe(fitted, options.effects);
+  return describe(fitted, options);
 }
 
 }  // namespace

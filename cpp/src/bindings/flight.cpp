@@ -98,7 +98,8 @@ py::list describe(const std::vector<Misfit>& misfits) {
   for (const Misfit& misfit : misfits) {
     list.append(py::dict("segment"_a = misfit.segment, "output"_a = misfit.output,
                          "unit"_a = misfit.unit, "rows"_a = misfit.rows, "rmse"_a = misfit.rmse,
-                         "mean"_a = misfit.mean, "lag_one"_a = misfit.lag_one));
+                         "mean"_a = misfit.mean, "lag_one"_a = misfit.lag_one,
+                         "verdict"_a = verdict_on_noise(misfit)));
   }
   return list;
 }
@@ -131,12 +132,16 @@ py::list describe(const std::vector<Window>& windows) {
 
 /// Keys as the fields of sepcal.Comparison.
 py::dict describe(Comparison comparison) {
-  return py::dict(
+  py::dict described(
+      "model"_a = comparison.model, "file"_a = comparison.flight.file,
       "status"_a = to_string(comparison.status), "message"_a = comparison.message,
       "overall"_a = describe(comparison.overall), "where"_a = describe(comparison.where),
       "channels"_a = describe(comparison.channels), "windows"_a = describe(comparison.windows),
       "residuals"_a = comparison.residuals, "notes"_a = comparison.notes,
-      "json"_a = to_json(comparison), "time"_a = adopt(std::move(comparison.time)));
+      "json"_a = to_json(comparison));
+  add_pages(described, comparison);
+  described["time"] = adopt(std::move(comparison.time));
+  return described;
 }
 
 /// {name: keys as the fields of sepcal.Derived}
@@ -160,7 +165,7 @@ py::dict compare_with(const Calibration& calibration, const Flight& flight) {
   return describe(run());
 }
 
-/// The JSON that the app's diagnose prints, and notes.
+/// What the app's diagnose prints, as JSON and as text, and notes.
 py::dict diagnose_on(const Calibration& calibration, const Flight& flight,
                      const std::vector<PythonEffect>& own,
                      const std::optional<SizedEffect>& injected, int simulations,
@@ -177,7 +182,9 @@ py::dict diagnose_on(const Calibration& calibration, const Flight& flight,
                     : diagnose(calibration, flight, makers, options);
   };
   const FlightDiagnosis diagnosis = run();
-  return py::dict("json"_a = to_json(diagnosis), "notes"_a = diagnosis.notes);
+  py::dict described("json"_a = to_json(diagnosis), "notes"_a = diagnosis.notes);
+  add_pages(described, diagnosis);
+  return described;
 }
 
 /// {header: values}
@@ -254,10 +261,8 @@ Calibration with_own_effects(Calibration calibration, const std::vector<PythonEf
 void define_flight(py::module_& module) {
   define_flights(module);
   py::class_<Calibration>(module, "Calibration")
-      .def_property_readonly("fit",
-                             [](const Calibration& self) {
-                               return bindings::describe(self.fit, self.options.effects);
-                             })
+      .def_property_readonly(
+          "fit", [](const Calibration& self) { return bindings::describe(self.fit, self.options); })
       .def_property_readonly("derived",
                              [](const Calibration& self) { return describe(self.derived); })
       .def_property_readonly("history",
@@ -278,6 +283,16 @@ void define_flight(py::module_& module) {
       .def("add", &add_to)
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)
+      .def_property_readonly("model", [](const Calibration& self) { return self.probe->name(); })
+      .def_property_readonly(
+          "unit",
+          [](const Calibration& self) { return self.probe->model().tables().outputs.front().unit; })
+      .def("pages",
+           [](const Calibration& self) {
+             py::dict described;
+             add_pages(described, self);
+             return described;
+           })
       .def("to_json", [](const Calibration& self) { return to_json(self); })
       .def("save", &write_calibration, WithoutGil());
   module.def("calibrate", &calibrate_probe);

@@ -141,9 +141,11 @@ py::dict profile_columns(const Model& model, const py::dict& columns,
     return profile_intervals(*prepared.model, prepared.record, fit, prepared.options, asked);
   };
   const std::vector<ProfileInterval> intervals = run();
+  const std::string page = without_last_end(to_text(intervals, asked.level));
   return py::dict("level"_a = asked.level, "parameters"_a = describe(intervals),
                   "notes"_a = std::vector<std::string>(),
-                  "json"_a = to_json(intervals, asked.level));
+                  "json"_a = to_json(intervals, asked.level), "text"_a = page,
+                  "explained"_a = page);
 }
 
 py::dict predict_columns(const Model& model, const py::dict& columns,
@@ -173,8 +175,10 @@ py::dict find_intervals(const Calibration& calibration, const Flight& flight, do
     return sepcal::find_intervals(calibration, flight, {.level = level, .names = names});
   };
   const FlightIntervals intervals = run();
-  return py::dict("level"_a = level, "parameters"_a = describe(intervals.parameters),
-                  "notes"_a = intervals.notes, "json"_a = to_json(intervals));
+  py::dict described("level"_a = level, "parameters"_a = describe(intervals.parameters),
+                     "notes"_a = intervals.notes, "json"_a = to_json(intervals));
+  add_pages(described, intervals);
+  return described;
 }
 
 py::dict predict(const Calibration& calibration, const Flight& flight, double level) {

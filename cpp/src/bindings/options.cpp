@@ -41,9 +41,11 @@ void define_normals(Class& options, const char* name) {
 template <auto Member, class Class>
 void define_named(Class& options, const std::string& name) {
   using Choice = std::remove_cvref_t<decltype(std::declval<FitOptions&>().*Member)>;
-  options.def_property(name.c_str(), nullptr, [name](Options& self, const std::string& choice) {
-    self.fit.*Member = choice_of<Choice>(name, choice);
-  });
+  options.def_property(
+      name.c_str(), [](const Options& self) { return to_string(self.fit.*Member); },
+      [name](Options& self, const std::string& choice) {
+        self.fit.*Member = choice_of<Choice>(name, choice);
+      });
 }
 
 /// {t_1, t_2, l_2, convex}, any of them. Throws Error for another name.

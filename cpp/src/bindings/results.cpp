@@ -88,8 +88,8 @@ py::list describe(const std::vector<EffectSetting>& effects) {
 
 }  // namespace
 
-py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects) {
-  return py::dict(
+py::dict describe(const Fit& fit, const CalibrationOptions& options) {
+  py::dict described(
       "status"_a = to_string(fit.status), "message"_a = fit.message,
       "parameters"_a = describe(fit.parameters), "covariance"_a = fit.covariance,
       "correlation"_a = fit.correlation, "covariance_white"_a = fit.covariance_white,
@@ -97,7 +97,9 @@ py::dict describe(const Fit& fit, const std::vector<EffectSetting>& effects) {
       "rows"_a = fit.rows, "unobservable"_a = describe(fit.identifiability.unobservable),
       "weak"_a = describe(fit.identifiability.weak), "stage_one"_a = describe_stage_one(fit),
       "method"_a = to_string(fit.method), "iterations"_a = fit.iterations,
-      "noise_iterations"_a = fit.noise_iterations, "effects"_a = describe(effects));
+      "noise_iterations"_a = fit.noise_iterations, "effects"_a = describe(options.effects));
+  add_pages(described, fit, options);
+  return described;
 }
 
 }  // namespace sepcal::bindings

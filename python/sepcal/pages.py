@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How a result shows itself: print() as the apps print it, repr() in a line, tables elsewhere."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import Any, ClassVar
+
+Row = Mapping[str, object]
+
+
+class Page:
+    """A result that the apps print too. `text` is their page, `explained` that with --explain."""
+
+    text: str
+    explained: str
+
+    _shown: ClassVar[Sequence[str]] = ()  # columns of the small table, among those of _rows()
+
+    def _summary(self) -> str:
+        """What the one line of repr() says."""
+        raise NotImplementedError
+
+    def _rows(self) -> list[Row]:
+        """The result's main table; "name" is its index where there is one."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return f"<sepcal.{type(self).__name__} {self._summary()}>"
+
+    def _repr_html_(self) -> str:
+        """A small table, for notebooks."""
+        head = "".join(f"<th>{escape(name.replace('_', ' '))}</th>" for name in self._shown)
+        rows = [
+            "<tr>" + "".join(f"<td>{_cell(row[name])}</td>" for name in self._shown) + "</tr>"
+            for row in self._rows()
+        ]
+        lines = [
+            f"<table><caption>{escape(self._summary())}</caption>",
+            f"<thead><tr>{head}</tr></thead>",
+            "<tbody>",
+            *rows,
+            "</tbody></table>",
+        ]
+        return "\n".join(lines)
+
+    def to_frame(self) -> Any:  # noqa: ANN401
+        """The same as a pandas.DataFrame, with every number. Raises ImportError without pandas."""
+        try:
+            pandas = importlib.import_module("pandas")
+        except ImportError as error:
+            raise ImportError("to_frame() needs pandas: pip install pandas") from error
+        frame = pandas.DataFrame([dict(row) for row in self._rows()])
+        return frame.set_index("name") if "name" in frame.columns else frame
+
+
+def _cell(value: object) -> str:
+    if value is None or value != value:
+        return "-"
+    return f"{value:.6g}" if isinstance(value, float) else escape(str(value))
