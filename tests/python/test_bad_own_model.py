@@ -2,8 +2,9 @@
 """What can go wrong in a model in Python: its tables, what at() gives, what it raises."""
 
 import _thread
+import signal
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -214,6 +215,15 @@ def test_exceptions_of_derivatives_pass_too() -> None:
         sepcal.fit(Derived(), BOX)
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Python's own handler, where the shell that began this has interrupts ignored too."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_person_can_interrupt(threads: int) -> None:
     model = Troubled(300, _thread.interrupt_main)
