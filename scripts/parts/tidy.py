@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs clang-tidy over cpp/ and apps/, one file a core; a file that passed is not looked at again.
 
-Usage: tidy.py BUILD, a build folder with compile_commands.json. A file's stamp is the hash of all
-that its verdict depends on: itself, the project's headers it includes, its command, .clang-tidy.
+Usage: tidy.py BUILD [MOST], a build folder with compile_commands.json. A file's stamp is the hash
+of all that its verdict depends on: itself, the project's headers it includes, its command,
+.clang-tidy. With MOST it looks at so many files without a stamp, those that changed last by git,
+and at others of them for another HEAD, so that in time it comes to all. 0 is no limit.
 """
 
 from __future__ import annotations
@@ -41,13 +43,47 @@ def fingerprint(entry: dict[str, str], version: bytes) -> str:
     return digest.hexdigest()
 
 
+def stamp_of(entry: dict[str, str], build: Path) -> Path:
+    """Where the hash stands with which a file passed."""
+    name = str(Path(entry["file"]).relative_to(ROOT)).replace("/", "_") + ".passed"
+    return build / "clang-tidy" / name
+
+
+def has_passed(entry: dict[str, str], build: Path, version: bytes) -> bool:
+    """Whether clang-tidy has passed the file as it stands."""
+    stamp = stamp_of(entry, build)
+    return stamp.is_file() and stamp.read_text() == fingerprint(entry, version)
+
+
+def git(*arguments: str) -> list[str]:
+    """Lines of what git prints; none outside a repository."""
+    done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True)
+    return done.stdout.splitlines()
+
+
+def newest_first(entries: list[dict[str, str]]) -> list[dict[str, str]]:
+    """The files as they last changed: uncommitted ones, then commit by commit.
+
+    What one commit changed, and what a changed header alone concerns, is in an order that every
+    HEAD mixes anew.
+    """
+    changed = dict.fromkeys(git("diff", "--name-only", "HEAD", "--", "cpp", "apps"), -1)
+    commit = 0
+    for line in git("log", "--format=commit", "--name-only", "--", "cpp", "apps"):
+        commit += line == "commit"
+        changed.setdefault(line, commit)
+    head = "".join(git("rev-parse", "HEAD"))
+
+    def age(entry: dict[str, str]) -> tuple[int, str]:
+        name = str(Path(entry["file"]).relative_to(ROOT))
+        return changed.get(name, -1), hashlib.sha256((head + name).encode()).hexdigest()
+
+    return sorted(entries, key=age)
+
+
 def check(entry: dict[str, str], build: Path, version: bytes) -> bool:
-    """Runs clang-tidy on one file unless its stamp says that it passed; prints what it finds."""
+    """Runs clang-tidy on one file and stamps it where it passes; prints what it finds."""
     source = Path(entry["file"])
-    stamp = build / "clang-tidy" / (str(source.relative_to(ROOT)).replace("/", "_") + ".passed")
-    hashed = fingerprint(entry, version)
-    if stamp.is_file() and stamp.read_text() == hashed:
-        return True
     # The compiler is g++: its options that clang lacks, and its library's own warnings, are noise.
     extra = ["--extra-arg=-Wno-unknown-warning-option", "--extra-arg=-Wno-deprecated-declarations"]
     result = subprocess.run(
@@ -59,8 +95,9 @@ def check(entry: dict[str, str], build: Path, version: bytes) -> bool:
     if result.returncode != 0:
         print(result.stdout, result.stderr if not result.stdout else "", sep="", flush=True)
         return False
+    stamp = stamp_of(entry, build)
     stamp.parent.mkdir(exist_ok=True)
-    stamp.write_text(hashed)
+    stamp.write_text(fingerprint(entry, version))
     return True
 
 
@@ -78,8 +115,12 @@ def main() -> int:
         or Path(entry["file"]).is_relative_to(ROOT / "apps")
     ]
     version = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
+    waiting = newest_first([one for one in entries if not has_passed(one, build, version)])
+    looked_at = waiting[: int(sys.argv[2]) or None] if len(sys.argv) > 2 else waiting
+    if len(looked_at) < len(waiting):
+        print(f"clang-tidy: {len(looked_at)} of {len(waiting)} files that changed", flush=True)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        passed = list(pool.map(lambda entry: check(entry, build, version), entries))
+        passed = list(pool.map(lambda entry: check(entry, build, version), looked_at))
     if not all(passed):
         print(f"clang-tidy: {passed.count(False)} of {len(passed)} files", file=sys.stderr)
     return 0 if all(passed) else 1
