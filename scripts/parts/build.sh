@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Configures and builds a preset of CMakePresets.json with the tools of .venv.
+# Configures and builds the presets of CMakePresets.json with the tools of .venv.
 # shellcheck shell=bash
 
-# build_preset PRESET FOLDER [CMAKE OPTION]...: FOLDER is the preset's build folder. A checkout that
+# configure PRESET FOLDER [CMAKE OPTION]...: FOLDER is the preset's build folder. A checkout that
 # was moved or copied has a cache that speaks of another place: it starts afresh.
-build_preset() {
-  local preset=$1 folder=$2 fresh=() quiet=()
+configure() {
+  local preset=$1 folder=$2 fresh=()
   shift 2
   if [[ -f $folder/CMakeCache.txt ]] &&
     ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$(pwd -P)" "$folder/CMakeCache.txt"; then
@@ -13,11 +13,30 @@ build_preset() {
   fi
   say "building $folder ($preset)"
   quietly "cmake" cmake --preset "$preset" "${fresh[@]}" "$@"
+}
+
+# configure_with_python PRESET FOLDER: for .venv's Python and the pybind11 there.
+configure_with_python() {
+  configure "$@" -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
+    -Dpybind11_DIR="$(.venv/bin/python -m pybind11 --cmakedir)"
+}
+
+# build FOLDER [TARGET]...: these targets, or everything.
+build() {
+  local folder=$1 targets=() quiet=()
+  shift
+  if (($# > 0)); then targets=(--target "$@"); fi
   if [[ ! -t 1 ]]; then quiet=(-- --quiet); fi # a progress line only where it can be overwritten
-  cmake --build "$folder" "${quiet[@]}" || die "the build in $folder failed"
+  cmake --build "$folder" "${targets[@]}" "${quiet[@]}" || die "the build in $folder failed"
 }
 
 build_dev() {
-  build_preset dev build -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
-    -Dpybind11_DIR="$(.venv/bin/python -m pybind11 --cmakedir)"
+  configure_with_python dev build
+  build build
+}
+
+# The apps and the Python module alone. A build folder that has the tests keeps them for later.
+build_demo() {
+  configure_with_python demo build
+  build build sepcal-pitot sepcal-mag _core
 }

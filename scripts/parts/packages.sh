@@ -2,24 +2,24 @@
 # Debian packages: asks dpkg what is missing and installs no more than that.
 # shellcheck shell=bash
 
-# Prints the names in FILE (one a line, # comments) that dpkg does not know as installed.
+# Prints the names in FILEs (one a line, # comments) that dpkg does not know as installed.
 missing_packages() {
   local name
-  while read -r name _; do
+  cat "$@" | while read -r name _; do
     case $name in '' | '#'*) continue ;; esac
     [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) == installed ]] ||
       printf '%s\n' "$name"
-  done <"$1"
+  done
 }
 
-# install_packages FILE: root, or someone whom sudo knows; else stops and says what to type.
+# install_packages FILE...: root, or someone whom sudo knows; else stops and says what to type.
 install_packages() {
   local missing as_root=()
   if ! command -v dpkg-query >/dev/null; then
-    say "not a Debian system: taking the packages in ${1#"$PWD"/} for granted"
+    say "not a Debian system: taking the packages in $* for granted"
     return
   fi
-  mapfile -t missing < <(missing_packages "$1")
+  mapfile -t missing < <(missing_packages "$@")
   if ((${#missing[@]} == 0)); then return; fi
 
   if ((EUID != 0)); then

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The virtual environment .venv: Python and the tools of scripts/requirements.txt, for the tests, the
-# pictures and the linters. The stamp inside it tells whose it is and what it was made for.
+# The virtual environment .venv: Python and the packages of scripts/requirements*.txt. The stamp inside
+# it tells whose it is and what it was made for.
 # shellcheck shell=bash
 
 stamp=.venv/made-by-sepcal-setup
@@ -33,22 +33,42 @@ choose_python() {
     "SEPCAL_PYTHON=/path/to/python3 names one"
 }
 
-# Makes .venv, or makes it anew where the requirements, the Python or the checkout's place changed.
-make_venv() {
-  local python wanted requirements=$1
+# venv_for PYTHON FILE...: what the stamp says of a .venv for these requirements, here.
+venv_for() {
+  local python=$1
+  shift
+  { cat "$@" && "$python" -VV && pwd -P; } | sha256sum
+}
+
+# True where .venv is there and its stamp is $1.
+venv_is() { [[ -x .venv/bin/python && -f $stamp && $(<"$stamp") == "$1" ]]; }
+
+# What the demo needs; a .venv that has the tests' packages too will do.
+make_small_venv() {
+  local python
   python=$(choose_python)
-  wanted=$({ cat "$requirements" && "$python" -VV && pwd -P; } | sha256sum)
-  if [[ -x .venv/bin/python && -f $stamp && $(<"$stamp") == "$wanted" ]]; then return; fi
+  if venv_is "$(venv_for "$python" scripts/requirements{,-test}.txt)"; then return; fi
+  make_venv scripts/requirements.txt
+}
+
+# make_venv FILE...: makes .venv with the requirements in these files, or makes it anew where they,
+# the Python or the checkout's place changed.
+make_venv() {
+  local python wanted file requirements=()
+  python=$(choose_python)
+  wanted=$(venv_for "$python" "$@")
+  if venv_is "$wanted"; then return; fi
+  for file; do requirements+=(--requirement "$file"); done
 
   if [[ -d .venv && ! -f $stamp ]]; then
     die "$PWD/.venv is there and not ours; move it away and run this again"
   fi
-  say "making .venv with $python (packages of $requirements)"
+  say "making .venv with $python (packages of $*)"
   rm -rf .venv
   mkdir .venv
   echo unfinished >"$stamp"
   quietly "python -m venv" "$python" -m venv .venv
   quietly "pip install" .venv/bin/python -m pip install --quiet --disable-pip-version-check \
-    --requirement "$requirements"
+    "${requirements[@]}"
   printf '%s\n' "$wanted" >"$stamp"
 }

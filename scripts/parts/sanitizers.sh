@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# How the sanitizers of build-asan and build-fuzz look and report. addr2line, of build-essential,
+# How the sanitizers of build-sanitizers look and report. addr2line, of build-essential,
 # names the functions in their reports; clang's own symbolizer would be a package more.
 # shellcheck shell=bash
 

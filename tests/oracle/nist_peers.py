@@ -7,21 +7,20 @@ times and stops at tolerances of 1e-15, Ceres at 1e-16.
 
 import subprocess
 from dataclasses import dataclass
-from pathlib import Path
 
 import lmfit
 import numpy as np
 from scipy.linalg import qr, solve_triangular
 from scipy.optimize import least_squares
 
-import sepcal
+from apps import APPS
 from oracle.model import Array
 from oracle.nist import Digits, NistSet, count_digits
 
 PEERS = ("SciPy lm", "SciPy trf", "lmfit", "Ceres")
 EVALUATIONS = 20_000
 TIGHT = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15}
-CERES = Path(sepcal._core.__file__).parents[2] / "tests" / "nist_ceres"
+CERES = APPS.parent / "tests" / "nist_ceres"
 
 
 @dataclass(frozen=True)

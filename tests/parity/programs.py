@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The programs of the build folder that the Python module comes from, and files for them."""
+"""The programs of the apps' build folder, and files for them."""
 
 import subprocess
 from pathlib import Path
 
 import sepcal
+from apps import APPS
 
-BUILD = Path(sepcal._core.__file__).parents[2]
+BUILD = APPS.parent
 
 
 def run(*command: str | Path) -> str:

@@ -162,6 +162,7 @@ def test_ceres_stays_silent(pitot: Bench):
     assert "trust_region" not in fitted.err
 
 
+@pytest.mark.long
 def test_a_million_rows(pitot: Bench):
     """370 MB of text are read, fitted and checked against the truth, well within a minute."""
     million = 1_000_000
