@@ -42,7 +42,7 @@ def dask(workers: int) -> Iterator[Executor]:
 
     with (
         LocalCluster(  # type: ignore[no-untyped-call]
-            processes=True, n_workers=workers, threads_per_worker=1, dashboard_address=None
+            processes=True, n_workers=workers, threads_per_worker=1, dashboard_address=":0"
         ) as cluster,
         Client(cluster) as client,  # type: ignore[no-untyped-call]
     ):

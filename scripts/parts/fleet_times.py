@@ -83,7 +83,7 @@ def main() -> None:
                     processes=True,
                     n_workers=workers,
                     threads_per_worker=1,
-                    dashboard_address=None,
+                    dashboard_address=":0",
                     silence_logs=logging.ERROR,
                 ) as cluster,
                 Client(cluster) as client,  # type: ignore[no-untyped-call]

@@ -23,7 +23,7 @@ def client():
     """Two workers, each a process of one thread, that a nanny starts anew when they die."""
     with (
         LocalCluster(
-            processes=True, n_workers=2, threads_per_worker=1, dashboard_address=None
+            processes=True, n_workers=2, threads_per_worker=1, dashboard_address=":0"
         ) as cluster,
         Client(cluster) as made,
     ):

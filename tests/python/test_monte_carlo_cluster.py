@@ -26,7 +26,7 @@ from trial_functions import (
 def start(workers):
     """Workers that are processes of one thread; a nanny starts them anew when they die."""
     return LocalCluster(
-        processes=True, n_workers=workers, threads_per_worker=1, dashboard_address=None
+        processes=True, n_workers=workers, threads_per_worker=1, dashboard_address=":0"
     )
 
 
