@@ -84,7 +84,7 @@ class Pitot final : public Instrument {
         "{}: {}, so this is a Pitot-static tube: --k-alpha, --k-beta and --lever-arm are for a "
         "five-hole probe; leave them out, or log dpa_pa and dpb_pa{} ({})",
         flight.name(), probe_.empty() ? "there is no column dpa_*" : "--probe is pitot-static",
-        probe_.empty() ? files::ask_for_near_miss("dpa", UnitKind::pressure, headers) : "",
+        probe_.empty() ? files::ask_for_near_miss("dpa", files::UnitKind::pressure, headers) : "",
         flight.list_columns()));
   }
 

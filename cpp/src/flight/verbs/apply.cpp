@@ -41,8 +41,10 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   ProbeReadings readings = probe.read(flight, calibration.options.drop_invalid);
   const auto columns = correct_with_effects(calibration, flight, readings);
 
-  Applied applied{
-      .output = output, .rows = flight.rows(), .headers = probe.corrected_headers(), .notes = readings.notes};
+  Applied applied{.output = output,
+                  .rows = flight.rows(),
+                  .headers = probe.corrected_headers(),
+                  .notes = readings.notes};
   for (const std::string& header : applied.headers) {
     if (flight.find(header) == nullptr) continue;
     throw Error(fmt::format(
