@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import dask
 import joblib
 import loky
 from distributed import Client, LocalCluster
@@ -109,7 +110,10 @@ def main() -> None:
     pools, reusable = partial(ProcessPoolExecutor, 2), partial(loky.get_reusable_executor, 2)
     print(row("sepcal on ProcessPoolExecutor", partial(in_sepcal, pools), runs))
     print(row("sepcal on loky", partial(in_sepcal, reusable), runs))
+    # The cluster waits for a nanny that takes its time; it would else do without the worker.
+    patient = {"distributed.deploy.lost-worker-timeout": "10 minutes"}
     with (
+        dask.config.set(patient),
         LocalCluster(  # type: ignore[no-untyped-call]
             n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
         ) as cluster,
@@ -117,10 +121,10 @@ def main() -> None:
     ):
         for patience in (3, 0):
             cluster.scheduler.allowed_failures = patience
-            dask = partial(client.get_executor, pure=False, retries=3)
+            make = partial(client.get_executor, pure=False, retries=3)
             name = f"Dask, retries=3, allowed-failures {patience}"
-            print(row(name, partial(alone, dask()), runs))
-            print(row(f"sepcal on {name}", partial(in_sepcal, dask), runs))
+            print(row(name, partial(alone, make()), runs))
+            print(row(f"sepcal on {name}", partial(in_sepcal, make), runs))
 
 
 if __name__ == "__main__":
