@@ -40,7 +40,11 @@ def assert_same(bench: Bench, page: object, *arguments: str) -> None:
 def test_a_fit(inside: Bench):
     flight = sepcal.read_csv("flight.csv")
     is_pitot = inside.app == "sepcal-pitot"
-    probe = sepcal.FiveHoleProbe(4.5, 4.5, (0.35, 0, -0.02)) if is_pitot else sepcal.Magnetometer()
+    probe = (
+        sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0, -0.02))
+        if is_pitot
+        else sepcal.Magnetometer()
+    )
     fitted = sepcal.fit(probe, flight)
     assert fitted.success
     assert_same(inside, fitted, "fit", "flight.csv", *inside.options)
@@ -61,9 +65,9 @@ def test_a_tube(pitot: Bench, monkeypatch: pytest.MonkeyPatch):
     simulated = ("simulate", "--probe", "pitot-static", "-o", "tube.csv", "--rows", "300")
     assert pitot.run(*simulated).code == 0
     fitted = sepcal.fit(
-        sepcal.PitotStatic(), sepcal.read_csv("tube.csv"), knowledge={"w_n": (1.0, 5.0)}
+        sepcal.PitotStatic(), sepcal.read_csv("tube.csv"), prior={"w_n": (1.0, 5.0)}
     )
-    assert_same(pitot, fitted, "fit", "tube.csv", "--know", "w_n=1:5")
+    assert_same(pitot, fitted, "fit", "tube.csv", "--prior", "w_n=1:5")
 
 
 def test_a_field_of_known_strength(magnetometer: Bench, monkeypatch: pytest.MonkeyPatch):
@@ -95,7 +99,9 @@ def test_the_way_on(pitot: Bench, monkeypatch: pytest.MonkeyPatch):
     assert_same(pitot, found, "diagnose", "sheared.csv", "s.json")
     best = found.effects[0].name
     assert f"next: sepcal-pitot add sheared.csv s.json '{best}' -o NEXT.json" in str(found)
-    fitted = sepcal.fit(sepcal.FiveHoleProbe(4.5, 4.5, (0.35, 0, -0.02)), flight)
+    fitted = sepcal.fit(
+        sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0, -0.02)), flight
+    )
     assert f"add sheared.csv BASE.json '{best}'" in str(fitted.diagnose())
 
 

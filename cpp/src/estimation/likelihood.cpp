@@ -31,7 +31,7 @@ StageTwo Likelihood::begin(const StageOne& start, SecondStage method) const {
   if (problem_.noise().size() > 0) {
     at.noise = problem_.noise();
   } else {
-    at.noise = raise_to_floor(loss_ ? scales(at) : start.noise);
+    at.noise = raise_to_floor(loss_ ? scales(at, *loss_) : start.noise);
   }
   at.factors = sweep_.tangent_factors(at.x.head(n_1()), at.x.tail(n_2()));
   at.scale = whiten(at).all_finite()
@@ -87,7 +87,8 @@ std::optional<StageTwo> Likelihood::refine_downhill(const StageTwo& at) const {
 }
 
 VectorXd Likelihood::noise_at(const StageTwo& at) const {
-  return raise_to_floor(loss_ ? scales(at) : VectorXd((squares(at.factors) / rows()).cwiseSqrt()));
+  return raise_to_floor(loss_ ? scales(at, *loss_)
+                              : VectorXd((squares(at.factors) / rows()).cwiseSqrt()));
 }
 
 bool Likelihood::leaves_open(const StageTwo& at) const {
@@ -146,10 +147,10 @@ StageTwo Likelihood::fall_back_to_joint(StageTwo at, Index bounded) const {
   return at;
 }
 
-VectorXd Likelihood::scales(const StageTwo& at) const {
+VectorXd Likelihood::scales(const StageTwo& at, const model::RobustLoss& loss) const {
   const MatrixXd residuals = sweep_.residuals(at.x.head(n_1()), at.x.tail(n_2()));
   VectorXd noise(residuals.cols());
-  for (Index j = 0; j < noise.size(); ++j) noise[j] = loss_->scale(residuals.col(j));
+  for (Index j = 0; j < noise.size(); ++j) noise[j] = loss.scale(residuals.col(j));
   return noise;
 }
 

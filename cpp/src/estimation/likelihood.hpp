@@ -66,7 +66,7 @@ class Likelihood {
   StageTwo fall_back_to_joint(StageTwo at, Eigen::Index bounded) const;
 
   /// Each output's noise by the loss's own scale.
-  Eigen::VectorXd scales(const StageTwo& at) const;
+  Eigen::VectorXd scales(const StageTwo& at, const model::RobustLoss& loss) const;
   /// Keeps a noise-free output from sending J to minus infinity.
   Eigen::VectorXd raise_to_floor(Eigen::VectorXd noise) const;
 

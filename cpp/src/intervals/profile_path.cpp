@@ -82,7 +82,7 @@ std::optional<estimation::StageTwo> find_minimum(const estimation::Problem& prob
   double before = infinity;
   double gain = infinity;
   for (int round = 0; round < most_rounds; ++round) {
-    const estimation::StageTwo now =
+    estimation::StageTwo now =
         estimation::run_stage_two(problem, measurements, start, {attempt}, pool);
     if (!std::isfinite(now.cost)) return {};
     if (now.converged() || std::abs(now.cost - before) < settled) return now;
