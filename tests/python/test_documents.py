@@ -121,7 +121,9 @@ def test_documents_are_plain_text_without_emojis(document):
 
 
 def test_every_option_in_the_documents_is_in_the_help(options_in_help):
-    text = "\n".join(document.read_text() for document in DOCUMENTS)
+    """The changelog may also name options of before."""
+    today = [document for document in DOCUMENTS if document.name != "CHANGELOG.md"]
+    text = "\n".join(document.read_text() for document in today)
     said = set(re.findall(r"`(?:(?:fit|diagnose|intervals) )?(--[a-z][a-z-]*)", text))
     for block in TYPED:
         for line in block.splitlines():
