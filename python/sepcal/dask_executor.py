@@ -8,7 +8,6 @@ TypeError. Here the same client submits, and whatever comes of it ends the futur
 
 from __future__ import annotations
 
-from asyncio import run_coroutine_threadsafe
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from typing import Any
@@ -36,12 +35,24 @@ class _DaskExecutor(Executor):
         if getattr(self._client, "status", "") in ("closing", "closed"):
             raise RuntimeError("the client was closed")
         remote = self._client.submit(function, *arguments, **self._options)
+        future: Future[Any] = Future()
 
-        async def fetch() -> Any:  # noqa: ANN401
-            return await self._client.gather(remote, asynchronous=True)
+        async def fetch() -> None:
+            try:
+                result = await self._client.gather(remote, asynchronous=True)
+            except BaseException as error:
+                if future.set_running_or_notify_cancel():
+                    future.set_exception(error)
+                return
+            if future.set_running_or_notify_cancel():
+                future.set_result(result)
 
-        future = run_coroutine_threadsafe(fetch(), self._client.loop.asyncio_loop)
-        future.add_done_callback(lambda done: remote.cancel() if done.cancelled() else None)
+        def cancel(done: Future[Any]) -> None:
+            if done.cancelled():
+                remote.cancel()
+
+        future.add_done_callback(cancel)
+        self._client.loop.add_callback(fetch)
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
