@@ -12,9 +12,7 @@
 #include "sepcal/flight/csv.hpp"
 #include "simulation/simulated_flight.hpp"
 
-namespace sepcal {
-
-namespace simulation {
+namespace sepcal::simulation {
 namespace {
 
 /// "wind[time]" to "wind" and "time"; a name without brackets has no driver.
@@ -197,5 +195,4 @@ std::map<std::string, double> without_effects(const std::map<std::string, double
   return own;
 }
 
-}  // namespace simulation
-}  // namespace sepcal
+}  // namespace sepcal::simulation
