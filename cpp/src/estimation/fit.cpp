@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "base/sentences.hpp"
 #include "estimation/covariance.hpp"
 #include "estimation/likelihood.hpp"
 #include "estimation/model_trial.hpp"
@@ -111,11 +113,11 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   result.iterations = two.iterations;
   result.noise_iterations = two.noise_iterations;
   result.rows = measurements.rows();
-  for (const std::string& sentence : two.sentences) result.message += sentence + "; ";
-  result.message += result.identifiability.message();
-  if (!result.message.empty() && !result.message.ends_with("; ")) result.message += "; ";
-  result.message += judge_priors(result.parameters, problem.options());
-  if (result.message.ends_with("; ")) result.message.resize(result.message.size() - 2);
+  std::vector<std::string> sentences = two.sentences;
+  sentences.push_back(result.identifiability.message());
+  std::ranges::move(judge_priors(result.parameters, problem.options()),
+                    std::back_inserter(sentences));
+  result.message = base::join_sentences(sentences);
   result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
                   : two.converged()                            ? FitStatus::converged
                                                                : FitStatus::not_converged;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/sentences.hpp"
 #include "base/short_number.hpp"
 #include "sepcal/quantity.hpp"
 
@@ -259,12 +260,12 @@ bool leaves_open(const MatrixXd& R, const VectorXd& scale) {
 }
 
 std::string Identifiability::message() const {
-  std::string text;
-  const std::size_t spoken = within(most_sentences, sentences.size());
-  for (std::size_t i = 0; i < spoken; ++i) text += (i == 0 ? "" : "; ") + sentences[i];
-  if (spoken == sentences.size()) return text;
-  return text + "; and " + std::to_string(sentences.size() - spoken) +
-         " more (see unobservable and weak)";
+  std::vector<std::string> spoken = sentences;
+  spoken.resize(within(most_sentences, sentences.size()));
+  if (const std::size_t others = sentences.size() - spoken.size()) {
+    spoken.push_back("and " + std::to_string(others) + " more (see unobservable and weak)");
+  }
+  return base::join_sentences(spoken);
 }
 
 }  // namespace sepcal

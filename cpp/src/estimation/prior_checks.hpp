@@ -9,8 +9,8 @@
 
 namespace sepcal::estimation {
 
-/// One sentence for each parameter that came out far from its prior, or less sure than it; they
-/// end in "; ".
-std::string judge_priors(const std::vector<Parameter>& parameters, const FitOptions& options);
+/// One sentence for each parameter that came out far from its prior, or less sure than it.
+std::vector<std::string> judge_priors(const std::vector<Parameter>& parameters,
+                                      const FitOptions& options);
 
 }  // namespace sepcal::estimation

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/sentences.hpp"
 #include "estimation/covariance.hpp"
 #include "estimation/plausibility.hpp"
 #include "intervals/profile_path.hpp"
@@ -239,16 +240,6 @@ std::string tell_of_lower(const ProfilePath& lower, const ProfilePath& upper,
   return message.str();
 }
 
-/// What there is to say about an interval, in one line.
-std::string join(const std::vector<std::string>& messages) {
-  std::string line;
-  for (const std::string& message : messages) {
-    if (message.empty()) continue;
-    line += (line.empty() ? "" : "; ") + message;
-  }
-  return line;
-}
-
 }  // namespace
 
 std::string_view to_string(IntervalEnd end) {
@@ -296,10 +287,11 @@ std::vector<ProfileInterval> profile_intervals(const BlockModel& model, const Re
     interval.profile = {lower.value, upper.value};
     interval.lower_end = lower.kind;
     interval.upper_end = upper.kind;
-    interval.message = profiles.converged()
-                           ? join({lower.message, upper.message,
-                                   tell_of_lower(*paths[2 * i], *paths[2 * i + 1], interval, fit)})
-                           : "the fit did not converge, so that there is no profile about it";
+    interval.message =
+        profiles.converged()
+            ? base::join_sentences({lower.message, upper.message,
+                                    tell_of_lower(*paths[2 * i], *paths[2 * i + 1], interval, fit)})
+            : "the fit did not converge, so that there is no profile about it";
     intervals.push_back(std::move(interval));
   }
   return intervals;

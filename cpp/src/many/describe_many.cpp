@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "base/sentences.hpp"
 #include "estimation/covariance.hpp"
 #include "estimation/prior_checks.hpp"
 #include "many/departure.hpp"
@@ -62,11 +64,11 @@ class Description {
     }
     describe_departures();
     describe_noise();
-    for (const std::string& sentence : stage_.sentences) result_.message += sentence + "; ";
-    judge();
-    if (!result_.message.empty() && !result_.message.ends_with("; ")) result_.message += "; ";
-    result_.message += estimation::judge_priors(result_.shared, joint_.problem.options());
-    if (result_.message.ends_with("; ")) result_.message.resize(result_.message.size() - 2);
+    std::vector<std::string> sentences = stage_.sentences;
+    std::ranges::move(judge(), std::back_inserter(sentences));
+    std::ranges::move(estimation::judge_priors(result_.shared, joint_.problem.options()),
+                      std::back_inserter(sentences));
+    result_.message = base::join_sentences(sentences);
     result_.iterations = stage_.iterations;
     result_.noise_iterations = stage_.noise_iterations;
     result_.passes = objective_.passes();
@@ -152,9 +154,10 @@ class Description {
     result_.cost = 0.5 * objective_.square() + joint_.rows * stage_.noise.array().log().sum();
   }
 
-  /// What all flights together leave open: of the shared parameters, then of each flight's own.
+  /// What all flights together leave open, in sentences: of the shared parameters, then of each
+  /// flight's own.
   /// With the columns of parameters at a bound: a bound may hold what the flights leave open.
-  void judge() {
+  std::vector<std::string> judge() {
     const Eliminated all = eliminate_own(objective_);
     const VectorXd scale = plausible_lengths(joint_, objective_);
     const double factor = std::isnan(covariance_.ratio) ? 1.0 : std::sqrt(covariance_.ratio);
@@ -165,7 +168,7 @@ class Description {
     const std::vector<std::string> shared(names.begin() + joint_.layout.own, names.end());
     result_.identifiability =
         identify(all.shared, shared, scale.tail(joint_.layout.shared), factor);
-    result_.message += result_.identifiability.message();
+    std::vector<std::string> sentences{result_.identifiability.message()};
     bool open = !result_.identifiability.unobservable.empty();
     std::vector<std::string> open_flights;
     std::string first;
@@ -179,16 +182,16 @@ class Description {
     }
     if (!open_flights.empty()) {
       open = true;
-      result_.message += (result_.message.empty() || result_.message.ends_with("; ") ? "" : "; ") +
-                         ("flight '" + open_flights.front() + "': " + first);
+      sentences.push_back("flight '" + open_flights.front() + "': " + first);
       if (open_flights.size() > 1) {
-        result_.message +=
-            "; the same or more in " + std::to_string(open_flights.size() - 1) + " other flights";
+        sentences.push_back("the same or more in " + std::to_string(open_flights.size() - 1) +
+                            " other flights");
       }
     }
     result_.status = open                 ? FitStatus::not_identifiable
                      : stage_.converged() ? FitStatus::converged
                                           : FitStatus::not_converged;
+    return sentences;
   }
 
   const BlockModel& model_;

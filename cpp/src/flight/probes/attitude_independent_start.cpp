@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/sentences.hpp"
 #include "flight/files/option_spelling.hpp"
 #include "flight/probes/ellipsoid.hpp"
 #include "sepcal/error.hpp"
@@ -164,7 +165,7 @@ std::vector<std::string> too_loose(const Fit& fit, double field_strength) {
 void judge_attitude_independent(Fit& fit, double field_strength) {
   const auto say = [&](const std::string& sentence) {
     fit.identifiability.sentences.push_back(sentence);
-    fit.message += (fit.message.empty() ? "" : "; ") + sentence;
+    fit.message = base::join_sentences({fit.message, sentence});
   };
   std::vector<std::string> stopped;
   for (const Quantity& parameter : parameters) {

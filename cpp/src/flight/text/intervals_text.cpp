@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/sentences.hpp"
 #include "flight/text/status_text.hpp"
 #include "sepcal/flight/intervals.hpp"
 
@@ -28,13 +29,11 @@ std::string_view remark_on(IntervalEnd end) {
 }
 
 std::string remark_on(const ProfileInterval& interval) {
-  std::string text;
-  const auto add = [&](std::string_view side, std::string_view what) {
-    if (!what.empty()) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", side, what);
+  const auto remark = [](std::string_view side, std::string_view what) {
+    return what.empty() ? "" : fmt::format("{}: {}", side, what);
   };
-  add("lower", remark_on(interval.lower_end));
-  add("upper", remark_on(interval.upper_end));
-  return text;
+  return base::join_sentences({remark("lower", remark_on(interval.lower_end)),
+                               remark("upper", remark_on(interval.upper_end))});
 }
 
 }  // namespace

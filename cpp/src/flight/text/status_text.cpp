@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/sentences.hpp"
 #include "flight/verbs/at_bound.hpp"
 
 namespace sepcal::text {
@@ -45,13 +46,7 @@ std::string shorten(const std::string& sentence) {
 }  // namespace
 
 std::vector<std::string> sentences(const std::string& message) {
-  constexpr std::string_view between = "; ";
-  std::vector<std::string> result;
-  for (std::size_t at = 0; at < message.size();) {
-    const std::size_t end = std::min(message.find(between, at), message.size());
-    result.push_back(message.substr(at, end - at));
-    at = end + between.size();
-  }
+  std::vector<std::string> result = base::split_sentences(message);
   std::ranges::stable_sort(result, {}, rank_of);
   return result;
 }

@@ -10,6 +10,7 @@
 #include <ranges>
 
 #include "base/parameter_values.hpp"
+#include "base/sentences.hpp"
 #include "estimation/step_times.hpp"
 #include "flight/files/option_spelling.hpp"
 #include "flight/verbs/held_options.hpp"
@@ -89,9 +90,9 @@ void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
     if (settled || hopeless) break;
     if (round + 1 == most_rounds) {
       calibration.fit.status = FitStatus::not_converged;
-      calibration.fit.message +=
-          fmt::format("{}the noise did not settle within {} fits",
-                      calibration.fit.message.empty() ? "" : "; ", most_rounds);
+      calibration.fit.message = base::join_sentences(
+          {calibration.fit.message,
+           fmt::format("the noise did not settle within {} fits", most_rounds)});
       break;
     }
     if (!set_noise(next)) break;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sentences become a message and a message its sentences.
+#include "base/sentences.hpp"
+
+#include <doctest/doctest.h>
+
+using sepcal::base::join_sentences;
+using sepcal::base::split_sentences;
+using Sentences = std::vector<std::string>;
+
+TEST_CASE("a message is its sentences, one behind the other") {
+  CHECK(join_sentences({}).empty());
+  CHECK(join_sentences({"a"}) == "a");
+  CHECK(join_sentences({"a", "b: c", "d"}) == "a; b: c; d");
+  CHECK(join_sentences({"", "a", "", "b", ""}) == "a; b");
+  CHECK(join_sentences({join_sentences({"a", "b"}), "c"}) == "a; b; c");
+}
+
+TEST_CASE("a message is cut where its sentences were joined") {
+  CHECK(split_sentences("").empty());
+  for (const Sentences& sentences : {Sentences{"a"}, Sentences{"a", "b: c", "d"}}) {
+    CHECK(split_sentences(join_sentences(sentences)) == sentences);
+  }
+}
