@@ -3,7 +3,9 @@
 // one flight and for that of many.
 #pragma once
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "sepcal/options.hpp"
 
@@ -36,6 +38,19 @@ Point alternate(Stage& stage, Point at, const FitOptions& options) {
   if (!at.settled) stage.update_noise(at);
   at.noise_iterations += updates;
   return at;
+}
+
+/// Why the point that alternate() ended at did not converge, if it did not, in sentences; `where`
+/// to look, behind what is looked for: " in one of the flights", or nothing.
+template <class Point>
+std::vector<std::string> explain(const Point& end, const FitOptions& options,
+                                 const std::string& where = "") {
+  if (!end.refined) {
+    return {"the minimisation did not converge: no minimum was found near where it ended",
+            "look for a wrong unit or sign" + where + ", or bounds that are too wide"};
+  }
+  if (end.settled) return {};
+  return {"R did not settle within " + std::to_string(options.noise_iterations) + " iterations"};
 }
 
 }  // namespace sepcal::estimation

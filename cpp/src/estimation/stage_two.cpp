@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/stage_two.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -48,18 +50,6 @@ struct Turns {
   }
 };
 
-/// Why it did not converge, if it did not.
-void explain(StageTwo& end, const FitOptions& options) {
-  if (!end.refined) {
-    end.sentences.emplace_back(
-        "the minimisation did not converge: no minimum was found near where it ended");
-    end.sentences.emplace_back("look for a wrong unit or sign, or bounds that are too wide");
-  } else if (!end.settled) {
-    end.sentences.push_back("R did not settle within " + std::to_string(options.noise_iterations) +
-                            " iterations");
-  }
-}
-
 /// Step 5 in one way.
 StageTwo fit_once(const Likelihood& likelihood, const StageOne& start, const Attempt& attempt) {
   const FitOptions& options = likelihood.problem().options();
@@ -76,7 +66,7 @@ StageTwo fit_once(const Likelihood& likelihood, const StageOne& start, const Att
     at = alternate(turns, std::move(at), options);
   }
   at.cost = likelihood.cost(at);
-  explain(at, options);
+  std::ranges::move(explain(at, options), std::back_inserter(at.sentences));
   return at;
 }
 

@@ -117,16 +117,6 @@ class JointLikelihood {
   bool held_ = false;
 };
 
-/// Why it did not converge, if it did not.
-std::vector<std::string> explain(const JointStage& end, const FitOptions& options) {
-  if (!end.refined) {
-    return {"the minimisation did not converge: no minimum was found near where it ended",
-            "look for a wrong unit or sign in one of the flights, or bounds that are too wide"};
-  }
-  if (end.settled) return {};
-  return {"R did not settle within " + std::to_string(options.noise_iterations) + " iterations"};
-}
-
 }  // namespace
 
 std::vector<estimation::Prior> JointProblem::prior() const {
@@ -172,7 +162,7 @@ JointStage run_joint_stage(const JointProblem& joint, ManyObjective& objective) 
   JointLikelihood likelihood(joint, objective);
   JointStage end = estimation::alternate(likelihood, likelihood.begin(), options);
   if (likelihood.release()) end = estimation::alternate(likelihood, std::move(end), options);
-  end.sentences = explain(end, options);
+  end.sentences = estimation::explain(end, options, " in one of the flights");
   objective.linearise(end.x);
   return end;
 }
