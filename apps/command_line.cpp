@@ -9,11 +9,10 @@
 #include <new>
 
 #include "fit_arguments.hpp"
-#include "flight/files/option_spelling.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/option_error.hpp"
 #include "sepcal/solver_log.hpp"
 #include "simulation_arguments.hpp"
 #include "verbs.hpp"
@@ -98,12 +97,18 @@ void add_applying_options(CLI::App& apply, Arguments& arguments) {
       ->required();
 }
 
+/// An option as it is typed here: "--drop-invalid".
+std::string as_typed(const std::string& name) {
+  std::string option = "--" + name;
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
 }  // namespace
 
 int run(Instrument& instrument, int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, not an end
   silence_solver_log();
-  files::spell_options_for_command_line();
   CLI::App cli(instrument.summary(), instrument.app());
   cli.require_subcommand(1);
   cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
@@ -179,6 +184,10 @@ int run(Instrument& instrument, int argc, char** argv) {
     return refuse_usage(instrument, cli, error);
   }
 
+  const auto refuse = [&](const std::string& what) {
+    fmt::print(stderr, "{}: {}\n", instrument.app(), what);
+    return bad_usage;
+  };
   try {
     const Verbs verbs(instrument, arguments);
     if (fit.parsed()) return verbs.fit(fit_arguments.resolve());
@@ -190,12 +199,11 @@ int run(Instrument& instrument, int argc, char** argv) {
     if (diagnose.parsed()) return verbs.diagnose();
     return verbs.effects();
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "{}: memory ran out; take fewer --samples or --rows, or a shorter log\n",
-               instrument.app());
-    return bad_usage;
+    return refuse("memory ran out; take fewer --samples or --rows, or a shorter log");
+  } catch (const OptionError& error) {
+    return refuse(error.spelled(as_typed));
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", instrument.app(), error.what());
-    return bad_usage;
+    return refuse(error.what());
   }
 }
 

@@ -218,3 +218,18 @@ TEST_CASE("a flight that isn't the probe's is refused by its name") {
   const Flight other = make_flight(fly("magnetometer", {}, {.noise = 0.1}));
   check_refused([&] { diagnose(base, other); }, {"flight: column 'vn_mps' is missing"});
 }
+
+TEST_CASE("errors name the flight once, whatever it is called") {
+  const SimulatedFlight simulated = fly("five-hole", {}, {.noise = 0.1});
+  const Calibration base = calibrate_with("five-hole", simulated, {});
+  Flight other("a\tlog");
+  other.add("time_s", {0.0, 1.0});
+  try {
+    diagnose(base, other);
+    FAIL_CHECK("nothing was thrown");
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    CAPTURE(what);
+    CHECK(what.starts_with("a\\tlog: column '"));
+  }
+}

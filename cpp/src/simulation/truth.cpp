@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "flight/files/json_values.hpp"
-#include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 namespace {
@@ -115,7 +115,7 @@ void read_truth(std::string_view json, std::string_view model, Outputs outputs,
                 ": a value is not of the kind that it should be; see `simulate --truth` of "
                 "a file that isn't there for an example");
   } catch (const Error& error) {
-    throw Error(truth.source + ": " + error.what());
+    throw_within(truth.source + ": ", error);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -53,7 +53,7 @@ EffectiveFlight with_effects(const Probe& probe, const Flight& flight, const Pro
     result.prepared.notes = prepared.notes;
     return result;
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", flight.name(), error.what()));
+    throw_within(flight.name() + ": ", error);
   }
 }
 

@@ -11,8 +11,8 @@
 #include "flight/json/options_json.hpp"
 #include "flight/json/output_values.hpp"
 #include "flight/json/version_1.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -188,16 +188,15 @@ Calibration read(const Json& root) {
 }
 
 Calibration read_or_refuse(Json& root, const std::string& source) {
-  const auto refuse = [&](std::string_view damage) -> Error {
-    return Error(fmt::format("{} is damaged: {}; fit the flight again", source, damage));
-  };
+  const std::string before = source + " is damaged: ";
+  const std::string after = "; fit the flight again";
   try {
     if (root["schema_version"] == 1) convert_version_1(root.at("options"));
     return read(root);
   } catch (const Json::exception&) {
-    throw refuse("a calibration's entries are missing or of another kind");
+    throw Error(before + "a calibration's entries are missing or of another kind" + after);
   } catch (const Error& error) {
-    throw refuse(error.what());
+    throw_within(before, error, after);
   }
 }
 

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "base/sentences.hpp"
-#include "flight/files/option_spelling.hpp"
 #include "flight/probes/ellipsoid.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal::probes {
 namespace {
@@ -87,11 +86,14 @@ void check_size(const FitOptions& options, const Ellipsoid& ellipsoid, double fi
     widest = {std::min(widest.lower, bounds.lower), std::max(widest.upper, bounds.upper)};
   }
   if (scale > 1.0 + widest.lower && scale < 1.0 + widest.upper) return;
-  throw Error(fmt::format(
-      "the readings lie on an ellipsoid of {:.3g} uT mean radius, and {} is {:.4g} uT: a scale of "
-      "{:.3g} is beyond the bounds of lambda; check the unit in the headers and the strength, or "
-      "widen the bounds of lambda_x, lambda_y and lambda_z",
-      ellipsoid.radius(), files::spell_option("field_strength"), field_strength, scale));
+  throw OptionError(
+      {fmt::format("the readings lie on an ellipsoid of {:.3g} uT mean radius, and ",
+                   ellipsoid.radius()),
+       Option{"field_strength"},
+       fmt::format(" is {:.4g} uT: a scale of {:.3g} is beyond the bounds of lambda; check the "
+                   "unit in the headers and the strength, or widen the bounds of lambda_x, "
+                   "lambda_y and lambda_z",
+                   field_strength, scale)});
 }
 
 /// A sphere on the side of the readings where a sphere fits best, of its radius or, where that is

@@ -7,10 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "flight/files/option_spelling.hpp"
 #include "flight/probes/record_builder.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -98,12 +97,15 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   } else if (builder.has({"roll", "pitch", "yaw", "bn", "be", "bd"})) {
     use_logged_field(builder);
   } else {
-    throw Error(fmt::format(
-        "{}: the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, "
-        "pitch_rad, yaw_rad with bn_ut, be_ut, bd_ut or {} N,E,D, or fit with {} alone{}; {}",
-        flight.name(), files::spell_option("field"), files::spell_option("field_strength"),
-        builder.ask_for_near_miss({"hx", "hy", "hz", "roll", "pitch", "yaw", "bn", "be", "bd"}),
-        flight.list_columns()));
+    throw OptionError(
+        {flight.name() +
+             ": the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, pitch_rad, "
+             "yaw_rad with bn_ut, be_ut, bd_ut or ",
+         Option{"field"}, " N,E,D, or fit with ", Option{"field_strength"},
+         " alone" +
+             builder.ask_for_near_miss(
+                 {"hx", "hy", "hz", "roll", "pitch", "yaw", "bn", "be", "bd"}) +
+             "; " + flight.list_columns()});
   }
   builder.keep_valid();
   builder.check_time();

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight/files/option_spelling.hpp"
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/option_error.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -24,8 +23,9 @@ class StrengthOnlyMagnetometer final : public Probe {
   StrengthOnlyMagnetometer(double field_strength, double noise)
       : setup_{field_strength, noise}, model_(setup_) {
     if (!std::isfinite(field_strength) || !(field_strength > 0)) {
-      throw Error(fmt::format("{} is {}; give the field's strength in uT, above zero",
-                              files::spell_option("field_strength"), field_strength));
+      throw OptionError(
+          {Option{"field_strength"},
+           fmt::format(" is {}; give the field's strength in uT, above zero", field_strength)});
     }
     if (!std::isfinite(noise) || noise < 0) {
       throw Error(fmt::format("field_noise is {}; give a standard deviation in uT", noise));

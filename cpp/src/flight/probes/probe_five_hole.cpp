@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight/files/option_spelling.hpp"
 #include "flight/probes/corrected_columns.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/option_error.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -25,11 +24,12 @@ class FiveHole final : public Probe {
       : setup_{k_alpha, k_beta, {lever_arm[0], lever_arm[1], lever_arm[2]}}, model_(setup_) {
     for (const auto& [name, k] : {std::pair{"k_alpha", k_alpha}, std::pair{"k_beta", k_beta}}) {
       if (std::isfinite(k) && k > 0) continue;
-      throw Error(fmt::format("{} is {}; give the ports' sensitivity in 1/rad, above zero",
-                              files::spell_option(name), k));
+      throw OptionError(
+          {Option{name},
+           fmt::format(" is {}; give the ports' sensitivity in 1/rad, above zero", k)});
     }
     if (!setup_.lever_arm.allFinite()) {
-      throw Error(files::spell_option("lever_arm") + " is not finite; give X,Y,Z in metres");
+      throw OptionError({Option{"lever_arm"}, " is not finite; give X,Y,Z in metres"});
     }
   }
 

@@ -10,9 +10,8 @@
 
 #include "flight/files/headers.hpp"
 #include "flight/files/invalid_cells.hpp"
-#include "flight/files/option_spelling.hpp"
 #include "flight/probes/plausible_readings.hpp"
-#include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal::probes {
 
@@ -169,8 +168,8 @@ void RecordBuilder::keep_or_refuse(const RowTest& test, std::string_view reason,
                                    const std::function<std::string(std::size_t row)>& complaint) {
   const Loss loss = keep(test, reason);
   if (loss.rows == 0 || drop_invalid_) return;
-  throw Error(fmt::format("{}: {}; {} drops such rows", flight_.locate(loss.first),
-                          complaint(loss.first), files::spell_option("drop_invalid")));
+  throw OptionError({fmt::format("{}: {}; ", flight_.locate(loss.first), complaint(loss.first)),
+                     Option{"drop_invalid"}, " drops such rows"});
 }
 
 void RecordBuilder::compute(std::string name, RowValue value) {

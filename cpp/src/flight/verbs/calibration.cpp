@@ -12,13 +12,12 @@
 #include "base/parameter_values.hpp"
 #include "base/sentences.hpp"
 #include "estimation/step_times.hpp"
-#include "flight/files/option_spelling.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/composition.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/probe_effects.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -32,19 +31,20 @@ void check_rows(const BlockModel& model, const CalibrationOptions& options, cons
                 std::size_t rows) {
   const std::size_t parameters = model.tables().parameters().size() - options.fit.fixed.size();
   if (rows >= parameters) return;
-  throw Error(
-      fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or {} some",
-                  flight.name(), rows, parameters, files::spell_option("fix")));
+  throw OptionError(
+      {fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or ",
+                   flight.name(), rows, parameters),
+       Option{"fix"}, " some"});
 }
 
 /// Rows that a stage's segments select; messages say of which flight and option.
 std::size_t count_rows(const Record& record, const std::string& segments, const Flight& flight,
-                       std::string_view stage, std::string_view option) {
+                       std::string_view stage, const Option& option) {
   try {
     return record.select(segments).rows();
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: the segments of {} ({}): {}", flight.name(), stage,
-                            files::spell_option(option), error.what()));
+    throw OptionError({fmt::format("{}: the segments of {} (", flight.name(), stage), option,
+                       std::string("): ") + error.what()});
   }
 }
 
@@ -156,9 +156,10 @@ Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedF
   const EffectiveFlight effective = with_effects(*probe, flight, prepared.readings, held.effects,
                                                  options.own_effects, options.fit.bounds);
   const Record& record = effective.prepared.record;
-  count_rows(record, options.fit.stage_one_segments, flight, "stage one", "stage_one");
-  check_rows(*effective.model, held, flight,
-             count_rows(record, options.fit.stage_two_segments, flight, "stage two", "stage_two"));
+  count_rows(record, options.fit.stage_one_segments, flight, "stage one", {"stage_one"});
+  check_rows(
+      *effective.model, held, flight,
+      count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
   return calibrate_prepared(std::move(probe), std::move(held),
                             {flight.name(), flight.sha256(), flight.rows(), 0}, effective);
 }

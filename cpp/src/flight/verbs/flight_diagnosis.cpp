@@ -14,9 +14,9 @@
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/probe_effects.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -107,15 +107,13 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   return result;
 }
 
-/// Errors name the flight.
+/// Errors name the flight, as those of bringing it to the model do by themselves.
 template <class Task>
 FlightDiagnosis name_errors(const Flight& flight, Task task) {
   try {
     return task();
   } catch (const Error& error) {
-    const std::string what = error.what();
-    if (what.starts_with(flight.name())) throw;
-    throw Error(fmt::format("{}: {}", flight.name(), what));
+    throw_within(flight.name() + ": ", error);
   }
 }
 
@@ -198,17 +196,16 @@ Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
 
 FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
                          const OwnEffects& own, const DiagnosisOptions& options) {
-  return name_errors(flight, [&] {
-    return run(calibration, prepare(calibration, flight), all_own(calibration, own), options);
-  });
+  const PreparedFlight prepared = prepare(calibration, flight);
+  return name_errors(
+      flight, [&] { return run(calibration, prepared, all_own(calibration, own), options); });
 }
 
 namespace {
 
 FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibration,
-                       const Flight& flight, const OwnEffects& own,
+                       PreparedFlight prepared, const OwnEffects& own,
                        const DiagnosisOptions& options) {
-  PreparedFlight prepared = prepare(calibration, flight);
   const OwnEffects all = all_own(calibration, own);
   Injection injection;
   const MatrixXd added = added_outputs(calibration, prepared, all, injected, injection);
@@ -244,7 +241,9 @@ FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibrati
 FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& calibration,
                               const Flight& flight, const OwnEffects& own,
                               const DiagnosisOptions& options) {
-  return name_errors(flight, [&] { return inject(injected, calibration, flight, own, options); });
+  PreparedFlight prepared = prepare(calibration, flight);
+  return name_errors(
+      flight, [&] { return inject(injected, calibration, std::move(prepared), own, options); });
 }
 
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <ranges>
 
-#include "flight/files/option_spelling.hpp"
-#include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal::verbs {
 namespace {
@@ -16,13 +15,14 @@ void check_freed(const Probe& probe, const CalibrationOptions& options) {
   const std::vector<Variable> parameters = probe.model().tables().parameters();
   for (const std::string& name : options.free) {
     if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) {
-      throw Error(fmt::format(
-          "{} {}: there is no such parameter; the model has: {}", files::spell_option("free"), name,
-          fmt::join(parameters | std::views::transform(&Variable::name), ", ")));
+      throw OptionError(
+          {Option{"free"},
+           fmt::format(" {}: there is no such parameter; the model has: {}", name,
+                       fmt::join(parameters | std::views::transform(&Variable::name), ", "))});
     }
     if (options.fit.fixed.contains(name)) {
-      throw Error(fmt::format("{1} {0} and {2} {0} contradict each other; keep one", name,
-                              files::spell_option("free"), files::spell_option("fix")));
+      throw OptionError({Option{"free"}, " " + name + " and ", Option{"fix"},
+                         " " + name + " contradict each other; keep one"});
     }
   }
 }
@@ -34,8 +34,9 @@ CalibrationOptions hold(const Probe& probe, CalibrationOptions options) {
   for (const auto& [name, value] : probe.held()) {
     if (std::ranges::find(options.free, name) != options.free.end()) continue;
     if (options.fit.bounds.contains(name) && !options.fit.fixed.contains(name)) {
-      throw Error(fmt::format("{2} {0}: it is held at {1} unless {3} {0} frees it; add that", name,
-                              value, files::spell_option("bounds"), files::spell_option("free")));
+      throw OptionError({Option{"bounds"},
+                         fmt::format(" {}: it is held at {} unless ", name, value), Option{"free"},
+                         " " + name + " frees it; add that"});
     }
     options.fit.fixed.emplace(name, value);
   }
