@@ -58,6 +58,7 @@ py::dict predict(const Calibration& calibration, const Flight& flight, double le
 void define_options(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
+void define_figures(py::module_& module);
 void define_flight(py::module_& module);
 void define_many(py::module_& module);
 void define_simulation(py::module_& module);

@@ -29,6 +29,7 @@ PYBIND11_MODULE(_core, module) {
   define_effects(module);
   define_engine(module);
   define_flight(module);
+  define_figures(module);
   define_many(module);
   define_intervals(module);
   define_simulation(module);

@@ -2,16 +2,14 @@
 // What follows from a noise model: draws of it, and X' Sigma X. Where the level is free the noise
 // is zero n rows before a segment of n rows; with V(h) the variance of its change over h rows,
 //   cov(e_s, e_t) = [V(s + n) + V(t + n) - V(|t - s|)] / 2.
-#include <unsupported/Eigen/FFT>
-
 #include <cmath>
-#include <complex>
 #include <map>
 #include <numbers>
 
 #include "noise/arfima_factor.hpp"
 #include "noise/noise_autocovariance.hpp"
 #include "noise/noise_room.hpp"
+#include "numerics/toeplitz.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -45,39 +43,6 @@ VectorXd find_variogram(const VectorXd& gamma, Index most) {
     variogram[h + 1] = variogram[h] + slope;
   }
   return variogram;
-}
-
-/// S X for the symmetric Toeplitz matrix S whose first column is `lags` (X.rows() or more).
-MatrixXd multiply_toeplitz(const VectorXd& lags, const Ref<const MatrixXd>& X) {
-  constexpr Index few_rows = 64;
-  const Index rows = X.rows();
-  if (rows <= few_rows) {
-    MatrixXd S(rows, rows);
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < rows; ++j) S(i, j) = lags[std::abs(i - j)];
-    }
-    return S * X;
-  }
-  Index length = 128;
-  while (length < 2 * rows) length *= 2;
-  Eigen::FFT<double> fft;
-  VectorXd circle = VectorXd::Zero(length);
-  circle.head(rows) = lags.head(rows);
-  circle.tail(rows - 1) = lags.segment(1, rows - 1).reverse();
-  Eigen::VectorXcd spectrum;
-  fft.fwd(spectrum, circle);
-  MatrixXd product(rows, X.cols());
-  VectorXd padded(length);
-  Eigen::VectorXcd transformed;
-  for (Index j = 0; j < X.cols(); ++j) {
-    padded.setZero();
-    padded.head(rows) = X.col(j);
-    fft.fwd(transformed, padded);
-    transformed.array() *= spectrum.array();
-    fft.inv(padded, transformed);
-    product.col(j) = padded.head(rows);
-  }
-  return product;
 }
 
 /// The sizes of `innovations` with the signs of `x`; x where they are zero.
@@ -155,9 +120,9 @@ MatrixXd covariance_product(const NoiseModel& model, const std::vector<Segment>&
       const MatrixXd since = part.transpose() * variogram.segment(n, n);
       const MatrixXd both = since * part.colwise().sum();
       product += 0.5 * (both + both.transpose()) -
-                 0.5 * part.transpose() * multiply_toeplitz(variogram, part);
+                 0.5 * part.transpose() * numerics::multiply_toeplitz(variogram, part);
     } else {
-      product += part.transpose() * multiply_toeplitz(gamma, part);
+      product += part.transpose() * numerics::multiply_toeplitz(gamma, part);
     }
   }
   return model.sigma * model.sigma * 0.5 * (product + product.transpose());

@@ -124,8 +124,9 @@ def report_command(material: Material, file: str) -> str:
 def list_provenance(material: Material, file: str) -> str:
     """Inputs, version, seed, options."""
     flight, inputs = material.flight, material.description["inputs"]
+    used = material.figures.rows.size
     rows = [
-        ["flight", f"{escape(flight.name)}, {flight.rows:,} rows, {material.rows.size:,} used"],
+        ["flight", f"{escape(flight.name)}, {flight.rows:,} rows, {used:,} used"],
         ["sha256 of the flight", f"<code>{flight.sha256 or 'none: arrays, not a file'}</code>"],
     ]
     for i, calibration in enumerate(material.chain):

@@ -7,27 +7,27 @@ from typing import Any
 
 import numpy as np
 
+from sepcal import _core
 from sepcal.columns import Array
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
-from sepcal.reporting.statistics import Smooth, binned_means
 from sepcal.reporting.thin import keep_even
 
+MEANS = 14  # bins whose mean an added-variable plot shows
 FARTHEST = 25  # points of each output that an added-variable plot always shows
 
 
 def draw_channel(
-    title: str, x_title: str, y_title: str, x: Array, residual: Array, smooth: Smooth
+    title: str, x_title: str, y_title: str, x: Array, residual: Array, smooth: _core.Smooth
 ) -> Figure:
     """A cloud of residuals over a channel, the spline through it, and its band about zero."""
-    there = np.flatnonzero(np.isfinite(x))
-    kept = there[keep_even(there.size)]
+    kept = keep_even(x.size)
+    at, mean, half_width = smooth
     data: list[dict[str, Any]] = [
         {"type": "scatter", "mode": "markers", "x": x[kept], "y": residual[kept],
          "marker": {"size": 3, "color": "rgba(120,132,144,0.45)"}, "hoverinfo": "skip"},
-        words.band(smooth.x, smooth.mean - smooth.half_width, smooth.mean + smooth.half_width,
-                   "rgba(184,58,38,0.20)"),
-        {"type": "scatter", "mode": "lines", "x": smooth.x, "y": smooth.mean,
+        words.band(at, mean - half_width, mean + half_width, "rgba(184,58,38,0.20)"),
+        {"type": "scatter", "mode": "lines", "x": at, "y": mean,
          "line": {"color": words.ALARM, "width": 2}},
     ]  # fmt: skip
     layout = words.layout(
@@ -74,7 +74,7 @@ def draw_added_variable(
         })  # fmt: skip
     whole = np.isfinite(x)
     low, high = float(np.min(x[whole])), float(np.max(x[whole]))
-    means = binned_means(x[whole], y[whole])
+    means = _core.bin_means(x[whole], y[whole], MEANS)
     data += [
         {"type": "scatter", "mode": "lines", "showlegend": False, "x": [low, high],
          "y": [low, high], "line": {"color": words.INK, "width": 1.4, "dash": "dash"}},

@@ -11,13 +11,12 @@ import numpy as np
 
 from sepcal.columns import Array
 from sepcal.reporting import words
-from sepcal.reporting.channels import Rows
 from sepcal.reporting.page import Figure
-from sepcal.reporting.thin import keep_extremes
+from sepcal.reporting.thin import Rows, keep_extremes
 
 NAMED = 16  # maneuvers whose names fit above a picture
 BACKGROUND = ("", "cruise")  # labels of flying between maneuvers, left unshaded
-GAP, GAP_SHARE = 5, 0.01  # no line bridges so many median intervals and this share of the flight
+GAP_SHARE = 0.01  # of the flight: no line bridges a longer gap
 
 Run = tuple[str, float, float]  # a maneuver: label, first and last time [s]
 
@@ -34,11 +33,17 @@ class Channel:
     noise: float  # standard deviation
 
 
-def draw_overlay(time: Array, channels: list[Channel], runs: list[Run]) -> Figure:
-    """Every output over the same time [s], measured over modelled; below each, its residual."""
-    longest = max(GAP * median_step(time), GAP_SHARE * float(time[-1] - time[0]))
-    after_gap = np.diff(time, prepend=time[:1]) > longest
-    breaks = np.cumsum(after_gap).astype(np.float64)  # number of gaps up to each row
+def draw_overlay(
+    time: Array, channels: list[Channel], runs: list[Run], after_gaps: list[int]
+) -> Figure:
+    """Every output over the same time [s], measured over modelled; below each, its residual.
+
+    `runs` are the maneuvers, `after_gaps` the rows before which the log has a gap.
+    """
+    is_long = np.diff(time, prepend=time[:1]) > GAP_SHARE * (time[-1] - time[0])
+    breaks = np.zeros(time.size)
+    breaks[after_gaps] = is_long[after_gaps]
+    breaks = np.cumsum(breaks)  # number of gaps up to each row
     data: list[dict[str, Any]] = []
     shapes = shade(runs)
     named = [run for run in runs if run[0] not in BACKGROUND]
@@ -102,11 +107,6 @@ def _trace(
     thin = {"color": words.MODELLED, "width": 0.8}
     below = {**line, "y": r, "yaxis": strip, "line": thin, "name": "residual", "showlegend": False}
     return [*around, below]
-
-
-def median_step(time: Array) -> float:
-    """The log's interval [s]."""
-    return float(np.median(np.diff(time))) if time.size > 1 else 1.0
 
 
 def shade(runs: list[Run]) -> list[dict[str, Any]]:

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from sepcal import _core
 from sepcal.columns import Array
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
-from sepcal.reporting.statistics import autocorrelation, quantiles, spectrum
 
 LEAST = 0.1  # a correlation: no axis is drawn finer
 
@@ -24,12 +24,12 @@ def _lines(output: str, i: int, x: Array, y: Array) -> dict[str, Any]:
 
 
 def draw_autocorrelation(
-    outputs: list[str], residuals: Array, segments: list[slice], interval: float
+    outputs: list[str], residuals: Array, runs: list[_core.Rows], interval: float
 ) -> Figure:
     """Correlation over lag [s], with the limits that white noise keeps nineteen times in twenty."""
     data, widest = [], LEAST
     for i, output in enumerate(outputs):
-        lags, values, limit = autocorrelation(residuals[:, i], segments)
+        lags, values, limit = _core.autocorrelation(residuals[:, i], runs)
         if i == 0:
             grey = "rgba(92,102,112,0.22)"
             data.append(words.band(lags * interval, -limit, limit, grey, showlegend=False))
@@ -52,14 +52,14 @@ def draw_spectrum(
     outputs: list[str],
     unit: str,
     residuals: Array,
-    segments: list[slice],
+    runs: list[_core.Rows],
     interval: float,
     floors: list[float],
 ) -> Figure:
     """Power density over frequency; dotted, white noise of the floor's size."""
     data = []
     for i, output in enumerate(outputs):
-        frequency, density = spectrum(residuals[:, i], segments, interval)
+        frequency, density = _core.spectrum(residuals[:, i], runs, interval)
         if frequency.size == 0:
             continue
         data.append(_lines(output, i, frequency, density))
@@ -83,7 +83,7 @@ def draw_quantiles(outputs: list[str], residuals: Array, noise: Array) -> Figure
     data = []
     furthest = 3.0
     for i, output in enumerate(outputs):
-        normal, found = quantiles(residuals[:, i] / noise[i])
+        normal, found = _core.quantiles(residuals[:, i] / noise[i])
         trace = _lines(output, i, normal, found)
         data.append({**trace, "mode": "markers", "marker": {"size": 4, **trace["line"]}})
         furthest = max(furthest, float(normal[-1]))

@@ -16,7 +16,6 @@ from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis, EffectFinding
 from sepcal.flight import Flight
-from sepcal.reporting.channels import Rows, airspeed, find_rows, find_segments, quantity
 
 TRIED = 3  # of the ranked candidates: so many are added, to show what each explains
 
@@ -39,11 +38,7 @@ class Material:
     flight: Flight
     diagnosis: Diagnosis
     description: dict[str, Any]  # Calibration.to_dict() of the last
-    rows: Rows  # (N,), of the flight
-    segments: list[slice]  # of the N rows
-    labels: list[str]  # N of them, or none
-    measured: Array  # (N, n_z), in the units used inside; NaN where it can't be told
-    modelled: Array  # (N, n_z)
+    figures: _core.FlightFigures  # of the last on the flight
     trials: list[Trial]
     notes: list[str]
 
@@ -56,6 +51,14 @@ class Material:
     def comparison(self) -> Comparison:
         """Of the last."""
         return self.comparisons[-1]
+
+    @property
+    def maneuvers(self) -> list[tuple[str, float, float]]:
+        """Label, first and last time [s] of each; none where the log has no labels."""
+        time, segments = self.comparison.time, self.figures.segments
+        if not any(label for label, _, _ in segments):
+            return []
+        return [(label, float(time[a]), float(time[b - 1])) for label, a, b in segments]
 
     @property
     def title(self) -> str:
@@ -130,11 +133,7 @@ def gather(
     if diagnosis is None:
         report_progress("diagnosing, which may take a minute")
     found = diagnosis if diagnosis is not None else last.diagnose(flight)
-    rows = find_rows(flight, comparisons[-1].time)
-    every = flight.maneuvers  # a list made anew at each call
-    labels = [every[row] for row in rows] if every else []
     notes: list[str] = []
-    measured, modelled = find_measured(last, flight, comparisons[-1], rows)
     return Material(
         chain=list(chain),
         comparisons=comparisons,
@@ -142,38 +141,10 @@ def gather(
         flight=flight,
         diagnosis=found,
         description=described[-1],
-        rows=rows,
-        segments=find_segments(comparisons[-1].time, labels),
-        labels=labels,
-        measured=measured,
-        modelled=modelled,
+        figures=_core.gather_figures(last.core, flight._core),
         trials=try_candidates(last, flight, comparisons[-1], found, notes, report_progress),
         notes=list(dict.fromkeys([*last.notes, *found.notes, *comparisons[-1].notes, *notes])),
     )
-
-
-def find_measured(
-    calibration: Calibration, flight: Flight, comparison: Comparison, rows: Rows
-) -> tuple[Array, Array]:
-    """Measured and modelled, (N, n_z) each.
-
-    The output `field` is zero by construction: there it is the strength after calibration beside
-    the given one, whose difference is minus the residual.
-    """
-    measured = np.full(comparison.residuals.shape, np.nan)
-    modelled = measured.copy()
-    for i, misfit in enumerate(comparison.overall):
-        residual = comparison.residuals[:, i]
-        if misfit.output == "field":
-            modelled[:, i] = calibration.to_dict()["options"]["field_strength"]
-            measured[:, i] = modelled[:, i] - residual
-            continue
-        read = airspeed(flight) if misfit.output == "airspeed" else None
-        values = read if read is not None else quantity(flight, misfit.output)
-        if values is not None:
-            measured[:, i] = values[rows]
-            modelled[:, i] = values[rows] - residual
-    return measured, modelled
 
 
 def try_candidates(

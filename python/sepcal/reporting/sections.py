@@ -7,16 +7,15 @@ from html import escape
 
 import numpy as np
 
+from sepcal import _core
 from sepcal.comparison import ChannelMisfit
 from sepcal.reporting import advice, tables, words
-from sepcal.reporting.channels import driver
 from sepcal.reporting.figures_cause import draw_added_variable, draw_channel
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall
 from sepcal.reporting.figures_fit import Channel, draw_overlay
 from sepcal.reporting.gather import Material
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.sections_flight import show_coverage, show_noise
-from sepcal.reporting.statistics import fit_smooth
 from sepcal.reporting.thin import say_thinned
 
 CHANNELS = 12  # drawn; the others are named
@@ -131,24 +130,21 @@ def show_waterfall(material: Material) -> Section:
 
 def show_overlay(material: Material) -> Section:
     """Every output over time."""
-    time, comparison = material.comparison.time, material.comparison
-    runs = [
-        (material.labels[at.start], float(time[at.start]), float(time[at.stop - 1]))
-        for at in material.segments
-        if material.labels
-    ]
+    figures, comparison, maneuvers = material.figures, material.comparison, material.maneuvers
     channels = [
         Channel(
             "strength" if output == "field" else output,
             material.units[i],
-            material.measured[:, i],
-            material.modelled[:, i],
+            figures.measured[:, i],
+            figures.modelled[:, i],
             comparison.residuals[:, i],
             float(material.noise[i]),
         )
         for i, output in enumerate(material.outputs)
     ]
-    figures: list[str | Figure | Grid] = [draw_overlay(time, channels, runs)]
+    after_gaps = [first for _, first, _ in figures.runs[1:]]
+    overlay = draw_overlay(comparison.time, channels, maneuvers, after_gaps)
+    blocks: list[str | Figure | Grid] = [overlay]
     lead = (
         "Grey is what was measured, blue what the calibrated model says, pale blue its 2-sigma "
         "band. Below each, the residual, measured minus modelled, between its 2-sigma lines: "
@@ -159,11 +155,11 @@ def show_overlay(material: Material) -> Section:
             " The attitude is unknown here, so the strength of the calibrated field stands beside "
             "the given one; the residual is the given minus the calibrated."
         )
-    if runs:
+    if maneuvers:
         lead += " Maneuvers are shaded."
-    if note := say_thinned(time.size):
-        figures.append(f'<p class="note">{note}</p>')
-    return Section("Measured and modelled", lead, figures)
+    if note := say_thinned(comparison.time.size):
+        blocks.append(f'<p class="note">{note}</p>')
+    return Section("Measured and modelled", lead, blocks)
 
 
 def show_where(material: Material) -> Section:
@@ -171,7 +167,7 @@ def show_where(material: Material) -> Section:
     comparison = material.comparison
     strip = draw_heat_strip(comparison.where, material.outputs, material.floors)
     lead = (
-        f"RMSE by {'maneuver' if material.labels else 'stretch of time [s]'} and output, in the "
+        f"RMSE by {'maneuver' if material.maneuvers else 'stretch of time [s]'} and output, in the "
         "output's unit; the colour is how many times the noise floor it is."
     )
     return Section("Where it fails", lead, [strip, tables.list_windows(comparison)])
@@ -205,19 +201,15 @@ def show_channels(material: Material) -> Section:
         best.setdefault(channel.driver, channel)
     figures: list[Figure] = []
     for channel in list(best.values())[:CHANNELS]:
-        values = driver(material.flight, channel.driver, material.options)
-        if values is None:
-            continue
+        x = material.figures.channel(channel.driver)
         residual = comparison.residuals[:, outputs.index(channel.output)]
-        smooth = fit_smooth(values[material.rows], residual)
-        if smooth is None:
+        if x is None or (smooth := _core.smooth(x, residual)) is None:
             continue
         title = f"{channel.driver}: {words.share(channel.share_smooth)} of {channel.output}"
         unit = material.units[outputs.index(channel.output)]
         _, _, per = channel.unit.partition(" per ")
         x_title = f"{channel.driver} [{per}]" if per else channel.driver
         y_title = f"{channel.output} [{unit}]"
-        x = values[material.rows]
         figures.append(draw_channel(title, x_title, y_title, x, residual, smooth))
     others = list(best.values())[CHANNELS:]
     blocks: list[str | Figure | Grid] = [Grid(figures, 320)]

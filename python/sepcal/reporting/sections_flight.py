@@ -9,7 +9,6 @@ import numpy as np
 
 from sepcal.columns import Array
 from sepcal.reporting import tables, words
-from sepcal.reporting.channels import airspeed, density, flow_angle, heading, impact_pressure
 from sepcal.reporting.figures_flight import (
     covered_cells,
     draw_histogram,
@@ -21,22 +20,20 @@ from sepcal.reporting.figures_noise import draw_autocorrelation, draw_quantiles,
 from sepcal.reporting.gather import Material
 from sepcal.reporting.page import Figure, Grid, Section
 
-INSIDE = 1.959964  # standard deviations: 95 % of a normal distribution
 UNEVEN = 0.1  # share of the median interval: sampling that varies by more is uneven
 
 
 def show_noise(material: Material) -> Section:
     """Autocorrelation, spectrum, Q-Q, and how often the 95 % band holds."""
-    residuals, time = material.comparison.residuals, material.comparison.time
-    outputs, segments = material.outputs, _stretches(material)
-    steps = np.diff(time)
-    interval = float(np.median(steps)) if steps.size else 1.0
+    residuals, outputs, runs = (
+        material.comparison.residuals, material.outputs, material.figures.runs,
+    )  # fmt: skip
+    shortest, interval, longest = material.figures.interval
     figures = [
-        draw_autocorrelation(outputs, residuals, segments, interval),
-        draw_spectrum(outputs, material.units[0], residuals, segments, interval, material.floors),
+        draw_autocorrelation(outputs, residuals, runs, interval),
+        draw_spectrum(outputs, material.units[0], residuals, runs, interval, material.floors),
         draw_quantiles(outputs, residuals, material.noise),
     ]
-    spread = np.quantile(steps, [0.1, 0.9]) if steps.size else np.zeros(2)
     lead = (
         "Noise alone keeps its autocorrelation inside the grey band, its spectrum flat on the "
         "dotted line and its quantiles on the dashed one."
@@ -47,39 +44,24 @@ def show_noise(material: Material) -> Section:
         "an autoregression; its innovations are the noise floor.</p>"
     )
     blocks: list[str | Figure | Grid] = [Grid(figures, 320), _coverage_table(material), key]
-    if spread[1] - spread[0] > UNEVEN * interval:
+    if longest - shortest > UNEVEN * interval:
         blocks.append(
-            f'<p class="note">The sampling is uneven ({words.number(spread[0])} to '
-            f"{words.number(spread[1])} s between most rows): lags and frequencies are counted in "
+            f'<p class="note">The sampling is uneven ({words.number(shortest)} to '
+            f"{words.number(longest)} s between most rows): lags and frequencies are counted in "
             f"rows of {words.number(interval)} s.</p>"
         )
     return Section("Is the rest noise?", lead, blocks)
-
-
-def _stretches(material: Material) -> list[slice]:
-    """Gap-free stretches whatever their label: noise does not end with a maneuver."""
-    joined: list[slice] = []
-    time = material.comparison.time
-    steps = np.diff(time)
-    limit = 5 * float(np.median(steps)) if steps.size else np.inf
-    for at in material.segments:
-        if joined and time[at.start] - time[joined[-1].stop - 1] <= limit:
-            joined[-1] = slice(joined[-1].start, at.stop)
-        else:
-            joined.append(at)
-    return joined
 
 
 def _coverage_table(material: Material) -> str:
     """By output: the share of rows inside the 95 % band, and the whiteness of the rest."""
     rows = []
     for i, misfit in enumerate(material.comparison.overall):
-        inside = np.abs(material.comparison.residuals[:, i]) <= INSIDE * material.noise[i]
         told = material.diagnosis.residual.get(misfit.output, {})
         model = told.get("noise") or {}
         rows.append([
             f"<b>{escape(misfit.output)}</b>",
-            words.percent(float(np.mean(inside))),
+            words.percent(material.figures.within_95[i]),
             words.with_unit(misfit.rmse, misfit.unit),
             words.with_unit(told.get("floor"), misfit.unit),
             words.number(misfit.lag_one, 2),
@@ -112,17 +94,23 @@ def show_coverage(material: Material) -> Section:
     return Section("What the flight covered", lead, blocks)
 
 
+def _find_heading(material: Material) -> tuple[Array, str] | None:
+    """In degrees, and what it is."""
+    figures = material.figures
+    if figures.heading is None:
+        return None
+    name = "track over ground" if figures.heading_is_track else "heading"
+    return np.degrees(figures.heading), name
+
+
 def _heading_figures(material: Material) -> list[Figure]:
-    found = heading(material.flight)
-    if found is None:
-        return []
-    degrees, name = found
-    return [draw_rose(f"{name.capitalize()} [deg]", degrees[material.rows])]
+    found = _find_heading(material)
+    return [draw_rose(f"{found[1].capitalize()} [deg]", found[0])] if found else []
 
 
 def _cover_field(material: Material) -> tuple[list[Figure], str]:
     applied = list(material.last.apply(material.flight).values())
-    vectors = np.stack(applied, axis=-1)[material.rows]
+    vectors = np.stack(applied, axis=-1)[material.figures.rows]
     vectors = vectors[np.isfinite(vectors).all(axis=1)]
     visited, cells = covered_cells(vectors)
     figures = [draw_sphere("Direction of the calibrated field in body axes", vectors)]
@@ -134,25 +122,17 @@ def _cover_field(material: Material) -> tuple[list[Figure], str]:
 
 
 def _cover_air(material: Material) -> list[Figure]:
-    flight, figures = material.flight, []
-    speed = airspeed(flight) if airspeed(flight) is not None else _five_hole_speed(material)
-    alpha, beta = (flow_angle(flight, name, material.options) for name in ("alpha", "beta"))
-    rows = material.rows
+    figures: list[Figure] = []
+    speed, found = material.figures.airspeed, _find_heading(material)
+    alpha, beta = (material.figures.channel(name) for name in ("alpha", "beta"))
     if alpha is not None and beta is not None:
-        a, b = np.degrees(alpha[rows]), np.degrees(beta[rows])
+        a, b = np.degrees(alpha), np.degrees(beta)
         figures.append(draw_map("Flow angles as read", b, a, "beta [deg]", "alpha [deg]"))
-    elif speed is not None and (found := heading(flight)) is not None:
-        x, name = found[0][rows], found[1]
+    elif speed is not None and found is not None:
+        degrees, name = found
         title = f"Airspeed over {name}"
-        figures.append(draw_map(title, x, speed[rows], f"{name} [deg]", "airspeed [m/s]"))
+        figures.append(draw_map(title, degrees, speed, f"{name} [deg]", "airspeed [m/s]"))
     figures += _heading_figures(material)
     if speed is not None:
-        figures.append(draw_histogram("Airspeed as read", speed[rows], "airspeed [m/s]"))
+        figures.append(draw_histogram("Airspeed as read", speed, "airspeed [m/s]"))
     return figures
-
-
-def _five_hole_speed(material: Material) -> Array | None:
-    pressure, rho = impact_pressure(material.flight), density(material.flight)
-    if pressure is None or rho is None:
-        return None
-    return np.sqrt(2 * np.where(pressure > 0, pressure, np.nan) / rho)

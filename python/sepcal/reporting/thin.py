@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import itertools
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sepcal.columns import Array
-from sepcal.reporting.channels import Rows
+
+Rows: TypeAlias = NDArray[np.intp]  # indices
 
 POINTS = 3000  # of a curve over time
 SCATTERED = 700  # of a cloud of points

@@ -7,15 +7,14 @@
 #include <array>
 #include <utility>
 
-#include "flight/files/units.hpp"
+#include "flight/files/headers.hpp"
+#include "flight/probes/air_columns.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::catalogue {
 namespace {
 
 using files::UnitKind;
-
-constexpr double gas_constant_of_air = 287.05287;  // [J/(kg K)], ISO 2533
 
 /// Quantities that effects read, under the names that a record gives them.
 struct State {
@@ -35,18 +34,7 @@ const State& find_state(std::string_view name) {
 
 /// The column of a state quantity in the unit used inside; empty where it isn't logged.
 std::vector<double> state_column(const Flight& flight, const State& state) {
-  for (const Flight::Column& column : flight.columns()) {
-    const std::string_view header = column.header;
-    const std::size_t split = header.rfind('_');
-    if (split == std::string_view::npos || header.substr(0, split) != state.header) continue;
-    const files::Unit* unit = files::find_unit(state.kind, header.substr(split + 1));
-    if (unit == nullptr) continue;
-    std::vector<double> values(column.values.size());
-    std::ranges::transform(column.values, values.begin(),
-                           [unit](double value) { return unit->convert(value); });
-    return values;
-  }
-  return {};
+  return files::read_quantity(flight, state.header, state.kind);
 }
 
 /// A flow angle as read [rad]; empty where the probe has none.
@@ -70,7 +58,7 @@ std::vector<double> computed_density(const Flight& flight) {
   const std::vector<double> temperature = state_column(flight, find_state("temperature"));
   if (temperature.empty()) return {};
   for (std::size_t row = 0; row < rho.size(); ++row) {
-    rho[row] /= gas_constant_of_air * temperature[row];
+    rho[row] = probes::density_of_air(rho[row], temperature[row]);
   }
   return rho;
 }

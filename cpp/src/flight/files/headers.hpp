@@ -9,11 +9,16 @@
 #include <vector>
 
 #include "flight/files/units.hpp"
+#include "sepcal/flight/flight.hpp"
 
 namespace sepcal::files {
 
 /// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg.
 std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind);
+
+/// The flight's first column under one of these headers, in the unit used inside (a value a row);
+/// empty where there is none.
+std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind);
 
 /// "; did you mean 'Roll_Deg'? Rename it to roll_deg": the one of `others`, a log's headers without
 /// the quantities found, that differs from an accepted one in case and punctuation or by a slip of

@@ -11,8 +11,6 @@
 namespace sepcal::probes {
 namespace {
 
-constexpr double gas_constant_of_air = 287.05287;  // [J/(kg K)], ISO 2533
-
 /// Whether the quantity is a number above zero (in the unit used inside) in every kept row.
 bool is_positive(const RecordBuilder& builder, std::string_view name) {
   return std::ranges::all_of(builder.rows(), [logged = builder.logged(name)](std::size_t row) {
@@ -22,12 +20,17 @@ bool is_positive(const RecordBuilder& builder, std::string_view name) {
 
 }  // namespace
 
+double density_of_air(double pressure, double temperature) {
+  constexpr double gas_constant = 287.05287;  // [J/(kg K)], ISO 2533
+  return pressure / (gas_constant * temperature);
+}
+
 RecordBuilder::RowValue density_of(const RecordBuilder& builder) {
   if (builder.has({"rho"})) {
     return [rho = builder.logged("rho")](std::size_t row) { return rho.at(row); };
   }
   return [ps = builder.logged("ps"), temp = builder.logged("temp")](std::size_t row) {
-    return ps.at(row) / (gas_constant_of_air * temp.at(row));
+    return density_of_air(ps.at(row), temp.at(row));
   };
 }
 

@@ -9,6 +9,9 @@
 
 namespace sepcal::probes {
 
+/// Of dry air, ps / (R T) [kg/m^3], from Pa and K.
+double density_of_air(double pressure, double temperature);
+
 /// Asks for the density [kg/m^3], logged or else ps / (287.05287 T). Throws Error, which says
 /// `log_what`, where neither is there. To be called before keep_valid(), the other after it.
 void need_density(RecordBuilder& builder, const Flight& flight, std::string_view log_what);

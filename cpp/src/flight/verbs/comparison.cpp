@@ -8,8 +8,6 @@
 #include "flight/verbs/prepared_flight.hpp"
 #include "flight/verbs/residual_channels.hpp"
 #include "flight/verbs/worst_windows.hpp"
-#include "model/measurements.hpp"
-#include "model/sweep.hpp"
 
 namespace sepcal {
 
@@ -19,19 +17,17 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
   const Probe& probe = *calibration.probe;
   const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
   const Record& record = effective.prepared.record;
-  const model::Measurements measurements(*effective.model, record);
   base::ThreadPool pool(calibration.options.fit.threads);
-  const model::Sweep sweep(*effective.model, measurements, pool);
 
   Comparison result;
   result.model = probe.name();
-  result.flight = {flight.name(), flight.sha256(), flight.rows(), measurements.rows()};
+  result.flight = {flight.name(), flight.sha256(), flight.rows(), record.rows()};
   result.status = calibration.fit.status;
   result.message = calibration.fit.message;
   result.at_bound = names_at_bound(calibration.fit);
   result.notes = effective.prepared.notes;
   note_other_flight(calibration, flight, result.notes);
-  result.residuals = sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());
+  result.residuals = residuals_of(calibration, effective, pool);
   result.time = base::gather_time(record);
   const auto& outputs = probe.model().tables().outputs;
   result.overall = measure_whole(record, outputs, result.residuals);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::verbs {
@@ -30,6 +32,13 @@ EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFl
         "flight again");
   }
   return effective;
+}
+
+Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlight& effective,
+                             base::ThreadPool& pool) {
+  const model::Measurements measurements(*effective.model, effective.prepared.record);
+  const model::Sweep sweep(*effective.model, measurements, pool);
+  return sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());
 }
 
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,

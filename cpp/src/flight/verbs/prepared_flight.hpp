@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/thread_pool.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/probe_effects.hpp"
@@ -26,6 +27,10 @@ PreparedFlight prepare(const Calibration& calibration, const Flight& flight);
 /// that was fitted. Throws Error as with_effects() does, and where the calibration's parameters are
 /// not those of its model with its effects.
 EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFlight& prepared);
+
+/// z - model (rows() x n_z) in the rows of that flight's segments, at the calibration's estimates.
+Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlight& effective,
+                             base::ThreadPool& pool);
 
 /// As the public calibrate().
 Calibration calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,

@@ -11,6 +11,7 @@
 
 #include "effects/named_driver.hpp"
 #include "estimation/residual_colour.hpp"
+#include "numerics/residual_curves.hpp"
 #include "sepcal/natural_spline.hpp"
 
 namespace sepcal::verbs {
@@ -21,7 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index fewest_rows = 20;
-constexpr int knots = 6;
 
 struct Channel {
   std::string name;
@@ -41,7 +41,8 @@ std::optional<Channel> read_channel(const Record& record, const std::string& nam
     return std::nullopt;
   }
   const double mean = values.mean();
-  return Channel{name, values.array() - mean, even_knots(lowest, highest, knots), mean};
+  return Channel{name, values.array() - mean, even_knots(lowest, highest, numerics::smooth_knots),
+                 mean};
 }
 
 std::vector<Channel> read_channels(const Record& record, const Tables& tables) {
@@ -58,13 +59,8 @@ std::vector<Channel> read_channels(const Record& record, const Tables& tables) {
 
 /// Shares of each column of r (rows x n_z, about their means) that the spline explains.
 VectorXd smooth_shares(const Channel& channel, const MatrixXd& r) {
-  const SplineBasis spline(channel.knots);
-  MatrixXd basis(channel.values.size(), spline.functions());
-  Eigen::RowVectorXd values(spline.functions());
-  for (Index row = 0; row < basis.rows(); ++row) {
-    spline.evaluate(channel.values[row] + channel.mean, values);
-    basis.row(row) = values;
-  }
+  MatrixXd basis =
+      numerics::spline_columns(SplineBasis(channel.knots), channel.values.array() + channel.mean);
   basis.rowwise() -= basis.colwise().mean().eval();
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(basis);  // knots may have no rows between them
   const MatrixXd explained = qr.householderQ().adjoint() * r;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the report's pictures are drawn from, and the curves in them.
+#include "sepcal/flight/figures.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "numerics/residual_curves.hpp"
+#include "python_effect.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/noise_model.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+using Eigen::VectorXd;
+using WithoutGil = py::call_guard<py::gil_scoped_release>;
+
+/// (label, first row, row after the last)
+using Rows = std::tuple<std::string, std::size_t, std::size_t>;
+
+std::vector<Rows> describe(const std::vector<Segment>& segments) {
+  std::vector<Rows> rows;
+  for (const auto& [label, first, last] : segments) rows.emplace_back(label, first, last);
+  return rows;
+}
+
+/// Throws Error as Record::cut() does.
+std::vector<Segment> segments_of(const std::vector<Rows>& rows, const VectorXd& residual) {
+  std::vector<Segment> segments;
+  for (const auto& [label, first, last] : rows) segments.push_back({label, first, last});
+  Record record;
+  record.view("residual", {residual.data(), static_cast<std::size_t>(residual.size())});
+  return record.cut(std::move(segments)).segments();
+}
+
+py::object array_or_none(const std::vector<double>& values) {
+  return values.empty() ? py::object(py::none()) : adopt(values);
+}
+
+py::tuple describe(numerics::Curve curve) {
+  return py::make_tuple(adopt(std::move(curve.x)), adopt(std::move(curve.y)));
+}
+
+py::tuple autocorrelation(const VectorXd& residual, const std::vector<Rows>& runs) {
+  auto found = numerics::find_autocorrelation(residual, segments_of(runs, residual));
+  return py::make_tuple(adopt(std::move(found.lags)), adopt(std::move(found.values)),
+                        adopt(std::move(found.limits)));
+}
+
+py::tuple spectrum(const VectorXd& residual, const std::vector<Rows>& runs, double interval) {
+  return describe(numerics::find_spectrum(residual, segments_of(runs, residual), interval));
+}
+
+void check_lengths(const VectorXd& x, const VectorXd& y) {
+  if (x.size() != y.size()) throw Error("x and y differ in length; give as many of each");
+}
+
+py::tuple bin_means(const VectorXd& x, const VectorXd& y, int bins) {
+  check_lengths(x, y);
+  return describe(numerics::bin_means(x, y, bins));
+}
+
+/// (x, mean, half width), or None.
+std::optional<std::tuple<VectorXd, VectorXd, VectorXd>> smooth(const VectorXd& x,
+                                                               const VectorXd& y) {
+  check_lengths(x, y);
+  const auto fitted = numerics::fit_smooth(x, y);
+  if (!fitted) return std::nullopt;
+  return std::tuple(fitted->x, fitted->mean, fitted->half_width);
+}
+
+py::object channel(const FlightFigures& figures, const std::string& name) {
+  if (!figures.channels.has(name)) return py::none();
+  return py::cast(gather_rows(figures.channels.column(name), figures.channels.segments()));
+}
+
+FlightFigures gather(const Calibration& calibration, const Flight& flight) {
+  need_own_effects(calibration);
+  return gather_figures(calibration, flight);
+}
+
+}  // namespace
+
+void define_figures(py::module_& module) {
+  using Figures = FlightFigures;
+  py::class_<Figures>(module, "FlightFigures")
+      .def_property_readonly("rows",
+                             [](const Figures& self) {
+                               return py::array_t<std::size_t>(
+                                   static_cast<py::ssize_t>(self.rows.size()), self.rows.data());
+                             })
+      .def_property_readonly("segments",
+                             [](const Figures& self) { return describe(self.segments); })
+      .def_property_readonly("runs", [](const Figures& self) { return describe(self.runs); })
+      .def_readonly("interval", &Figures::interval)
+      .def_readonly("measured", &Figures::measured)
+      .def_readonly("modelled", &Figures::modelled)
+      .def_readonly("within_95", &Figures::within_95)
+      .def_property_readonly("airspeed",
+                             [](const Figures& self) { return array_or_none(self.airspeed); })
+      .def_property_readonly("heading",
+                             [](const Figures& self) { return array_or_none(self.heading); })
+      .def_readonly("heading_is_track", &Figures::heading_is_track)
+      .def("channel", &channel);
+  module.def("gather_figures", &gather, WithoutGil());
+  module.def("autocorrelation", &autocorrelation);
+  module.def("spectrum", &spectrum);
+  module.def("quantiles",
+             [](const VectorXd& residual) { return describe(numerics::find_quantiles(residual)); });
+  module.def("smooth", &smooth);
+  module.def("bin_means", &bin_means);
+}
+
+}  // namespace sepcal::bindings
