@@ -12,22 +12,35 @@ SI units, angles in rad, fields in uT. Body axes are forward-right-down, navigat
 north-east-down.
 """
 
-from sepcal._core import Error, __version__
-from sepcal.calibration import Applied, Calibration, Derived, HistoryEntry, load
-from sepcal.catalogue import CataloguedEffect, effects
-from sepcal.comparison import ChannelMisfit, Comparison, Misfit, Window
+from sepcal._core import (
+    Applied,
+    CataloguedEffect,
+    ChannelMisfit,
+    Combination,
+    Departure,
+    Derived,
+    EffectSetting,
+    Error,
+    FlightFit,
+    HistoryEntry,
+    LocalMinimum,
+    Misfit,
+    Parameter,
+    ParameterInterval,
+    ScreenResults,
+    StageOne,
+    Window,
+    __version__,
+)
+from sepcal.calibration import Calibration, load
+from sepcal.catalogue import effects
+from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
-from sepcal.intervals import (
-    Intervals,
-    ParameterInterval,
-    Prediction,
-    predict,
-    profile_intervals,
-)
+from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
 from sepcal.many import fit_many
-from sepcal.many_results import Departure, FlightFit, ManyFit
+from sepcal.many_results import ManyFit
 from sepcal.models import (
     FiveHoleProbe,
     Magnetometer,
@@ -41,15 +54,7 @@ from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.reporting import report
-from sepcal.results import (
-    Combination,
-    EffectSetting,
-    Fit,
-    LocalMinimum,
-    Parameter,
-    ScreenResults,
-    StageOne,
-)
+from sepcal.results import Fit
 from sepcal.running_trials import monte_carlo, stream_trials
 from sepcal.simulated_trial import SimulatedTrial
 from sepcal.simulation import SimulatedFlight, simulate

@@ -1,430 +1,1620 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The C++ side as the Python front calls it. Arrays are float64; columns are C-contiguous, (N,).
-from collections.abc import Callable, Sequence
-from typing import TypeAlias, TypedDict
+# Made by scripts/lint --fix from cpp/src/bindings.
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import typing
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sepcal.columns import Array
-
-__version__: str
-
-class Error(ValueError): ...
-
-class ParameterDescription(TypedDict):
-    name: str
-    value: float
-    standard_error: float
-    standard_error_white: float
-    unit: str
-    lower: float
-    upper: float
-    at_bound: bool
-    fixed: bool
-
-class CombinationDescription(TypedDict):
-    text: str
-    parameters: tuple[str, ...]
-    standard_error: float
-
-class MinimumDescription(TypedDict):
-    xi2: dict[str, float]
-    trace_r: float
-
-class ScreensDescription(TypedDict):
-    ratio_a: Array
-    ratio_b: Array
-    curvature_a: Array
-    curvature_b: Array
-    accepted: NDArray[np.bool_]
-
-class StageOneDescription(TypedDict):
-    samples: Array
-    trace_r: Array
-    best: dict[str, float]
-    best_trace_r: float
-    minima: list[MinimumDescription]
-    unique_minimum: bool
-    flat_directions: list[str]
-    screens: ScreensDescription | None
-
-class EffectSettingDescription(TypedDict):
-    name: str
-    centre: float | None
-    knots: tuple[float, ...]
-    labels: tuple[str, ...]
-    span: tuple[float, float] | None
-    t0: float | None
-
-class CataloguedEffectDescription(TypedDict):
-    name: str
-    equation: str
-    drivers: str
-    unit: str
-
-class FitDescription(TypedDict):
-    status: str
-    message: str
-    parameters: list[ParameterDescription]
-    covariance: Array
-    correlation: Array
-    covariance_white: Array
-    noise: dict[str, float]
-    rmse: dict[str, float]
-    cost: float
-    rows: int
-    unobservable: list[CombinationDescription]
-    weak: list[CombinationDescription]
-    stage_one: StageOneDescription
-    method: str
-    iterations: int
-    noise_iterations: int
-    effects: list[EffectSettingDescription]
-    text: str
-    explained: str
-
-class PagesDescription(TypedDict):
-    text: str
-    explained: str
-
-class HistoryDescription(TypedDict):
-    effect: str
-    rmse_before: float | None
-    rmse_after: float | None
-    held_out_before: float | None
-    held_out_after: float | None
-    predicted_drop: float | None
-
-class DerivedDescription(TypedDict):
-    name: str
-    value: float
-    standard_error: float
-    standard_error_white: float
-    unit: str
-
-class MisfitDescription(TypedDict):
-    segment: str
-    output: str
-    unit: str
-    rows: int
-    rmse: float
-    mean: float
-    lag_one: float
-    verdict: str
-
-class ChannelDescription(TypedDict):
-    driver: str
-    output: str
-    share_line: float
-    share_smooth: float
-    slope: float
-    slope_error: float
-    unit: str
-
-class WindowDescription(TypedDict):
-    first_s: float
-    last_s: float
-    rows: int
-    rmse: dict[str, float]
-    mean: dict[str, float]
-
-class ComparisonDescription(TypedDict):
-    model: str
-    file: str
-    status: str
-    message: str
-    overall: list[MisfitDescription]
-    where: list[MisfitDescription]
-    channels: list[ChannelDescription]
-    windows: list[WindowDescription]
-    time: Array
-    residuals: Array
-    notes: list[str]
-    json: str
-    text: str
-    explained: str
-
-class IntervalDescription(TypedDict):
-    name: str
-    value: float
-    unit: str
-    gaussian: tuple[float, float]
-    profile: tuple[float, float]
-    ends: tuple[str, str]
-    message: str
-
-class IntervalsDescription(TypedDict):
-    level: float
-    parameters: dict[str, IntervalDescription]
-    notes: list[str]
-    json: str
-    text: str
-    explained: str
-
-class PredictionDescription(TypedDict, total=False):
-    value: Array
-    standard_error: Array
-    measurement_error: Array
-    quantile: float
-    time: Array  # of a flight
-
-class AppliedDescription(TypedDict):
-    rows: int
-    rows_left_empty: int
-    headers: list[str]
-    notes: list[str]
-
-class DepartureDescription(TypedDict):
-    combinations: int
-    statistic: float
-    p: float
-    p_holm: float
-    p_white: float
-    p_white_holm: float
-    difference: dict[str, float]
-    standard_error: dict[str, float]
-
-class FlightFitDescription(TypedDict):
-    name: str
-    own: list[ParameterDescription]
-    rmse: dict[str, float]
-    rows: int
-    alone: str
-    message: str
-    departure: DepartureDescription
-
-class ManyFitDescription(TypedDict):
-    status: str
-    message: str
-    shared: list[ParameterDescription]
-    covariance: Array
-    correlation: Array
-    covariance_white: Array
-    flights: list[FlightFitDescription]
-    left_out: dict[str, str]
-    noise: dict[str, float]
-    rmse: dict[str, float]
-    cost: float
-    unobservable: list[CombinationDescription]
-    weak: list[CombinationDescription]
-    iterations: int
-    noise_iterations: int
-    passes: int
-    rows: int
-
-# The fields of sepcal.EffectSetting.
-Setting: TypeAlias = tuple[
-    str,
-    float | None,
-    Sequence[float],
-    Sequence[str],
-    tuple[float, float] | None,
-    float | None,
-]
-
-# Name, port, unit, and the function of the columns (N,) and n_z.
-OwnEffect: TypeAlias = tuple[
-    str, str | None, str, Callable[[dict[str, Array], int], Array | list[tuple[str, Array]]]
+__all__: list[str] = [
+    "Applied",
+    "Calibration",
+    "CataloguedEffect",
+    "ChannelMisfit",
+    "Combination",
+    "Comparison",
+    "Departure",
+    "Derived",
+    "Diagnosed",
+    "EffectSetting",
+    "Error",
+    "Fit",
+    "Flight",
+    "FlightFigures",
+    "FlightFit",
+    "HistoryEntry",
+    "Intervals",
+    "LocalMinimum",
+    "ManyFit",
+    "Misfit",
+    "Model",
+    "Options",
+    "Parameter",
+    "ParameterInterval",
+    "Prediction",
+    "PreparedFlight",
+    "PythonFunctions",
+    "ScreenResults",
+    "StageOne",
+    "Window",
+    "attitude_independent_magnetometer",
+    "autocorrelation",
+    "bin_means",
+    "calibrate",
+    "channels",
+    "effects",
+    "fit",
+    "fit_many",
+    "five_hole_probe",
+    "gather_figures",
+    "magnetometer",
+    "parse_calibration",
+    "pitot_static",
+    "predict",
+    "prepare_columns",
+    "prepare_flight",
+    "profile_intervals",
+    "python_model",
+    "quantiles",
+    "read_calibration",
+    "read_csv",
+    "scalar_example_1",
+    "scalar_example_2",
+    "simulate",
+    "smooth",
+    "spectrum",
 ]
 
 class Options:
-    def __setattr__(self, name: str, value: object, /) -> None: ...
+    coloured_errors: bool
+    drop_invalid: bool
+    jacobian: str
+    loss: str
+    sampling: str
+    search: str
+    second_stage: str
+    stage_one: str
+    stage_two: str
+    def __init__(self) -> None: ...
+    @property
+    def descents(self) -> int: ...
+    @descents.setter
+    def descents(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def fixed(self) -> dict[str, float]: ...
+    @fixed.setter
+    def fixed(
+        self, arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]
+    ) -> None: ...
+    @property
+    def free(self) -> list[str]: ...
+    @free.setter
+    def free(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def iterations(self) -> int: ...
+    @iterations.setter
+    def iterations(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def loss_width(self) -> float: ...
+    @loss_width.setter
+    def loss_width(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def noise(self) -> dict[str, float]: ...
+    @noise.setter
+    def noise(
+        self, arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]
+    ) -> None: ...
+    @property
+    def noise_iterations(self) -> int: ...
+    @noise_iterations.setter
+    def noise_iterations(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def noise_tolerance(self) -> float: ...
+    @noise_tolerance.setter
+    def noise_tolerance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def samples(self) -> int: ...
+    @samples.setter
+    def samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def seed(self) -> int: ...
+    @seed.setter
+    def seed(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def start(self) -> dict[str, float]: ...
+    @start.setter
+    def start(
+        self, arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]
+    ) -> None: ...
+    @property
+    def threads(self) -> int: ...
+    @threads.setter
+    def threads(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
 
-class Model:
-    @property
-    def inputs(self) -> list[tuple[str, str, float, float, float]]: ...
-    @property
-    def outputs(self) -> list[tuple[str, str, float, float, float]]: ...
-    @property
-    def linear(self) -> list[tuple[str, str, float, float, float]]: ...
-    @property
-    def nonlinear(self) -> list[tuple[str, str, float, float, float]]: ...
-    def evaluate(self, columns: dict[str, Array], xi2: Array, xi1: Array | None, /) -> Array: ...
-    def input_tangent(
-        self, columns: dict[str, Array], xi2: Array, xi1: Array, inputs: list[int], /
-    ) -> Array: ...
+class Parameter:
+    """
+    One estimate, in `unit`.
+    """
 
-class PythonFunctions:
-    def __init__(self, gather: object, at: object, try_at: object, derivatives: object) -> None: ...
-
-class Flight:
-    def __init__(self, name: str, /) -> None: ...
-    def view(self, header: str, values: Array) -> None: ...
-    def label(self, labels: list[str], /) -> None: ...
-    def column(self, header: str, /) -> Array | None: ...
-    def list_columns(self) -> str: ...
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "value",
+        "standard_error",
+        "standard_error_white",
+        "unit",
+        "lower",
+        "upper",
+        "at_bound",
+        "fixed",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def at_bound(self) -> bool:
+        """
+        Whether a bound stopped it.
+        """
+    @property
+    def fixed(self) -> bool:
+        """
+        Whether it was held.
+        """
+    @property
+    def lower(self) -> float:
+        """
+        Its bounds; infinite where there is none.
+        """
     @property
     def name(self) -> str: ...
     @property
-    def sha256(self) -> str: ...
+    def remark(self) -> str:
+        """
+        Fixed, at its lower or at its upper bound; else nothing.
+        """
     @property
-    def rows(self) -> int: ...
+    def standard_error(self) -> float:
+        """
+        NaN where undefined: fixed, at a bound, singular.
+        """
+    @property
+    def standard_error_white(self) -> float:
+        """
+        What it would be if the residuals were white.
+        """
+    @property
+    def unit(self) -> str: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def value(self) -> float: ...
+
+class Combination:
+    """
+    A linear combination of parameters that the record leaves open or determines poorly.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("text", "parameters", "standard_error")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """
+        Those that take part, largest share first.
+        """
+    @property
+    def standard_error(self) -> float:
+        """
+        Of the combination; infinite where it is singular.
+        """
+    @property
+    def text(self) -> str:
+        """
+        "0.8 w_n - 0.6 lambda_va", coefficients of unit length.
+        """
+
+class EffectSetting:
+    """
+    An effect of a fit, with what it took from the record; None or empty where it takes none.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("name", "centre", "knots", "labels", "span", "t0")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def centre(self) -> float | None:
+        """
+        Of a power's driver, in the driver's unit.
+        """
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """
+        Of a spline.
+        """
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """
+        Of the driver `maneuver`; the first has no coefficient.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Whole, aliases resolved: "wind[altitude_m]".
+        """
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """
+        The record's first and last time [s].
+        """
+    @property
+    def t0(self) -> float | None:
+        """
+        Of a step [s].
+        """
+
+class LocalMinimum:
+    """
+    A local minimum of Tr[R] within the bounds.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("xi2", "trace_r")
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def trace_r(self) -> float:
+        """
+        Sum over outputs of the mean squared residual, in the outputs' units.
+        """
+    @property
+    def xi2(self) -> dict[str, float]: ...
+
+class ScreenResults:
+    """
+    Eqs. 17 and 18 at every sample, each (S,); norms are Frobenius', over the whole record.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "ratio_a",
+        "ratio_b",
+        "curvature_a",
+        "curvature_b",
+        "accepted",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def accepted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.bool], "[m, 1]"]:
+        """
+        False: the sample was not used.
+        """
+    @property
+    def curvature_a(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Smallest eigenvalue of the sum of A's second derivatives.
+        """
+    @property
+    def curvature_b(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The same of b.
+        """
+    @property
+    def ratio_a(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        |dA/dxi2| l_2 / |A|.
+        """
+    @property
+    def ratio_b(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        |db/dxi2| l_2 / |b|; zero where b does not depend on xi2.
+        """
+
+class StageOne:
+    """
+    Samples of xi2 and Tr[R] at each (Eqs. 16, 19, Steps 2-4); of a global search, all it tried.
+
+    Fixed parameters have no part in it. The samples are not kept in a calibration's JSON.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "samples",
+        "trace_r",
+        "best",
+        "best_trace_r",
+        "minima",
+        "unique_minimum",
+        "flat_directions",
+        "screens",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def best(self) -> dict[str, float]:
+        """
+        The sample with the least Tr[R].
+        """
+    @property
+    def best_trace_r(self) -> float: ...
+    @property
+    def flat_directions(self) -> list[str]:
+        """
+        In words: a valley of Tr[R] and no point (Fig. 6).
+        """
+    @property
+    def minima(self) -> list[LocalMinimum]:
+        """
+        Distinct ones, lowest first.
+        """
+    @property
+    def samples(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (S, n_2), in the model's order.
+        """
+    @property
+    def screens(self) -> ScreenResults | None:
+        """
+        Where fit() was asked for them.
+        """
+    @property
+    def trace_r(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (S,); infinite where the model is not finite.
+        """
+    @property
+    def unique_minimum(self) -> bool:
+        """
+        One minimum and no flat direction.
+        """
+
+class Fit:
+    """
+    The two-stage batch estimate.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "status",
+        "message",
+        "parameters",
+        "n_1",
+        "covariance",
+        "correlation",
+        "covariance_white",
+        "noise",
+        "rmse",
+        "cost",
+        "rows",
+        "unobservable",
+        "weak",
+        "stage_one",
+        "method",
+        "iterations",
+        "noise_iterations",
+        "effects",
+        "text",
+        "explained",
+    )
+    def __getitem__(self, arg0: str) -> Parameter: ...
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Fit) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n).
+        """
+    @property
+    def cost(self) -> float:
+        """
+        J of Eq. 6.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n), in that order; NaN where there is no standard error.
+        """
+    @property
+    def covariance_white(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n), of white residuals; of a loaded one only its diagonal.
+        """
+    @property
+    def effects(self) -> list[EffectSetting]:
+        """
+        That joined the model, in order.
+        """
+    @property
+    def explained(self) -> str:
+        """
+        The same with the whole message, as by the apps' --explain.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Of stage two's minimisations.
+        """
+    @property
+    def message(self) -> str:
+        """
+        One line; empty where there is nothing to say.
+        """
+    @property
+    def method(self) -> str:
+        """
+        "joint" or "projected": what stage two used in the end.
+        """
+    @property
+    def n_1(self) -> int:
+        """
+        How many of them are linear.
+        """
+    @property
+    def noise(self) -> dict[str, float]:
+        """
+        By output: standard deviation, given or from R-hat = SSE / N.
+        """
+    @property
+    def noise_iterations(self) -> int:
+        """
+        Of R against the parameters.
+        """
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """
+        Linear, then nonlinear, in the model's order.
+        """
+    @property
+    def rmse(self) -> dict[str, float]:
+        """
+        By output, unwhitened, in its unit.
+        """
+    @property
+    def rows(self) -> int:
+        """
+        That stage two used.
+        """
+    @property
+    def stage_one(self) -> StageOne: ...
+    @property
+    def status(self) -> str:
+        """
+        "converged", "not_converged" or "not_identifiable".
+        """
+    @property
+    def text(self) -> str:
+        """
+        What print() shows: the app's page.
+        """
+    @property
+    def unobservable(self) -> list[Combination]:
+        """
+        Singular, or uncertain beyond half the width of their bounds.
+        """
+    @property
+    def weak(self) -> list[Combination]:
+        """
+        Singular value below a fiftieth of the largest.
+        """
+
+class CataloguedEffect:
+    """
+    An effect that fit(..., effects=[name]) adds to a probe's model.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("name", "equation", "drivers", "unit")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def drivers(self) -> str:
+        """
+        The columns that it needs.
+        """
+    @property
+    def equation(self) -> str:
+        """
+        What joins the model.
+        """
+    @property
+    def name(self) -> str:
+        """
+        `port[driver]`, or a name of its own; DRIVER stands for any.
+        """
+    @property
+    def unit(self) -> str:
+        """
+        Of its coefficient.
+        """
+
+class Model:
+    def evaluate(
+        self,
+        arg0: dict,
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def input_tangent(
+        self,
+        arg0: dict,
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg3: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def inputs(self) -> list: ...
+    @property
+    def linear(self) -> list: ...
+    @property
+    def nonlinear(self) -> list: ...
+    @property
+    def outputs(self) -> list: ...
+
+class PythonFunctions:
+    def __init__(
+        self, gather: typing.Any, at: typing.Any, try_at: typing.Any, derivatives: typing.Any
+    ) -> None: ...
+
+class ParameterInterval:
+    """
+    Both intervals of one parameter, (lower, upper) in `unit`.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "value",
+        "unit",
+        "gaussian",
+        "profile",
+        "ends",
+        "message",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def ends(self) -> tuple[str, str]:
+        """
+        What ends the profile's: "crossed", "bound", "open" or "failed".
+        """
+    @property
+    def gaussian(self) -> tuple[float, float]:
+        """
+        value -+ quantile * standard_error; NaN where there is none.
+        """
+    @property
+    def message(self) -> str:
+        """
+        One line; empty where there is nothing to say.
+        """
+    @property
+    def name(self) -> str: ...
+    @property
+    def profile(self) -> tuple[float, float]:
+        """
+        Infinite where open, NaN where failed.
+        """
+    @property
+    def unit(self) -> str: ...
+    @property
+    def value(self) -> float: ...
+
+class Intervals:
+    """
+    Both intervals of a fit's parameters.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("level", "parameters", "notes", "json", "text", "explained")
+    def __getitem__(self, arg0: str) -> ParameterInterval: ...
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Intervals) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def explained(self) -> str:
+        """
+        The same with the whole message, as by the apps' --explain.
+        """
+    @property
+    def json(self) -> str: ...
+    @property
+    def level(self) -> float:
+        """
+        How often an interval should hold the true value.
+        """
+    @property
+    def notes(self) -> list[str]:
+        """
+        One line each, for people.
+        """
+    @property
+    def parameters(self) -> dict[str, ParameterInterval]: ...
+    @property
+    def text(self) -> str:
+        """
+        What print() shows: of a calibration's, the app's page.
+        """
+
+class Prediction:
+    """
+    What a fit says of N samples, in the outputs' units and the model's order of outputs.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "value",
+        "standard_error",
+        "measurement_error",
+        "quantile",
+        "time",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Prediction) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def measurement_error(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), standard deviation of a new measurement about the value.
+        """
+    @property
+    def quantile(self) -> float:
+        """
+        Half a band's width in these errors, by the level asked for.
+        """
+    @property
+    def standard_error(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), of the value, from the parameters' covariance.
+        """
+    @property
+    def time(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        (N,) [s] of a flight's rows; None of columns.
+        """
+    @property
+    def value(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), A xi1 + b.
+        """
+
+class Flight:
+    def __getstate__(
+        self,
+    ) -> tuple[
+        str,
+        str,
+        list[tuple[str, numpy.typing.NDArray[numpy.float64], tuple[int, str] | None]],
+        list[str],
+    ]: ...
+    def __init__(self, arg0: str) -> None: ...
+    def __setstate__(
+        self,
+        arg0: tuple[
+            str,
+            str,
+            collections.abc.Sequence[
+                tuple[
+                    str,
+                    typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+                    tuple[typing.SupportsInt | typing.SupportsIndex, str] | None,
+                ]
+            ],
+            collections.abc.Sequence[str],
+        ],
+    ) -> None: ...
+    def column(self, arg0: str) -> numpy.typing.NDArray[numpy.float64] | None: ...
+    def label(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    def list_columns(self) -> str: ...
+    def view(self, header: str, values: numpy.typing.NDArray[numpy.float64]) -> None: ...
     @property
     def headers(self) -> list[str]: ...
     @property
     def maneuvers(self) -> list[str]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def sha256(self) -> str: ...
 
-class Calibration:
+class Misfit:
+    """
+    One output over one stretch of a flight; NaN where there are too few rows.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "segment",
+        "output",
+        "unit",
+        "rows",
+        "rmse",
+        "mean",
+        "lag_one",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
     @property
-    def fit(self) -> FitDescription: ...
+    def is_white(self) -> bool:
+        """
+        Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen times in twenty.
+        """
     @property
-    def derived(self) -> dict[str, DerivedDescription]: ...
+    def lag_one(self) -> float:
+        """
+        Correlation of neighbouring residuals, never across a segment's edge.
+        """
     @property
-    def history(self) -> list[HistoryDescription]: ...
+    def mean(self) -> float:
+        """
+        Of z - model: what a constant offset would explain.
+        """
     @property
-    def notes(self) -> list[str]: ...
+    def output(self) -> str: ...
     @property
-    def file(self) -> str: ...
+    def rmse(self) -> float: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def segment(self) -> str:
+        """
+        Maneuver, or "120.0:180.5" [s] where there are no labels; empty: the whole.
+        """
+    @property
+    def unit(self) -> str: ...
+    @property
+    def verdict(self) -> str:
+        """
+        In words whether the residuals are noise.
+        """
+
+class ChannelMisfit:
+    """
+    One output's residual against one channel of the flight.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "driver",
+        "output",
+        "share_line",
+        "share_smooth",
+        "slope",
+        "slope_error",
+        "unit",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def driver(self) -> str:
+        """
+        "altitude_m"; "time", "alpha", "roll" for what the probe knows by itself.
+        """
+    @property
+    def output(self) -> str: ...
+    @property
+    def share_line(self) -> float:
+        """
+        Of the residual's variance that a straight line would explain.
+        """
+    @property
+    def share_smooth(self) -> float:
+        """
+        The same of a natural spline of six even knots.
+        """
+    @property
+    def slope(self) -> float:
+        """
+        Of the line.
+        """
+    @property
+    def slope_error(self) -> float:
+        """
+        Its standard error in the residual's own noise, rather too large.
+        """
+    @property
+    def unit(self) -> str:
+        """
+        Of the slope.
+        """
+
+class Window:
+    """
+    A stretch of about a twentieth of the rows.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("first_s", "last_s", "rows", "rmse", "mean")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def first_s(self) -> float:
+        """
+        Time of its first row.
+        """
+    @property
+    def last_s(self) -> float:
+        """
+        And of its last.
+        """
+    @property
+    def mean(self) -> dict[str, float]:
+        """
+        By output, of z - model.
+        """
+    @property
+    def rmse(self) -> dict[str, float]:
+        """
+        By output.
+        """
+    @property
+    def rows(self) -> int: ...
+
+class Comparison:
+    """
+    A calibration against a flight.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "model",
+        "file",
+        "status",
+        "message",
+        "overall",
+        "where",
+        "channels",
+        "windows",
+        "time",
+        "residuals",
+        "notes",
+        "json",
+        "text",
+        "explained",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Comparison) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def channels(self) -> list[ChannelMisfit]:
+        """
+        By share_smooth, largest first.
+        """
+    @property
+    def explained(self) -> str:
+        """
+        The same with the whole message, as by the apps' --explain.
+        """
+    @property
+    def file(self) -> str:
+        """
+        Of the flight.
+        """
+    @property
+    def json(self) -> str: ...
+    @property
+    def message(self) -> str: ...
     @property
     def model(self) -> str: ...
     @property
+    def notes(self) -> list[str]:
+        """
+        One line each, for people.
+        """
+    @property
+    def overall(self) -> list[Misfit]:
+        """
+        One an output.
+        """
+    @property
+    def residuals(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), z - model.
+        """
+    @property
+    def status(self) -> str:
+        """
+        Of the calibration, repeated.
+        """
+    @property
+    def text(self) -> str:
+        """
+        What print() shows: the app's page.
+        """
+    @property
+    def time(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (N,) [s], of every row used.
+        """
+    @property
+    def where(self) -> list[Misfit]:
+        """
+        Maneuver by maneuver, outputs within, in the flight's order.
+        """
+    @property
+    def windows(self) -> list[Window]:
+        """
+        The five worst in units of the fit's noise, worst first.
+        """
+
+class Derived:
+    """
+    A quantity that follows from the estimates, in `unit`; errors by the delta method.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "value",
+        "standard_error",
+        "standard_error_white",
+        "unit",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def name(self) -> str: ...
+    @property
+    def standard_error(self) -> float:
+        """
+        NaN where that of a parameter it depends on is.
+        """
+    @property
+    def standard_error_white(self) -> float:
+        """
+        What it would be if the residuals were white.
+        """
+    @property
     def unit(self) -> str: ...
-    def pages(self) -> PagesDescription: ...
-    def compare(self, flight: Flight, /) -> ComparisonDescription: ...
+    @property
+    def value(self) -> float: ...
+
+class HistoryEntry:
+    """
+    One step of a chain of added effects; None where a number is undefined. Errors are RMSE over all outputs together, on the rows of the new fit.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "effect",
+        "rmse_before",
+        "rmse_after",
+        "held_out_before",
+        "held_out_after",
+        "predicted_drop",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def effect(self) -> str:
+        """
+        Several that were added together: "E1+E2".
+        """
+    @property
+    def held_out_after(self) -> float | None: ...
+    @property
+    def held_out_before(self) -> float | None: ...
+    @property
+    def predicted_drop(self) -> float | None:
+        """
+        Of the RMSE, 1 - after / before.
+        """
+    @property
+    def rmse_after(self) -> float | None: ...
+    @property
+    def rmse_before(self) -> float | None: ...
+
+class Applied:
+    """
+    What apply_to_file() did.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("rows", "rows_left_empty", "headers", "notes")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def headers(self) -> list[str]:
+        """
+        The columns added.
+        """
+    @property
+    def notes(self) -> list[str]:
+        """
+        One line each, for people.
+        """
+    @property
+    def rows(self) -> int: ...
+    @property
+    def rows_left_empty(self) -> int:
+        """
+        Nothing to calibrate: total below static pressure, or dropped.
+        """
+
+class Diagnosed:
+    @property
+    def explained(self) -> str: ...
+    @property
+    def json(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def text(self) -> str: ...
+
+class Calibration:
+    def add(
+        self,
+        arg0: Flight,
+        arg1: str,
+        arg2: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+    ) -> Calibration: ...
+    def apply(self, arg0: Flight) -> dict[str, numpy.typing.NDArray[numpy.float64]]: ...
+    def apply_to_file(self, arg0: str, arg1: str) -> Applied: ...
+    def compare(self, arg0: Flight) -> Comparison: ...
     def diagnose(
         self,
-        flight: Flight,
-        own: Sequence[OwnEffect],
-        injected: tuple[str, list[float]] | None,
-        simulations: int,
-        seed: int,
-        /,
-    ) -> dict[str, object]: ...
+        arg0: Flight,
+        arg1: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+        arg2: tuple[str, collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]]
+        | None,
+        arg3: typing.SupportsInt | typing.SupportsIndex,
+        arg4: typing.SupportsInt | typing.SupportsIndex,
+    ) -> Diagnosed: ...
     def intervals(
-        self, flight: Flight, level: float, names: Sequence[str], /
-    ) -> IntervalsDescription: ...
-    def predict(self, flight: Flight, level: float, /) -> PredictionDescription: ...
-    def add(self, flight: Flight, effect: str, own: Sequence[OwnEffect], /) -> Calibration: ...
-    def apply(self, flight: Flight, /) -> dict[str, Array]: ...
-    def apply_to_file(self, file: str, output: str, /) -> AppliedDescription: ...
+        self,
+        arg0: Flight,
+        arg1: typing.SupportsFloat | typing.SupportsIndex,
+        arg2: collections.abc.Sequence[str],
+    ) -> Intervals: ...
+    def predict(
+        self, arg0: Flight, arg1: typing.SupportsFloat | typing.SupportsIndex
+    ) -> Prediction: ...
+    def save(self, arg0: str) -> None: ...
     def to_json(self) -> str: ...
-    def save(self, file: str, /) -> None: ...
-
-def scalar_example_1() -> Model: ...
-def scalar_example_2() -> Model: ...
-def five_hole_probe(
-    k_alpha: float, k_beta: float, lever_arm: tuple[float, float, float], /
-) -> Model: ...
-def pitot_static() -> Model: ...
-def attitude_independent_magnetometer(field_strength: float, /) -> Model: ...
-def magnetometer(field: tuple[float, float, float] | None, /) -> Model: ...
-def python_model(
-    name: str, tables: list[list[tuple[str, str, float, float]]], functions: PythonFunctions, /
-) -> Model: ...
-def fit(
-    model: Model,
-    columns: dict[str, Array],
-    labels: list[str],
-    options: Options,
-    own: Sequence[OwnEffect],
-    /,
-) -> FitDescription: ...
-def calibrate(
-    model: Model, flight: Flight, options: Options, own: Sequence[OwnEffect], /
-) -> Calibration: ...
-def profile_intervals(
-    model: Model,
-    columns: dict[str, Array],
-    labels: list[str],
-    options: Options,
-    own: Sequence[OwnEffect],
-    fit: dict[str, object],
-    settings: Sequence[Setting],
-    level: float,
-    names: Sequence[str],
-    /,
-) -> IntervalsDescription: ...
-def predict(
-    model: Model,
-    columns: dict[str, Array],
-    labels: list[str],
-    options: Options,
-    own: Sequence[OwnEffect],
-    fit: dict[str, object],
-    settings: Sequence[Setting],
-    level: float,
-    /,
-) -> PredictionDescription: ...
-def parse_calibration(json: str, source: str, own: Sequence[OwnEffect], /) -> Calibration: ...
-def read_calibration(file: str, own: Sequence[OwnEffect], /) -> Calibration: ...
-def effects(probe: str, /) -> list[CataloguedEffectDescription]: ...
-def channels(effects: list[str], /) -> list[str]: ...
-def read_csv(file: str, /) -> Flight: ...
-def simulate(
-    probe: str,
-    truth: str,
-    hidden: list[tuple[str, list[float]]],
-    excitation: str,
-    noise: str,
-    decoys: int,
-    rate: float,
-    rows: int,
-    seed: int,
-    /,
-) -> tuple[Flight, dict[str, float], list[str]]: ...
-
-# A flight's (status or None, message, x, noise, stacked factors, sums of z^2, rows).
-Start: TypeAlias = tuple[str | None, str, Array, Array, Array, Array, int]
-
-class PreparedFlight:
-    def start(self) -> Start: ...
-    def linearise(self, x: Array, /) -> Array: ...
-    def score_covariance(
-        self, question: tuple[Array, Array, Array, list[int], Array], /
-    ) -> Array: ...
-
-def prepare_flight(
-    model: Model, flight: Flight, options: Options, own: list[str], /
-) -> PreparedFlight: ...
-def prepare_columns(
-    model: Model,
-    columns: dict[str, Array],
-    labels: list[str],
-    options: Options,
-    own: list[str],
-    /,
-) -> PreparedFlight: ...
-def fit_many(
-    model: Model,
-    names: list[str],
-    options: Options,
-    own: list[str],
-    leave_out: bool,
-    visit: Callable[[str, list[tuple[int, object]]], list[object]],
-    /,
-) -> ManyFitDescription: ...
-
-# What the report draws. Rows: label, first row, row after the last. Smooth: x, mean, half width.
-Rows: TypeAlias = tuple[str, int, int]
-Smooth: TypeAlias = tuple[Array, Array, Array]
+    @property
+    def derived(self) -> dict[str, Derived]: ...
+    @property
+    def file(self) -> str: ...
+    @property
+    def fit(self) -> Fit: ...
+    @property
+    def history(self) -> list[HistoryEntry]: ...
+    @property
+    def model(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def unit(self) -> str: ...
 
 class FlightFigures:
+    def channel(
+        self, arg0: str
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None: ...
     @property
-    def rows(self) -> NDArray[np.uint64]: ...
+    def airspeed(self) -> numpy.typing.NDArray[numpy.float64] | None: ...
     @property
-    def segments(self) -> list[Rows]: ...
-    @property
-    def runs(self) -> list[Rows]: ...
-    @property
-    def interval(self) -> list[float]: ...
-    @property
-    def measured(self) -> Array: ...
-    @property
-    def modelled(self) -> Array: ...
-    @property
-    def within_95(self) -> list[float]: ...
-    @property
-    def airspeed(self) -> Array | None: ...
-    @property
-    def heading(self) -> Array | None: ...
+    def heading(self) -> numpy.typing.NDArray[numpy.float64] | None: ...
     @property
     def heading_is_track(self) -> bool: ...
-    def channel(self, name: str, /) -> Array | None: ...
+    @property
+    def interval(self) -> typing.Annotated[list[float], "FixedSize(3)"]: ...
+    @property
+    def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def modelled(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def rows(self) -> numpy.typing.NDArray[numpy.uint64]: ...
+    @property
+    def runs(self) -> list[tuple[str, int, int]]: ...
+    @property
+    def segments(self) -> list[tuple[str, int, int]]: ...
+    @property
+    def within_95(self) -> list[float]: ...
 
-def gather_figures(calibration: Calibration, flight: Flight, /) -> FlightFigures: ...
-def autocorrelation(residual: Array, runs: Sequence[Rows], /) -> tuple[Array, Array, Array]: ...
-def spectrum(residual: Array, runs: Sequence[Rows], interval: float, /) -> tuple[Array, Array]: ...
-def quantiles(residual: Array, /) -> tuple[Array, Array]: ...
-def smooth(x: Array, residual: Array, /) -> Smooth | None: ...
-def bin_means(x: Array, y: Array, bins: int, /) -> tuple[Array, Array]: ...
+class Departure:
+    """
+    Does a flight's own estimate of the shared parameters agree with that of all the others?
+
+    Both to first order at the joint solution, along the combinations that both determine.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "combinations",
+        "statistic",
+        "p",
+        "p_holm",
+        "p_white",
+        "p_white_holm",
+        "difference",
+        "standard_error",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def combinations(self) -> int:
+        """
+        k of them; 0: nothing can be tested.
+        """
+    @property
+    def difference(self) -> dict[str, float]:
+        """
+        Own estimate less the others', by shared parameter.
+        """
+    @property
+    def largest(self) -> str:
+        """
+        The shared parameter that differs by most of its standard errors; "" where none does.
+        """
+    @property
+    def p(self) -> float:
+        """
+        Of a larger one where nothing departs: F(k, rows x outputs - n).
+        """
+    @property
+    def p_holm(self) -> float:
+        """
+        The same, by Holm for the number of flights.
+        """
+    @property
+    def p_white(self) -> float:
+        """
+        With white residuals of the common R, off the drop in cost.
+        """
+    @property
+    def p_white_holm(self) -> float: ...
+    @property
+    def standard_error(self) -> dict[str, float]:
+        """
+        Of the difference.
+        """
+    @property
+    def statistic(self) -> float:
+        """
+        d' V^-1 d, d the difference, V as the flights' noise models have it.
+        """
+
+class FlightFit:
+    """
+    One flight of a joint fit.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "own",
+        "rmse",
+        "rows",
+        "alone",
+        "message",
+        "departure",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getitem__(self, arg0: str) -> Parameter: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def alone(self) -> str:
+        """
+        Status of the flight's fit by itself, where the joint one began.
+        """
+    @property
+    def departure(self) -> Departure: ...
+    @property
+    def message(self) -> str:
+        """
+        Of that fit.
+        """
+    @property
+    def name(self) -> str: ...
+    @property
+    def own(self) -> dict[str, Parameter]:
+        """
+        In the model's order.
+        """
+    @property
+    def rmse(self) -> dict[str, float]:
+        """
+        By output, in its unit.
+        """
+    @property
+    def rows(self) -> int: ...
+
+class ManyFit:
+    """
+    A joint fit of many flights.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "status",
+        "message",
+        "shared",
+        "covariance",
+        "correlation",
+        "covariance_white",
+        "flights",
+        "left_out",
+        "noise",
+        "rmse",
+        "cost",
+        "unobservable",
+        "weak",
+        "iterations",
+        "noise_iterations",
+        "passes",
+        "rows",
+    )
+    def __getitem__(self, arg0: str) -> Parameter: ...
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: ManyFit) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def cost(self) -> float:
+        """
+        J of Eq. 6 over all rows.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Of the shared parameters, in that order; NaN without a standard error.
+        """
+    @property
+    def covariance_white(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        As white residuals would have it.
+        """
+    @property
+    def flights(self) -> dict[str, FlightFit]:
+        """
+        In the order given.
+        """
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def left_out(self) -> dict[str, str]:
+        """
+        Flights that can't be used, and why.
+        """
+    @property
+    def message(self) -> str:
+        """
+        One line; empty where there is nothing to say.
+        """
+    @property
+    def noise(self) -> dict[str, float]:
+        """
+        By output, common to all flights: given, or from R-hat = SSE / N.
+        """
+    @property
+    def noise_iterations(self) -> int: ...
+    @property
+    def passes(self) -> int:
+        """
+        Over the data, beside each flight's own fit.
+        """
+    @property
+    def rmse(self) -> dict[str, float]:
+        """
+        Over all flights.
+        """
+    @property
+    def rows(self) -> int:
+        """
+        Of all flights.
+        """
+    @property
+    def shared(self) -> dict[str, Parameter]:
+        """
+        In the model's order, fixed ones among them.
+        """
+    @property
+    def status(self) -> str:
+        """
+        "converged", "not_converged" or "not_identifiable".
+        """
+    @property
+    def unobservable(self) -> list[Combination]:
+        """
+        Of the shared parameters.
+        """
+    @property
+    def weak(self) -> list[Combination]: ...
+
+class PreparedFlight:
+    def linearise(
+        self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def score_covariance(
+        self,
+        arg0: tuple[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        ],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def start(
+        self,
+    ) -> tuple[
+        str | None,
+        str,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        int,
+    ]: ...
+
+def attitude_independent_magnetometer(
+    arg0: typing.SupportsFloat | typing.SupportsIndex,
+) -> Model: ...
+def autocorrelation(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg1: collections.abc.Sequence[
+        tuple[
+            str,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ]
+    ],
+) -> tuple[
+    numpy.typing.NDArray[numpy.float64],
+    numpy.typing.NDArray[numpy.float64],
+    numpy.typing.NDArray[numpy.float64],
+]: ...
+def bin_means(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg2: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+def calibrate(
+    arg0: Model,
+    arg1: Flight,
+    arg2: Options,
+    arg3: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+) -> Calibration: ...
+def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
+def effects(arg0: str) -> list[CataloguedEffect]: ...
+def fit(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: Options,
+    arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+) -> Fit: ...
+def fit_many(
+    arg0: Model,
+    arg1: collections.abc.Sequence[str],
+    arg2: Options,
+    arg3: collections.abc.Sequence[str],
+    arg4: bool,
+    arg5: collections.abc.Callable,
+) -> ManyFit: ...
+def five_hole_probe(
+    arg0: typing.SupportsFloat | typing.SupportsIndex,
+    arg1: typing.SupportsFloat | typing.SupportsIndex,
+    arg2: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+) -> Model: ...
+def gather_figures(arg0: Calibration, arg1: Flight) -> FlightFigures: ...
+def magnetometer(
+    arg0: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ]
+    | None,
+) -> Model: ...
+def parse_calibration(
+    arg0: str, arg1: str, arg2: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]]
+) -> Calibration: ...
+def pitot_static() -> Model: ...
+def predict(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: Options,
+    arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+    arg5: Fit,
+    arg6: typing.SupportsFloat | typing.SupportsIndex,
+) -> Prediction: ...
+def prepare_columns(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: Options,
+    arg4: collections.abc.Sequence[str],
+) -> PreparedFlight: ...
+def prepare_flight(
+    arg0: Model, arg1: Flight, arg2: Options, arg3: collections.abc.Sequence[str]
+) -> PreparedFlight: ...
+def profile_intervals(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: Options,
+    arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+    arg5: Fit,
+    arg6: typing.SupportsFloat | typing.SupportsIndex,
+    arg7: collections.abc.Sequence[str],
+) -> Intervals: ...
+def python_model(
+    arg0: str,
+    arg1: typing.Annotated[
+        collections.abc.Sequence[
+            collections.abc.Sequence[
+                tuple[
+                    str,
+                    str,
+                    typing.SupportsFloat | typing.SupportsIndex,
+                    typing.SupportsFloat | typing.SupportsIndex,
+                ]
+            ]
+        ],
+        "FixedSize(4)",
+    ],
+    arg2: PythonFunctions,
+) -> Model: ...
+def quantiles(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+def read_calibration(
+    arg0: str, arg1: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]]
+) -> Calibration: ...
+def read_csv(arg0: str) -> Flight: ...
+def scalar_example_1() -> Model: ...
+def scalar_example_2() -> Model: ...
+def simulate(
+    arg0: str,
+    arg1: str,
+    arg2: collections.abc.Sequence[
+        tuple[str, collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]]
+    ],
+    arg3: str,
+    arg4: str,
+    arg5: typing.SupportsInt | typing.SupportsIndex,
+    arg6: typing.SupportsFloat | typing.SupportsIndex,
+    arg7: typing.SupportsInt | typing.SupportsIndex,
+    arg8: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[Flight, dict[str, float], list[str]]: ...
+def smooth(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> (
+    tuple[
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    ]
+    | None
+): ...
+def spectrum(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg1: collections.abc.Sequence[
+        tuple[
+            str,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ]
+    ],
+    arg2: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+
+__version__: str = "0.1.0"
+
+class Error(ValueError): ...

@@ -4,8 +4,7 @@
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
@@ -17,73 +16,43 @@ from sepcal.flight import Flight
 from sepcal.intervals import Intervals, Prediction
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
-from sepcal.results import Fit, to_fields
+from sepcal.results import Fit
 
 Path = str | os.PathLike[str]
 
 
-@dataclass(frozen=True)
-class Applied:
-    """What apply_to_file() did."""
-
-    rows: int
-    rows_left_empty: int  # nothing to calibrate: total below static pressure, or dropped
-    headers: list[str]  # the columns added
-    notes: list[str]  # one line each, for people
-
-
-@dataclass(frozen=True)
-class Derived:
-    """A quantity that follows from the estimates, in `unit`; errors by the delta method."""
-
-    name: str
-    value: float
-    standard_error: float  # NaN where that of a parameter it depends on is
-    standard_error_white: float  # what it would be if the residuals were white
-    unit: str
-
-
-@dataclass(frozen=True)
-class HistoryEntry:
-    """One step of a chain of added effects; None where a number is undefined."""
-
-    effect: str  # several that were added together: "E1+E2"
-    rmse_before: float | None  # over all outputs together, on the rows of the new fit
-    rmse_after: float | None
-    held_out_before: float | None
-    held_out_after: float | None
-    predicted_drop: float | None  # of the RMSE, 1 - after / before
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Calibration(Fit):
     """A Fit of a probe, with all that later verbs need: probe, options, and the flight fitted.
 
     It pickles as its JSON and its own effects, without the flight and stage one's samples.
     """
 
-    derived: dict[
-        str, Derived
-    ]  # of a Pitot-static tube: lambda_va, b_va, which correct the reading
-    history: list[HistoryEntry]  # an entry for every add()
-    own_effects: list[Effect]  # of the caller's making, among `effects`
-    notes: list[str]  # what was dropped or ignored, one line each, for people
     core: _core.Calibration
     flight: Flight | None  # that was fitted; None where the calibration was loaded
+    own_effects: list[Effect]  # of the caller's making, among `effects`
 
-    @classmethod
-    def _of(
-        cls, core: _core.Calibration, flight: Flight | None = None, own: Sequence[Effect] = ()
-    ) -> Self:
-        return cls(
-            **{**to_fields(core.fit), **core.pages()},
-            derived={name: Derived(**entry) for name, entry in core.derived.items()},
-            history=[HistoryEntry(**entry) for entry in core.history],
-            own_effects=list(own),
-            notes=core.notes,
-            core=core,
-            flight=flight,
-        )
+    def __init__(
+        self, core: _core.Calibration, flight: Flight | None = None, own: Sequence[Effect] = ()
+    ) -> None:
+        super().__init__(core.fit)
+        self.core = core
+        self.flight = flight
+        self.own_effects = list(own)
+
+    @property
+    def derived(self) -> dict[str, _core.Derived]:
+        """What follows: of a Pitot-static tube lambda_va and b_va, which correct the reading."""
+        return self.core.derived
+
+    @property
+    def history(self) -> list[_core.HistoryEntry]:
+        """An entry for every add()."""
+        return self.core.history
+
+    @property
+    def notes(self) -> list[str]:
+        """What was dropped or ignored, one line each, for people."""
+        return self.core.notes
 
     def _summary(self) -> str:
         errors = np.array(list(self.rmse.values()))
@@ -96,7 +65,7 @@ class Calibration(Fit):
     @property
     def fit(self) -> Fit:
         """The fit alone."""
-        return Fit(**{field.name: getattr(self, field.name) for field in fields(Fit)})
+        return Fit(self)
 
     def compare(self, flight: Flight | None = None) -> Comparison:
         """Residuals on a flight, by default the fitted one, by maneuver and output.
@@ -104,7 +73,7 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
-        return Comparison._of(self.core.compare(self._or_fitted(flight, "compare(")._core))
+        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core))
 
     def diagnose(
         self,
@@ -157,7 +126,7 @@ class Calibration(Fit):
         name = effect.name if isinstance(effect, Effect) else effect
         own = [effect] if isinstance(effect, Effect) else []
         core = self.core.add(flight._core, name, to_core_effects(own))
-        return type(self)._of(core, flight, [*self.own_effects, *own])
+        return Calibration(core, flight, [*self.own_effects, *own])
 
     def intervals(
         self,
@@ -178,9 +147,7 @@ class Calibration(Fit):
                 (0, 1).
         """
         chosen = self._or_fitted(flight, "intervals(")
-        return Intervals._of(
-            self.core.intervals(chosen._core, level, to_names("names", names or ()))
-        )
+        return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
 
     def predict(self, flight: Flight | None = None, *, level: float = 0.95) -> Prediction:
         """The calibrated model on a flight, by default the fitted one, with its bands.
@@ -189,7 +156,7 @@ class Calibration(Fit):
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
         chosen = self._or_fitted(flight, "predict(")
-        return Prediction._of(self.core.predict(chosen._core, level))
+        return Prediction(self.core.predict(chosen._core, level))
 
     def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
         """A flight. Raises Error, which shows how to call again, for none and for anything else."""
@@ -213,14 +180,14 @@ class Calibration(Fit):
         """
         return self.core.apply(_to_flight(flight, "apply(")._core)
 
-    def apply_to_file(self, file: Path, output: Path) -> Applied:
+    def apply_to_file(self, file: Path, output: Path) -> _core.Applied:
         """Copies a CSV log and adds the corrected columns; `output` appears whole or not at all.
 
         Raises:
             Error: Bad input, columns of those names that are there already, an output that can't be
                 written.
         """
-        return Applied(**self.core.apply_to_file(os.fspath(file), os.fspath(output)))
+        return self.core.apply_to_file(os.fspath(file), os.fspath(output))
 
     def save(self, file: Path) -> None:
         """Writes to_json() to a file that appears whole or not at all; raises Error if it can't."""
@@ -261,9 +228,9 @@ def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration:
             that it doesn't have.
     """
     core = _core.read_calibration(os.fspath(file), to_core_effects(effects))
-    return Calibration._of(core, own=effects)
+    return Calibration(core, own=effects)
 
 
 def _parse(text: str, effects: Sequence[Effect]) -> Calibration:
     core = _core.parse_calibration(text, "pickle", to_core_effects(effects))
-    return Calibration._of(core, own=effects)
+    return Calibration(core, own=effects)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
@@ -96,14 +95,20 @@ class Diagnosis(Page):
     explained: str  # the same with the whole message, as by the apps' --explain
 
     @classmethod
-    def _of(cls, described: Mapping[str, Any]) -> Self:
-        read = json.loads(described["json"])
+    def _of(cls, diagnosed: _core.Diagnosed) -> Self:
+        read = json.loads(diagnosed.json)
         names = {field.name for field in fields(cls)}
         values = {name: value for name, value in read.items() if name in names}
         values["effects"] = [EffectFinding(**effect) for effect in read["effects"]]
         injected = read.get("injected")
         values["injected"] = Injection(**injected) if injected else None
-        return cls(**values, **described)
+        return cls(
+            **values,
+            notes=diagnosed.notes,
+            json=diagnosed.json,
+            text=diagnosed.text,
+            explained=diagnosed.explained,
+        )
 
     @property
     def found(self) -> list[EffectFinding]:

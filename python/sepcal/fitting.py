@@ -11,7 +11,7 @@ from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_model import OwnModel, SeparableModel
-from sepcal.results import Fit, to_fields
+from sepcal.results import Fit
 
 
 @overload
@@ -59,7 +59,7 @@ def fit(
     core_options, own = to_core(options), to_core_effects(effects)
     if isinstance(data, Flight):
         core = _core.calibrate(model._core, data._core, core_options, own)
-        return Calibration._of(core, data, [e for e in effects if isinstance(e, Effect)])
+        return Calibration(core, data, [e for e in effects if isinstance(e, Effect)])
     if options.get("drop_invalid"):
         raise _core.Error("drop_invalid is for flights; give the data as a sepcal.Flight")
     there = set(data)
@@ -68,4 +68,4 @@ def fit(
     if names:
         columns |= take_drivers(model._owner, data, columns, _core.channels(names))
     labels = to_labels(data["maneuver"]) if "maneuver" in there else []  # type: ignore[arg-type]
-    return Fit(**to_fields(_core.fit(model._core, columns, labels, core_options, own)))
+    return Fit(_core.fit(model._core, columns, labels, core_options, own))

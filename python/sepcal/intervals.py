@@ -5,34 +5,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, astuple, dataclass
-from typing import Any, Self, Unpack
+from typing import Any, Unpack
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, take_columns, take_drivers, to_labels
 from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
-from sepcal.own_effect import name_effects, to_core_effects
+from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.pages import Page, Row
 from sepcal.results import Fit
 
 
-@dataclass(frozen=True)
-class ParameterInterval:
-    """Both intervals of one parameter, (lower, upper) in `unit`."""
-
-    name: str
-    value: float
-    unit: str
-    gaussian: tuple[float, float]  # value -+ quantile * standard_error; NaN where there is none
-    profile: tuple[float, float]  # infinite where open, NaN where failed
-    ends: tuple[str, str]  # what ends the profile's: "crossed", "bound", "open" or "failed"
-    message: str  # one line; empty where there is nothing to say
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Intervals(Page):
+class Intervals(Page, _core.Intervals):
     """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's."""
 
     _shown = (
@@ -44,28 +29,6 @@ class Intervals(Page):
         "profile_upper",
         "unit",
     )
-
-    level: float
-    parameters: dict[str, ParameterInterval]
-    notes: list[str]  # one line each, for people
-    json: str
-    text: str  # what print() shows: of a calibration's, the app's page
-    explained: str  # the same with the whole message, as by the apps' --explain
-
-    @classmethod
-    def _of(cls, described: _core.IntervalsDescription) -> Self:
-        fields: dict[str, Any] = {**described}
-        fields["parameters"] = {
-            name: ParameterInterval(**entry) for name, entry in described["parameters"].items()
-        }
-        return cls(**fields)
-
-    def __getitem__(self, name: str) -> ParameterInterval:
-        """The intervals of one parameter. Raises KeyError listing those that there are."""
-        if name not in self.parameters:
-            known = ", ".join(self.parameters)
-            raise KeyError(f"there is no interval of '{name}'; there are: {known}")
-        return self.parameters[name]
 
     def to_json(self) -> str:
         """The JSON; of a calibration's, what the app's `intervals` prints."""
@@ -97,19 +60,8 @@ class Intervals(Page):
         ]
 
 
-@dataclass(frozen=True, eq=False)
-class Prediction:
+class Prediction(_core.Prediction):
     """What a fit says of N samples, in the outputs' units and the model's order of outputs."""
-
-    value: Array  # (N, n_z), A xi1 + b
-    standard_error: Array  # (N, n_z), of the value, from the parameters' covariance
-    measurement_error: Array  # (N, n_z), standard deviation of a new measurement about the value
-    quantile: float  # half a band's width in these errors, by the level asked for
-    time: Array | None = None  # (N,) [s] of a flight's rows
-
-    @classmethod
-    def _of(cls, described: _core.PredictionDescription) -> Self:
-        return cls(**described)
 
     @property
     def band(self) -> tuple[Array, Array]:
@@ -153,11 +105,10 @@ def profile_intervals(
             isn't or that is fixed; a level outside (0, 1).
     """
     model, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=True)
-    described = _core.profile_intervals(
-        model._core, columns, labels, core, own, _to_core(fit), _settings(fit), level,
-        to_names("names", names or ()),
-    )  # fmt: skip
-    return Intervals._of(described)
+    names = to_names("names", names or ())
+    return Intervals(
+        _core.profile_intervals(model._core, columns, labels, core, own, fit, level, names)
+    )
 
 
 @spelled_out()
@@ -183,10 +134,7 @@ def predict(
         Error: Bad input, a fit of another model, a level outside (0, 1).
     """
     model, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=False)
-    described = _core.predict(
-        model._core, columns, labels, core, own, _to_core(fit), _settings(fit), level
-    )
-    return Prediction._of(described)
+    return Prediction(_core.predict(model._core, columns, labels, core, own, fit, level))
 
 
 def _as_fitted(
@@ -196,7 +144,7 @@ def _as_fitted(
     options: FitOptions,
     *,
     measured: bool,
-) -> tuple[Model, dict[str, Array], list[str], _core.Options, list[_core.OwnEffect]]:
+) -> tuple[Model, dict[str, Array], list[str], _core.Options, list[CoreEffect]]:
     """The model, the columns, labels, options and own effects, as C++ takes them."""
     if hasattr(fit, "core"):
         raise _core.Error("a calibration knows its model: call its own intervals() or predict()")
@@ -216,19 +164,3 @@ def _as_fitted(
         columns |= take_drivers(model._owner, data, columns, _core.channels(names))
     labels = to_labels(data["maneuver"]) if "maneuver" in there else []  # type: ignore[arg-type]
     return model, columns, labels, to_core(options), own
-
-
-def _to_core(fit: Fit) -> dict[str, object]:
-    return {
-        "status": fit.status,
-        "parameters": [asdict(parameter) for parameter in fit.parameters.values()],
-        "covariance": fit.covariance,
-        "noise": fit.noise,
-        "cost": fit.cost,
-        "rows": fit.rows,
-        "method": fit.method,
-    }
-
-
-def _settings(fit: Fit) -> list[_core.Setting]:
-    return [astuple(setting) for setting in fit.effects]

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, Unpack
 from sepcal import _core
 from sepcal.executors import describe, stream
 from sepcal.flight import Flight
-from sepcal.many_results import ManyFit, to_many_fit
+from sepcal.many_results import ManyFit
 from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask
 from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
@@ -76,10 +76,10 @@ def fit_many(
     maker = partial(ThreadPoolExecutor, threads or os.cpu_count()) if is_threaded else executor
     visits = _Visits(task, sources, maker)
     try:
-        described = _core.fit_many(model._core, list(sources), core, own, leave_out, visits)
+        fit = _core.fit_many(model._core, list(sources), core, own, leave_out, visits)
     finally:
         PREPARED.forget(task.token)
-    return to_many_fit(described)
+    return ManyFit(fit)
 
 
 class _Visits:

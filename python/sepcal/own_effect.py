@@ -17,6 +17,11 @@ from sepcal.columns import NUMBERS, Array
 
 Function: TypeAlias = Callable[[Mapping[str, Array]], ArrayLike | Mapping[str, ArrayLike]]
 
+# As C++ takes one: name, port, unit, and the function of the columns (N,) and n_z.
+CoreEffect: TypeAlias = tuple[
+    str, str | None, str, Callable[[dict[str, Array], int], Array | list[tuple[str, Array]]]
+]
+
 
 @dataclass(frozen=True)
 class Effect:
@@ -134,7 +139,7 @@ class _Record(Mapping[str, Array]):
         return len(self._columns)
 
 
-def to_core_effects(effects: Sequence[str | Effect]) -> list[_core.OwnEffect]:
+def to_core_effects(effects: Sequence[str | Effect]) -> list[CoreEffect]:
     """Those of the caller's own as C++ takes them."""
     return [
         (effect.name, effect.port, effect.unit, effect._evaluate)

@@ -6,16 +6,19 @@ from __future__ import annotations
 import importlib
 from collections.abc import Mapping, Sequence
 from html import escape
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 Row = Mapping[str, object]
 
 
 class Page:
-    """A result that the apps print too. `text` is their page, `explained` that with --explain."""
+    """A result that the apps print too. `text` is their page."""
 
-    text: str
-    explained: str
+    if TYPE_CHECKING:
+
+        @property
+        def text(self) -> str:
+            """What print() shows: the app's page."""
 
     _shown: ClassVar[Sequence[str]] = ()  # columns of the small table, among those of _rows()
 

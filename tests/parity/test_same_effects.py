@@ -2,7 +2,7 @@
 """With effects, app and Python give one file the same calibration, bit for bit."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -110,7 +110,7 @@ def test_the_app_applies_what_python_applies(folder: Path) -> None:
 def test_the_app_lists_what_python_lists(setup: Setup) -> None:
     printed = json.loads(run(BUILD / "apps" / setup.app, "effects", "--json"))["effects"]
     of_model = [effect for effect in printed if effect.pop("model") == setup.model.name]
-    assert of_model == [asdict(effect) for effect in sepcal.effects(setup.model)]
+    assert of_model == [effect._asdict() for effect in sepcal.effects(setup.model)]
 
 
 def test_the_app_compares_as_python_does(setup: Setup, folder: Path) -> None:

@@ -102,7 +102,7 @@ def test_a_fit_holds_together(record: dict[str, np.ndarray]) -> None:
     fit = sepcal.fit(sepcal.ScalarExample1(), record, samples=64, seed=2)
     assert not isinstance(fit, sepcal.Calibration)
     assert fit.names == ("a", "c", "b")
-    assert fit["b"] is fit.parameters["b"]
+    assert fit["b"] == fit.parameters["b"]
     assert fit.rows == 100
     assert set(fit.noise) == set(fit.rmse) == {"z"}
     errors = np.array([fit[name].standard_error for name in fit.names])

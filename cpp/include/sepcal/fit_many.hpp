@@ -48,6 +48,7 @@ struct Departure {
   double p_white_holm = 1.0;
   /// Own estimate less that of the others, and its standard error, by shared parameter; NaN for one
   /// that is fixed, at a bound, or not determined by both.
+  std::vector<std::string> names = {};
   Eigen::VectorXd difference = {};
   Eigen::VectorXd standard_error = {};
 };

@@ -29,6 +29,12 @@ Array read_only_array(std::span<const double> values, std::shared_ptr<const void
   return array;
 }
 
+Array array_within(std::span<const double> values, const py::object& whole) {
+  Array array(static_cast<py::ssize_t>(values.size()), values.data(), whole);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
 Array adopt(std::vector<double> values) {
   const auto owner = std::make_shared<std::vector<double>>(std::move(values));
   return Array(static_cast<py::ssize_t>(owner->size()), owner->data(), keep(owner));

@@ -27,6 +27,9 @@ ArrayView view_array(const Array& array);
 /// A read-only array (N,) over memory that `owner` keeps.
 Array read_only_array(std::span<const double> values, std::shared_ptr<const void> owner);
 
+/// The same over a part of a Python object.
+Array array_within(std::span<const double> values, const py::object& whole);
+
 /// An array (N,) that has taken the values over.
 Array adopt(std::vector<double> values);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of sepcal._core, a file each, and the types that they share. Results cross over as
-// plain dictionaries and arrays, which python/sepcal/ turns into its documented classes.
+// immutable classes, whose fields and documents stand where they are bound.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "named_casters.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -29,37 +30,13 @@ struct Model {
   std::shared_ptr<const Probe> probe;  // may be empty
 };
 
-/// Keys as the fields of sepcal.Fit; its parts are dictionaries in turn.
-py::dict describe(const Fit& fit, const CalibrationOptions& options);
-py::list describe(const std::vector<Parameter>& parameters);
-py::list describe(const std::vector<Combination>& combinations);
-py::dict describe(const std::vector<OutputValue>& values);
-
-/// A page as print() takes it: print() ends the last line itself.
-inline std::string without_last_end(std::string page) {
-  page.pop_back();
-  return page;
-}
-
-/// Adds what the apps print of a result: `text`, and `explained`, as with --explain.
-template <class... Result>
-void add_pages(py::dict& described, const Result&... result) {
-  described["text"] = without_last_end(to_text(result..., Detail::brief));
-  described["explained"] = without_last_end(to_text(result..., Detail::explained));
-}
-
-/// Intervals by both kinds and predictions: for fits on columns, functions of the module; for
-/// calibrations, what their class has as methods.
-void define_intervals(py::module_& module);
-py::dict find_intervals(const Calibration& calibration, const Flight& flight, double level,
-                        const std::vector<std::string>& names);
-py::dict predict(const Calibration& calibration, const Flight& flight, double level);
-
 void define_options(py::module_& module);
+void define_results(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
 void define_figures(py::module_& module);
 void define_flight(py::module_& module);
+void define_intervals(py::module_& module);
 void define_many(py::module_& module);
 void define_simulation(py::module_& module);
 

@@ -8,21 +8,10 @@
 #include "bindings.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
+#include "structs.hpp"
 
 namespace sepcal::bindings {
 namespace {
-
-using namespace py::literals;
-
-/// Keys as the fields of sepcal.CataloguedEffect.
-py::list catalogue(const std::string& probe) {
-  py::list list;
-  for (const CataloguedEffect& effect : effect_catalogue(probe)) {
-    list.append(py::dict("name"_a = effect.name, "equation"_a = effect.equation,
-                         "drivers"_a = effect.drivers, "unit"_a = effect.unit));
-  }
-  return list;
-}
 
 /// The channels that effects name as their drivers.
 std::vector<std::string> channels(const std::vector<std::string>& texts) {
@@ -39,7 +28,19 @@ std::vector<std::string> channels(const std::vector<std::string>& texts) {
 }  // namespace
 
 void define_effects(py::module_& module) {
-  module.def("effects", &catalogue);
+  BoundStruct<CataloguedEffect>(module, "CataloguedEffect",
+                                "An effect that fit(..., effects=[name]) adds to a probe's model.")
+      .field("name", &CataloguedEffect::name,
+             "`port[driver]`, or a name of its own; DRIVER stands for any.")
+      .field("equation", &CataloguedEffect::equation, "What joins the model.")
+      .field("drivers", &CataloguedEffect::drivers, "The columns that it needs.")
+      .field("unit", &CataloguedEffect::unit, "Of its coefficient.")
+      .comparable()
+      .finish();
+  module.def("effects", [](const std::string& probe) {
+    const auto catalogue = effect_catalogue(probe);
+    return std::vector(catalogue.begin(), catalogue.end());
+  });
   module.def("channels", &channels);
 }
 

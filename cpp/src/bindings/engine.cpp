@@ -14,6 +14,7 @@
 #include "bindings.hpp"
 #include "python_effect.hpp"
 #include "python_model.hpp"
+#include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -100,14 +101,13 @@ Eigen::MatrixXd input_tangent(const Model& model, const py::dict& columns,
   return tangent;
 }
 
-py::dict fit_columns(const Model& model, const py::dict& columns,
-                     const std::vector<std::string>& labels, CalibrationOptions options,
-                     const std::vector<PythonEffect>& own) {
+FittedModel fit_columns(const Model& model, const py::dict& columns,
+                        const std::vector<std::string>& labels, CalibrationOptions options,
+                        const std::vector<PythonEffect>& own) {
   Record record = record_of(columns, labels);
   EffectKit kit = model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables());
   options.own_effects = own_effects(own, kit);
   const auto run = [&] {
-    const py::gil_scoped_release release;
     if (model.probe != nullptr) {
       Calibration calibration = calibrate(model.probe, record, options);
       options.effects = std::move(calibration.options.effects);
@@ -119,8 +119,10 @@ py::dict fit_columns(const Model& model, const py::dict& columns,
     for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
     return fit_with_effects(model.block, kit, options.effects, std::move(record), options.fit);
   };
-  const Fit fitted = run();
-  return describe(fitted, options);
+  const py::gil_scoped_release release;
+  Fit fit = run();
+  Page page = page_of(fit, options);
+  return fitted_model(std::move(fit), std::move(options.effects), std::move(page));
 }
 
 }  // namespace

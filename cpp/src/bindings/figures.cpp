@@ -40,21 +40,26 @@ std::vector<Segment> segments_of(const std::vector<Rows>& rows, const VectorXd& 
   return record.cut(std::move(segments)).segments();
 }
 
-py::object array_or_none(const std::vector<double>& values) {
-  return values.empty() ? py::object(py::none()) : adopt(values);
+std::optional<Array> array_or_none(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return adopt(values);
 }
 
-py::tuple describe(numerics::Curve curve) {
-  return py::make_tuple(adopt(std::move(curve.x)), adopt(std::move(curve.y)));
+using Curve = std::tuple<Array, Array>;
+
+Curve describe(numerics::Curve curve) {
+  return {adopt(std::move(curve.x)), adopt(std::move(curve.y))};
 }
 
-py::tuple autocorrelation(const VectorXd& residual, const std::vector<Rows>& runs) {
+/// Lags, correlations, limits.
+std::tuple<Array, Array, Array> autocorrelation(const VectorXd& residual,
+                                                const std::vector<Rows>& runs) {
   auto found = numerics::find_autocorrelation(residual, segments_of(runs, residual));
-  return py::make_tuple(adopt(std::move(found.lags)), adopt(std::move(found.values)),
-                        adopt(std::move(found.limits)));
+  return {adopt(std::move(found.lags)), adopt(std::move(found.values)),
+          adopt(std::move(found.limits))};
 }
 
-py::tuple spectrum(const VectorXd& residual, const std::vector<Rows>& runs, double interval) {
+Curve spectrum(const VectorXd& residual, const std::vector<Rows>& runs, double interval) {
   return describe(numerics::find_spectrum(residual, segments_of(runs, residual), interval));
 }
 
@@ -62,7 +67,7 @@ void check_lengths(const VectorXd& x, const VectorXd& y) {
   if (x.size() != y.size()) throw Error("x and y differ in length; give as many of each");
 }
 
-py::tuple bin_means(const VectorXd& x, const VectorXd& y, int bins) {
+Curve bin_means(const VectorXd& x, const VectorXd& y, int bins) {
   check_lengths(x, y);
   return describe(numerics::bin_means(x, y, bins));
 }
@@ -76,9 +81,9 @@ std::optional<std::tuple<VectorXd, VectorXd, VectorXd>> smooth(const VectorXd& x
   return std::tuple(fitted->x, fitted->mean, fitted->half_width);
 }
 
-py::object channel(const FlightFigures& figures, const std::string& name) {
-  if (!figures.channels.has(name)) return py::none();
-  return py::cast(gather_rows(figures.channels.column(name), figures.channels.segments()));
+std::optional<VectorXd> channel(const FlightFigures& figures, const std::string& name) {
+  if (!figures.channels.has(name)) return std::nullopt;
+  return gather_rows(figures.channels.column(name), figures.channels.segments());
 }
 
 FlightFigures gather(const Calibration& calibration, const Flight& flight) {

@@ -10,13 +10,16 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "python_effect.hpp"
+#include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
+#include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/probe_effects.hpp"
+#include "structs.hpp"
 
 namespace sepcal::bindings {
 namespace {
@@ -36,9 +39,9 @@ void view(Flight& flight, const std::string& header, const Array& values) {
 }
 
 /// None where there is no such column.
-py::object column(const Flight& flight, const std::string& header) {
+std::optional<Array> column(const Flight& flight, const std::string& header) {
   const Flight::Column* found = flight.find(header);
-  if (found == nullptr) return py::none();
+  if (found == nullptr) return std::nullopt;
   return read_only_array(found->values, found->owner);
 }
 
@@ -93,128 +96,65 @@ void define_flights(py::module_& module) {
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
 }
 
-py::list describe(const std::vector<Misfit>& misfits) {
-  py::list list;
-  for (const Misfit& misfit : misfits) {
-    list.append(py::dict("segment"_a = misfit.segment, "output"_a = misfit.output,
-                         "unit"_a = misfit.unit, "rows"_a = misfit.rows, "rmse"_a = misfit.rmse,
-                         "mean"_a = misfit.mean, "lag_one"_a = misfit.lag_one,
-                         "verdict"_a = verdict_on_noise(misfit)));
-  }
-  return list;
+/// sepcal.Comparison
+struct Compared {
+  Comparison comparison;
+  std::string json;
+  Page page;
+};
+
+Compared compare_with(const Calibration& calibration, const Flight& flight) {
+  const py::gil_scoped_release release;
+  need_own_effects(calibration);
+  Comparison comparison = compare(calibration, flight);
+  Page page = page_of(comparison);
+  std::string json = to_json(comparison);
+  return {std::move(comparison), std::move(json), std::move(page)};
 }
 
-py::list describe(const std::vector<ChannelMisfit>& channels) {
-  py::list list;
-  for (const ChannelMisfit& channel : channels) {
-    list.append(py::dict("driver"_a = channel.driver, "output"_a = channel.output,
-                         "share_line"_a = channel.share_line,
-                         "share_smooth"_a = channel.share_smooth, "slope"_a = channel.slope,
-                         "slope_error"_a = channel.slope_error, "unit"_a = channel.unit));
-  }
-  return list;
-}
+/// What the app's diagnose prints.
+struct Diagnosed {
+  std::vector<std::string> notes;
+  std::string json;
+  Page page;
+};
 
-py::list describe(const std::vector<Window>& windows) {
-  const auto by_output = [](const std::vector<OutputValue>& values) {
-    py::dict dictionary;
-    for (const OutputValue& value : values) dictionary[py::str(value.name)] = value.value;
-    return dictionary;
-  };
-  py::list list;
-  for (const Window& window : windows) {
-    list.append(py::dict("first_s"_a = window.first_s, "last_s"_a = window.last_s,
-                         "rows"_a = window.rows, "rmse"_a = by_output(window.rmse),
-                         "mean"_a = by_output(window.mean)));
-  }
-  return list;
-}
-
-/// Keys as the fields of sepcal.Comparison.
-py::dict describe(Comparison comparison) {
-  py::dict described(
-      "model"_a = comparison.model, "file"_a = comparison.flight.file,
-      "status"_a = to_string(comparison.status), "message"_a = comparison.message,
-      "overall"_a = describe(comparison.overall), "where"_a = describe(comparison.where),
-      "channels"_a = describe(comparison.channels), "windows"_a = describe(comparison.windows),
-      "residuals"_a = comparison.residuals, "notes"_a = comparison.notes,
-      "json"_a = to_json(comparison));
-  add_pages(described, comparison);
-  described["time"] = adopt(std::move(comparison.time));
-  return described;
-}
-
-/// {name: keys as the fields of sepcal.Derived}
-py::dict describe(const std::vector<Derived>& derived) {
-  py::dict by_name;
-  for (const Derived& quantity : derived) {
-    by_name[py::str(quantity.name)] = py::dict(
-        "name"_a = quantity.name, "value"_a = quantity.value,
-        "standard_error"_a = quantity.standard_error,
-        "standard_error_white"_a = quantity.standard_error_white, "unit"_a = quantity.unit);
-  }
-  return by_name;
-}
-
-py::dict compare_with(const Calibration& calibration, const Flight& flight) {
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    need_own_effects(calibration);
-    return compare(calibration, flight);
-  };
-  return describe(run());
-}
-
-/// What the app's diagnose prints, as JSON and as text, and notes.
-py::dict diagnose_on(const Calibration& calibration, const Flight& flight,
-                     const std::vector<PythonEffect>& own,
-                     const std::optional<SizedEffect>& injected, int simulations,
-                     std::uint64_t seed) {
+Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
+                      const std::vector<PythonEffect>& own,
+                      const std::optional<std::pair<std::string, std::vector<double>>>& injected,
+                      int simulations, std::uint64_t seed) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
   DiagnosisOptions options;
   options.threads = calibration.options.fit.threads;
   options.simulations = simulations;
   options.seed = seed;
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    need_own_effects(calibration);
-    return injected ? diagnose_with(*injected, calibration, flight, makers, options)
-                    : diagnose(calibration, flight, makers, options);
-  };
-  const FlightDiagnosis diagnosis = run();
-  py::dict described("json"_a = to_json(diagnosis), "notes"_a = diagnosis.notes);
-  add_pages(described, diagnosis);
-  return described;
+  const py::gil_scoped_release release;
+  need_own_effects(calibration);
+  const FlightDiagnosis diagnosis = injected ? diagnose_with({injected->first, injected->second},
+                                                             calibration, flight, makers, options)
+                                             : diagnose(calibration, flight, makers, options);
+  return {diagnosis.notes, to_json(diagnosis), page_of(diagnosis)};
 }
 
 /// {header: values}
-py::dict apply_to(const Calibration& calibration, const Flight& flight) {
+py::typing::Dict<py::str, Array> apply_to(const Calibration& calibration, const Flight& flight) {
   const auto run = [&] {
     const py::gil_scoped_release release;
     need_own_effects(calibration);
     return apply(calibration, flight);
   };
-  py::dict corrected;
+  py::typing::Dict<py::str, Array> corrected;
   for (CorrectedColumn& column : run()) {
     corrected[py::str(column.header)] = adopt(std::move(column.values));
   }
   return corrected;
 }
 
-/// Keys as the fields of sepcal.Applied.
-py::dict describe(const Applied& applied) {
-  return py::dict("rows"_a = applied.rows, "rows_left_empty"_a = applied.rows_left_empty,
-                  "headers"_a = applied.headers, "notes"_a = applied.notes);
-}
-
-py::dict apply_file(const Calibration& calibration, const std::string& file,
-                    const std::string& output) {
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    need_own_effects(calibration);
-    return apply_to_file(calibration, file, output);
-  };
-  return describe(run());
+Applied apply_file(const Calibration& calibration, const std::string& file,
+                   const std::string& output) {
+  const py::gil_scoped_release release;
+  need_own_effects(calibration);
+  return apply_to_file(calibration, file, output);
 }
 
 Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
@@ -227,6 +167,13 @@ Calibration calibrate_probe(const Model& model, const Flight& flight, Calibratio
   return calibrate(model.probe, flight, options);
 }
 
+FlightPrediction predict_flight(const Calibration& calibration, const Flight& flight,
+                                double level) {
+  const py::gil_scoped_release release;
+  need_own_effects(calibration);
+  return predict(calibration, flight, level);
+}
+
 Calibration add_to(const Calibration& base, const Flight& flight, const std::string& effect,
                    const std::vector<PythonEffect>& own) {
   const OwnEffects makers = own_effects(own, effect_kit(base.probe->name()));
@@ -235,20 +182,15 @@ Calibration add_to(const Calibration& base, const Flight& flight, const std::str
   return add(base, flight, effect, makers);
 }
 
-/// Keys as the fields of sepcal.HistoryEntry; None where a number is undefined.
-py::list describe(const std::vector<HistoryEntry>& history) {
-  const auto number = [](double value) -> py::object {
-    return std::isnan(value) ? py::object(py::none()) : py::object(py::float_(value));
-  };
-  py::list list;
-  for (const HistoryEntry& entry : history) {
-    list.append(py::dict("effect"_a = entry.effect, "rmse_before"_a = number(entry.rmse_before),
-                         "rmse_after"_a = number(entry.rmse_after),
-                         "held_out_before"_a = number(entry.held_out_before),
-                         "held_out_after"_a = number(entry.held_out_after),
-                         "predicted_drop"_a = number(entry.predicted_drop)));
-  }
-  return list;
+/// A number that is None where it is undefined.
+template <double HistoryEntry::* member>
+std::optional<double> defined(const HistoryEntry& entry) {
+  return std::isnan(entry.*member) ? std::nullopt : std::optional(entry.*member);
+}
+
+template <double HistoryEntry::* member>
+void define(HistoryEntry& entry, std::optional<double> value) {
+  entry.*member = value.value_or(not_a_number);
 }
 
 Calibration with_own_effects(Calibration calibration, const std::vector<PythonEffect>& own) {
@@ -256,30 +198,140 @@ Calibration with_own_effects(Calibration calibration, const std::vector<PythonEf
   return calibration;
 }
 
-}  // namespace
+void define_comparison(py::module_& module) {
+  BoundStruct<Misfit>(module, "Misfit",
+                      "One output over one stretch of a flight; NaN where there are too few rows.")
+      .field("segment", &Misfit::segment,
+             "Maneuver, or \"120.0:180.5\" [s] where there are no labels; empty: the whole.")
+      .field("output", &Misfit::output, "")
+      .field("unit", &Misfit::unit, "")
+      .field("rows", &Misfit::rows, "")
+      .field("rmse", &Misfit::rmse, "")
+      .field("mean", &Misfit::mean, "Of z - model: what a constant offset would explain.")
+      .field("lag_one", &Misfit::lag_one,
+             "Correlation of neighbouring residuals, never across a segment's edge.")
+      .comparable()
+      .finish()
+      .def_property_readonly("verdict", &verdict_on_noise,
+                             "In words whether the residuals are noise.")
+      .def_property_readonly("is_white", &is_white,
+                             "Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen "
+                             "times in twenty.");
 
-void define_flight(py::module_& module) {
-  define_flights(module);
+  BoundStruct<ChannelMisfit>(module, "ChannelMisfit",
+                             "One output's residual against one channel of the flight.")
+      .field("driver", &ChannelMisfit::driver,
+             "\"altitude_m\"; \"time\", \"alpha\", \"roll\" for what the probe knows by itself.")
+      .field("output", &ChannelMisfit::output, "")
+      .field("share_line", &ChannelMisfit::share_line,
+             "Of the residual's variance that a straight line would explain.")
+      .field("share_smooth", &ChannelMisfit::share_smooth,
+             "The same of a natural spline of six even knots.")
+      .field("slope", &ChannelMisfit::slope, "Of the line.")
+      .field("slope_error", &ChannelMisfit::slope_error,
+             "Its standard error in the residual's own noise, rather too large.")
+      .field("unit", &ChannelMisfit::unit, "Of the slope.")
+      .comparable()
+      .finish();
+
+  BoundStruct<Window>(module, "Window", "A stretch of about a twentieth of the rows.")
+      .field("first_s", &Window::first_s, "Time of its first row.")
+      .field("last_s", &Window::last_s, "And of its last.")
+      .field("rows", &Window::rows, "")
+      .field("rmse", &Window::rmse, "By output.")
+      .field("mean", &Window::mean, "By output, of z - model.")
+      .comparable()
+      .finish();
+
+  BoundStruct<Compared>(module, "Comparison", "A calibration against a flight.")
+      .field("model", &Compared::comparison, &Comparison::model, "")
+      .field(
+          "file", [](const Compared& self) { return self.comparison.flight.file; },
+          [](Compared& self, std::string file) { self.comparison.flight.file = std::move(file); },
+          "Of the flight.")
+      .field("status", &Compared::comparison, &Comparison::status, "Of the calibration, repeated.")
+      .field("message", &Compared::comparison, &Comparison::message, "")
+      .field("overall", &Compared::comparison, &Comparison::overall, "One an output.")
+      .field("where", &Compared::comparison, &Comparison::where,
+             "Maneuver by maneuver, outputs within, in the flight's order.")
+      .field("channels", &Compared::comparison, &Comparison::channels,
+             "By share_smooth, largest first.")
+      .field("windows", &Compared::comparison, &Comparison::windows,
+             "The five worst in units of the fit's noise, worst first.")
+      .array("time", &Compared::comparison, &Comparison::time, "(N,) [s], of every row used.")
+      .field("residuals", &Compared::comparison, &Comparison::residuals, "(N, n_z), z - model.")
+      .field("notes", &Compared::comparison, &Comparison::notes, "One line each, for people.")
+      .field("json", &Compared::json, "")
+      .field("text", &Compared::page, &Page::text, "What print() shows: the app's page.")
+      .field("explained", &Compared::page, &Page::explained,
+             "The same with the whole message, as by the apps' --explain.")
+      .copied()
+      .finish();
+}
+
+void define_calibration_parts(py::module_& module) {
+  BoundStruct<Derived>(
+      module, "Derived",
+      "A quantity that follows from the estimates, in `unit`; errors by the delta method.")
+      .field("name", &Derived::name, "")
+      .field("value", &Derived::value, "")
+      .field("standard_error", &Derived::standard_error,
+             "NaN where that of a parameter it depends on is.")
+      .field("standard_error_white", &Derived::standard_error_white,
+             "What it would be if the residuals were white.")
+      .field("unit", &Derived::unit, "")
+      .comparable()
+      .finish();
+
+  using Entry = HistoryEntry;
+  BoundStruct<Entry>(module, "HistoryEntry",
+                     "One step of a chain of added effects; None where a number is undefined. "
+                     "Errors are RMSE over all outputs together, on the rows of the new fit.")
+      .field("effect", &Entry::effect, "Several that were added together: \"E1+E2\".")
+      .field("rmse_before", &defined<&Entry::rmse_before>, &define<&Entry::rmse_before>, "")
+      .field("rmse_after", &defined<&Entry::rmse_after>, &define<&Entry::rmse_after>, "")
+      .field("held_out_before", &defined<&Entry::held_out_before>, &define<&Entry::held_out_before>,
+             "")
+      .field("held_out_after", &defined<&Entry::held_out_after>, &define<&Entry::held_out_after>,
+             "")
+      .field("predicted_drop", &defined<&Entry::predicted_drop>, &define<&Entry::predicted_drop>,
+             "Of the RMSE, 1 - after / before.")
+      .comparable()
+      .finish();
+
+  BoundStruct<Applied>(module, "Applied", "What apply_to_file() did.")
+      .field("rows", &Applied::rows, "")
+      .field("rows_left_empty", &Applied::rows_left_empty,
+             "Nothing to calibrate: total below static pressure, or dropped.")
+      .field("headers", &Applied::headers, "The columns added.")
+      .field("notes", &Applied::notes, "One line each, for people.")
+      .comparable()
+      .finish();
+
+  py::class_<Diagnosed>(module, "Diagnosed")
+      .def_readonly("notes", &Diagnosed::notes)
+      .def_readonly("json", &Diagnosed::json)
+      .def_property_readonly("text", [](const Diagnosed& self) { return self.page.text; })
+      .def_property_readonly("explained",
+                             [](const Diagnosed& self) { return self.page.explained; });
+}
+
+/// As its app's page shows it.
+FittedModel fit_of(const Calibration& calibration) {
+  return fitted_model(calibration.fit, calibration.options.effects, page_of(calibration));
+}
+
+void define_calibration(py::module_& module) {
   py::class_<Calibration>(module, "Calibration")
-      .def_property_readonly(
-          "fit", [](const Calibration& self) { return bindings::describe(self.fit, self.options); })
-      .def_property_readonly("derived",
-                             [](const Calibration& self) { return describe(self.derived); })
-      .def_property_readonly("history",
-                             [](const Calibration& self) { return describe(self.history); })
+      .def_property_readonly("fit", &fit_of)
+      .def_readonly("derived", &Calibration::derived)
+      .def_readonly("history", &Calibration::history)
       .def_readonly("notes", &Calibration::notes)
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
       .def("compare", &compare_with)
-      .def("diagnose",
-           [](const Calibration& self, const Flight& flight, const std::vector<PythonEffect>& own,
-              const std::optional<std::pair<std::string, std::vector<double>>>& injected,
-              int simulations, std::uint64_t seed) {
-             std::optional<SizedEffect> hidden;
-             if (injected) hidden = SizedEffect{injected->first, injected->second};
-             return diagnose_on(self, flight, own, hidden, simulations, seed);
-           })
+      .def("diagnose", &diagnose_on)
       .def("intervals", &bindings::find_intervals)
-      .def("predict", &bindings::predict)
+      .def("predict", &predict_flight)
       .def("add", &add_to)
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)
@@ -287,14 +339,17 @@ void define_flight(py::module_& module) {
       .def_property_readonly(
           "unit",
           [](const Calibration& self) { return self.probe->model().tables().outputs.front().unit; })
-      .def("pages",
-           [](const Calibration& self) {
-             py::dict described;
-             add_pages(described, self);
-             return described;
-           })
       .def("to_json", [](const Calibration& self) { return to_json(self); })
       .def("save", &write_calibration, WithoutGil());
+}
+
+}  // namespace
+
+void define_flight(py::module_& module) {
+  define_flights(module);
+  define_comparison(module);
+  define_calibration_parts(module);
+  define_calibration(module);
   module.def("calibrate", &calibrate_probe);
   using Own = std::vector<PythonEffect>;
   module.def("parse_calibration",

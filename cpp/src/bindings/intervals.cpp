@@ -5,68 +5,19 @@
 
 #include <cmath>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "python_effect.hpp"
+#include "results.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/probe_effects.hpp"
+#include "structs.hpp"
 
 namespace sepcal::bindings {
 namespace {
-
-using namespace py::literals;
-
-/// Name, centre, knots, labels, span, t0: the fields of sepcal.EffectSetting.
-using Setting =
-    std::tuple<std::string, std::optional<double>, std::vector<double>, std::vector<std::string>,
-               std::optional<std::pair<double, double>>, std::optional<double>>;
-
-std::vector<EffectSetting> settings_of(const std::vector<Setting>& rows) {
-  std::vector<EffectSetting> settings;
-  for (const auto& [name, centre, knots, labels, span, t0] : rows) {
-    settings.push_back({name, centre, knots, labels, span, t0, true});
-  }
-  return settings;
-}
-
-Parameter parameter_of(const py::dict& fields) {
-  return {.name = py::cast<std::string>(fields["name"]),
-          .unit = py::cast<std::string>(fields["unit"]),
-          .value = py::cast<double>(fields["value"]),
-          .standard_error = py::cast<double>(fields["standard_error"]),
-          .standard_error_white = py::cast<double>(fields["standard_error_white"]),
-          .lower = py::cast<double>(fields["lower"]),
-          .upper = py::cast<double>(fields["upper"]),
-          .at_bound = py::cast<bool>(fields["at_bound"]),
-          .fixed = py::cast<bool>(fields["fixed"])};
-}
-
-/// What intervals and predictions take of a sepcal.Fit, by the names of its fields; n_1 is the
-/// model's to tell.
-Fit fit_of(const py::dict& fields) {
-  Fit fit;
-  const auto status = py::cast<std::string>(fields["status"]);
-  for (const FitStatus known : {FitStatus::converged, FitStatus::not_identifiable}) {
-    if (status == to_string(known)) fit.status = known;
-  }
-  for (const py::handle parameter : fields["parameters"]) {
-    fit.parameters.push_back(parameter_of(py::cast<py::dict>(parameter)));
-  }
-  fit.covariance = py::cast<Eigen::MatrixXd>(fields["covariance"]);
-  for (const auto& [name, value] : py::cast<py::dict>(fields["noise"])) {
-    fit.noise.push_back({py::cast<std::string>(name), py::cast<double>(value)});
-  }
-  fit.cost = py::cast<double>(fields["cost"]);
-  fit.rows = py::cast<std::size_t>(fields["rows"]);
-  fit.method = py::cast<std::string>(fields["method"]) == to_string(SecondStage::projected)
-                   ? SecondStage::projected
-                   : SecondStage::joint;
-  return fit;
-}
 
 /// Columns brought to the model that was fitted to them or their like.
 struct Prepared {
@@ -78,6 +29,7 @@ struct Prepared {
 
 Prepared prepare(const Model& model, Record record, const CalibrationOptions& options,
                  std::vector<EffectSetting> settings, const Fit& fit) {
+  for (EffectSetting& setting : settings) setting.known = true;
   Prepared result{model.probe, model.block, std::move(record), options.fit};
   EffectKit kit = model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables());
   for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
@@ -95,25 +47,6 @@ Prepared prepare(const Model& model, Record record, const CalibrationOptions& op
   return result;
 }
 
-py::dict describe(const std::vector<ProfileInterval>& intervals) {
-  py::dict by_name;
-  for (const ProfileInterval& at : intervals) {
-    by_name[py::str(at.name)] =
-        py::dict("name"_a = at.name, "value"_a = at.value, "unit"_a = at.unit,
-                 "gaussian"_a = py::make_tuple(at.gaussian.lower, at.gaussian.upper),
-                 "profile"_a = py::make_tuple(at.profile.lower, at.profile.upper),
-                 "ends"_a = py::make_tuple(to_string(at.lower_end), to_string(at.upper_end)),
-                 "message"_a = at.message);
-  }
-  return by_name;
-}
-
-py::dict describe(const Prediction& prediction) {
-  return py::dict("value"_a = prediction.value, "standard_error"_a = prediction.standard_error,
-                  "measurement_error"_a = prediction.measurement_error,
-                  "quantile"_a = prediction.quantile);
-}
-
 /// A record with the outputs that need not be measured.
 void add_constant_outputs(const BlockModel& model, Record& record) {
   for (const Variable& output : model.tables().outputs) {
@@ -122,86 +55,115 @@ void add_constant_outputs(const BlockModel& model, Record& record) {
   }
 }
 
-py::dict profile_columns(const Model& model, const py::dict& columns,
-                         const std::vector<std::string>& labels, CalibrationOptions options,
-                         const std::vector<PythonEffect>& own, const py::dict& fitted,
-                         const std::vector<Setting>& settings, const ProfileOptions& asked) {
+FoundIntervals profile_columns(const Model& model, const py::dict& columns,
+                               const std::vector<std::string>& labels, CalibrationOptions options,
+                               const std::vector<PythonEffect>& own, const FittedModel& fitted,
+                               double level, const std::vector<std::string>& names) {
   Record record = record_of(columns, labels);
-  Fit fit = fit_of(fitted);
   options.own_effects = own_effects(
       own, model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables()));
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    add_constant_outputs(*model.block, record);
-    Prepared prepared = prepare(model, std::move(record), options, settings_of(settings), fit);
-    fit.n_1 = prepared.model->tables().n_1();
-    if (prepared.probe) {
-      prepared.options = prepared.probe->complete(prepared.options, prepared.record);
-    }
-    return profile_intervals(*prepared.model, prepared.record, fit, prepared.options, asked);
-  };
-  const std::vector<ProfileInterval> intervals = run();
-  const std::string page = without_last_end(to_text(intervals, asked.level));
-  return py::dict("level"_a = asked.level, "parameters"_a = describe(intervals),
-                  "notes"_a = std::vector<std::string>(),
-                  "json"_a = to_json(intervals, asked.level), "text"_a = page,
-                  "explained"_a = page);
+  const py::gil_scoped_release release;
+  Fit fit = fitted.fit;
+  add_constant_outputs(*model.block, record);
+  Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fit);
+  fit.n_1 = prepared.model->tables().n_1();
+  if (prepared.probe) {
+    prepared.options = prepared.probe->complete(prepared.options, prepared.record);
+  }
+  std::vector<ProfileInterval> intervals = profile_intervals(
+      *prepared.model, prepared.record, fit, prepared.options, {.level = level, .names = names});
+  std::string json = to_json(intervals, level);
+  std::string text = without_last_end(to_text(intervals, level));
+  return {level, std::move(intervals), {}, std::move(json), {text, text}};
 }
 
-py::dict predict_columns(const Model& model, const py::dict& columns,
-                         const std::vector<std::string>& labels, CalibrationOptions options,
-                         const std::vector<PythonEffect>& own, const py::dict& fitted,
-                         const std::vector<Setting>& settings, double level) {
+FlightPrediction predict_columns(const Model& model, const py::dict& columns,
+                                 const std::vector<std::string>& labels, CalibrationOptions options,
+                                 const std::vector<PythonEffect>& own, const FittedModel& fitted,
+                                 double level) {
   Record record = record_of(columns, labels);
-  Fit fit = fit_of(fitted);
   options.own_effects = own_effects(
       own, model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables()));
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    const Prepared prepared = prepare(model, record, options, settings_of(settings), fit);
-    fit.n_1 = prepared.model->tables().n_1();
-    return predict(*prepared.model, prepared.record, fit, prepared.options, level);
-  };
-  return describe(run());
+  const py::gil_scoped_release release;
+  Fit fit = fitted.fit;
+  const Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fit);
+  fit.n_1 = prepared.model->tables().n_1();
+  return {.time = {},
+          .prediction = predict(*prepared.model, prepared.record, fit, prepared.options, level)};
 }
 
 }  // namespace
 
-py::dict find_intervals(const Calibration& calibration, const Flight& flight, double level,
-                        const std::vector<std::string>& names) {
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    need_own_effects(calibration);
-    return sepcal::find_intervals(calibration, flight, {.level = level, .names = names});
-  };
-  const FlightIntervals intervals = run();
-  py::dict described("level"_a = level, "parameters"_a = describe(intervals.parameters),
-                     "notes"_a = intervals.notes, "json"_a = to_json(intervals));
-  add_pages(described, intervals);
-  return described;
-}
-
-py::dict predict(const Calibration& calibration, const Flight& flight, double level) {
-  const auto run = [&] {
-    const py::gil_scoped_release release;
-    need_own_effects(calibration);
-    return sepcal::predict(calibration, flight, level);
-  };
-  FlightPrediction predicted = run();
-  py::dict described = describe(predicted.prediction);
-  described["time"] = adopt(std::move(predicted.time));
-  return described;
+FoundIntervals find_intervals(const Calibration& calibration, const Flight& flight, double level,
+                              const std::vector<std::string>& names) {
+  const py::gil_scoped_release release;
+  need_own_effects(calibration);
+  FlightIntervals found =
+      sepcal::find_intervals(calibration, flight, {.level = level, .names = names});
+  Page page = page_of(found);
+  std::string json = to_json(found);
+  return {level, std::move(found.parameters), std::move(found.notes), std::move(json),
+          std::move(page)};
 }
 
 void define_intervals(py::module_& module) {
-  module.def("profile_intervals",
-             [](const Model& model, const py::dict& columns, const std::vector<std::string>& labels,
-                CalibrationOptions options, const std::vector<PythonEffect>& own,
-                const py::dict& fitted, const std::vector<Setting>& settings, double level,
-                const std::vector<std::string>& names) {
-               return profile_columns(model, columns, labels, std::move(options), own, fitted,
-                                      settings, {.level = level, .names = names});
-             });
+  BoundStruct<ProfileInterval>(module, "ParameterInterval",
+                               "Both intervals of one parameter, (lower, upper) in `unit`.")
+      .field("name", &ProfileInterval::name, "")
+      .field("value", &ProfileInterval::value, "")
+      .field("unit", &ProfileInterval::unit, "")
+      .field("gaussian", &ProfileInterval::gaussian,
+             "value -+ quantile * standard_error; NaN where there is none.")
+      .field("profile", &ProfileInterval::profile, "Infinite where open, NaN where failed.")
+      .field(
+          "ends",
+          [](const ProfileInterval& self) { return std::pair(self.lower_end, self.upper_end); },
+          [](ProfileInterval& self, const std::pair<IntervalEnd, IntervalEnd>& ends) {
+            std::tie(self.lower_end, self.upper_end) = ends;
+          },
+          "What ends the profile's: \"crossed\", \"bound\", \"open\" or \"failed\".")
+      .field("message", &ProfileInterval::message, "One line; empty where there is nothing to say.")
+      .comparable()
+      .finish();
+
+  BoundStruct<FoundIntervals>(module, "Intervals", "Both intervals of a fit's parameters.")
+      .field("level", &FoundIntervals::level, "How often an interval should hold the true value.")
+      .field("parameters", &FoundIntervals::parameters, "")
+      .field("notes", &FoundIntervals::notes, "One line each, for people.")
+      .field("json", &FoundIntervals::json, "")
+      .field("text", &FoundIntervals::page, &Page::text,
+             "What print() shows: of a calibration's, the app's page.")
+      .field("explained", &FoundIntervals::page, &Page::explained,
+             "The same with the whole message, as by the apps' --explain.")
+      .copied()
+      .finish()
+      .def("__getitem__", [](const FoundIntervals& self, const std::string& name) {
+        return find_named(self.parameters, name, "interval of", "there are");
+      });
+
+  BoundStruct<FlightPrediction>(
+      module, "Prediction",
+      "What a fit says of N samples, in the outputs' units and the model's order of outputs.")
+      .field("value", &FlightPrediction::prediction, &Prediction::value, "(N, n_z), A xi1 + b.")
+      .field("standard_error", &FlightPrediction::prediction, &Prediction::standard_error,
+             "(N, n_z), of the value, from the parameters' covariance.")
+      .field("measurement_error", &FlightPrediction::prediction, &Prediction::measurement_error,
+             "(N, n_z), standard deviation of a new measurement about the value.")
+      .field("quantile", &FlightPrediction::prediction, &Prediction::quantile,
+             "Half a band's width in these errors, by the level asked for.")
+      .field(
+          "time",
+          [](const FlightPrediction& self) {
+            return self.time.empty() ? std::nullopt : std::optional(adopt(self.time));
+          },
+          [](FlightPrediction& self, const std::optional<Array>& time) {
+            if (time) self.time = py::cast<std::vector<double>>(*time);
+          },
+          "(N,) [s] of a flight's rows; None of columns.")
+      .copied()
+      .finish();
+
+  module.def("profile_intervals", &profile_columns);
   module.def("predict", &predict_columns);
 }
 

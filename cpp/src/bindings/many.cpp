@@ -4,7 +4,6 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -12,27 +11,18 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "flight/verbs/held_options.hpp"
+#include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "structs.hpp"
 
 namespace sepcal::bindings {
 namespace {
 
-using namespace py::literals;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using WithoutGil = py::call_guard<py::gil_scoped_release>;
-
-constexpr std::array statuses{FitStatus::converged, FitStatus::not_converged,
-                              FitStatus::not_identifiable};
-
-FitStatus to_status(const std::string& name) {
-  for (const FitStatus status : statuses) {
-    if (to_string(status) == name) return status;
-  }
-  throw Error("'" + name + "' is no status of a fit");
-}
 
 /// n_z factors travel as one matrix, (n_z (n + 1)) x (n + 1), one below the other.
 MatrixXd stack(const std::vector<TriangularFactor>& factors) {
@@ -55,7 +45,7 @@ std::vector<TriangularFactor> unstack(const MatrixXd& stacked) {
 
 /// Status, message, x, noise, factors, output_squares, rows; or None and why a flight can't be
 /// used.
-using Start = std::tuple<std::optional<std::string>, std::string, VectorXd, VectorXd, MatrixXd,
+using Start = std::tuple<std::optional<FitStatus>, std::string, VectorXd, VectorXd, MatrixXd,
                          VectorXd, std::size_t>;
 /// x, noise, rounding, columns, K.
 using Question = std::tuple<VectorXd, VectorXd, VectorXd, std::vector<Eigen::Index>, MatrixXd>;
@@ -116,13 +106,8 @@ PreparedFlight prepare_columns(const Model& model, const py::dict& columns,
 
 Start start(const PreparedFlight& flight) {
   const FlightStart start = flight.problem->start();
-  return {std::string(to_string(start.status)),
-          start.message,
-          start.x,
-          start.noise,
-          stack(start.factors),
-          start.output_squares,
-          start.rows};
+  return {start.status,         start.message,        start.x,   start.noise,
+          stack(start.factors), start.output_squares, start.rows};
 }
 
 MatrixXd linearise(const PreparedFlight& flight, const VectorXd& x) {
@@ -154,7 +139,7 @@ class MappedFleet final : public Fleet {
         continue;
       }
       starts.push_back({.error = {},
-                        .status = to_status(*status),
+                        .status = *status,
                         .message = message,
                         .x = x,
                         .noise = noise,
@@ -198,58 +183,115 @@ class MappedFleet final : public Fleet {
   py::function visit_;
 };
 
-py::dict describe(const Departure& departure, const std::vector<Parameter>& shared) {
-  py::dict difference;
-  py::dict error;
-  for (std::size_t k = 0; k < shared.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    difference[py::str(shared[k].name)] = departure.difference[at];
-    error[py::str(shared[k].name)] = departure.standard_error[at];
+/// A number of each shared parameter, by its name.
+template <Eigen::VectorXd Departure::* member>
+std::vector<OutputValue> by_name(const Departure& departure) {
+  std::vector<OutputValue> values;
+  for (std::size_t k = 0; k < departure.names.size(); ++k) {
+    values.push_back({departure.names[k], (departure.*member)[static_cast<Eigen::Index>(k)]});
   }
-  return py::dict("combinations"_a = departure.combinations, "statistic"_a = departure.statistic,
-                  "p"_a = departure.p, "p_holm"_a = departure.p_holm,
-                  "p_white"_a = departure.p_white, "p_white_holm"_a = departure.p_white_holm,
-                  "difference"_a = difference, "standard_error"_a = error);
+  return values;
 }
 
-/// Keys as the fields of sepcal.ManyFit.
-py::dict describe(const ManyFit& fit) {
-  py::list flights;
-  for (const FlightFit& flight : fit.flights) {
-    flights.append(py::dict("name"_a = flight.name, "own"_a = bindings::describe(flight.own),
-                            "rmse"_a = bindings::describe(flight.rmse), "rows"_a = flight.rows,
-                            "alone"_a = to_string(flight.alone), "message"_a = flight.message,
-                            "departure"_a = describe(flight.departure, fit.shared)));
+template <Eigen::VectorXd Departure::* member>
+void set_by_name(Departure& departure, const std::vector<OutputValue>& values) {
+  departure.names.clear();
+  (departure.*member).resize(static_cast<Eigen::Index>(values.size()));
+  for (const OutputValue& one : values) {
+    (departure.*member)[static_cast<Eigen::Index>(departure.names.size())] = one.value;
+    departure.names.push_back(one.name);
   }
-  py::dict left_out;
-  for (const LeftOut& flight : fit.left_out) left_out[py::str(flight.name)] = flight.reason;
-  const Identifiability& found = fit.identifiability;
-  return py::dict(
-      "status"_a = to_string(fit.status), "message"_a = fit.message,
-      "shared"_a = bindings::describe(fit.shared), "covariance"_a = fit.covariance,
-      "correlation"_a = fit.correlation, "covariance_white"_a = fit.covariance_white,
-      "flights"_a = flights, "left_out"_a = left_out, "noise"_a = bindings::describe(fit.noise),
-      "rmse"_a = bindings::describe(fit.rmse), "cost"_a = fit.cost,
-      "unobservable"_a = bindings::describe(found.unobservable),
-      "weak"_a = bindings::describe(found.weak), "iterations"_a = fit.iterations,
-      "noise_iterations"_a = fit.noise_iterations, "passes"_a = fit.passes, "rows"_a = fit.rows);
 }
 
-py::dict fit_mapped(const Model& model, const std::vector<std::string>& names,
-                    const CalibrationOptions& options, const std::vector<std::string>& own,
-                    bool leave_out, const py::function& visit) {
+std::string largest(const Departure& departure) {
+  const Eigen::ArrayXd sizes =
+      (departure.standard_error.array() > 0)
+          .select(departure.difference.array().abs() / departure.standard_error.array(), -1.0);
+  Eigen::Index place = 0;
+  if (sizes.size() == 0 || !(sizes.maxCoeff(&place) >= 0.0)) return "";
+  return departure.names[static_cast<std::size_t>(place)];
+}
+
+ManyFit fit_mapped(const Model& model, const std::vector<std::string>& names,
+                   const CalibrationOptions& options, const std::vector<std::string>& own,
+                   bool leave_out, const py::function& visit) {
   MappedFleet fleet(names, visit);
-  const auto run = [&] {
-    const ManyOptions many = many_options(model, options, own, leave_out);
-    const py::gil_scoped_release release;
-    return fit_many(*model.block, fleet, many);
-  };
-  return describe(run());
+  const ManyOptions many = many_options(model, options, own, leave_out);
+  const py::gil_scoped_release release;
+  return fit_many(*model.block, fleet, many);
+}
+
+void define_results_of_many(py::module_& module) {
+  BoundStruct<Departure>(
+      module, "Departure",
+      "Does a flight's own estimate of the shared parameters agree with that of all the others?\n\n"
+      "Both to first order at the joint solution, along the combinations that both determine.")
+      .field("combinations", &Departure::combinations, "k of them; 0: nothing can be tested.")
+      .field("statistic", &Departure::statistic,
+             "d' V^-1 d, d the difference, V as the flights' noise models have it.")
+      .field("p", &Departure::p, "Of a larger one where nothing departs: F(k, rows x outputs - n).")
+      .field("p_holm", &Departure::p_holm, "The same, by Holm for the number of flights.")
+      .field("p_white", &Departure::p_white,
+             "With white residuals of the common R, off the drop in cost.")
+      .field("p_white_holm", &Departure::p_white_holm, "")
+      .field("difference", &by_name<&Departure::difference>, &set_by_name<&Departure::difference>,
+             "Own estimate less the others', by shared parameter.")
+      .field("standard_error", &by_name<&Departure::standard_error>,
+             &set_by_name<&Departure::standard_error>, "Of the difference.")
+      .comparable()
+      .finish()
+      .def_property_readonly("largest", &largest,
+                             "The shared parameter that differs by most of its standard errors; "
+                             "\"\" where none does.");
+
+  BoundStruct<FlightFit>(module, "FlightFit", "One flight of a joint fit.")
+      .field("name", &FlightFit::name, "")
+      .field("own", &FlightFit::own, "In the model's order.")
+      .field("rmse", &FlightFit::rmse, "By output, in its unit.")
+      .field("rows", &FlightFit::rows, "")
+      .field("alone", &FlightFit::alone,
+             "Status of the flight's fit by itself, where the joint one began.")
+      .field("message", &FlightFit::message, "Of that fit.")
+      .field("departure", &FlightFit::departure, "")
+      .comparable()
+      .finish()
+      .def("__getitem__", [](const FlightFit& self, const std::string& name) {
+        return find_named(self.own, name, "own parameter", "the flight has");
+      });
+
+  BoundStruct<ManyFit>(module, "ManyFit", "A joint fit of many flights.")
+      .field("status", &ManyFit::status,
+             "\"converged\", \"not_converged\" or \"not_identifiable\".")
+      .field("message", &ManyFit::message, "One line; empty where there is nothing to say.")
+      .field("shared", &ManyFit::shared, "In the model's order, fixed ones among them.")
+      .field("covariance", &ManyFit::covariance,
+             "Of the shared parameters, in that order; NaN without a standard error.")
+      .field("correlation", &ManyFit::correlation, "")
+      .field("covariance_white", &ManyFit::covariance_white, "As white residuals would have it.")
+      .field("flights", &ManyFit::flights, "In the order given.")
+      .field("left_out", &ManyFit::left_out, "Flights that can't be used, and why.")
+      .field("noise", &ManyFit::noise,
+             "By output, common to all flights: given, or from R-hat = SSE / N.")
+      .field("rmse", &ManyFit::rmse, "Over all flights.")
+      .field("cost", &ManyFit::cost, "J of Eq. 6 over all rows.")
+      .field("unobservable", &ManyFit::identifiability, &Identifiability::unobservable,
+             "Of the shared parameters.")
+      .field("weak", &ManyFit::identifiability, &Identifiability::weak, "")
+      .field("iterations", &ManyFit::iterations, "")
+      .field("noise_iterations", &ManyFit::noise_iterations, "")
+      .field("passes", &ManyFit::passes, "Over the data, beside each flight's own fit.")
+      .field("rows", &ManyFit::rows, "Of all flights.")
+      .copied()
+      .finish()
+      .def("__getitem__", [](const ManyFit& self, const std::string& name) {
+        return find_named(self.shared, name, "shared parameter", "the fit has");
+      });
 }
 
 }  // namespace
 
 void define_many(py::module_& module) {
+  define_results_of_many(module);
   py::class_<PreparedFlight>(module, "PreparedFlight")
       .def("start", &start, WithoutGil())
       .def("linearise", &linearise, WithoutGil())

@@ -26,11 +26,12 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = SEPCAL_VERSION;
   define_error(module);
   define_options(module);
+  define_results(module);
   define_effects(module);
   define_engine(module);
+  define_intervals(module);
   define_flight(module);
   define_figures(module);
   define_many(module);
-  define_intervals(module);
   define_simulation(module);
 }

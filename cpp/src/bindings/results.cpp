@@ -1,105 +1,186 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A fit as plain dictionaries and arrays.
+// What a fit says: estimates with their uncertainty, the noise, and what stage one saw.
+#include "results.hpp"
+
 #include <pybind11/eigen.h>
-#include <pybind11/stl.h>
 
 #include <optional>
 #include <string>
+#include <utility>
 
-#include "bindings.hpp"
+#include "structs.hpp"
 
 namespace sepcal::bindings {
-
-using namespace py::literals;
-
-py::list describe(const std::vector<Parameter>& parameters) {
-  py::list list;
-  for (const Parameter& parameter : parameters) {
-    list.append(py::dict("name"_a = parameter.name, "value"_a = parameter.value,
-                         "standard_error"_a = parameter.standard_error,
-                         "standard_error_white"_a = parameter.standard_error_white,
-                         "unit"_a = parameter.unit, "lower"_a = parameter.lower,
-                         "upper"_a = parameter.upper, "at_bound"_a = parameter.at_bound,
-                         "fixed"_a = parameter.fixed));
-  }
-  return list;
-}
-
-py::list describe(const std::vector<Combination>& combinations) {
-  py::list list;
-  for (const Combination& combination : combinations) {
-    list.append(py::dict("text"_a = combination.text,
-                         "parameters"_a = py::tuple(py::cast(combination.parameters)),
-                         "standard_error"_a = combination.standard_error));
-  }
-  return list;
-}
-
-py::dict describe(const std::vector<OutputValue>& values) {
-  py::dict dictionary;
-  for (const OutputValue& value : values) dictionary[py::str(value.name)] = value.value;
-  return dictionary;
-}
-
 namespace {
 
-/// {name: value} of the parameters that stage one samples: nonlinear and not fixed.
-py::dict describe_point(const Fit& fit, const Eigen::VectorXd& xi2) {
-  py::dict point;
+/// By name, of the parameters that stage one samples: nonlinear and not fixed.
+std::vector<OutputValue> named_point(const Fit& fit, const Eigen::VectorXd& xi2) {
+  std::vector<OutputValue> point;
   Eigen::Index k = 0;
   for (auto at = fit.parameters.begin() + fit.n_1; at != fit.parameters.end(); ++at) {
-    if (!at->fixed && k < xi2.size()) point[py::str(at->name)] = xi2[k++];
+    if (!at->fixed && k < xi2.size()) point.push_back({at->name, xi2[k++]});
   }
   return point;
 }
 
-py::object describe(const std::optional<ScreenResults>& screens) {
-  if (!screens) return py::none();
-  return py::dict("ratio_a"_a = screens->ratio_a, "ratio_b"_a = screens->ratio_b,
-                  "curvature_a"_a = screens->curvature_a, "curvature_b"_a = screens->curvature_b,
-                  "accepted"_a = screens->accepted);
+/// Takes stage one out of the fit.
+NamedStageOne take_stage_one(Fit& fit) {
+  NamedStageOne named{.samples = fit.stage_one.samples.transpose(),
+                      .best = named_point(fit, fit.stage_one.best),
+                      .minima = {},
+                      .rest = std::exchange(fit.stage_one, {})};
+  named.rest.samples.resize(0, 0);
+  for (const LocalMinimum& minimum : named.rest.minima) {
+    named.minima.push_back({named_point(fit, minimum.xi2), minimum.trace_r});
+  }
+  return named;
 }
 
-py::dict describe_stage_one(const Fit& fit) {
-  const StageOne& stage_one = fit.stage_one;
-  py::list minima;
-  for (const LocalMinimum& minimum : stage_one.minima) {
-    minima.append(
-        py::dict("xi2"_a = describe_point(fit, minimum.xi2), "trace_r"_a = minimum.trace_r));
-  }
-  return py::dict(
-      "samples"_a = Eigen::MatrixXd(stage_one.samples.transpose()), "trace_r"_a = stage_one.trace_r,
-      "best"_a = describe_point(fit, stage_one.best), "best_trace_r"_a = stage_one.best_trace_r,
-      "minima"_a = minima, "unique_minimum"_a = stage_one.unique_minimum,
-      "flat_directions"_a = stage_one.flat_directions, "screens"_a = describe(stage_one.screens));
+/// "at its lower bound": what a table says of a parameter that is not simply estimated.
+std::string remark(const Parameter& parameter) {
+  if (parameter.fixed) return "fixed";
+  if (!parameter.at_bound) return "";
+  const bool lower = parameter.value - parameter.lower <= parameter.upper - parameter.value;
+  return lower ? "at its lower bound" : "at its upper bound";
 }
 
-/// Keys as the fields of sepcal.EffectSetting.
-py::list describe(const std::vector<EffectSetting>& effects) {
-  py::list list;
-  for (const EffectSetting& effect : effects) {
-    list.append(py::dict("name"_a = effect.name, "centre"_a = effect.centre,
-                         "knots"_a = py::tuple(py::cast(effect.knots)),
-                         "labels"_a = py::tuple(py::cast(effect.labels)), "span"_a = effect.span,
-                         "t0"_a = effect.t0));
-  }
-  return list;
+void define_parameters(py::module_& module) {
+  BoundStruct<Parameter>(module, "Parameter", "One estimate, in `unit`.")
+      .field("name", &Parameter::name, "")
+      .field("value", &Parameter::value, "")
+      .field("standard_error", &Parameter::standard_error,
+             "NaN where undefined: fixed, at a bound, singular.")
+      .field("standard_error_white", &Parameter::standard_error_white,
+             "What it would be if the residuals were white.")
+      .field("unit", &Parameter::unit, "")
+      .field("lower", &Parameter::lower, "Its bounds; infinite where there is none.")
+      .field("upper", &Parameter::upper, "")
+      .field("at_bound", &Parameter::at_bound, "Whether a bound stopped it.")
+      .field("fixed", &Parameter::fixed, "Whether it was held.")
+      .comparable()
+      .finish()
+      .def_property_readonly("remark", &remark,
+                             "Fixed, at its lower or at its upper bound; else nothing.");
+
+  BoundStruct<Combination>(
+      module, "Combination",
+      "A linear combination of parameters that the record leaves open or determines poorly.")
+      .field("text", &Combination::text,
+             "\"0.8 w_n - 0.6 lambda_va\", coefficients of unit length.")
+      .tuple("parameters", &Combination::parameters, "Those that take part, largest share first.")
+      .field("standard_error", &Combination::standard_error,
+             "Of the combination; infinite where it is singular.")
+      .comparable()
+      .finish();
+
+  BoundStruct<EffectSetting>(
+      module, "EffectSetting",
+      "An effect of a fit, with what it took from the record; None or empty where it takes none.")
+      .field("name", &EffectSetting::name, "Whole, aliases resolved: \"wind[altitude_m]\".")
+      .field("centre", &EffectSetting::centre, "Of a power's driver, in the driver's unit.")
+      .tuple("knots", &EffectSetting::knots, "Of a spline.")
+      .tuple("labels", &EffectSetting::labels,
+             "Of the driver `maneuver`; the first has no coefficient.")
+      .field("span", &EffectSetting::span, "The record's first and last time [s].")
+      .field("t0", &EffectSetting::t0, "Of a step [s].")
+      .comparable()
+      .finish();
+}
+
+void define_stage_one(py::module_& module) {
+  BoundStruct<NamedMinimum>(module, "LocalMinimum", "A local minimum of Tr[R] within the bounds.")
+      .field("xi2", &NamedMinimum::xi2, "")
+      .field("trace_r", &NamedMinimum::trace_r,
+             "Sum over outputs of the mean squared residual, in the outputs' units.")
+      .finish();
+
+  BoundStruct<ScreenResults>(
+      module, "ScreenResults",
+      "Eqs. 17 and 18 at every sample, each (S,); norms are Frobenius', over the whole record.")
+      .field("ratio_a", &ScreenResults::ratio_a, "|dA/dxi2| l_2 / |A|.")
+      .field("ratio_b", &ScreenResults::ratio_b,
+             "|db/dxi2| l_2 / |b|; zero where b does not depend on xi2.")
+      .field("curvature_a", &ScreenResults::curvature_a,
+             "Smallest eigenvalue of the sum of A's second derivatives.")
+      .field("curvature_b", &ScreenResults::curvature_b, "The same of b.")
+      .field("accepted", &ScreenResults::accepted, "False: the sample was not used.")
+      .finish();
+
+  BoundStruct<NamedStageOne>(
+      module, "StageOne",
+      "Samples of xi2 and Tr[R] at each (Eqs. 16, 19, Steps 2-4); of a global search, all it "
+      "tried.\n\nFixed parameters have no part in it. The samples are not kept in a calibration's "
+      "JSON.")
+      .field("samples", &NamedStageOne::samples, "(S, n_2), in the model's order.")
+      .field("trace_r", &NamedStageOne::rest, &StageOne::trace_r,
+             "(S,); infinite where the model is not finite.")
+      .field("best", &NamedStageOne::best, "The sample with the least Tr[R].")
+      .field("best_trace_r", &NamedStageOne::rest, &StageOne::best_trace_r, "")
+      .field("minima", &NamedStageOne::minima, "Distinct ones, lowest first.")
+      .field("unique_minimum", &NamedStageOne::rest, &StageOne::unique_minimum,
+             "One minimum and no flat direction.")
+      .field("flat_directions", &NamedStageOne::rest, &StageOne::flat_directions,
+             "In words: a valley of Tr[R] and no point (Fig. 6).")
+      .field("screens", &NamedStageOne::rest, &StageOne::screens, "Where fit() was asked for them.")
+      .finish();
 }
 
 }  // namespace
 
-py::dict describe(const Fit& fit, const CalibrationOptions& options) {
-  py::dict described(
-      "status"_a = to_string(fit.status), "message"_a = fit.message,
-      "parameters"_a = describe(fit.parameters), "covariance"_a = fit.covariance,
-      "correlation"_a = fit.correlation, "covariance_white"_a = fit.covariance_white,
-      "noise"_a = describe(fit.noise), "rmse"_a = describe(fit.rmse), "cost"_a = fit.cost,
-      "rows"_a = fit.rows, "unobservable"_a = describe(fit.identifiability.unobservable),
-      "weak"_a = describe(fit.identifiability.weak), "stage_one"_a = describe_stage_one(fit),
-      "method"_a = to_string(fit.method), "iterations"_a = fit.iterations,
-      "noise_iterations"_a = fit.noise_iterations, "effects"_a = describe(options.effects));
-  add_pages(described, fit, options);
-  return described;
+FittedModel fitted_model(Fit fit, std::vector<EffectSetting> effects, Page page) {
+  NamedStageOne stage_one = take_stage_one(fit);
+  return {std::move(fit), std::move(stage_one), std::move(effects), std::move(page)};
+}
+
+void define_results(py::module_& module) {
+  define_parameters(module);
+  define_stage_one(module);
+  BoundStruct<FittedModel>(module, "Fit", "The two-stage batch estimate.")
+      .field("status", &FittedModel::fit, &Fit::status,
+             "\"converged\", \"not_converged\" or \"not_identifiable\".")
+      .field("message", &FittedModel::fit, &Fit::message,
+             "One line; empty where there is nothing to say.")
+      .field("parameters", &FittedModel::fit, &Fit::parameters,
+             "Linear, then nonlinear, in the model's order.")
+      .field("n_1", &FittedModel::fit, &Fit::n_1, "How many of them are linear.")
+      .field("covariance", &FittedModel::fit, &Fit::covariance,
+             "(n, n), in that order; NaN where there is no standard error.")
+      .field("correlation", &FittedModel::fit, &Fit::correlation, "(n, n).")
+      .field("covariance_white", &FittedModel::fit, &Fit::covariance_white,
+             "(n, n), of white residuals; of a loaded one only its diagonal.")
+      .field("noise", &FittedModel::fit, &Fit::noise,
+             "By output: standard deviation, given or from R-hat = SSE / N.")
+      .field("rmse", &FittedModel::fit, &Fit::rmse, "By output, unwhitened, in its unit.")
+      .field("cost", &FittedModel::fit, &Fit::cost, "J of Eq. 6.")
+      .field("rows", &FittedModel::fit, &Fit::rows, "That stage two used.")
+      .field(
+          "unobservable",
+          [](const FittedModel& self) { return self.fit.identifiability.unobservable; },
+          [](FittedModel& self, std::vector<Combination> found) {
+            self.fit.identifiability.unobservable = std::move(found);
+          },
+          "Singular, or uncertain beyond half the width of their bounds.")
+      .field(
+          "weak", [](const FittedModel& self) { return self.fit.identifiability.weak; },
+          [](FittedModel& self, std::vector<Combination> found) {
+            self.fit.identifiability.weak = std::move(found);
+          },
+          "Singular value below a fiftieth of the largest.")
+      .field("stage_one", &FittedModel::stage_one, "")
+      .field("method", &FittedModel::fit, &Fit::method,
+             "\"joint\" or \"projected\": what stage two used in the end.")
+      .field("iterations", &FittedModel::fit, &Fit::iterations, "Of stage two's minimisations.")
+      .field("noise_iterations", &FittedModel::fit, &Fit::noise_iterations,
+             "Of R against the parameters.")
+      .field("effects", &FittedModel::effects, "That joined the model, in order.")
+      .field("text", &FittedModel::page, &Page::text, "What print() shows: the app's page.")
+      .field("explained", &FittedModel::page, &Page::explained,
+             "The same with the whole message, as by the apps' --explain.")
+      .copied()
+      .finish()
+      .def("__getitem__", [](const FittedModel& self, const std::string& name) {
+        return find_named(self.fit.parameters, name, "parameter", "the fit has");
+      });
 }
 
 }  // namespace sepcal::bindings

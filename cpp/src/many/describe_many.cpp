@@ -138,8 +138,11 @@ class Description {
       all(shared_places_) = values;
       return all;
     };
+    std::vector<std::string> names;
+    for (const Parameter& parameter : result_.shared) names.push_back(parameter.name);
     for (std::size_t i = 0; i < departures.size(); ++i) {
       Departure& departure = departures[i];
+      departure.names = names;
       departure.difference = among_all(departure.difference);
       departure.standard_error = among_all(departure.standard_error);
       result_.flights[i].departure = std::move(departure);

@@ -18,7 +18,12 @@ FARTHEST = 25  # points of each output that an added-variable plot always shows
 
 
 def draw_channel(
-    title: str, x_title: str, y_title: str, x: Array, residual: Array, smooth: _core.Smooth
+    title: str,
+    x_title: str,
+    y_title: str,
+    x: Array,
+    residual: Array,
+    smooth: tuple[Array, Array, Array],
 ) -> Figure:
     """A cloud of residuals over a channel, the spline through it, and its band about zero."""
     kept = keep_even(x.size)

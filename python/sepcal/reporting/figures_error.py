@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sepcal.comparison import Misfit
+from sepcal._core import Misfit
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from sepcal.columns import Array
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
+Rows: TypeAlias = tuple[str, int, int]  # label, first row, row after the last
 LEAST = 0.1  # a correlation: no axis is drawn finer
 
 
@@ -24,7 +25,7 @@ def _lines(output: str, i: int, x: Array, y: Array) -> dict[str, Any]:
 
 
 def draw_autocorrelation(
-    outputs: list[str], residuals: Array, runs: list[_core.Rows], interval: float
+    outputs: list[str], residuals: Array, runs: list[Rows], interval: float
 ) -> Figure:
     """Correlation over lag [s], with the limits that white noise keeps nineteen times in twenty."""
     data, widest = [], LEAST
@@ -52,7 +53,7 @@ def draw_spectrum(
     outputs: list[str],
     unit: str,
     residuals: Array,
-    runs: list[_core.Rows],
+    runs: list[Rows],
     interval: float,
     floors: list[float],
 ) -> Figure:

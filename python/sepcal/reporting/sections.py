@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from sepcal import _core
-from sepcal.comparison import ChannelMisfit
+from sepcal._core import ChannelMisfit
 from sepcal.reporting import advice, tables, words
 from sepcal.reporting.figures_cause import draw_added_variable, draw_channel
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall

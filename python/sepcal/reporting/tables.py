@@ -8,7 +8,8 @@ from html import escape
 
 import numpy as np
 
-from sepcal.calibration import Calibration, HistoryEntry
+from sepcal._core import Combination, HistoryEntry, Parameter
+from sepcal.calibration import Calibration
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import EffectFinding
 from sepcal.reporting.words import (
@@ -19,7 +20,6 @@ from sepcal.reporting.words import (
     probability,
     with_unit,
 )
-from sepcal.results import Combination, Parameter
 
 SHOWN = 10  # candidates; the others are folded away
 NEGLIGIBLE = 0.3  # standard errors: a shift that needs no table

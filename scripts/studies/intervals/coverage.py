@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
-from sepcal.intervals import ParameterInterval
+from sepcal import ParameterInterval
 from studies.intervals.cases import coverage_cases
 
 

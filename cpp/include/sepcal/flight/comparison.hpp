@@ -75,6 +75,10 @@ std::string to_json(const Comparison& comparison);
 /// explain most of it, the worst windows.
 std::string to_text(const Comparison& comparison, Detail detail = Detail::brief);
 
+/// Whether lag_one is within 2 / sqrt(rows), two standard errors of white noise's about zero: one
+/// verdict in twenty on noise alone is wrong. False where it is NaN.
+bool is_white(const Misfit& misfit);
+
 /// In words whether the residuals are noise: "white, as noise alone would be".
 std::string verdict_on_noise(const Misfit& misfit);
 

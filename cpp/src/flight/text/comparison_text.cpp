@@ -21,16 +21,20 @@ double shown_mean(const Misfit& misfit) {
   return std::abs(misfit.mean) < rounding * misfit.rmse ? 0.0 : misfit.mean;
 }
 
+double white_limit(const Misfit& misfit) {
+  return 2.0 / std::sqrt(static_cast<double>(misfit.rows));
+}
+
 }  // namespace
+
+bool is_white(const Misfit& misfit) { return std::abs(misfit.lag_one) <= white_limit(misfit); }
 
 std::string verdict_on_noise(const Misfit& misfit) {
   if (std::isnan(misfit.lag_one)) return "too few rows to tell";
-  // Two standard errors of white noise's lag-one correlation about zero: one verdict in twenty on
-  // noise alone is wrong.
-  const double limit = 2.0 / std::sqrt(static_cast<double>(misfit.rows));
-  if (std::abs(misfit.lag_one) <= limit) return "white, as noise alone would be";
+  if (is_white(misfit)) return "white, as noise alone would be";
   return fmt::format("not white: neighbouring residuals {} ({:.3f}, noise alone within {:.2g})",
-                     misfit.lag_one > 0 ? "correlate" : "alternate", misfit.lag_one, limit);
+                     misfit.lag_one > 0 ? "correlate" : "alternate", misfit.lag_one,
+                     white_limit(misfit));
 }
 
 std::string to_text(const Comparison& comparison, Detail detail) {

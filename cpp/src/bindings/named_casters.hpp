@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How sepcal's small types cross: an enumeration as its word, things with names as {name: thing} in
+// their order, an interval as (lower, upper).
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sepcal/fit.hpp"
+#include "sepcal/fit_many.hpp"
+#include "sepcal/flight/calibration.hpp"
+#include "sepcal/profile.hpp"
+
+namespace pybind11::detail {
+
+template <class Enumeration, Enumeration... known>
+struct word_caster {
+  PYBIND11_TYPE_CASTER(Enumeration, const_name("str"));
+
+  bool load(handle source, bool convert) {
+    make_caster<std::string> word;
+    if (!word.load(source, convert)) return false;
+    const auto take = [&](Enumeration one) {
+      if (sepcal::to_string(one) != cast_op<std::string&>(word)) return false;
+      value = one;
+      return true;
+    };
+    return (take(known) || ...);
+  }
+
+  static handle cast(Enumeration one, return_value_policy /*policy*/, handle /*parent*/) {
+    return str(std::string(sepcal::to_string(one))).release();
+  }
+};
+
+/// {thing.*key: thing.*mapped}; the things have no other members.
+template <class Thing, class Mapped, std::string Thing::* key, Mapped Thing::* mapped>
+struct pair_caster {
+  using List = std::vector<Thing>;
+  PYBIND11_TYPE_CASTER(List,
+                       const_name("dict[str, ") + make_caster<Mapped>::name + const_name("]"));
+
+  bool load(handle source, bool /*convert*/) {
+    if (!isinstance<dict>(source)) return false;
+    value.clear();
+    for (const auto& [word, one] : reinterpret_borrow<dict>(source)) {
+      value.push_back({word.template cast<std::string>(), one.template cast<Mapped>()});
+    }
+    return true;
+  }
+
+  static handle cast(const List& things, return_value_policy /*policy*/, handle /*parent*/) {
+    dict by_name;
+    for (const Thing& thing : things) by_name[str(thing.*key)] = thing.*mapped;
+    return by_name.release();
+  }
+};
+
+/// {thing.name: thing}
+template <class Thing>
+struct named_caster {
+  using List = std::vector<Thing>;
+  PYBIND11_TYPE_CASTER(List, const_name("dict[str, ") + make_caster<Thing>::name + const_name("]"));
+
+  bool load(handle source, bool /*convert*/) {
+    if (!isinstance<dict>(source)) return false;
+    value.clear();
+    for (const auto& [word, thing] : reinterpret_borrow<dict>(source)) {
+      value.push_back(thing.template cast<Thing>());
+    }
+    return true;
+  }
+
+  static handle cast(const List& things, return_value_policy /*policy*/, handle /*parent*/) {
+    dict by_name;
+    for (const Thing& thing : things) by_name[str(thing.name)] = pybind11::cast(thing);
+    return by_name.release();
+  }
+};
+
+template <>
+struct type_caster<sepcal::FitStatus>
+    : word_caster<sepcal::FitStatus, sepcal::FitStatus::converged, sepcal::FitStatus::not_converged,
+                  sepcal::FitStatus::not_identifiable> {};
+template <>
+struct type_caster<sepcal::SecondStage>
+    : word_caster<sepcal::SecondStage, sepcal::SecondStage::automatic, sepcal::SecondStage::joint,
+                  sepcal::SecondStage::projected> {};
+
+template <>
+struct type_caster<sepcal::IntervalEnd>
+    : word_caster<sepcal::IntervalEnd, sepcal::IntervalEnd::crossed, sepcal::IntervalEnd::bound,
+                  sepcal::IntervalEnd::open, sepcal::IntervalEnd::failed> {};
+
+template <>
+struct type_caster<std::vector<sepcal::OutputValue>>
+    : pair_caster<sepcal::OutputValue, double, &sepcal::OutputValue::name,
+                  &sepcal::OutputValue::value> {};
+template <>
+struct type_caster<std::vector<sepcal::LeftOut>>
+    : pair_caster<sepcal::LeftOut, std::string, &sepcal::LeftOut::name, &sepcal::LeftOut::reason> {
+};
+
+template <>
+struct type_caster<std::vector<sepcal::Parameter>> : named_caster<sepcal::Parameter> {};
+template <>
+struct type_caster<std::vector<sepcal::Derived>> : named_caster<sepcal::Derived> {};
+template <>
+struct type_caster<std::vector<sepcal::FlightFit>> : named_caster<sepcal::FlightFit> {};
+template <>
+struct type_caster<std::vector<sepcal::ProfileInterval>> : named_caster<sepcal::ProfileInterval> {};
+
+template <>
+struct type_caster<sepcal::Interval> {
+  PYBIND11_TYPE_CASTER(sepcal::Interval, const_name("tuple[float, float]"));
+
+  bool load(handle source, bool convert) {
+    make_caster<std::pair<double, double>> ends;
+    if (!ends.load(source, convert)) return false;
+    const auto& [lower, upper] = cast_op<std::pair<double, double>>(ends);
+    value = {lower, upper};
+    return true;
+  }
+
+  static handle cast(const sepcal::Interval& interval, return_value_policy /*policy*/,
+                     handle /*parent*/) {
+    return make_tuple(interval.lower, interval.upper).release();
+  }
+};
+
+}  // namespace pybind11::detail

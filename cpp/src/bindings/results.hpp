@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Results as Python has them, where that is more than a C++ struct: points by their parameters'
+// names, and a result with the page that the apps print of it.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+
+namespace sepcal::bindings {
+
+/// What print() shows.
+struct Page {
+  std::string text;
+  std::string explained;  // as with --explain
+};
+
+/// print() ends the last line itself.
+inline std::string without_last_end(std::string page) {
+  page.pop_back();
+  return page;
+}
+
+template <class... Result>
+Page page_of(const Result&... result) {
+  return {without_last_end(to_text(result..., Detail::brief)),
+          without_last_end(to_text(result..., Detail::explained))};
+}
+
+/// What a class in Python finds by [name]. Raises KeyError listing the names.
+template <class Thing>
+const Thing& find_named(const std::vector<Thing>& things, const std::string& name,
+                        const std::string& what, const std::string& there) {
+  const auto found = std::ranges::find(things, name, &Thing::name);
+  if (found != things.end()) return *found;
+  std::string names;
+  for (const Thing& thing : things) names += (names.empty() ? "" : ", ") + thing.name;
+  throw py::key_error("there is no " + what + " '" + name + "'; " + there + ": " +
+                      (names.empty() ? "none" : names));
+}
+
+struct NamedMinimum {
+  std::vector<OutputValue> xi2;
+  double trace_r = 0.0;
+};
+
+struct NamedStageOne {
+  Eigen::MatrixXd samples;  // S x n_2
+  std::vector<OutputValue> best;
+  std::vector<NamedMinimum> minima;
+  StageOne rest;  // without its samples
+};
+
+/// sepcal.Fit
+struct FittedModel {
+  Fit fit;
+  NamedStageOne stage_one;
+  std::vector<EffectSetting> effects;
+  Page page;
+};
+
+FittedModel fitted_model(Fit fit, std::vector<EffectSetting> effects, Page page);
+
+/// sepcal.Intervals
+struct FoundIntervals {
+  double level = 0.0;
+  std::vector<ProfileInterval> parameters;
+  std::vector<std::string> notes;
+  std::string json;
+  Page page;
+};
+
+FoundIntervals find_intervals(const Calibration& calibration, const Flight& flight, double level,
+                              const std::vector<std::string>& names);
+
+}  // namespace sepcal::bindings
