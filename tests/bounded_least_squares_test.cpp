@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "numerics/bounded_least_squares.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/quantity.hpp"
 
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <random>
 

@@ -4,11 +4,11 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "estimation/residual_colour.hpp"
 #include "noises.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/fit.hpp"
 #include "small_models.hpp"
 

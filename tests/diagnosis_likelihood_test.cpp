@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +12,7 @@
 #include "diagnosis/residual_noise.hpp"
 #include "linearisations.hpp"
 #include "noises.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/tails.hpp"
 
 using doctest::Approx;

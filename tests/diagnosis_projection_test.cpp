@@ -5,11 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "simulated_records.hpp"
 
 using doctest::Approx;

@@ -3,10 +3,10 @@
 // problem and a scan.
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "dense_reference.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 

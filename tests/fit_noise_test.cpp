@@ -2,10 +2,10 @@
 // R, given or estimated (Eqs. 24-26), and the covariance that goes with it.
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "dense_reference.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 #include "small_models.hpp"

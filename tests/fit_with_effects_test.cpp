@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
 #include <vector>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/static_model.hpp"
 #include "small_models.hpp"

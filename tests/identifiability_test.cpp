@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "simulated_records.hpp"
 
 using doctest::Approx;

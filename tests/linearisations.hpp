@@ -3,12 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/linearisation.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::test {
 

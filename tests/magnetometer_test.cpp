@@ -5,10 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-
 #include "dense_reference.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 

@@ -4,10 +4,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 #include "simulated_records.hpp"
 

@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
 #include "noises.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 
 using doctest::Approx;

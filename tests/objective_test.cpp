@@ -4,10 +4,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "dense_reference.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/static_model.hpp"
 #include "simulated_records.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/static_model.hpp"
 

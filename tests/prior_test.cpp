@@ -2,12 +2,12 @@
 // Priors of parameters, against the closed form of a linear model.
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 #include "small_models.hpp"

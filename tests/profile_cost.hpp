@@ -4,11 +4,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 
 #include "dense_reference.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/options.hpp"
 #include "simulated_records.hpp"

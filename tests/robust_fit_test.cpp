@@ -2,7 +2,6 @@
 // Fits that forgive outliers: what these do to the noise, and losses so wide that they are squares.
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "dense_reference.hpp"
 #include "flights_with_outliers.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "simulated_records.hpp"

@@ -4,10 +4,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numeric>
 
+#include "numerics/decompositions.hpp"
 #include "profile_cost.hpp"
 #include "sepcal/error.hpp"
 

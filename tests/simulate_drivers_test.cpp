@@ -2,9 +2,9 @@
 // What drives hidden effects, seen in a magnetometer's bias: the reading with the effect less the
 // reading without it is size times phi, and phi is worked out here from the logged columns.
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 #include "simulation/hidden_spline.hpp"
 

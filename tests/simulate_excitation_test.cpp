@@ -2,12 +2,12 @@
 // Rich and poor flights: how much the vehicle moves, and how freely the columns that can drive an
 // effect run.
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include "calibrated_flights.hpp"
+#include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
 namespace {

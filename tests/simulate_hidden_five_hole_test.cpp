@@ -2,10 +2,10 @@
 // Effects hidden in a five-hole probe's flight: the wind triangle closes again once the effect is
 // undone by its definition, written out by hand on the logged columns.
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 
+#include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
 namespace {

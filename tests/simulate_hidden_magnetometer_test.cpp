@@ -2,10 +2,10 @@
 // Effects hidden in a magnetometer's flight, against their definitions written out by hand on the
 // logged attitude, field and columns.
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 
+#include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
 namespace {

@@ -2,7 +2,6 @@
 // The kinds of noise by their statistics, and columns that drive nothing. Bounds are 4.5 standard
 // errors: a good generator fails one with probability 7e-6.
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -10,6 +9,7 @@
 #include <set>
 
 #include "calibrated_flights.hpp"
+#include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 #include "simulation/simulated_noise.hpp"
 

@@ -4,12 +4,12 @@
 #include "sepcal/simulation/simulate.hpp"
 
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
+#include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
 namespace {

@@ -4,11 +4,11 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
 #include "dense_reference.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"

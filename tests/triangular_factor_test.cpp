@@ -4,12 +4,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 #include "simulated_records.hpp"
 

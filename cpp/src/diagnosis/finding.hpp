@@ -2,9 +2,8 @@
 // What a trial says of its effect, in the words of the result.
 #pragma once
 
-#include <Eigen/QR>
-
 #include "diagnosis/trial.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/diagnosis.hpp"
 
 namespace sepcal::diagnosis {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/noise_hypothesis.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
+
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::diagnosis {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/projection.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::diagnosis {
 

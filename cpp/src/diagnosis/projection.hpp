@@ -4,7 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
+
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::diagnosis {
 

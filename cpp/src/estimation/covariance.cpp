@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/covariance.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "estimation/residual_colour.hpp"
 #include "model/loss.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::estimation {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/identifiability.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "base/sentences.hpp"
 #include "base/short_number.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal {

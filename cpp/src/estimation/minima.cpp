@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/minima.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "estimation/refine.hpp"
 #include "numerics/basins.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/identifiability.hpp"
 
 namespace sepcal::estimation {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/refine.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "numerics/bounded_least_squares.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::estimation {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/screens.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "estimation/minima.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::estimation {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "many/departure.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/tails.hpp"
 
 namespace sepcal::many {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "noise/arfima_factor.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "noise/noise_autocovariance.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::noise {
 namespace {

@@ -4,9 +4,10 @@
 //   gamma(k) = c(k) + sum phi_i gamma(|k - i|)  as Yule & Walker for k <= p, then forwards.
 #include "noise/noise_autocovariance.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "numerics/decompositions.hpp"
 
 namespace sepcal::noise {
 

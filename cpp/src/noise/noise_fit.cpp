@@ -2,7 +2,6 @@
 // -2 ln L = N ln(|W e|^2 / N) + ln det + N (1 + ln 2 pi), profiled over sigma, is N ln |y|^2 of
 // y = W e det^{1/2N}: nonlinear least squares in d and the partial autocorrelations r of phi.
 // Gauss & Newton refine them from the best order and d of a scan (noise_order.hpp).
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "noise/arfima_factor.hpp"
 #include "noise/noise_order.hpp"
 #include "noise/noise_room.hpp"
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {

@@ -3,11 +3,11 @@
 
 #include <unsupported/Eigen/FFT>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/quantiles.hpp"
 #include "numerics/toeplitz.hpp"
 #include "sepcal/quantity.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/triangular_factor.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {

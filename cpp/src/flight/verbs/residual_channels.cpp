@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +10,7 @@
 
 #include "effects/named_driver.hpp"
 #include "estimation/residual_colour.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/residual_curves.hpp"
 #include "sepcal/natural_spline.hpp"
 
