@@ -104,6 +104,92 @@ std::string as_typed(const std::string& name) {
   return option;
 }
 
+/// The verbs of an app with their options, and what was typed.
+class CommandLine {
+ public:
+  CommandLine(Instrument& instrument, CLI::App& cli) : instrument_(instrument), cli_(cli) {
+    fit_ = cli.add_subcommand("fit", "fits the model to a flight");
+    add_flight(*fit_);
+    add_file(*fit_, "-o,--output", typed_.output, "writes the calibration there")
+        ->type_name("BASE.json");
+    instrument.add_probe_options(*fit_);
+    fit_arguments_.add_to(*fit_);
+    add_explain(*fit_);
+    add_json(*fit_);
+
+    compare_ = add_later_verb("compare", "shows where the model fails");
+    instrument.add_flight_options(*compare_);
+    intervals_ =
+        add_later_verb("intervals", "says how far each parameter may lie, by the likelihood");
+    add_interval_options(*intervals_, typed_);
+    diagnose_ = add_later_verb("diagnose", "names the physical effect that is missing");
+    add_diagnose_options(*diagnose_, typed_);
+    instrument.add_flight_options(*diagnose_);
+    add_ = add_later_verb("add", "adds a physical effect and fits again");
+    add_adding_options(*add_, typed_);
+    instrument.add_flight_options(*add_);
+    apply_ = add_later_verb("apply", "adds the calibrated readings to a log");
+    add_applying_options(*apply_, typed_);
+
+    simulate_ = cli.add_subcommand("simulate", "makes a flight whose truth is known");
+    add_simulate_options(*simulate_, typed_, instrument, simulation_);
+    add_json(*simulate_);
+    add_json(*cli.add_subcommand("effects", "lists the physical effects a model may lack"));
+  }
+
+  /// Does what the verb that was typed says, and gives the exit code.
+  int perform() {
+    const Verbs verbs(instrument_, typed_);
+    if (fit_->parsed()) return verbs.fit(fit_arguments_.resolve());
+    if (compare_->parsed()) return verbs.compare();
+    if (intervals_->parsed()) return verbs.intervals();
+    if (add_->parsed()) return verbs.add();
+    if (apply_->parsed()) return verbs.apply();
+    if (simulate_->parsed()) return verbs.simulate(simulation_.resolve());
+    if (diagnose_->parsed()) return verbs.diagnose();
+    return verbs.effects();
+  }
+
+ private:
+  /// A verb that takes a calibration and a flight.
+  CLI::App* add_later_verb(const char* name, const char* what) {
+    CLI::App& verb = *cli_.add_subcommand(name, what);
+    add_flight(verb);
+    add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
+    verb.add_flag("--drop-invalid", typed_.drop_invalid,
+                  "drops rows with a cell that is no number, whatever the calibration's fit did");
+    add_explain(verb);
+    add_json(verb);
+    return &verb;
+  }
+
+  void add_flight(CLI::App& verb) {
+    add_file(verb, "FLIGHT", typed_.flight, "the log, a CSV file")->required();
+  }
+
+  void add_json(CLI::App& verb) {
+    verb.add_flag("--json", typed_.json, "prints the result as JSON on standard output");
+  }
+
+  void add_explain(CLI::App& verb) {
+    verb.add_flag("--explain", typed_.explain,
+                  "prints all that the fit says of its status, with reasons, not the worst alone");
+  }
+
+  Instrument& instrument_;
+  CLI::App& cli_;
+  Arguments typed_;
+  FitArguments fit_arguments_;
+  SimulationArguments simulation_;
+  CLI::App* fit_;
+  CLI::App* compare_;
+  CLI::App* intervals_;
+  CLI::App* diagnose_;
+  CLI::App* add_;
+  CLI::App* apply_;
+  CLI::App* simulate_;
+};
+
 }  // namespace
 
 int run(Instrument& instrument, int argc, char** argv) {
@@ -115,67 +201,7 @@ int run(Instrument& instrument, int argc, char** argv) {
   cli.footer(
       "Exit codes: 0 done, 2 bad input or usage, 3 an effect is missing, 4 not identifiable,\n"
       "5 did not converge, 6 something is missing that no candidate explains.");
-
-  Arguments arguments;
-  FitArguments fit_arguments;
-  SimulationArguments simulation;
-  const auto add_flight = [&](CLI::App& verb) {
-    add_file(verb, "FLIGHT", arguments.flight, "the log, a CSV file")->required();
-  };
-  const auto add_calibration = [&](CLI::App& verb) {
-    add_file(verb, "CALIBRATION", arguments.calibration, "what fit wrote with -o")->required();
-  };
-  const auto add_json = [&](CLI::App& verb) {
-    verb.add_flag("--json", arguments.json, "prints the result as JSON on standard output");
-  };
-  const auto add_explain = [&](CLI::App& verb) {
-    verb.add_flag("--explain", arguments.explain,
-                  "prints all that the fit says of its status, with reasons, not the worst alone");
-  };
-  const auto add_drop_invalid = [&](CLI::App& verb) {
-    verb.add_flag("--drop-invalid", arguments.drop_invalid,
-                  "drops rows with a cell that is no number, whatever the calibration's fit did");
-  };
-  const auto add_later_verb = [&](const char* name, const char* what) -> CLI::App& {
-    CLI::App& verb = *cli.add_subcommand(name, what);
-    add_flight(verb);
-    add_calibration(verb);
-    add_drop_invalid(verb);
-    add_explain(verb);
-    add_json(verb);
-    return verb;
-  };
-
-  CLI::App& fit = *cli.add_subcommand("fit", "fits the model to a flight");
-  add_flight(fit);
-  add_file(fit, "-o,--output", arguments.output, "writes the calibration there")
-      ->type_name("BASE.json");
-  instrument.add_probe_options(fit);
-  fit_arguments.add_to(fit);
-  add_explain(fit);
-  add_json(fit);
-
-  CLI::App& compare = add_later_verb("compare", "shows where the model fails");
-  instrument.add_flight_options(compare);
-  CLI::App& intervals =
-      add_later_verb("intervals", "says how far each parameter may lie, by the likelihood");
-  add_interval_options(intervals, arguments);
-  CLI::App& diagnose = add_later_verb("diagnose", "names the physical effect that is missing");
-  add_diagnose_options(diagnose, arguments);
-  instrument.add_flight_options(diagnose);
-  CLI::App& add = add_later_verb("add", "adds a physical effect and fits again");
-  add_adding_options(add, arguments);
-  instrument.add_flight_options(add);
-  CLI::App& apply = add_later_verb("apply", "adds the calibrated readings to a log");
-  add_applying_options(apply, arguments);
-
-  CLI::App& simulate = *cli.add_subcommand("simulate", "makes a flight whose truth is known");
-  add_simulate_options(simulate, arguments, instrument, simulation);
-  add_json(simulate);
-
-  CLI::App& effects = *cli.add_subcommand("effects", "lists the physical effects a model may lack");
-  add_json(effects);
-
+  CommandLine command_line(instrument, cli);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -189,15 +215,7 @@ int run(Instrument& instrument, int argc, char** argv) {
     return bad_usage;
   };
   try {
-    const Verbs verbs(instrument, arguments);
-    if (fit.parsed()) return verbs.fit(fit_arguments.resolve());
-    if (compare.parsed()) return verbs.compare();
-    if (intervals.parsed()) return verbs.intervals();
-    if (add.parsed()) return verbs.add();
-    if (apply.parsed()) return verbs.apply();
-    if (simulate.parsed()) return verbs.simulate(simulation.resolve());
-    if (diagnose.parsed()) return verbs.diagnose();
-    return verbs.effects();
+    return command_line.perform();
   } catch (const std::bad_alloc&) {
     return refuse("memory ran out; take fewer --samples or --rows, or a shorter log");
   } catch (const OptionError& error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What pictures are drawn from, on flights whose rows, gaps and labels are made by hand.
-#include "sepcal/flight/figures.hpp"
+#include "flight/verbs/figures.hpp"
 
 #include <algorithm>
 #include <cmath>

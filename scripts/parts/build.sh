@@ -2,6 +2,8 @@
 # Configures and builds the presets of CMakePresets.json with the tools of .venv.
 # shellcheck shell=bash
 
+export CCACHE_SLOPPINESS=pch_defines,time_macros # what ccache needs to keep precompiled headers' users
+
 # configure PRESET FOLDER [CMAKE OPTION]...: FOLDER is the preset's build folder. A checkout that
 # was moved or copied has a cache that speaks of another place: it starts afresh.
 configure() {
@@ -12,7 +14,7 @@ configure() {
     fresh=(--fresh)
   fi
   say "building $folder ($preset)"
-  quietly "cmake" cmake --preset "$preset" "${fresh[@]}" "$@"
+  quietly "cmake" cmake --preset "$preset" -B "$folder" "${fresh[@]}" "$@"
 }
 
 # configure_with_python PRESET FOLDER: for .venv's Python and the pybind11 there.

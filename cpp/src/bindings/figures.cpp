@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the report's pictures are drawn from, and the curves in them.
-#include "sepcal/flight/figures.hpp"
+#include "flight/verbs/figures.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>

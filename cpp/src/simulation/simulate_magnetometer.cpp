@@ -15,7 +15,7 @@ using namespace simulation;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr KnownEffect effects[] = {
+constexpr KnownEffect magnetometer_effects[] = {
     {"bias", "bias", "*", "x y z"},
     {"scale", "scale", "*", "s"},
     {"axis_scale", "axis_scale", "*", "x y z"},
@@ -29,7 +29,7 @@ constexpr KnownEffect effects[] = {
     {"attitude_bias", "attitude_bias", "", "x y"},
 };
 constexpr Alias aliases[] = {{"bias_drift", "bias[time]"}};
-constexpr HiddenCatalogue catalogue{"magnetometer", effects, aliases};
+constexpr HiddenCatalogue magnetometer_catalogue{"magnetometer", magnetometer_effects, aliases};
 
 void check(const MagnetometerTruth& truth) {
   check_parameters(truth.source, without_effects(truth.parameters), MagnetometerTruth{}.parameters);
@@ -97,7 +97,7 @@ class Sensor {
 
 HiddenEffects hide(const MagnetometerTruth& truth, const TurningVehicle& vehicle) {
   if (truth.effects.empty() && without_effects(truth.parameters) == truth.parameters) return {};
-  return {catalogue, truth.effects, truth.parameters, vehicle.sources(), truth.source};
+  return {magnetometer_catalogue, truth.effects, truth.parameters, vehicle.sources(), truth.source};
 }
 
 }  // namespace

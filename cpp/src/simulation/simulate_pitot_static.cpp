@@ -17,7 +17,7 @@ namespace {
 using namespace simulation;
 using Eigen::Vector3d;
 
-constexpr KnownEffect effects[] = {
+constexpr KnownEffect tube_effects[] = {
     {"wind", "wind", "*", "n e"},
     {"airspeed_scale", "airspeed_scale", "*", "s"},
     {"airspeed_bias", "airspeed_bias", "*", "s"},
@@ -29,7 +29,7 @@ constexpr KnownEffect effects[] = {
     {"icing_ramp", "airspeed_scale", "ramp(time)", "s"},
     {"water_blockage", "airspeed_scale", "step(time)", "s"},
 };
-constexpr HiddenCatalogue catalogue{"pitot-static tube", effects, air_data_aliases};
+constexpr HiddenCatalogue tube_catalogue{"pitot-static tube", tube_effects, air_data_aliases};
 
 void check(const PitotStaticTruth& truth) {
   const std::map<std::string, double> own = without_effects(truth.parameters);
@@ -42,7 +42,7 @@ void check(const PitotStaticTruth& truth) {
 
 HiddenEffects hide(const PitotStaticTruth& truth, const SmallAircraft& aircraft) {
   if (truth.effects.empty() && without_effects(truth.parameters) == truth.parameters) return {};
-  return {catalogue, truth.effects, truth.parameters, aircraft.sources(), truth.source};
+  return {tube_catalogue, truth.effects, truth.parameters, aircraft.sources(), truth.source};
 }
 
 /// The airspeed that the tube reads, free of noise and lag [m/s].

@@ -11,11 +11,11 @@
 namespace sepcal::catalogue {
 namespace {
 
-constexpr std::array states{"time", "alpha", "beta", "q", "r"};
+constexpr std::array state_drivers{"time", "alpha", "beta", "q", "r"};
 
 /// Channels under their own header; what is measured can't drive an effect.
 std::vector<std::string> list_drivers(const Record& record, const Flight& flight) {
-  std::vector<std::string> drivers(states.begin(), states.end());
+  std::vector<std::string> drivers(state_drivers.begin(), state_drivers.end());
   std::erase_if(drivers, [&](const std::string& state) { return !record.has(state); });
   for (const std::string& name : record.names()) {
     if (flight.find(name) != nullptr) drivers.push_back(name);

@@ -10,6 +10,9 @@
 
 namespace sepcal::catalogue {
 
+inline constexpr double longest_offset = 0.5;      // [s] of a sensor's clock
+inline constexpr double longest_sensor_lag = 0.2;  // [s]
+
 /// An effect that is another one under its own name: `means` is "bias[step(time)]", `port` bias.
 EffectKit::Maker renamed(const std::string& means, const Port& port);
 

@@ -15,10 +15,9 @@ namespace {
 
 using Setting = EffectSetting;
 
-constexpr double largest_angle = 0.35;   // [rad] of an offset
-constexpr double longest_offset = 0.5;   // [s]
-constexpr double longest_lag = 0.5;      // [s]
-constexpr double largest_kelvin = 50.0;  // [K] of an error of the temperature
+constexpr double largest_angle = 0.35;         // [rad] of an offset
+constexpr double longest_pneumatic_lag = 0.5;  // [s]
+constexpr double largest_kelvin = 50.0;        // [K] of an error of the temperature
 
 /// Adds a column that an effect derives from others; `value(row)` may be called for every row.
 template <class Value>
@@ -143,7 +142,8 @@ EffectTable five_hole_effects() {
       {.entry = {"pneumatic_lag", "tau dp/dt + p = p0 on every pressure", "none", "s"},
        .sentence = "the pressures lag in their tubes",
        .channels = {"time"},
-       .maker = in_time(Delay::Kind::inputs_lagging, longest_lag, {"pt", "ps", "dpa", "dpb"})},
+       .maker =
+           in_time(Delay::Kind::inputs_lagging, longest_pneumatic_lag, {"pt", "ps", "dpa", "dpb"})},
       {.entry = {"lever_arm", "- C_b^n (w x dr) (x, y, z)", "p, q, r", "m"},
        .sentence = "the probe is not where the lever arm says",
        .channels = {"p", "q", "r"},

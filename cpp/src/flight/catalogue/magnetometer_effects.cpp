@@ -14,9 +14,6 @@
 namespace sepcal::catalogue {
 namespace {
 
-constexpr double longest_offset = 0.5;  // [s]
-constexpr double longest_lag = 0.2;     // [s]
-
 constexpr std::array<const char*, 3> field{"hx", "hy", "hz"};
 constexpr std::array<const char*, 3> field_rate{"hx_dot", "hy_dot", "hz_dot"};
 
@@ -96,7 +93,7 @@ EffectTable magnetometer_effects() {
       {.entry = {"sensor_lag", "tau dm/dt + m = m0", "attitude", "s"},
        .sentence = "the sensor lags",
        .channels = {"time"},
-       .maker = in_time(Delay::Kind::outputs_lagging, longest_lag)},
+       .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag)},
       {.entry = {"field_declination", "h turned by delta about down", "attitude", "rad"},
        .sentence = "the field's declination is off",
        .channels = {"roll", "pitch"},

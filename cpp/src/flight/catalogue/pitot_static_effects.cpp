@@ -10,8 +10,6 @@ namespace {
 constexpr double largest_wind = 200.0;  // [m/s]
 constexpr double largest_scale = 0.5;   // [1]
 constexpr double largest_speed = 50.0;  // [m/s] of a bias
-constexpr double longest_offset = 0.5;  // [s]
-constexpr double longest_lag = 0.2;     // [s]
 
 EffectKit::Maker temperature_error(const Port& airspeed_scale) {
   return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
@@ -41,7 +39,7 @@ EffectTable pitot_static_effects() {
       {.entry = {"pneumatic_lag", "tau dz/dt + z = z0", "none", "s"},
        .sentence = "the pressures lag in their tubes",
        .channels = {"time"},
-       .maker = in_time(Delay::Kind::outputs_lagging, longest_lag)},
+       .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag)},
       {.entry = {"density_error", "V = V_met + s V_met / 2T: the temperature is off by s", "temp_k",
                  "K"},
        .sentence = "the temperature behind the density is off",

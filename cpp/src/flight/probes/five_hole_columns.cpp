@@ -15,7 +15,7 @@ namespace {
 
 using files::UnitKind;
 
-constexpr std::array quantities{
+constexpr std::array probe_quantities{
     ProbeQuantity{"time", UnitKind::time},    ProbeQuantity{"roll", UnitKind::angle},
     ProbeQuantity{"pitch", UnitKind::angle},  ProbeQuantity{"yaw", UnitKind::angle},
     ProbeQuantity{"p", UnitKind::rate},       ProbeQuantity{"q", UnitKind::rate},
@@ -54,7 +54,7 @@ void compute_angle(RecordBuilder& builder, const char* name, const char* port, d
 }  // namespace
 
 ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& options) {
-  RecordBuilder builder(flight, quantities, options.drop_invalid);
+  RecordBuilder builder(flight, probe_quantities, options.drop_invalid);
   builder.need({"time", "roll", "pitch", "yaw", "vn", "ve", "vd"});
   if (options.lever_arm) builder.need({"p", "q", "r"});
   need_readings(builder, flight);
@@ -73,7 +73,7 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
 }
 
 ProbeReadings read_five_hole(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities, drop_invalid);
+  RecordBuilder builder(flight, probe_quantities, drop_invalid);
   need_readings(builder, flight);
   builder.keep(air_moves(builder), still_air);
   return builder.finish_readings();

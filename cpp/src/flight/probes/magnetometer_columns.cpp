@@ -19,7 +19,7 @@ namespace {
 
 using files::UnitKind;
 
-constexpr std::array quantities{
+constexpr std::array field_quantities{
     ProbeQuantity{"time", UnitKind::time},   ProbeQuantity{"mx", UnitKind::field},
     ProbeQuantity{"my", UnitKind::field},    ProbeQuantity{"mz", UnitKind::field},
     ProbeQuantity{"hx", UnitKind::field},    ProbeQuantity{"hy", UnitKind::field},
@@ -87,7 +87,7 @@ void use_logged_field(RecordBuilder& builder) {
 
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
   if (options.field) check_field(*options.field);
-  RecordBuilder builder(flight, quantities, options.drop_invalid);
+  RecordBuilder builder(flight, field_quantities, options.drop_invalid);
   builder.need({"time", "mx", "my", "mz"});
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
   if (options.field) {
@@ -118,7 +118,7 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
 }
 
 ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities, drop_invalid);
+  RecordBuilder builder(flight, field_quantities, drop_invalid);
   builder.need({"time", "mx", "my", "mz"});
   builder.keep_valid();
   builder.check_time();
@@ -128,7 +128,7 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid
 }
 
 ProbeReadings read_magnetometer(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities, drop_invalid);
+  RecordBuilder builder(flight, field_quantities, drop_invalid);
   builder.need({"mx", "my", "mz"});
   builder.keep_valid();
   return builder.finish_readings();

@@ -19,7 +19,7 @@ namespace {
 
 using files::UnitKind;
 
-constexpr std::array quantities{
+constexpr std::array tube_quantities{
     ProbeQuantity{"time", UnitKind::time},
     ProbeQuantity{"roll", UnitKind::angle},
     ProbeQuantity{"pitch", UnitKind::angle},
@@ -77,7 +77,7 @@ const char* still_air(const RecordBuilder& builder) {
 }  // namespace
 
 ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities, drop_invalid);
+  RecordBuilder builder(flight, tube_quantities, drop_invalid);
   builder.need({"time", "vn", "ve", "vd"});
   need_airspeed(builder, flight);
   builder.check_time();
@@ -95,7 +95,7 @@ ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
 }
 
 ProbeReadings read_pitot_static(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities, drop_invalid);
+  RecordBuilder builder(flight, tube_quantities, drop_invalid);
   need_airspeed(builder, flight);
   builder.keep(air_moves(builder), still_air(builder));
   if (has_airspeed(builder) && !offer_density(builder)) {

@@ -57,53 +57,6 @@ Record with_constant_outputs(const Probe& probe, Record record) {
   return record;
 }
 
-/// Fits the model with its effects and, where it depends on its own output's noise, gives it that
-/// of the fit and fits again, until the two agree.
-void fit_with_noise(Calibration& calibration, const EffectiveFlight& flight) {
-  constexpr double tolerance = 1e-9;  // |noise / noise before - 1|
-  constexpr int most_rounds = 20;
-  const Record& record = flight.prepared.record;
-  std::shared_ptr<const Probe>& probe = calibration.probe;
-  FitOptions options = probe->complete(calibration.options.fit, record);
-  options.unsampled = initial_corrections(flight.effects);
-  std::shared_ptr<const BlockModel> model = flight.model;
-  const auto set_noise = [&](double noise) {
-    std::shared_ptr<const Probe> changed = probe->with_noise(noise);
-    if (!changed) return false;
-    model = compose(model_of(*changed), flight.effects, record);
-    probe = std::move(changed);
-    return true;
-  };
-  double noise = 0.0;
-  if (options.noise.size() == 1) {
-    noise = options.noise.begin()->second;
-    set_noise(noise);
-  }
-  std::optional<StageOne> stage_one;  // of the first round: the others start where it ended
-  for (int round = 0; round < most_rounds; ++round) {
-    calibration.fit = estimation::fit_with_steps(*model, probe->model(), flight.effects,
-                                                 calibration.options.effects, record, options);
-    if (!stage_one) stage_one = calibration.fit.stage_one;
-    const double next = calibration.fit.noise.front().value;
-    const bool settled = std::abs(next - noise) < tolerance * next;
-    const bool hopeless = calibration.fit.status != FitStatus::converged && round >= 4;
-    if (settled || hopeless) break;
-    if (round + 1 == most_rounds) {
-      calibration.fit.status = FitStatus::not_converged;
-      calibration.fit.message = base::join_sentences(
-          {calibration.fit.message,
-           fmt::format("the noise did not settle within {} fits", most_rounds)});
-      break;
-    }
-    if (!set_noise(next)) break;
-    noise = next;
-    options.start = calibration.fit.nonlinear_estimates();
-  }
-  if (stage_one) calibration.fit.stage_one = std::move(*stage_one);
-  if (!options.start.empty()) calibration.options.fit.samples = 0;
-  probe->judge(calibration.fit);
-}
-
 /// Standard errors by the delta method. What a fixed parameter gives is certain.
 std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
   std::vector<Derived> derived;
@@ -127,18 +80,56 @@ std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
   return derived;
 }
 
-/// The fit itself, once the flight has been brought to the model.
-Calibration calibrate_prepared(std::shared_ptr<const Probe> probe, CalibrationOptions options,
-                               FittedFlight fitted, const EffectiveFlight& flight) {
-  Calibration calibration;
-  calibration.options = std::move(options);
-  calibration.probe = std::move(probe);
-  fit_with_noise(calibration, flight);
-  calibration.flight = std::move(fitted);
-  calibration.flight.rows_used = calibration.fit.rows;
-  calibration.notes = flight.prepared.notes;
-  calibration.derived = derive(*calibration.probe, calibration.fit);
-  return calibration;
+/// Fits the model with its effects and, where it depends on its own output's noise, gives it that
+/// of the fit and fits again, until the two agree.
+Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
+                         std::shared_ptr<const Probe> probe, CalibrationOptions held) {
+  constexpr double tolerance = 1e-9;  // |noise / noise before - 1|
+  constexpr int most_rounds = 20;
+  const Record& record = flight.prepared.record;
+  FitOptions options = probe->complete(held.fit, record);
+  options.unsampled = initial_corrections(flight.effects);
+  std::shared_ptr<const BlockModel> model = flight.model;
+  const auto set_noise = [&](double noise) {
+    std::shared_ptr<const Probe> changed = probe->with_noise(noise);
+    if (!changed) return false;
+    model = compose(model_of(*changed), flight.effects, record);
+    probe = std::move(changed);
+    return true;
+  };
+  double noise = 0.0;
+  if (options.noise.size() == 1) {
+    noise = options.noise.begin()->second;
+    set_noise(noise);
+  }
+  Fit fit;
+  std::optional<StageOne> stage_one;  // of the first round: the others start where it ended
+  for (int round = 0; round < most_rounds; ++round) {
+    fit = estimation::fit_with_steps(*model, probe->model(), flight.effects, held.effects, record,
+                                     options);
+    if (!stage_one) stage_one = fit.stage_one;
+    const double next = fit.noise.front().value;
+    const bool settled = std::abs(next - noise) < tolerance * next;
+    const bool hopeless = fit.status != FitStatus::converged && round >= 4;
+    if (settled || hopeless) break;
+    if (round + 1 == most_rounds) {
+      fit.status = FitStatus::not_converged;
+      fit.message = base::join_sentences(
+          {fit.message, fmt::format("the noise did not settle within {} fits", most_rounds)});
+      break;
+    }
+    if (!set_noise(next)) break;
+    noise = next;
+    options.start = fit.nonlinear_estimates();
+  }
+  fit.stage_one = std::move(*stage_one);
+  if (!options.start.empty()) held.fit.samples = 0;
+  probe->judge(fit);
+  fitted.rows_used = fit.rows;
+  std::vector<Derived> derived = derive(*probe, fit);
+  return {std::move(probe),     std::move(held),    std::move(fitted),
+          std::move(fit),       std::move(derived), {},
+          flight.prepared.notes};
 }
 
 }  // namespace
@@ -160,8 +151,8 @@ Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedF
   check_rows(
       *effective.model, held, flight,
       count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
-  return calibrate_prepared(std::move(probe), std::move(held),
-                            {flight.name(), flight.sha256(), flight.rows(), 0}, effective);
+  return calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0},
+                      std::move(probe), std::move(held));
 }
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
@@ -170,8 +161,7 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
   const EffectiveFlight effective =
       with_effects(*probe, with_constant_outputs(*probe, record), held.effects, options.own_effects,
                    options.fit.bounds);
-  return calibrate_prepared(std::move(probe), std::move(held), {{}, {}, record.length(), 0},
-                            effective);
+  return calibrate_on(effective, {{}, {}, record.length(), 0}, std::move(probe), std::move(held));
 }
 
 Eigen::VectorXd own_values(const Calibration& calibration) {

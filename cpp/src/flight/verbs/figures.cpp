@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/figures.hpp"
+#include "flight/verbs/figures.hpp"
 
 #include <algorithm>
 #include <cmath>

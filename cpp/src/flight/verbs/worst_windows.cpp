@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t most_windows = 20;
-constexpr std::size_t fewest_rows = 5;
+constexpr std::size_t rows_of_shortest_window = 5;
 constexpr std::size_t shown = 5;
 
 /// One over each output's noise.
@@ -37,7 +37,8 @@ std::vector<Window> find_worst_windows(const std::vector<double>& time, const Ma
   };
   const VectorXd weight = weights(overall, noise);
   const std::size_t rows = time.size();
-  const std::size_t count = std::clamp<std::size_t>(rows / fewest_rows, 1, most_windows);
+  const std::size_t count =
+      std::clamp<std::size_t>(rows / rows_of_shortest_window, 1, most_windows);
   std::vector<Rated> rated;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = rows * i / count;
