@@ -2,7 +2,8 @@
 # Configures and builds the presets of CMakePresets.json with the tools of .venv.
 # shellcheck shell=bash
 
-export CCACHE_SLOPPINESS=pch_defines,time_macros # what ccache needs to keep precompiled headers' users
+# An object is the same in any build folder and checkout.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 
 # configure PRESET FOLDER [CMAKE OPTION]...: FOLDER is the preset's build folder. A checkout that
 # was moved or copied has a cache that speaks of another place: it starts afresh.

@@ -18,7 +18,7 @@
 namespace pybind11::detail {
 
 template <class Enumeration, Enumeration... known>
-struct word_caster {
+struct WordCaster {
   PYBIND11_TYPE_CASTER(Enumeration, const_name("str"));
 
   bool load(handle source, bool convert) {
@@ -39,7 +39,7 @@ struct word_caster {
 
 /// {thing.*key: thing.*mapped}; the things have no other members.
 template <class Thing, class Mapped, std::string Thing::* key, Mapped Thing::* mapped>
-struct pair_caster {
+struct PairCaster {
   using List = std::vector<Thing>;
   PYBIND11_TYPE_CASTER(List,
                        const_name("dict[str, ") + make_caster<Mapped>::name + const_name("]"));
@@ -62,7 +62,7 @@ struct pair_caster {
 
 /// {thing.name: thing}
 template <class Thing>
-struct named_caster {
+struct NamedCaster {
   using List = std::vector<Thing>;
   PYBIND11_TYPE_CASTER(List, const_name("dict[str, ") + make_caster<Thing>::name + const_name("]"));
 
@@ -84,35 +84,34 @@ struct named_caster {
 
 template <>
 struct type_caster<sepcal::FitStatus>
-    : word_caster<sepcal::FitStatus, sepcal::FitStatus::converged, sepcal::FitStatus::not_converged,
-                  sepcal::FitStatus::not_identifiable> {};
+    : WordCaster<sepcal::FitStatus, sepcal::FitStatus::converged, sepcal::FitStatus::not_converged,
+                 sepcal::FitStatus::not_identifiable> {};
 template <>
 struct type_caster<sepcal::SecondStage>
-    : word_caster<sepcal::SecondStage, sepcal::SecondStage::automatic, sepcal::SecondStage::joint,
-                  sepcal::SecondStage::projected> {};
+    : WordCaster<sepcal::SecondStage, sepcal::SecondStage::automatic, sepcal::SecondStage::joint,
+                 sepcal::SecondStage::projected> {};
 
 template <>
 struct type_caster<sepcal::IntervalEnd>
-    : word_caster<sepcal::IntervalEnd, sepcal::IntervalEnd::crossed, sepcal::IntervalEnd::bound,
-                  sepcal::IntervalEnd::open, sepcal::IntervalEnd::failed> {};
+    : WordCaster<sepcal::IntervalEnd, sepcal::IntervalEnd::crossed, sepcal::IntervalEnd::bound,
+                 sepcal::IntervalEnd::open, sepcal::IntervalEnd::failed> {};
 
 template <>
 struct type_caster<std::vector<sepcal::OutputValue>>
-    : pair_caster<sepcal::OutputValue, double, &sepcal::OutputValue::name,
-                  &sepcal::OutputValue::value> {};
+    : PairCaster<sepcal::OutputValue, double, &sepcal::OutputValue::name,
+                 &sepcal::OutputValue::value> {};
 template <>
 struct type_caster<std::vector<sepcal::LeftOut>>
-    : pair_caster<sepcal::LeftOut, std::string, &sepcal::LeftOut::name, &sepcal::LeftOut::reason> {
-};
+    : PairCaster<sepcal::LeftOut, std::string, &sepcal::LeftOut::name, &sepcal::LeftOut::reason> {};
 
 template <>
-struct type_caster<std::vector<sepcal::Parameter>> : named_caster<sepcal::Parameter> {};
+struct type_caster<std::vector<sepcal::Parameter>> : NamedCaster<sepcal::Parameter> {};
 template <>
-struct type_caster<std::vector<sepcal::Derived>> : named_caster<sepcal::Derived> {};
+struct type_caster<std::vector<sepcal::Derived>> : NamedCaster<sepcal::Derived> {};
 template <>
-struct type_caster<std::vector<sepcal::FlightFit>> : named_caster<sepcal::FlightFit> {};
+struct type_caster<std::vector<sepcal::FlightFit>> : NamedCaster<sepcal::FlightFit> {};
 template <>
-struct type_caster<std::vector<sepcal::ProfileInterval>> : named_caster<sepcal::ProfileInterval> {};
+struct type_caster<std::vector<sepcal::ProfileInterval>> : NamedCaster<sepcal::ProfileInterval> {};
 
 template <>
 struct type_caster<sepcal::Interval> {
