@@ -107,8 +107,17 @@ std::string as_typed(const std::string& name) {
 /// The verbs of an app with their options, and what was typed.
 class CommandLine {
  public:
-  CommandLine(Instrument& instrument, CLI::App& cli) : instrument_(instrument), cli_(cli) {
-    fit_ = cli.add_subcommand("fit", "fits the model to a flight");
+  CommandLine(Instrument& instrument, CLI::App& cli)
+      : instrument_(instrument),
+        cli_(cli),
+        fit_(cli.add_subcommand("fit", "fits the model to a flight")),
+        compare_(add_later_verb("compare", "shows where the model fails")),
+        intervals_(
+            add_later_verb("intervals", "says how far each parameter may lie, by the likelihood")),
+        diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
+        add_(add_later_verb("add", "adds a physical effect and fits again")),
+        apply_(add_later_verb("apply", "adds the calibrated readings to a log")),
+        simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
     add_flight(*fit_);
     add_file(*fit_, "-o,--output", typed_.output, "writes the calibration there")
         ->type_name("BASE.json");
@@ -117,21 +126,14 @@ class CommandLine {
     add_explain(*fit_);
     add_json(*fit_);
 
-    compare_ = add_later_verb("compare", "shows where the model fails");
     instrument.add_flight_options(*compare_);
-    intervals_ =
-        add_later_verb("intervals", "says how far each parameter may lie, by the likelihood");
     add_interval_options(*intervals_, typed_);
-    diagnose_ = add_later_verb("diagnose", "names the physical effect that is missing");
     add_diagnose_options(*diagnose_, typed_);
     instrument.add_flight_options(*diagnose_);
-    add_ = add_later_verb("add", "adds a physical effect and fits again");
     add_adding_options(*add_, typed_);
     instrument.add_flight_options(*add_);
-    apply_ = add_later_verb("apply", "adds the calibrated readings to a log");
     add_applying_options(*apply_, typed_);
 
-    simulate_ = cli.add_subcommand("simulate", "makes a flight whose truth is known");
     add_simulate_options(*simulate_, typed_, instrument, simulation_);
     add_json(*simulate_);
     add_json(*cli.add_subcommand("effects", "lists the physical effects a model may lack"));

@@ -202,7 +202,7 @@ void define_comparison(py::module_& module) {
   BoundStruct<Misfit>(module, "Misfit",
                       "One output over one stretch of a flight; NaN where there are too few rows.")
       .field("segment", &Misfit::segment,
-             "Maneuver, or \"120.0:180.5\" [s] where there are no labels; empty: the whole.")
+             R"(Maneuver, or "120.0:180.5" [s] where there are no labels; empty: the whole.)")
       .field("output", &Misfit::output, "")
       .field("unit", &Misfit::unit, "")
       .field("rows", &Misfit::rows, "")
@@ -221,7 +221,7 @@ void define_comparison(py::module_& module) {
   BoundStruct<ChannelMisfit>(module, "ChannelMisfit",
                              "One output's residual against one channel of the flight.")
       .field("driver", &ChannelMisfit::driver,
-             "\"altitude_m\"; \"time\", \"alpha\", \"roll\" for what the probe knows by itself.")
+             R"("altitude_m"; "time", "alpha", "roll" for what the probe knows by itself.)")
       .field("output", &ChannelMisfit::output, "")
       .field("share_line", &ChannelMisfit::share_line,
              "Of the residual's variance that a straight line would explain.")
@@ -287,7 +287,7 @@ void define_calibration_parts(py::module_& module) {
   BoundStruct<Entry>(module, "HistoryEntry",
                      "One step of a chain of added effects; None where a number is undefined. "
                      "Errors are RMSE over all outputs together, on the rows of the new fit.")
-      .field("effect", &Entry::effect, "Several that were added together: \"E1+E2\".")
+      .field("effect", &Entry::effect, R"(Several that were added together: "E1+E2".)")
       .field("rmse_before", &defined<&Entry::rmse_before>, &define<&Entry::rmse_before>, "")
       .field("rmse_after", &defined<&Entry::rmse_after>, &define<&Entry::rmse_after>, "")
       .field("held_out_before", &defined<&Entry::held_out_before>, &define<&Entry::held_out_before>,

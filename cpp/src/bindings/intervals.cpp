@@ -121,7 +121,7 @@ void define_intervals(py::module_& module) {
           [](ProfileInterval& self, const std::pair<IntervalEnd, IntervalEnd>& ends) {
             std::tie(self.lower_end, self.upper_end) = ends;
           },
-          "What ends the profile's: \"crossed\", \"bound\", \"open\" or \"failed\".")
+          R"(What ends the profile's: "crossed", "bound", "open" or "failed".)")
       .field("message", &ProfileInterval::message, "One line; empty where there is nothing to say.")
       .comparable()
       .finish();

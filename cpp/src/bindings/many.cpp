@@ -242,7 +242,7 @@ void define_results_of_many(py::module_& module) {
       .finish()
       .def_property_readonly("largest", &largest,
                              "The shared parameter that differs by most of its standard errors; "
-                             "\"\" where none does.");
+                             R"("" where none does.)");
 
   BoundStruct<FlightFit>(module, "FlightFit", "One flight of a joint fit.")
       .field("name", &FlightFit::name, "")
@@ -260,8 +260,7 @@ void define_results_of_many(py::module_& module) {
       });
 
   BoundStruct<ManyFit>(module, "ManyFit", "A joint fit of many flights.")
-      .field("status", &ManyFit::status,
-             "\"converged\", \"not_converged\" or \"not_identifiable\".")
+      .field("status", &ManyFit::status, R"("converged", "not_converged" or "not_identifiable".)")
       .field("message", &ManyFit::message, "One line; empty where there is nothing to say.")
       .field("shared", &ManyFit::shared, "In the model's order, fixed ones among them.")
       .field("covariance", &ManyFit::covariance,

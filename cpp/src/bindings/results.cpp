@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "structs.hpp"
@@ -37,7 +38,7 @@ NamedStageOne take_stage_one(Fit& fit) {
 }
 
 /// "at its lower bound": what a table says of a parameter that is not simply estimated.
-std::string remark(const Parameter& parameter) {
+std::string_view remark(const Parameter& parameter) {
   if (parameter.fixed) return "fixed";
   if (!parameter.at_bound) return "";
   const bool lower = parameter.value - parameter.lower <= parameter.upper - parameter.value;
@@ -66,7 +67,7 @@ void define_parameters(py::module_& module) {
       module, "Combination",
       "A linear combination of parameters that the record leaves open or determines poorly.")
       .field("text", &Combination::text,
-             "\"0.8 w_n - 0.6 lambda_va\", coefficients of unit length.")
+             R"("0.8 w_n - 0.6 lambda_va", coefficients of unit length.)")
       .tuple("parameters", &Combination::parameters, "Those that take part, largest share first.")
       .field("standard_error", &Combination::standard_error,
              "Of the combination; infinite where it is singular.")
@@ -76,7 +77,7 @@ void define_parameters(py::module_& module) {
   BoundStruct<EffectSetting>(
       module, "EffectSetting",
       "An effect of a fit, with what it took from the record; None or empty where it takes none.")
-      .field("name", &EffectSetting::name, "Whole, aliases resolved: \"wind[altitude_m]\".")
+      .field("name", &EffectSetting::name, R"(Whole, aliases resolved: "wind[altitude_m]".)")
       .field("centre", &EffectSetting::centre, "Of a power's driver, in the driver's unit.")
       .tuple("knots", &EffectSetting::knots, "Of a spline.")
       .tuple("labels", &EffectSetting::labels,
@@ -137,7 +138,7 @@ void define_results(py::module_& module) {
   define_stage_one(module);
   BoundStruct<FittedModel>(module, "Fit", "The two-stage batch estimate.")
       .field("status", &FittedModel::fit, &Fit::status,
-             "\"converged\", \"not_converged\" or \"not_identifiable\".")
+             R"("converged", "not_converged" or "not_identifiable".)")
       .field("message", &FittedModel::fit, &Fit::message,
              "One line; empty where there is nothing to say.")
       .field("parameters", &FittedModel::fit, &Fit::parameters,
@@ -168,7 +169,7 @@ void define_results(py::module_& module) {
           "Singular value below a fiftieth of the largest.")
       .field("stage_one", &FittedModel::stage_one, "")
       .field("method", &FittedModel::fit, &Fit::method,
-             "\"joint\" or \"projected\": what stage two used in the end.")
+             R"("joint" or "projected": what stage two used in the end.)")
       .field("iterations", &FittedModel::fit, &Fit::iterations, "Of stage two's minimisations.")
       .field("noise_iterations", &FittedModel::fit, &Fit::noise_iterations,
              "Of R against the parameters.")

@@ -122,7 +122,7 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
     noise = next;
     options.start = fit.nonlinear_estimates();
   }
-  fit.stage_one = std::move(*stage_one);
+  if (stage_one) fit.stage_one = std::move(*stage_one);
   if (!options.start.empty()) held.fit.samples = 0;
   probe->judge(fit);
   fitted.rows_used = fit.rows;
