@@ -69,8 +69,7 @@ bool refine_by_curvature(Objective& objective, Refinement& result, const numeric
     const VectorXd inner = factor.solve(VectorXd(-gradient(free)));
     step(free) = inner;
     const VectorXd next = box.clip(result.x + step);
-    const VectorXd change = jacobian * step;  // stableNorm() is not for products
-    const StepLength length(change.stableNorm(), step, scale, residual.stableNorm());
+    const StepLength length((jacobian * step).stableNorm(), step, scale, residual.stableNorm());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) return true;
     if (!(length.size < before)) return false;
     before = length.size;
@@ -98,8 +97,7 @@ bool refine_by_gauss_newton(Objective& objective, Refinement& result, const nume
     if (result.iterations == 0) squares.first = squares.last;
     const numerics::BoundedSolution step =
         numerics::solve_bounded(-jacobian, residual, {box.lower - result.x, box.upper - result.x});
-    const VectorXd change = jacobian * step.x;  // stableNorm() is not for products
-    const StepLength length(change.stableNorm(), step.x, scale, residual.stableNorm());
+    const StepLength length((jacobian * step.x).stableNorm(), step.x, scale, residual.stableNorm());
     if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
       for (Index k = 0; k < result.x.size(); ++k) {
