@@ -24,13 +24,40 @@ configure_with_python() {
     -Dpybind11_DIR="$(.venv/bin/python -m pybind11 --cmakedir)"
 }
 
+# The jobs that the processors and the memory take, with 2 GB for each.
+count_jobs() {
+  local kilobytes jobs
+  kilobytes=$(awk '$1 == "MemAvailable:" { print $2 }' /proc/meminfo)
+  jobs=$((kilobytes / 2000000))
+  echo $((jobs < 1 ? 1 : jobs < $(nproc) ? jobs : $(nproc)))
+}
+
+# Ninja's output with a line for each tenth of the steps in place of a line a step.
+say_tenths() {
+  local line percent tenths=0
+  while IFS= read -r line; do
+    if [[ $line =~ ^step\ +([0-9]+)% ]]; then
+      percent=${BASH_REMATCH[1]}
+      if ((percent / 10 > tenths)); then
+        tenths=$((percent / 10))
+        say "$1: $((tenths * 10)) %"
+      fi
+    else
+      printf '%s\n' "$line"
+    fi
+  done
+}
+
 # build FOLDER [TARGET]...: these targets, or everything.
 build() {
-  local folder=$1 targets=() quiet=()
+  local folder=$1 command=(cmake --build "$1" --parallel "$(count_jobs)")
   shift
-  if (($# > 0)); then targets=(--target "$@"); fi
-  if [[ ! -t 1 ]]; then quiet=(-- --quiet); fi # a progress line only where it can be overwritten
-  cmake --build "$folder" "${targets[@]}" "${quiet[@]}" || die "the build in $folder failed"
+  if (($# > 0)); then command+=(--target "$@"); fi
+  if [[ -t 1 ]]; then
+    "${command[@]}" || die "the build in $folder failed"
+  else # no progress line where it can't be overwritten
+    NINJA_STATUS='step %p ' "${command[@]}" | say_tenths "$folder" || die "the build in $folder failed"
+  fi
 }
 
 build_dev() {

@@ -4,15 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "sepcal/error.hpp"
+#include "sepcal/quantity.hpp"
 
 namespace sepcal {
 namespace {
 
 constexpr std::string_view maneuver = "maneuver";
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// A column while its rows come in.
 struct GrowingColumn {
