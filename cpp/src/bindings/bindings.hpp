@@ -14,6 +14,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/probe.hpp"
+#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/named_effects.hpp"
 
 namespace sepcal::bindings {
@@ -25,6 +26,8 @@ struct Model {
   explicit Model(std::shared_ptr<const BlockModel> model) : block(std::move(model)) {}
   explicit Model(const std::shared_ptr<const Probe>& given)
       : block(given, &given->model()), probe(given) {}
+
+  EffectKit kit() const { return probe ? effect_kit(probe->name()) : plain_kit(block->tables()); }
 
   std::shared_ptr<const BlockModel> block;
   std::shared_ptr<const Probe> probe;  // may be empty

@@ -18,7 +18,6 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 
 namespace sepcal::bindings {
@@ -105,7 +104,7 @@ FittedModel fit_columns(const Model& model, const py::dict& columns,
                         const std::vector<std::string>& labels, CalibrationOptions options,
                         const std::vector<PythonEffect>& own) {
   Record record = record_of(columns, labels);
-  EffectKit kit = model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables());
+  EffectKit kit = model.kit();
   options.own_effects = own_effects(own, kit);
   const auto run = [&] {
     if (model.probe != nullptr) {

@@ -3,17 +3,16 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "model/measurements.hpp"
 #include "python_effect.hpp"
 #include "results.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/flight/intervals.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -31,7 +30,7 @@ Prepared prepare(const Model& model, Record record, const CalibrationOptions& op
                  std::vector<EffectSetting> settings, const Fit& fit) {
   for (EffectSetting& setting : settings) setting.known = true;
   Prepared result{model.probe, model.block, std::move(record), options.fit};
-  EffectKit kit = model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables());
+  EffectKit kit = model.kit();
   for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
   if (result.probe) {
     std::shared_ptr<const Probe> told = result.probe->with_noise(fit.noise.front().value);
@@ -47,31 +46,21 @@ Prepared prepare(const Model& model, Record record, const CalibrationOptions& op
   return result;
 }
 
-/// A record with the outputs that need not be measured.
-void add_constant_outputs(const BlockModel& model, Record& record) {
-  for (const Variable& output : model.tables().outputs) {
-    if (record.has(output.name) || !std::isfinite(output.absent)) continue;
-    record.add(output.name, std::vector<double>(record.length(), output.absent));
-  }
-}
-
 FoundIntervals profile_columns(const Model& model, const py::dict& columns,
                                const std::vector<std::string>& labels, CalibrationOptions options,
                                const std::vector<PythonEffect>& own, const FittedModel& fitted,
                                double level, const std::vector<std::string>& names) {
   Record record = record_of(columns, labels);
-  options.own_effects = own_effects(
-      own, model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables()));
+  options.own_effects = own_effects(own, model.kit());
   const py::gil_scoped_release release;
-  Fit fit = fitted.fit;
-  add_constant_outputs(*model.block, record);
-  Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fit);
-  fit.n_1 = prepared.model->tables().n_1();
+  record = model::with_constant_outputs(model.block->tables(), std::move(record));
+  Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fitted.fit);
   if (prepared.probe) {
     prepared.options = prepared.probe->complete(prepared.options, prepared.record);
   }
-  std::vector<ProfileInterval> intervals = profile_intervals(
-      *prepared.model, prepared.record, fit, prepared.options, {.level = level, .names = names});
+  std::vector<ProfileInterval> intervals =
+      profile_intervals(*prepared.model, prepared.record, fitted.fit, prepared.options,
+                        {.level = level, .names = names});
   std::string json = to_json(intervals, level);
   std::string text = without_last_end(to_text(intervals, level));
   return {level, std::move(intervals), {}, std::move(json), {text, text}};
@@ -82,14 +71,12 @@ FlightPrediction predict_columns(const Model& model, const py::dict& columns,
                                  const std::vector<PythonEffect>& own, const FittedModel& fitted,
                                  double level) {
   Record record = record_of(columns, labels);
-  options.own_effects = own_effects(
-      own, model.probe ? effect_kit(model.probe->name()) : plain_kit(model.block->tables()));
+  options.own_effects = own_effects(own, model.kit());
   const py::gil_scoped_release release;
-  Fit fit = fitted.fit;
-  const Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fit);
-  fit.n_1 = prepared.model->tables().n_1();
-  return {.time = {},
-          .prediction = predict(*prepared.model, prepared.record, fit, prepared.options, level)};
+  const Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fitted.fit);
+  return {
+      .time = {},
+      .prediction = predict(*prepared.model, prepared.record, fitted.fit, prepared.options, level)};
 }
 
 }  // namespace

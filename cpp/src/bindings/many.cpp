@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "flight/verbs/held_options.hpp"
+#include "model/measurements.hpp"
 #include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
@@ -97,10 +98,7 @@ PreparedFlight prepare_columns(const Model& model, const py::dict& columns,
   Record record = record_of(columns, labels);
   const py::gil_scoped_release release;
   const ManyOptions many = many_options(model, options, own, false);
-  for (const Variable& output : model.block->tables().outputs) {
-    if (record.has(output.name) || !std::isfinite(output.absent)) continue;
-    record.add(output.name, std::vector<double>(record.length(), output.absent));
-  }
+  record = model::with_constant_outputs(model.block->tables(), std::move(record));
   return {model.block, std::make_unique<FlightProblem>(*model.block, std::move(record), many)};
 }
 

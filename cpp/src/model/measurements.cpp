@@ -21,6 +21,14 @@ void check_finite(const std::string& name, std::span<const double> values, const
 
 }  // namespace
 
+Record with_constant_outputs(const Tables& tables, Record record) {
+  for (const Variable& output : tables.outputs) {
+    if (record.has(output.name) || !std::isfinite(output.absent)) continue;
+    record.add(output.name, std::vector<double>(record.length(), output.absent));
+  }
+  return record;
+}
+
 Measurements::Measurements(const BlockModel& model, const Record& record)
     : runs_(find_runs(record)), rows_(record.rows()) {
   const auto find = [&](const Variable& variable) {

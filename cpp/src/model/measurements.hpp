@@ -14,6 +14,9 @@
 
 namespace sepcal::model {
 
+/// The record with the outputs that need not be measured, as their value is always the same.
+Record with_constant_outputs(const Tables& tables, Record record);
+
 class Measurements {
  public:
   struct Range {

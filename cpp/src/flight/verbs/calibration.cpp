@@ -14,6 +14,7 @@
 #include "estimation/step_times.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
+#include "model/measurements.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/probe_effects.hpp"
@@ -46,15 +47,6 @@ std::size_t count_rows(const Record& record, const std::string& segments, const 
     throw OptionError({fmt::format("{}: the segments of {} (", flight.name(), stage), option,
                        std::string("): ") + error.what()});
   }
-}
-
-/// The record with the outputs that need not be measured, as their value is always the same.
-Record with_constant_outputs(const Probe& probe, Record record) {
-  for (const Variable& output : probe.model().tables().outputs) {
-    if (record.has(output.name) || !std::isfinite(output.absent)) continue;
-    record.add(output.name, std::vector<double>(record.length(), output.absent));
-  }
-  return record;
 }
 
 /// Standard errors by the delta method. What a fixed parameter gives is certain.
@@ -159,8 +151,8 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                       const CalibrationOptions& options) {
   CalibrationOptions held = hold(*probe, options);
   const EffectiveFlight effective =
-      with_effects(*probe, with_constant_outputs(*probe, record), held.effects, options.own_effects,
-                   options.fit.bounds);
+      with_effects(*probe, model::with_constant_outputs(probe->model().tables(), record),
+                   held.effects, options.own_effects, options.fit.bounds);
   return calibrate_on(effective, {{}, {}, record.length(), 0}, std::move(probe), std::move(held));
 }
 
