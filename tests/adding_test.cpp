@@ -53,6 +53,7 @@ TEST_CASE("a chain of two effects: the errors of its history are those of compar
   CHECK(two.history[0].effect == "wind[altitude_m]");
   CHECK(two.history[1].effect == "airspeed_scale[alpha^2]");
   CHECK(effect_names(two) == Texts{"wind[altitude_m]", "airspeed_scale[alpha^2]"});
+  CHECK(compare_with(base, flight, "wind[altitude_m]").residuals == compare(one, flight).residuals);
 
   const Comparison of_base = compare(base, flight);
   const Comparison of_one = compare(one, flight);

@@ -103,10 +103,13 @@ struct Compared {
   Page page;
 };
 
-Compared compare_with(const Calibration& calibration, const Flight& flight) {
+/// With an effect added where one is named.
+Compared compare_flight(const Calibration& calibration, const Flight& flight,
+                        const std::optional<std::string>& effect) {
   const py::gil_scoped_release release;
   need_own_effects(calibration);
-  Comparison comparison = compare(calibration, flight);
+  Comparison comparison =
+      effect ? compare_with(calibration, flight, *effect) : compare(calibration, flight);
   Page page = page_of(comparison);
   std::string json = to_json(comparison);
   return {std::move(comparison), std::move(json), std::move(page)};
@@ -328,7 +331,7 @@ void define_calibration(py::module_& module) {
       .def_readonly("history", &Calibration::history)
       .def_readonly("notes", &Calibration::notes)
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
-      .def("compare", &compare_with)
+      .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt)
       .def("diagnose", &diagnose_on)
       .def("intervals", &bindings::find_intervals)
       .def("predict", &predict_flight)

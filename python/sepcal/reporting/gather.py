@@ -164,7 +164,7 @@ def try_candidates(
             continue
         report_progress(f"trying {finding.name}")
         try:
-            tried = calibration.add(finding.name, flight).compare(flight)
+            tried = calibration.core.compare(flight._core, finding.name)
         except _core.Error as error:
             notes.append(f"{finding.name} can't be drawn: {error}")
             continue

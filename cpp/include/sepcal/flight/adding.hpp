@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/comparison.hpp"
 
 namespace sepcal {
 
@@ -15,5 +16,9 @@ namespace sepcal {
 /// for an effect that the base has already.
 Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
                 const OwnEffects& own = {}, const FitProgress& progress = {});
+
+/// Where the model would fail with `effect` added, for a look: no history, nothing promised. Throws
+/// Error as add() does.
+Comparison compare_with(const Calibration& base, const Flight& flight, const std::string& effect);
 
 }  // namespace sepcal

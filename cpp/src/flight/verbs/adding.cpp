@@ -52,22 +52,28 @@ Promise promise_of(const Calibration& base, const Calibration& next, const Prepa
   }
 }
 
-}  // namespace
-
-Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
-                const OwnEffects& own, const FitProgress& progress) {
+/// The base's model with the effect, fitted from the base's estimates.
+Calibration refit(const Calibration& base, const PreparedFlight& prepared,
+                  const std::string& effect, const OwnEffects& own, const FitProgress& progress) {
   CalibrationOptions options = base.options;
   options.fit.progress = progress;
   for (const auto& [name, maker] : own) options.own_effects[name] = maker;
   for (const std::string& name : split_effects(effect)) options.effects.push_back({.name = name});
   options.fit.start = base.fit.nonlinear_estimates();
   refuse_twice(options);
-  const PreparedFlight prepared = prepare(base, flight);
   Calibration next = calibrate(base.probe, prepared, options);
   refuse_twice(next.options);  // now that aliases are resolved
+  return next;
+}
 
+}  // namespace
+
+Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
+                const OwnEffects& own, const FitProgress& progress) {
+  const PreparedFlight prepared = prepare(base, flight);
+  Calibration next = refit(base, prepared, effect, own, progress);
   const EffectiveFlight after = with_effects_of(next, prepared);
-  const Record& record = after.prepared.record.select(options.fit.stage_two_segments);
+  const Record& record = after.prepared.record.select(next.options.fit.stage_two_segments);
   const EffectiveFlight before = with_effects_of(base, prepared);
   std::string added;
   for (std::size_t i = base.options.effects.size(); i < next.options.effects.size(); ++i) {
@@ -85,6 +91,10 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
                           .held_out_after = promised.held_out_after,
                           .predicted_drop = promised.predicted_drop});
   return next;
+}
+
+Comparison compare_with(const Calibration& base, const Flight& flight, const std::string& effect) {
+  return compare(refit(base, prepare(base, flight), effect, {}, {}), flight);
 }
 
 }  // namespace sepcal
