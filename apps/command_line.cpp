@@ -12,6 +12,7 @@
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/flight/csv.hpp"
 #include "sepcal/option_error.hpp"
 #include "sepcal/solver_log.hpp"
 #include "simulation_arguments.hpp"
@@ -30,12 +31,20 @@ std::string list_verbs(const CLI::App& cli) {
   return list;
 }
 
+/// "--field 20.1 0.9 43.5" leaves two numbers over: said where numbers alone are.
+std::string explain_extras(const CLI::App& verb, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return "";
+  const auto is_number = [](const std::string& word) { return parse_number(word).has_value(); };
+  const bool numbers = std::ranges::all_of(verb.remaining(), is_number);
+  return numbers ? "; put commas and no blanks between an option's numbers" : "";
+}
+
 /// What is wrong with a command line; CLI11's words where a verb was given.
 std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
   if (!cli.get_subcommands().empty()) {
     std::string what = error.what();
     std::ranges::replace(what, '\n', ' ');
-    return what;
+    return what + explain_extras(*cli.get_subcommands().front(), error);
   }
   const std::vector<std::string> words = cli.remaining();
   return (words.empty() ? "a verb is missing" : fmt::format("'{}' is no verb", words.front())) +

@@ -10,6 +10,16 @@
 #include "sepcal/flight/csv.hpp"
 
 namespace sepcal::app {
+namespace {
+
+/// Without those before and after it.
+std::string without_blanks(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+}  // namespace
 
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts(1);
@@ -45,7 +55,7 @@ std::array<double, 3> parse_triple(const std::string& option, const std::string&
     throw Error(fmt::format("{} {}: give three numbers, e.g. {}", option, text, example));
   }
   std::array<double, 3> values{};
-  for (std::size_t i = 0; i < 3; ++i) values[i] = parse_value(option, parts[i]);
+  for (std::size_t i = 0; i < 3; ++i) values[i] = parse_value(option, without_blanks(parts[i]));
   return values;
 }
 

@@ -73,3 +73,31 @@ TEST_CASE("a letter makes another quantity of a short name, and only its unit ma
   CHECK(miss_north("vx_mps").ends_with("would do as well)"));
   CHECK(describe_missing("hx", UnitKind::field, Headers{"mx_ut"}).ends_with("would do as well)"));
 }
+
+TEST_CASE("names and units as other logs write them") {
+  const auto asked = [](const char* quantity, UnitKind kind, const std::string& header) {
+    return ask_for_near_miss(quantity, kind, Headers{"altitude_m", header});
+  };
+  const auto rename = [](const std::string& header, const std::string& to) {
+    return "; did you mean '" + header + "'? Rename it to " + to;
+  };
+  CHECK(asked("vn", UnitKind::speed, "GPS_VN (M/S)") == rename("GPS_VN (M/S)", "vn_mps"));
+  CHECK(asked("vd", UnitKind::speed, "ins vel D [kt]") == rename("ins vel D [kt]", "vd_kt"));
+  CHECK(asked("mx", UnitKind::field, "Mag_X [nT]") == rename("Mag_X [nT]", "mx_nt"));
+  CHECK(asked("q", UnitKind::rate, "Pitch Rate (deg/s)") ==
+        rename("Pitch Rate (deg/s)", "q_degps"));
+  CHECK(asked("pt", UnitKind::pressure, "Total_Pressure[hPa]") ==
+        rename("Total_Pressure[hPa]", "pt_hpa"));
+  CHECK(asked("temp", UnitKind::temperature, "OAT degC") == rename("OAT degC", "temp_degc"));
+}
+
+TEST_CASE("another axis, another unit and no unit are not asked about") {
+  const auto asked = [](const char* quantity, UnitKind kind, const std::string& header) {
+    return ask_for_near_miss(quantity, kind, Headers{header});
+  };
+  CHECK(asked("mx", UnitKind::field, "Mag_Y [nT]").empty());
+  CHECK(asked("mx", UnitKind::field, "Mag_X [mT]").empty());
+  CHECK(asked("pt", UnitKind::pressure, "total pressure [MPa]").empty());
+  CHECK(asked("vn", UnitKind::speed, "GPS_VN").empty());
+  CHECK(asked("roll", UnitKind::angle, "roll_rate_degps").empty());
+}

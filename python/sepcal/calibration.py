@@ -44,6 +44,12 @@ class Calibration(Fit):
         """What follows: of a Pitot-static tube lambda_va and b_va, which correct the reading."""
         return self.core.derived
 
+    def __getitem__(self, name: str) -> _core.Parameter:
+        """The parameter. Raises KeyError listing the names."""
+        if name in self.derived:
+            raise KeyError(f"'{name}' follows from the parameters: derived['{name}']")
+        return super().__getitem__(name)
+
     @property
     def history(self) -> list[_core.HistoryEntry]:
         """An entry for every add()."""

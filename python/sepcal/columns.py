@@ -4,6 +4,7 @@
 A C-contiguous float64 array passes as it is, uncopied; everything else is converted once.
 """
 
+import os
 from collections.abc import Collection, Iterable, Iterator
 from typing import Protocol, TypeAlias
 
@@ -18,13 +19,29 @@ NUMBERS = "fiub"  # kinds of dtype
 
 
 class Columns(Protocol):
-    """Columns by name: a dict of arrays, a pandas DataFrame, a Flight."""
+    """Columns by name: a dict of arrays, a pandas DataFrame, a structured array, a Flight."""
 
     def __iter__(self) -> Iterator[str]:
         """The names."""
 
     def __getitem__(self, name: str, /) -> ArrayLike:
         """One column, shape (N,)."""
+
+
+def by_name(data: Columns) -> Columns:
+    """Columns by name: the fields of a structured array, else the data as they are.
+
+    Raises Error for the name of a file, and for an array without names.
+    """
+    if isinstance(data, str | os.PathLike):
+        raise _core.Error(f"'{os.fspath(data)}' is the name of a file; give sepcal.read_csv(file)")
+    if not isinstance(data, np.ndarray):
+        return data
+    if data.dtype.names is None:
+        raise _core.Error(
+            f"an array of the shape {data.shape} names no columns; give them by name, as a dict"
+        )
+    return {name: data[name] for name in data.dtype.names}
 
 
 def to_column(owner: str, name: str, values: ArrayLike) -> Array:

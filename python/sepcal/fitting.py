@@ -5,7 +5,7 @@ from typing import Unpack, overload
 
 from sepcal import _core
 from sepcal.calibration import Calibration
-from sepcal.columns import Columns, take_columns, take_drivers, to_labels
+from sepcal.columns import Columns, by_name, take_columns, take_drivers, to_labels
 from sepcal.flight import Flight
 from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core
@@ -62,6 +62,7 @@ def fit(
         return Calibration(core, data, [e for e in effects if isinstance(e, Effect)])
     if options.get("drop_invalid"):
         raise _core.Error("drop_invalid is for flights; give the data as a sepcal.Flight")
+    data = by_name(data)
     there = set(data)
     needed = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]
     columns = take_columns(model._owner, data, dict.fromkeys(needed))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Self
 
 from sepcal import _core
-from sepcal.columns import Array, Columns, to_column, to_labels
+from sepcal.columns import Array, Columns, by_name, to_column, to_labels
 
 
 class Flight(Mapping[str, Array]):
@@ -17,8 +17,8 @@ class Flight(Mapping[str, Array]):
     `flight["pt_pa"]` is a read-only array of shape (rows,) in the header's unit, uncopied.
 
     Args:
-        columns: Arrays of shape (N,) by header; a DataFrame will do. A column "maneuver" holds
-            labels, as in a file.
+        columns: Arrays of shape (N,) by header; a DataFrame or a structured array will do. A
+            column "maneuver" holds labels, as in a file.
         maneuver: A label a row, N of them; a run of one label is a segment.
         name: What messages call the flight.
 
@@ -29,6 +29,7 @@ class Flight(Mapping[str, Array]):
     def __init__(
         self, columns: Columns, maneuver: Iterable[object] | None = None, name: str = "flight"
     ) -> None:
+        columns = by_name(columns)
         self._core = _core.Flight(name)
         for header in columns:
             if header == "maneuver":

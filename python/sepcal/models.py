@@ -182,7 +182,8 @@ class Magnetometer(Model):
     def __init__(self, field: Vector | None = None, *, field_strength: float | None = None) -> None:
         if field is not None and field_strength is not None:
             raise _core.Error("field and field_strength contradict each other; give one")
-        self.field = None if field is None else _to_vector("field", field)
+        strength_alone = ", north, east, down, or the field's strength alone as field_strength"
+        self.field = None if field is None else _to_vector("field", field, strength_alone)
         self.field_strength = None if field_strength is None else float(field_strength)
         self.name = "magnetometer" if self.field_strength is None else "magnetometer-norm"
         super().__init__(
@@ -197,11 +198,12 @@ class Magnetometer(Model):
         return {} if self.field is None else {"field": self.field}
 
 
-def _to_vector(name: str, values: Vector) -> tuple[float, float, float]:
-    """Three numbers. Raises Error for any other count."""
-    numbers = tuple(float(value) for value in values)
+def _to_vector(name: str, values: Vector, otherwise: str = "") -> tuple[float, float, float]:
+    """Three numbers. Raises Error for any other count; `otherwise` is one more way out."""
+    numbers = tuple(np.atleast_1d(np.asarray(values, dtype=np.float64)).tolist())
     if len(numbers) != 3:
-        raise _core.Error(f"{name} has {len(numbers)} numbers; give three")
+        count = "1 number" if len(numbers) == 1 else f"{len(numbers)} numbers"
+        raise _core.Error(f"{name} has {count}; give three{otherwise}")
     return numbers
 
 

@@ -45,6 +45,34 @@ def test_columns_that_are_none() -> None:
     refuse(lambda: sepcal.Flight({"maneuver": ["a"]}, maneuver=["a"]), "'maneuver'", "twice")
 
 
+def test_the_name_of_a_file_and_an_array_without_names() -> None:
+    refuse(lambda: sepcal.fit(SCALAR, "log.csv"), "'log.csv'", "sepcal.read_csv(")
+    refuse(lambda: sepcal.Flight(Path("log.csv")), "'log.csv'", "sepcal.read_csv(")
+    refuse(lambda: sepcal.Flight(np.ones((3, 2))), "(3, 2)", "names no columns", "dict")
+    refuse(lambda: sepcal.fit(SCALAR, np.ones(3)), "(3,)", "names no columns", "dict")
+
+
+def test_a_structured_array_is_columns_by_name() -> None:
+    table = np.zeros(100, dtype=[("eta", float), ("z", float)])
+    table["eta"], table["z"] = RECORD["eta"], RECORD["z"]
+    assert list(sepcal.Flight(table)) == ["eta", "z"]
+    assert sepcal.fit(SCALAR, table).values.tolist() == sepcal.fit(SCALAR, RECORD).values.tolist()
+
+
+def test_the_strength_of_a_field_is_not_the_field() -> None:
+    refuse(lambda: sepcal.Magnetometer(field=47.9), "1 number", "field_strength")
+    refuse(lambda: sepcal.Magnetometer(field=(20.0, 43.0)), "2 numbers", "north, east, down")
+
+
+def test_what_follows_from_a_tubes_parameters_is_none_of_them() -> None:
+    tube = sepcal.PitotStatic()
+    calibration = sepcal.fit(tube, sepcal.Flight(sepcal.simulate(tube, rows=300)))
+    with pytest.raises(KeyError, match=r"derived\['lambda_va'\]"):
+        calibration["lambda_va"]
+    with pytest.raises(KeyError, match="there is no parameter 'lambda'"):
+        calibration["lambda"]
+
+
 def test_a_missing_column_is_named_with_those_that_are_there() -> None:
     flight = sepcal.Flight({"pt_pa": [1.0]})
     with pytest.raises(KeyError, match=r"'ps_pa' is missing; the flight has: pt_pa"):

@@ -40,8 +40,9 @@ std::string resolve(const AliasRow& alias, const Record& record) {
   }
   if (fitting.size() == 1) return fmt::format("{}[{}]", port, fitting.front());
   throw Error(fitting.empty()
-                  ? fmt::format("effect {} needs a column {}*, which the flight doesn't log",
-                                alias.name, prefix)
+                  ? fmt::format("effect {} needs a column {}*, which the flight doesn't log; under "
+                                "another name it drives {}[COLUMN]",
+                                alias.name, prefix, port)
                   : fmt::format("effect {} could be driven by {}; write {}[COLUMN]", alias.name,
                                 fmt::join(fitting, ", "), port));
 }

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <numeric>
 #include <optional>
@@ -20,6 +21,90 @@ std::string strip(std::string_view header) {
     if (std::isalnum(byte) != 0) letters += static_cast<char>(std::tolower(byte));
   }
   return letters;
+}
+
+/// "GPS_VN (M/S)" as its words, in lower case: gps, vn, m, s.
+std::vector<std::string> split_words(std::string_view header) {
+  std::vector<std::string> words(1);
+  for (const char c : header) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0) {
+      words.back() += static_cast<char>(std::tolower(byte));
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// What a quantity is called elsewhere, without what parts the words.
+struct OtherName {
+  std::string_view quantity;
+  std::string_view name;
+};
+
+constexpr std::array other_names{
+    OtherName{"time", "t"},
+    OtherName{"time", "timestamp"},
+    OtherName{"roll", "phi"},
+    OtherName{"pitch", "theta"},
+    OtherName{"yaw", "psi"},
+    OtherName{"yaw", "heading"},
+    OtherName{"p", "rollrate"},
+    OtherName{"q", "pitchrate"},
+    OtherName{"r", "yawrate"},
+    OtherName{"p", "gyrox"},
+    OtherName{"q", "gyroy"},
+    OtherName{"r", "gyroz"},
+    OtherName{"vn", "veln"},
+    OtherName{"vn", "vnorth"},
+    OtherName{"ve", "vele"},
+    OtherName{"ve", "veast"},
+    OtherName{"vd", "veld"},
+    OtherName{"vd", "vdown"},
+    OtherName{"airspeed", "ias"},
+    OtherName{"pt", "totalpressure"},
+    OtherName{"ps", "staticpressure"},
+    OtherName{"temp", "temperature"},
+    OtherName{"temp", "oat"},
+    OtherName{"mx", "magx"},
+    OtherName{"my", "magy"},
+    OtherName{"mz", "magz"},
+};
+
+bool is_called(std::string_view quantity, std::string_view name) {
+  return name == quantity || std::ranges::any_of(other_names, [&](const OtherName& other) {
+           return other.quantity == quantity && other.name == name;
+         });
+}
+
+/// Whether letters spell the unit: "mps", or "m/s" without its stroke.
+bool spells_unit(std::string_view letters, const Unit& unit) {
+  if (letters == unit.suffix) return true;
+  const std::size_t per = unit.suffix.rfind('p');
+  const bool has_per =
+      unit.kind == UnitKind::speed || unit.kind == UnitKind::rate || unit.kind == UnitKind::density;
+  if (!has_per || per == std::string_view::npos) return false;
+  return letters == std::string(unit.suffix).erase(per, 1);
+}
+
+/// The unit of a header that ends with the quantity by one of its names and a unit; else null.
+const Unit* find_unit_after(std::string_view quantity, UnitKind kind, std::string_view header) {
+  const std::vector<std::string> words = split_words(header);
+  for (std::size_t first = 0; first < words.size(); ++first) {
+    std::string name;
+    for (std::size_t last = first; last + 1 < words.size(); ++last) {
+      name += words[last];
+      if (!is_called(quantity, name)) continue;
+      std::string unit_letters;
+      for (std::size_t k = last + 1; k < words.size(); ++k) unit_letters += words[k];
+      for (const Unit& unit : known_units(kind)) {
+        if (spells_unit(unit_letters, unit)) return &unit;
+      }
+    }
+  }
+  return nullptr;
 }
 
 /// Levenshtein's distance: the fewest letters inserted, deleted or replaced.
@@ -47,9 +132,9 @@ struct NearMiss {
 constexpr std::size_t longest_short_name = 3;  // p, vn, dpa, yaw: one letter makes another quantity
 constexpr std::size_t longest_short_header = 8;  // of letters: one slip, beyond that two
 
-std::optional<NearMiss> find_near_miss(std::string_view quantity,
-                                       std::span<const std::string> accepted_ones,
-                                       std::span<const std::string> candidates) {
+std::optional<NearMiss> find_slip(std::string_view quantity,
+                                  std::span<const std::string> accepted_ones,
+                                  std::span<const std::string> candidates) {
   std::optional<NearMiss> nearest;
   std::size_t fewest = 0;
   for (const std::string& accepted : accepted_ones) {
@@ -65,6 +150,15 @@ std::optional<NearMiss> find_near_miss(std::string_view quantity,
     }
   }
   return nearest;
+}
+
+std::optional<NearMiss> find_other_name(std::string_view quantity, UnitKind kind,
+                                        std::span<const std::string> candidates) {
+  for (const std::string& candidate : candidates) {
+    const Unit* unit = find_unit_after(quantity, kind, candidate);
+    if (unit != nullptr) return {{candidate, fmt::format("{}_{}", quantity, unit->suffix)}};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -94,7 +188,8 @@ std::vector<double> read_quantity(const Flight& flight, std::string_view quantit
 
 std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
                               std::span<const std::string> others) {
-  const auto near = find_near_miss(quantity, accepted_headers(quantity, kind), others);
+  auto near = find_slip(quantity, accepted_headers(quantity, kind), others);
+  if (!near) near = find_other_name(quantity, kind, others);
   if (!near) return "";
   return fmt::format("; did you mean '{}'? Rename it to {}", near->header, near->accepted);
 }

@@ -133,9 +133,12 @@ void RecordBuilder::keep_valid() {
   keep_or_refuse([&](std::size_t row) { return find_invalid(row) == quantities.end(); },
                  "a cell of a needed column is no finite number",
                  [&](std::size_t row) {
-                   const Flight::Column& column = *(*find_invalid(row))->column;
-                   return fmt::format("column '{}' {}, not a finite number", column.header,
-                                      files::describe_cell(column, row));
+                   const LoggedQuantity& quantity = **find_invalid(row);
+                   const bool time = quantity.unit->kind == files::UnitKind::time;
+                   return fmt::format("column '{}' {}, not {}", quantity.column->header,
+                                      files::describe_cell(*quantity.column, row),
+                                      time ? "a time as a number, from any start, as in 12.34"
+                                           : "a finite number");
                  });
 }
 
