@@ -129,6 +129,17 @@ TEST_CASE("fields that are not the Earth's") {
   CHECK(field("b", 53'000).describe()[0].find("if it is in nt,") != std::string::npos);
 }
 
+TEST_CASE("a field that is given is no column of the log") {
+  Log log;
+  log.columns.emplace_back("time_s", Values{0, 0.1, 0.2, 0.3});
+  for (const char* header : {"mx_ut", "my_ut", "mz_ut", "roll_rad", "pitch_rad", "yaw_rad"}) {
+    log[header] = {30, 31, 32, 33};
+  }
+  CHECK(mentions(sepcal::prepare_magnetometer(log.build(), {.field = {{3e4, 0, 4e4}}}).notes,
+                 "log: the field given is 5e+04 uT strong, which lies outside 5 to 200 uT; check "
+                 "its unit"));
+}
+
 TEST_CASE(
     "a flight's notes carry it, from the rows that are used and in the flight's own headers") {
   Log log;

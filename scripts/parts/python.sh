@@ -68,7 +68,7 @@ make_venv() {
   mkdir .venv
   echo unfinished >"$stamp"
   quietly "python -m venv" "$python" -m venv .venv
-  quietly "pip install" .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+  quietly "pip install" .venv/bin/python -m pip install --no-compile --quiet --disable-pip-version-check \
     "${requirements[@]}"
   printf '%s\n' "$wanted" >"$stamp"
 }

@@ -95,10 +95,13 @@ bool check_field(const Field& names, const Range& range, const FindReading& find
   }
   const double strength = median(std::move(strengths));
   if (range.contains(strength)) return true;
+  const bool given = names == true_field_in_navigation && field[0].header == names[0];
+  const std::string whose = given ? "given is"
+                                  : fmt::format("of {}, {}, {} is usually", field[0].header,
+                                                field[1].header, field[2].header);
   sentences.push_back(fmt::format(
-      "the field of {}, {}, {} is usually {:.4g} uT strong, which lies outside {:g} to {:g} uT{}",
-      field[0].header, field[1].header, field[2].header, strength, range.low, range.high,
-      suggest_units(field[0], range, strength, strength)));
+      "the field {} {:.4g} uT strong, which lies outside {:g} to {:g} uT{}", whose, strength,
+      range.low, range.high, suggest_units(field[0], range, strength, strength)));
   return true;
 }
 
