@@ -123,6 +123,94 @@ std::string sentence(const std::vector<Valley>& valleys, const std::vector<std::
          (open.size() == 1 ? " is" : " are") + " not determined";
 }
 
+/// What identify() is asked.
+struct Question {
+  const MatrixXd& R;
+  const std::vector<std::string>& names;
+  VectorXd scale;
+  double noise_factor;
+};
+
+/// Where R, in coordinates where one means "as far as is plausible", is singular or below the
+/// noise; `rank` is what is left.
+std::vector<Valley> find_valleys(const Question& question, int& rank) {
+  const auto& [R, names, s, noise_factor] = question;
+  const Eigen::JacobiSVD<MatrixXd> svd(R * s.asDiagonal(), Eigen::ComputeFullV);
+  const auto& singular = svd.singularValues();
+  std::vector<Index> open;
+  for (Index i = 0; i < R.cols(); ++i) {
+    const bool zero = !(singular[i] > singular_floor * singular[0]);
+    if (!zero) ++rank;
+    if (zero || noise_factor > singular[i]) open.push_back(i);
+  }
+  const MatrixXd basis = sparsify(svd.matrixV()(Eigen::all, open));
+  std::vector<Valley> valleys;
+  for (Index i = 0; i < basis.cols(); ++i) {
+    const std::vector<Index> involved = participants(basis.col(i), share_to_take_part);
+    const VectorXd v = only(basis.col(i), involved);
+    const VectorXd functional = v.cwiseQuotient(s);
+    const double length = (R * s.cwiseProduct(v)).norm();
+    Valley valley{s.cwiseProduct(v),
+                  involved,
+                  {names_of(involved, names), combination_text(functional, names), infinity}};
+    if (length > singular_floor * singular[0]) {
+      valley.combination.standard_error = noise_factor / length / functional.norm();
+    }
+    valleys.push_back(std::move(valley));
+  }
+  return valleys;
+}
+
+void list_unobservable(const std::vector<Valley>& valleys, const std::vector<std::string>& names,
+                       Identifiability& result) {
+  std::vector<std::string> unseen;  // by themselves, in exchange for nothing
+  for (const auto& members : group(valleys)) {
+    for (const Valley& valley : members) result.unobservable.push_back(valley.combination);
+    if (members.size() == 1 && members.front().parameters.size() == 1) {
+      unseen.push_back(members.front().combination.parameters.front());
+    } else {
+      result.sentences.push_back(sentence(members, names));
+    }
+  }
+  if (unseen.empty()) return;
+  result.sentences.push_back(spoken_list(unseen, most_names, " (see unobservable)") +
+                             " can't be determined from this record");
+}
+
+/// Columns scaled to unit length; the weakest first, without what is unobservable.
+void list_weak(const Question& question, Identifiability& result) {
+  const auto& [R, names, s, noise_factor] = question;
+  VectorXd lengths = R.colwise().norm();
+  for (double& length : lengths) length = length > 0 ? length : 1.0;
+  const Eigen::JacobiSVD<MatrixXd> unit(R * lengths.cwiseInverse().asDiagonal(),
+                                        Eigen::ComputeFullV);
+  for (Index i = R.cols() - 1; i >= 0; --i) {
+    const double value = unit.singularValues()[i];
+    if (value > weak_singular_value * unit.singularValues()[0]) continue;
+    if (!(value > singular_floor * unit.singularValues()[0])) continue;
+    const VectorXd v = unit.matrixV().col(i);
+    const VectorXd shift = v.cwiseQuotient(lengths) * (noise_factor / value);
+    if (shift.cwiseQuotient(s).norm() > 1.0) continue;  // listed as unobservable already
+    // The main parts of c = sum v_k |column_k| xi_k; se(c) = |R^-T c|.
+    std::vector<Index> involved = participants(v, share_to_be_inflated);
+    std::erase_if(involved, [&](Index k) {
+      if (std::abs(v[k]) >= share_to_be_weak_together * v.cwiseAbs().maxCoeff()) return false;
+      // Belsley's share of the parameter's variance that this direction makes.
+      const VectorXd parts =
+          unit.matrixV().row(k).transpose().cwiseQuotient(unit.singularValues()).cwiseAbs2();
+      return parts[i] < 0.5 * parts.sum();
+    });
+    const VectorXd functional = only(v.cwiseProduct(lengths), involved).normalized();
+    const VectorXd deviation = R.triangularView<Eigen::Upper>().transpose().solve(functional);
+    Combination weak{names_of(involved, names), combination_text(functional, names),
+                     noise_factor * deviation.norm()};
+    result.sentences.push_back(
+        spoken_list(weak.parameters, most_names) + " are hard to tell apart: " + weak.text +
+        " has a standard error of " + base::short_number(weak.standard_error));
+    result.weak.push_back(std::move(weak));
+  }
+}
+
 }  // namespace
 
 std::string combination_text(const VectorXd& coefficients, const std::vector<std::string>& names) {
@@ -172,84 +260,11 @@ MatrixXd sparsify(const MatrixXd& basis) {
 
 Identifiability identify(const MatrixXd& R, const std::vector<std::string>& names,
                          const VectorXd& scale, double noise_factor) {
-  const Index n = R.cols();
   Identifiability result;
-  if (n == 0) return result;
-
-  // Unobservable: in coordinates where one means "as far as is plausible".
-  const VectorXd s = usable(scale);
-  const Eigen::JacobiSVD<MatrixXd> svd(R * s.asDiagonal(), Eigen::ComputeFullV);
-  const auto& singular = svd.singularValues();
-  std::vector<Index> open;
-  for (Index i = 0; i < n; ++i) {
-    const bool zero = !(singular[i] > singular_floor * singular[0]);
-    if (!zero) ++result.rank;
-    if (zero || noise_factor > singular[i]) open.push_back(i);
-  }
-  MatrixXd basis(n, static_cast<Index>(open.size()));
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    basis.col(static_cast<Index>(i)) = svd.matrixV().col(open[i]);
-  }
-  basis = sparsify(basis);
-
-  std::vector<Valley> valleys;
-  for (Index i = 0; i < basis.cols(); ++i) {
-    const std::vector<Index> involved = participants(basis.col(i), share_to_take_part);
-    const VectorXd v = only(basis.col(i), involved);
-    const VectorXd functional = v.cwiseQuotient(s);
-    const double length = (R * s.cwiseProduct(v)).norm();
-    Valley valley{s.cwiseProduct(v),
-                  involved,
-                  {names_of(involved, names), combination_text(functional, names), infinity}};
-    if (length > singular_floor * singular[0]) {
-      valley.combination.standard_error = noise_factor / length / functional.norm();
-    }
-    valleys.push_back(std::move(valley));
-  }
-  std::vector<std::string> unseen;  // by themselves, in exchange for nothing
-  for (const auto& members : group(valleys)) {
-    for (const Valley& valley : members) result.unobservable.push_back(valley.combination);
-    if (members.size() == 1 && members.front().parameters.size() == 1) {
-      unseen.push_back(members.front().combination.parameters.front());
-    } else {
-      result.sentences.push_back(sentence(members, names));
-    }
-  }
-  if (!unseen.empty()) {
-    result.sentences.push_back(spoken_list(unseen, most_names, " (see unobservable)") +
-                               " can't be determined from this record");
-  }
-
-  // Weak: in columns of unit length, what is left of them; the weakest first.
-  VectorXd lengths = R.colwise().norm();
-  for (double& length : lengths) length = length > 0 ? length : 1.0;
-  const Eigen::JacobiSVD<MatrixXd> unit(R * lengths.cwiseInverse().asDiagonal(),
-                                        Eigen::ComputeFullV);
-  for (Index i = n - 1; i >= 0; --i) {
-    const double value = unit.singularValues()[i];
-    if (value > weak_singular_value * unit.singularValues()[0]) continue;
-    if (!(value > singular_floor * unit.singularValues()[0])) continue;
-    const VectorXd v = unit.matrixV().col(i);
-    const VectorXd shift = v.cwiseQuotient(lengths) * (noise_factor / value);
-    if (shift.cwiseQuotient(s).norm() > 1.0) continue;  // listed as unobservable already
-    // The main parts of c = sum v_k |column_k| xi_k; se(c) = |R^-T c|.
-    std::vector<Index> involved = participants(v, share_to_be_inflated);
-    std::erase_if(involved, [&](Index k) {
-      if (std::abs(v[k]) >= share_to_be_weak_together * v.cwiseAbs().maxCoeff()) return false;
-      // Belsley's share of the parameter's variance that this direction makes.
-      const VectorXd parts =
-          unit.matrixV().row(k).transpose().cwiseQuotient(unit.singularValues()).cwiseAbs2();
-      return parts[i] < 0.5 * parts.sum();
-    });
-    const VectorXd functional = only(v.cwiseProduct(lengths), involved).normalized();
-    const VectorXd deviation = R.triangularView<Eigen::Upper>().transpose().solve(functional);
-    Combination weak{names_of(involved, names), combination_text(functional, names),
-                     noise_factor * deviation.norm()};
-    result.sentences.push_back(
-        spoken_list(weak.parameters, most_names) + " are hard to tell apart: " + weak.text +
-        " has a standard error of " + base::short_number(weak.standard_error));
-    result.weak.push_back(std::move(weak));
-  }
+  if (R.cols() == 0) return result;
+  const Question question{R, names, usable(scale), noise_factor};
+  list_unobservable(find_valleys(question, result.rank), names, result);
+  list_weak(question, result);
   return result;
 }
 

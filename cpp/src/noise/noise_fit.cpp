@@ -163,78 +163,75 @@ NoiseFit fit_white(double square, Index rows) {
   return fit;
 }
 
-}  // namespace
-
-NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segments,
-                   const NoiseFitOptions& options) {
+void check(std::span<const double> e, const std::vector<Segment>& segments,
+           const NoiseFitOptions& options) {
   if (segments.empty()) throw Error("there are no segments to fit the noise on; give at least one");
   if (options.order.value_or(0) < 0 || options.max_order < 0) {
     throw Error("the order of the noise model is negative; choose 0 or more");
   }
   if (options.start) check_noise_model(*options.start);
-  VectorXd rows = gather_rows(e, segments);
-  if (!rows.allFinite()) {
-    for (const Segment& segment : segments) {
-      for (std::size_t row = segment.first; row < segment.last; ++row) {
-        if (std::isfinite(e[row])) continue;
-        throw Error("the residual at row " + std::to_string(row) +
-                    " is not finite; leave that row out of the segments");
-      }
+  for (const Segment& segment : segments) {
+    for (std::size_t row = segment.first; row < segment.last; ++row) {
+      if (std::isfinite(e[row])) continue;
+      throw Error("the residual at row " + std::to_string(row) +
+                  " is not finite; leave that row out of the segments");
     }
   }
-  const std::vector<Index> lengths = find_lengths(segments);
-  const double scale = rows.cwiseAbs().maxCoeff();
-  if (!(scale > 0.0)) return fit_white(0.0, rows.size());
-  rows /= scale;  // no square under- or overflows
-  const auto unscale = [scale](NoiseFit fit) {
-    fit.model.sigma *= scale;
-    fit.minus_two_log_likelihood +=
-        2.0 * static_cast<double>(fit.informative_rows) * std::log(scale);
-    return fit;
-  };
+}
 
+/// A minimum found from a scanned order; both orders are judged by the differences, which have a
+/// distribution either way.
+struct Start {
+  VectorXd theta;
+  int evaluations = 0;
+};
+
+Start find_start(const Likelihood& differences, const VectorXd& rows,
+                 const std::vector<Index>& lengths, const NoiseFitOptions& options) {
+  const auto judge = [&](double square, const NoiseOrder& order) {
+    return static_cast<double>(differences.rows()) * std::log(square) +
+           penalise(order.partial.size(), differences.rows());
+  };
+  auto orders = choose_noise_orders(rows, lengths, options);
+  std::array<double, 2> first{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const VectorXd start = differences.clip(pack(orders[k].d, orders[k].partial));
+    first[k] = judge(differences.evaluate(start).squaredNorm(), orders[k]);
+  }
+  if (first[1] < first[0]) {
+    std::swap(first[0], first[1]);
+    std::swap(orders[0], orders[1]);
+  }
+  constexpr double hopeless = 20.0;  // in AIC: more than refining a scanned start gains
+  Start found;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (first[k] > lowest + hopeless) continue;
+    const Minimum fitted =
+        minimise(differences, pack(orders[k].d, orders[k].partial), options.least_gain);
+    found.evaluations += fitted.evaluations;
+    const double criterion = judge(fitted.square, orders[k]);
+    if (found.theta.size() > 0 && !(criterion < lowest)) continue;
+    lowest = criterion;
+    found.theta = fitted.theta;
+  }
+  return found;
+}
+
+/// Of rows whose largest is 1.
+NoiseFit fit_scaled(const VectorXd& rows, const std::vector<Index>& lengths,
+                    const NoiseFitOptions& options) {
   const Likelihood differences(NoiseRows(rows, lengths, true));
   if (differences.rows() < fewest_rows || !(differences.square() > 0.0)) {
-    return unscale(fit_white(rows.squaredNorm(), rows.size()));
+    return fit_white(rows.squaredNorm(), rows.size());
   }
-  int evaluations = 0;
-  bool free_level = false;
-  VectorXd theta;
-  if (options.start) {
-    free_level = options.start->level_is_free();
-    theta = pack(options.start->d, partial_from_phi(options.start->phi));
-  } else {
-    // Both starts are judged by the differences, which have a distribution either way.
-    double lowest = std::numeric_limits<double>::infinity();
-    const auto judge = [&](double square, const NoiseOrder& order) {
-      return static_cast<double>(differences.rows()) * std::log(square) +
-             penalise(order.partial.size(), differences.rows());
-    };
-    auto orders = choose_noise_orders(rows, lengths, options);
-    std::array<double, 2> first{};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const VectorXd start = differences.clip(pack(orders[k].d, orders[k].partial));
-      first[k] = judge(differences.evaluate(start).squaredNorm(), orders[k]);
-    }
-    if (first[1] < first[0]) {
-      std::swap(first[0], first[1]);
-      std::swap(orders[0], orders[1]);
-    }
-    constexpr double hopeless = 20.0;  // in AIC: more than refining a scanned start gains
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (first[k] > lowest + hopeless) continue;
-      const Minimum fitted =
-          minimise(differences, pack(orders[k].d, orders[k].partial), options.least_gain);
-      evaluations += fitted.evaluations;
-      const double criterion = judge(fitted.square, orders[k]);
-      if (theta.size() > 0 && !(criterion < lowest)) continue;
-      lowest = criterion;
-      theta = fitted.theta;
-    }
-    free_level = theta[0] >= free_from;
-  }
+  const Start start = options.start
+                          ? Start{pack(options.start->d, partial_from_phi(options.start->phi))}
+                          : find_start(differences, rows, lengths, options);
+  const bool free_level =
+      options.start ? options.start->level_is_free() : start.theta[0] >= free_from;
   const Likelihood likelihood(NoiseRows(rows, lengths, free_level));
-  const Minimum best = minimise(likelihood, theta, options.least_gain);
+  const Minimum best = minimise(likelihood, start.theta, options.least_gain);
   NoiseFit fit;
   fit.model.d = best.theta[0];
   fit.model.phi = Likelihood::phi_of(best.theta);
@@ -244,9 +241,24 @@ NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segmen
   fit.minus_two_log_likelihood =
       informative * (std::log(best.square / informative) + 1.0 + std::log(2.0 * std::numbers::pi));
   fit.informative_rows = likelihood.rows();
-  fit.evaluations = evaluations + best.evaluations;
+  fit.evaluations = start.evaluations + best.evaluations;
   fit.converged = best.converged;
-  return unscale(fit);
+  return fit;
+}
+
+}  // namespace
+
+NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segments,
+                   const NoiseFitOptions& options) {
+  check(e, segments, options);
+  VectorXd rows = gather_rows(e, segments);
+  const double scale = rows.cwiseAbs().maxCoeff();
+  if (!(scale > 0.0)) return fit_white(0.0, rows.size());
+  rows /= scale;  // no square under- or overflows
+  NoiseFit fit = fit_scaled(rows, find_lengths(segments), options);
+  fit.model.sigma *= scale;
+  fit.minus_two_log_likelihood += 2.0 * static_cast<double>(fit.informative_rows) * std::log(scale);
+  return fit;
 }
 
 }  // namespace sepcal
