@@ -91,13 +91,55 @@ TEST_CASE("names and units as other logs write them") {
   CHECK(asked("temp", UnitKind::temperature, "OAT degC") == rename("OAT degC", "temp_degc"));
 }
 
-TEST_CASE("another axis, another unit and no unit are not asked about") {
+TEST_CASE("another axis is not asked about") {
+  CHECK(ask_for_near_miss("mx", UnitKind::field, Headers{"Mag_Y [nT]"}).empty());
+  CHECK(ask_for_near_miss("roll", UnitKind::angle, Headers{"roll_rate_degps"}).empty());
+  CHECK(ask_for_near_miss("roll", UnitKind::angle, Headers{"Roll Rate (deg/s)"}).empty());
+}
+
+TEST_CASE("a unit is never guessed") {
+  struct Case {
+    const char* quantity;
+    UnitKind kind;
+    const char* header;
+  };
+  using enum UnitKind;
+  for (const auto& [quantity, kind, header] : {Case{"airspeed", speed, "AIRSPEED_MPH"},
+                                               {"airspeed", speed, "Airspeed [ft/s]"},
+                                               {"airspeed", speed, "Airspeed"},
+                                               {"vn", speed, "VN_FPS"},
+                                               {"vn", speed, "VN_CMPS"},
+                                               {"vn", speed, "vn (km/s)"},
+                                               {"temp", temperature, "TEMP_F"},
+                                               {"temp", temperature, "Temp"},
+                                               {"pt", pressure, "PT_MPA"},
+                                               {"pt", pressure, "PT_PSF"},
+                                               {"roll", angle, "roll (mrad)"},
+                                               {"roll", angle, "ROLL_GRAD"},
+                                               {"mx", field, "MX_T"},
+                                               {"mx", field, "mx (mT)"},
+                                               {"time", time, "TIME_NS"},
+                                               {"time", time, "TIME_H"}}) {
+    CHECK_MESSAGE(
+        ask_for_near_miss(quantity, kind, Headers{header}) ==
+            "; '" + std::string(header) + "' says no unit that is known: convert it or rename it",
+        header);
+  }
+  for (const auto& [quantity, kind, header] : {Case{"mx", field, "Mag_X [mT]"},
+                                               {"pt", pressure, "total pressure [MPa]"},
+                                               {"vn", speed, "GPS_VN"},
+                                               {"vn", speed, "GPS_VN (km/s)"}}) {
+    CHECK_MESSAGE(ask_for_near_miss(quantity, kind, Headers{header}).empty(), header);
+  }
+}
+
+TEST_CASE("a unit's other spellings are known where they are no other unit's") {
   const auto asked = [](const char* quantity, UnitKind kind, const std::string& header) {
     return ask_for_near_miss(quantity, kind, Headers{header});
   };
-  CHECK(asked("mx", UnitKind::field, "Mag_Y [nT]").empty());
-  CHECK(asked("mx", UnitKind::field, "Mag_X [mT]").empty());
-  CHECK(asked("pt", UnitKind::pressure, "total pressure [MPa]").empty());
-  CHECK(asked("vn", UnitKind::speed, "GPS_VN").empty());
-  CHECK(asked("roll", UnitKind::angle, "roll_rate_degps").empty());
+  CHECK(asked("airspeed", UnitKind::speed, "IAS_kts").ends_with("airspeed_kt"));
+  CHECK(asked("temp", UnitKind::temperature, "Temp (C)").ends_with("temp_degc"));
+  CHECK(asked("mx", UnitKind::field, "mx (mG)").ends_with("mx_mgauss"));
+  CHECK(asked("time", UnitKind::time, "TIME_MS").ends_with("time_ms"));
+  CHECK(asked("pt", UnitKind::pressure, "Pt [mbar]").ends_with("pt_hpa"));
 }

@@ -13,15 +13,7 @@
 namespace sepcal::files {
 namespace {
 
-/// Letters and digits alone, in lower case: "Roll [deg]" and "roll_deg" are one.
-std::string strip(std::string_view header) {
-  std::string letters;
-  for (const char c : header) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) != 0) letters += static_cast<char>(std::tolower(byte));
-  }
-  return letters;
-}
+using Words = std::span<const std::string>;
 
 /// "GPS_VN (M/S)" as its words, in lower case: gps, vn, m, s.
 std::vector<std::string> split_words(std::string_view header) {
@@ -38,13 +30,15 @@ std::vector<std::string> split_words(std::string_view header) {
   return words;
 }
 
-/// What a quantity is called elsewhere, without what parts the words.
+std::string join(Words words) { return std::accumulate(words.begin(), words.end(), std::string()); }
+
+/// What a quantity or a unit is called elsewhere, without what parts the words.
 struct OtherName {
-  std::string_view quantity;
+  std::string_view ours;
   std::string_view name;
 };
 
-constexpr std::array other_names{
+constexpr std::array other_quantities{
     OtherName{"time", "t"},
     OtherName{"time", "timestamp"},
     OtherName{"roll", "phi"},
@@ -73,38 +67,30 @@ constexpr std::array other_names{
     OtherName{"mz", "magz"},
 };
 
-bool is_called(std::string_view quantity, std::string_view name) {
-  return name == quantity || std::ranges::any_of(other_names, [&](const OtherName& other) {
-           return other.quantity == quantity && other.name == name;
+constexpr std::array other_units{
+    OtherName{"kt", "kts"},      OtherName{"kt", "knot"},      OtherName{"kt", "knots"},
+    OtherName{"rad", "rads"},    OtherName{"deg", "degs"},     OtherName{"deg", "degree"},
+    OtherName{"deg", "degrees"}, OtherName{"s", "sec"},        OtherName{"s", "seconds"},
+    OtherName{"degc", "c"},      OtherName{"degc", "celsius"}, OtherName{"gauss", "g"},
+    OtherName{"mgauss", "mg"},   OtherName{"hpa", "mbar"},
+};
+
+/// Whether `name` is what the table calls `ours`.
+bool is_called(std::string_view ours, std::string_view name, std::span<const OtherName> table) {
+  return name == ours || std::ranges::any_of(table, [&](const OtherName& other) {
+           return other.ours == ours && other.name == name;
          });
 }
 
-/// Whether letters spell the unit: "mps", or "m/s" without its stroke.
-bool spells_unit(std::string_view letters, const Unit& unit) {
-  if (letters == unit.suffix) return true;
+/// Whether words spell the unit: "mps", "kts" in one, or "m", "s" for what is per something.
+bool spell_unit(Words words, const Unit& unit) {
+  if (words.empty()) return false;
+  const std::string letters = join(words);
+  if (words.size() == 1) return is_called(unit.suffix, letters, other_units);
+  if (letters == unit.suffix) return true;  // "km/h"
   const std::size_t per = unit.suffix.rfind('p');
-  const bool has_per =
-      unit.kind == UnitKind::speed || unit.kind == UnitKind::rate || unit.kind == UnitKind::density;
-  if (!has_per || per == std::string_view::npos) return false;
-  return letters == std::string(unit.suffix).erase(per, 1);
-}
-
-/// The unit of a header that ends with the quantity by one of its names and a unit; else null.
-const Unit* find_unit_after(std::string_view quantity, UnitKind kind, std::string_view header) {
-  const std::vector<std::string> words = split_words(header);
-  for (std::size_t first = 0; first < words.size(); ++first) {
-    std::string name;
-    for (std::size_t last = first; last + 1 < words.size(); ++last) {
-      name += words[last];
-      if (!is_called(quantity, name)) continue;
-      std::string unit_letters;
-      for (std::size_t k = last + 1; k < words.size(); ++k) unit_letters += words[k];
-      for (const Unit& unit : known_units(kind)) {
-        if (spells_unit(unit_letters, unit)) return &unit;
-      }
-    }
-  }
-  return nullptr;
+  const bool has_per = per != std::string_view::npos && unit.kind != UnitKind::pressure;
+  return has_per && letters == std::string(unit.suffix).erase(per, 1);
 }
 
 /// Levenshtein's distance: the fewest letters inserted, deleted or replaced.
@@ -123,42 +109,72 @@ std::size_t count_slips(std::string_view from, std::string_view to) {
   return row.back();
 }
 
-/// A header of a log, and the accepted one that it nearly is.
+/// A header of a log, the accepted one that it nearly is, and how near.
 struct NearMiss {
   std::string header;
   std::string accepted;
+  std::size_t slips = 0;
 };
 
-constexpr std::size_t longest_short_name = 3;  // p, vn, dpa, yaw: one letter makes another quantity
-constexpr std::size_t longest_short_header = 8;  // of letters: one slip, beyond that two
+constexpr std::size_t foreign = 3;  // another name counts as more slips than are allowed
 
-std::optional<NearMiss> find_slip(std::string_view quantity,
-                                  std::span<const std::string> accepted_ones,
-                                  std::span<const std::string> candidates) {
+/// Slips of a letter between a quantity and words that should name it: none in a short name, where
+/// a letter makes another quantity, two in a long one. Nothing where they are too many.
+std::optional<std::size_t> count_name_slips(std::string_view quantity, Words words) {
+  constexpr std::size_t longest_short_name = 3;  // p, vn, dpa, yaw
+  constexpr std::size_t longest_middling_name = 6;
+  const std::size_t slips = count_slips(join(words), quantity);
+  const std::size_t allowed = quantity.size() <= longest_short_name      ? 0
+                              : quantity.size() <= longest_middling_name ? 1
+                                                                         : 2;
+  if (slips <= allowed) return slips;
+  // Other names may stand behind a word or two of whose it is: "GPS vel N".
+  for (std::size_t first = 0; first < words.size(); ++first) {
+    if (is_called(quantity, join(words.subspan(first)), other_quantities)) return foreign;
+  }
+  return std::nullopt;
+}
+
+/// Of the ways to cut the header into a quantity and a unit, the nearest. A unit is never guessed:
+/// it is spelled, or the header is none.
+std::optional<NearMiss> compare_header(std::string_view quantity, UnitKind kind,
+                                       const std::string& header) {
   std::optional<NearMiss> nearest;
-  std::size_t fewest = 0;
-  for (const std::string& accepted : accepted_ones) {
-    const std::string wanted = strip(accepted);
-    const std::size_t allowed = wanted.size() > longest_short_header ? 2 : 1;
-    for (const std::string& candidate : candidates) {
-      const std::string letters = strip(candidate);
-      if (quantity.size() <= longest_short_name && !letters.starts_with(quantity)) continue;
-      const std::size_t slips = count_slips(letters, wanted);
-      if (slips > allowed || (nearest && slips >= fewest)) continue;
-      nearest = {candidate, accepted};
-      fewest = slips;
+  const auto offer = [&](std::optional<std::size_t> slips, const Unit& unit) {
+    if (!slips || (nearest && nearest->slips <= *slips)) return;
+    nearest = {header, fmt::format("{}_{}", quantity, unit.suffix), *slips};
+  };
+  const std::vector<std::string> words = split_words(header);
+  for (const Unit& unit : known_units(kind)) {
+    if (join(words) == std::string(quantity).append(unit.suffix)) offer(0, unit);
+    for (std::size_t cut = 1; cut < words.size(); ++cut) {
+      if (!spell_unit(Words(words).subspan(cut), unit)) continue;
+      offer(count_name_slips(quantity, Words(words).first(cut)), unit);
     }
   }
   return nearest;
 }
 
-std::optional<NearMiss> find_other_name(std::string_view quantity, UnitKind kind,
-                                        std::span<const std::string> candidates) {
+std::optional<NearMiss> find_near_miss(std::string_view quantity, UnitKind kind,
+                                       std::span<const std::string> candidates) {
+  std::optional<NearMiss> nearest;
   for (const std::string& candidate : candidates) {
-    const Unit* unit = find_unit_after(quantity, kind, candidate);
-    if (unit != nullptr) return {{candidate, fmt::format("{}_{}", quantity, unit->suffix)}};
+    const auto near = compare_header(quantity, kind, candidate);
+    if (near && (!nearest || near->slips < nearest->slips)) nearest = near;
   }
-  return std::nullopt;
+  return nearest;
+}
+
+/// A header of the quantity's own name with another unit or none.
+const std::string* find_without_unit(std::string_view quantity,
+                                     std::span<const std::string> candidates) {
+  const auto found = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+    const std::vector<std::string> words = split_words(candidate);
+    if (quantity.size() == 1 || words.empty() || words.front() != quantity) return false;
+    if (words.size() > 1 && words[1] == "rate") return false;                 // another quantity
+    return words.size() <= 2 || (words.size() == 3 && words[2].size() == 1);  // "ft/s"
+  });
+  return found == candidates.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -188,10 +204,13 @@ std::vector<double> read_quantity(const Flight& flight, std::string_view quantit
 
 std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
                               std::span<const std::string> others) {
-  auto near = find_slip(quantity, accepted_headers(quantity, kind), others);
-  if (!near) near = find_other_name(quantity, kind, others);
-  if (!near) return "";
-  return fmt::format("; did you mean '{}'? Rename it to {}", near->header, near->accepted);
+  if (const auto near = find_near_miss(quantity, kind, others)) {
+    return fmt::format("; did you mean '{}'? Rename it to {}", near->header, near->accepted);
+  }
+  if (const std::string* header = find_without_unit(quantity, others)) {
+    return fmt::format("; '{}' says no unit that is known: convert it or rename it", *header);
+  }
+  return "";
 }
 
 std::string describe_missing(std::string_view quantity, UnitKind kind,

@@ -22,8 +22,9 @@ std::vector<double> read_quantity(const Flight& flight, std::string_view quantit
 
 /// "; did you mean 'Roll_Deg'? Rename it to roll_deg": the one of `others`, a log's headers without
 /// the quantities found, that differs from an accepted one in case and punctuation or by a slip of
-/// a letter or two, or is what others write: "GPS_VN (m/s)", "Mag X [nT]"; empty where there is
-/// none.
+/// a letter or two in the quantity, or is what others write: "GPS_VN (m/s)", "Mag X [nT]". Where
+/// the quantity stands there with another unit or none: "; 'Airspeed' says no unit that is known
+/// ...". Empty where there is none.
 std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
                               std::span<const std::string> others);
 
