@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 using sepcal::base::join_sentences;
+using sepcal::base::one_sentence;
 using sepcal::base::split_sentences;
 using Sentences = std::vector<std::string>;
 
@@ -14,6 +15,11 @@ TEST_CASE("a message is its sentences, one behind the other") {
   CHECK(join_sentences({"a", "b: c", "d"}) == "a; b: c; d");
   CHECK(join_sentences({"", "a", "", "b", ""}) == "a; b");
   CHECK(join_sentences({join_sentences({"a", "b"}), "c"}) == "a; b; c");
+}
+
+TEST_CASE("a name with a semicolon ends no sentence") {
+  CHECK(one_sentence("a can't be seen") == "a can't be seen");
+  CHECK(one_sentence("s.turn; left and s.turn;right; b") == "s.turn, left and s.turn;right, b");
 }
 
 TEST_CASE("a message is cut where its sentences were joined") {

@@ -10,6 +10,11 @@ constexpr std::string_view between = "; ";
 
 }  // namespace
 
+std::string one_sentence(std::string text) {
+  for (std::size_t at = 0; (at = text.find(between, at)) != std::string::npos;) text[at] = ',';
+  return text;
+}
+
 std::string join_sentences(const std::vector<std::string>& sentences) {
   std::string message;
   for (const std::string& sentence : sentences) {

@@ -9,6 +9,9 @@
 
 namespace sepcal::base {
 
+/// The text, in which a name may hold what stands between sentences: a label "turn; left".
+std::string one_sentence(std::string text);
+
 /// The message; of sentences that are empty nothing is said.
 std::string join_sentences(const std::vector<std::string>& sentences);
 

@@ -169,12 +169,13 @@ void list_unobservable(const std::vector<Valley>& valleys, const std::vector<std
     if (members.size() == 1 && members.front().parameters.size() == 1) {
       unseen.push_back(members.front().combination.parameters.front());
     } else {
-      result.sentences.push_back(sentence(members, names));
+      result.sentences.push_back(base::one_sentence(sentence(members, names)));
     }
   }
   if (unseen.empty()) return;
-  result.sentences.push_back(spoken_list(unseen, most_names, " (see unobservable)") +
-                             " can't be determined from this record");
+  result.sentences.push_back(
+      base::one_sentence(spoken_list(unseen, most_names, " (see unobservable)") +
+                         " can't be determined from this record"));
 }
 
 /// Columns scaled to unit length; the weakest first, without what is unobservable.
@@ -204,9 +205,9 @@ void list_weak(const Question& question, Identifiability& result) {
     const VectorXd deviation = R.triangularView<Eigen::Upper>().transpose().solve(functional);
     Combination weak{names_of(involved, names), combination_text(functional, names),
                      noise_factor * deviation.norm()};
-    result.sentences.push_back(
+    result.sentences.push_back(base::one_sentence(
         spoken_list(weak.parameters, most_names) + " are hard to tell apart: " + weak.text +
-        " has a standard error of " + base::short_number(weak.standard_error));
+        " has a standard error of " + base::short_number(weak.standard_error)));
     result.weak.push_back(std::move(weak));
   }
 }
