@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 FUNCTION = re.compile(
     r"^(  )?(?!namespace|class|struct|enum|union|using|if|for|while|switch)[\w~:].*\("
 )
@@ -27,6 +27,7 @@ class House:
     """The table of rooms, and where they are."""
 
     folder: Path
+    granted: dict[str, list[str]]  # what a room's own entry names
     reach: dict[str, set[str]]  # what a room may include, itself among it
     of_public: dict[str, str]  # the room of a public header, by its name below include/sepcal
 
@@ -55,6 +56,7 @@ class House:
 def read_house(folder: Path) -> House:
     """Reads FOLDER/rooms.toml. Raises ValueError where a room may include one that isn't there."""
     table = tomllib.loads((folder / "rooms.toml").read_text())
+    granted = {room: list(entry["may_include"]) for room, entry in table.items()}
     reach: dict[str, set[str]] = {}
     for room, entry in table.items():  # a room stands below those that it may include
         reach[room] = {room}
@@ -65,17 +67,22 @@ def read_house(folder: Path) -> House:
                 )
             reach[room] |= reach[name]
     of_public = {name: room for room, entry in table.items() for name in entry["public"]}
-    return House(folder, reach, of_public)
+    return House(folder, granted, reach, of_public)
 
 
-def includes(file: Path) -> list[str]:
-    """What a file includes in quotes."""
-    return INCLUDE.findall(file.read_text())
+def includes(file: Path, house: House) -> list[str]:
+    """What a file includes in quotes, and of ours in angle brackets."""
+    return [
+        name
+        for mark, name in INCLUDE.findall(file.read_text())
+        if mark == '"' or name.startswith("sepcal/") or house.room_of(name)
+    ]
 
 
 def find_faults(house: House) -> list[str]:
     """One line for each include that goes the wrong way and each file without a room."""
     faults = []
+    used: set[tuple[str, str]] = set()
     for name, room in house.of_public.items():
         if not (house.folder / "include/sepcal" / f"{name}.hpp").is_file():
             faults.append(f"rooms.toml: {room}'s public header sepcal/{name}.hpp is not there")
@@ -83,12 +90,19 @@ def find_faults(house: House) -> list[str]:
         if found is None:
             faults.append(f"{file}: it has no room in rooms.toml")
             continue
-        for include in includes(file):
+        for include in includes(file, house):
             target = house.room_of(include)
+            used.add((found, target or ""))
             if target is None:
                 faults.append(f'{file}: "{include}" is in no room of rooms.toml')
             elif target not in house.reach[found]:
                 faults.append(f'{file}: {found} may not include {target} ("{include}")')
+    faults += [
+        f"rooms.toml: {room} may include {name} and doesn't"
+        for room, names in house.granted.items()
+        for name in names
+        if (room, name) not in used
+    ]
     return faults
 
 
@@ -101,7 +115,7 @@ def count(house: House) -> str:
         name = found or "-"
         files[name] += 1
         lines[name] += len(file.read_text().splitlines())
-        rooms = [house.room_of(include) for include in includes(file)]
+        rooms = [house.room_of(include) for include in includes(file, house)]
         crossing[name] += sum(target != found for target in rooms)
     public = Counter(house.of_public.values())
     rows = [

@@ -57,6 +57,30 @@ def test_a_planted_wrong_way_include_is_named(
     assert include in done.stdout
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "#include <sepcal/fit.hpp>",
+        '#  include "sepcal/fit.hpp"',
+        "  # include <sepcal/fit.hpp>",
+        "#include <estimation/problem.hpp>",
+    ],
+)
+def test_however_an_include_is_written(copied: Path, line: str):
+    with (copied / "src/base/utf8.cpp").open("a") as source:
+        source.write(f"{line}\n")
+    assert "base may not include estimation" in check(copied).stdout
+
+
+def test_a_grant_that_nobody_uses_is_named(copied: Path):
+    table = copied / "rooms.toml"
+    head = "[diagnosis] # which effect is missing\nmay_include = ["
+    text = table.read_text()
+    assert head in text
+    table.write_text(text.replace(head, head + '"many", '))
+    assert check(copied).stdout == "rooms.toml: diagnosis may include many and doesn't\n"
+
+
 def test_a_file_without_a_room_is_named(copied: Path):
     (copied / "src/lost.cpp").write_text("")
     assert "src/lost.cpp: it has no room" in check(copied).stdout
