@@ -156,3 +156,13 @@ TEST_CASE("a list is joined by '+'; one within brackets belongs to a name") {
                   {"effect '" + std::string(text) + "'", "a name is missing beside '+'"});
   }
 }
+
+TEST_CASE("a channel that port[channel] names, and those that it doesn't") {
+  for (const char* channel : {"throttle", "thr%", "thr-1", "a+b", "Battery_I"}) {
+    CHECK(sepcal::can_name(channel));
+    CHECK(parse_effect_name("wind[" + std::string(channel) + "]").base == channel);
+  }
+  for (const char* channel : {"", "Throttle [%]", "thr pct", "temp^2", "thr(A)", "a]b"}) {
+    CHECK_FALSE(sepcal::can_name(channel));
+  }
+}

@@ -30,6 +30,9 @@ struct EffectName {
 /// Throws Error for a text that is no name, saying what the forms are.
 EffectName parse_effect_name(std::string_view text);
 
+/// Whether port[channel] names the channel: "Throttle [%]" and "temp^2" don't name themselves.
+bool can_name(std::string_view channel);
+
 /// The names of a list joined by '+' ("E1+E2"); a '+' within brackets belongs to a name. Throws
 /// Error for an empty one.
 std::vector<std::string> split_effects(std::string_view text);

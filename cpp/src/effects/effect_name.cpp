@@ -119,6 +119,10 @@ EffectName parse_effect_name(std::string_view text) {
   return name;
 }
 
+bool can_name(std::string_view channel) {
+  return !channel.empty() && channel.find_first_of(" \t[]()^") == std::string_view::npos;
+}
+
 std::vector<std::string> split_effects(std::string_view text) {
   std::vector<std::string> names(1);
   int depth = 0;

@@ -18,7 +18,7 @@ std::vector<std::string> list_drivers(const Record& record, const Flight& flight
   std::vector<std::string> drivers(state_drivers.begin(), state_drivers.end());
   std::erase_if(drivers, [&](const std::string& state) { return !record.has(state); });
   for (const std::string& name : record.names()) {
-    if (flight.find(name) != nullptr) drivers.push_back(name);
+    if (flight.find(name) != nullptr && can_name(name)) drivers.push_back(name);
   }
   return drivers;
 }

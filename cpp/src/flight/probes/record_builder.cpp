@@ -11,6 +11,7 @@
 #include "flight/files/headers.hpp"
 #include "flight/files/invalid_cells.hpp"
 #include "flight/probes/plausible_readings.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal::probes {
@@ -297,6 +298,12 @@ void RecordBuilder::take_drivers() {
           fmt::format("column '{}' can't drive an effect: it is named like a quantity "
                       "of the probe; rename it",
                       column.header));
+    } else if (!can_name(column.header)) {
+      refused.push_back(fmt::format(
+          "column '{}' can't drive an effect: a name has no blanks, brackets or ^; rename it, e.g. "
+          "to throttle_pct",
+          column.header));
+      take(column.header, column, nullptr);  // compared all the same
     } else {
       take(column.header, column, nullptr);
     }
