@@ -34,8 +34,10 @@ __all__: list[str] = [
     "Prediction",
     "PreparedFlight",
     "PythonFunctions",
+    "SIGNIFICANT_BELOW",
     "ScreenResults",
     "StageOne",
+    "VISIBLE_FROM",
     "Window",
     "attitude_independent_magnetometer",
     "autocorrelation",
@@ -1615,6 +1617,8 @@ def spectrum(
     arg2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
 
+SIGNIFICANT_BELOW: float = 0.05
+VISIBLE_FROM: float = 0.05
 __version__: str = "0.1.0"
 
 class Error(ValueError): ...

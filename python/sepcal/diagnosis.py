@@ -21,7 +21,6 @@ COLUMNS = (  # of the table, one number a candidate
     "held_out_gain",
     "visibility",
 )
-SIGNIFICANT = 0.05  # p below which an effect is found, if rows held out gain as well
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ class EffectFinding:
     @property
     def in_words(self) -> str:
         """The status as tables show it; "not held out" is significant and yet refused."""
-        if self.status == "not_seen" and self.p_adjusted < SIGNIFICANT:
+        if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
             return "not held out"
         return {"found": "found", "not_seen": "not seen"}.get(self.status, "can't be seen")
 

@@ -109,10 +109,13 @@ struct Diagnosis {
   double floor = 0.0;  // innovations alone, over all outputs
 };
 
+inline constexpr double significant_below = 0.05;  // p after Holm
+inline constexpr double visible_from = 0.05;       // a sine: below, an effect can't be seen
+
 struct DiagnosisOptions {
-  double significance = 0.05;       // of the verdict, after Holm
-  double unexplained_below = 0.01;  // p of the omnibus test
-  double least_visibility = 0.05;
+  double significance = significant_below;  // of the verdict
+  double unexplained_below = 0.01;          // p of the omnibus test
+  double least_visibility = visible_from;
   double family_correlation = 0.9;
   int simulations = 199;  // that calibrate the test of a smooth driver
   std::uint64_t seed = 0;

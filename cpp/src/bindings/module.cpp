@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal._core: the engine and its flights for the Python front, which documents it.
 #include "bindings.hpp"
+#include "sepcal/diagnosis.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/solver_log.hpp"
@@ -24,6 +25,8 @@ PYBIND11_MODULE(_core, module) {
   using namespace sepcal::bindings;
   sepcal::silence_solver_log();
   module.attr("__version__") = SEPCAL_VERSION;
+  module.attr("SIGNIFICANT_BELOW") = sepcal::significant_below;
+  module.attr("VISIBLE_FROM") = sepcal::visible_from;
   define_error(module);
   define_options(module);
   define_results(module);

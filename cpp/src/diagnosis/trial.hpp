@@ -25,7 +25,7 @@ struct ShapeScore {
 struct Trial {
   Candidate candidate = {};
   double visibility = 0.0;
-  double least_visibility = 0.05;
+  double least_visibility = visible_from;
   bool visible = false;  // in one direction at least
   std::vector<ShapeScore> scores = {};
   double shape = not_a_number;  // where it explains most

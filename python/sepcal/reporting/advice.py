@@ -58,7 +58,7 @@ def advise(material: Material) -> str:
             f"<code>{escape(effect.name)}</code> from {', '.join(others[:TWINS])}{more}."
         )
     for effect in found.found[:1]:
-        if effect.visibility < tables.CLOSE:
+        if effect.visibility < _core.VISIBLE_FROM:
             lines.append(
                 f"<b>Fly</b> more variety before trusting the parameters beside "
                 f"<code>{escape(effect.name)}</code>: on this flight they can do most of what at "

@@ -177,9 +177,9 @@ def show_candidates(material: Material) -> Section:
     """The ranking of physical effects."""
     lead = (
         "Physical effects that the model may lack, best first. <b>p</b> is corrected for their "
-        "number; an effect is <b>found</b> when p is below 0.05 and rows held out of the fit gain "
-        "too. <b>Visibility</b> near 0: other parameters absorb the effect on this flight, "
-        "which then can't show it."
+        f"number; an effect is <b>found</b> when p is below {_core.SIGNIFICANT_BELOW:g} and rows "
+        "held out of the fit gain too. <b>Visibility</b> near 0: other parameters absorb the "
+        "effect on this flight, which then can't show it."
     )
     extra: list[str | Figure | Grid] = [tables.list_candidates(material.diagnosis.effects)]
     for effect in material.diagnosis.found[:1]:

@@ -8,6 +8,7 @@ from html import escape
 
 import numpy as np
 
+from sepcal import _core
 from sepcal._core import Combination, HistoryEntry, Parameter
 from sepcal.calibration import Calibration
 from sepcal.comparison import Comparison
@@ -23,7 +24,6 @@ from sepcal.reporting.words import (
 
 SHOWN = 10  # candidates; the others are folded away
 NEGLIGIBLE = 0.3  # standard errors: a shift that needs no table
-CLOSE = 0.05  # visibility below which a flight can't show at least a part of an effect
 
 
 def table(head: Sequence[tuple[str, bool]], rows: Sequence[Sequence[str]]) -> str:
@@ -121,7 +121,7 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> str:
         status = effect.in_words
         held = percent(effect.held_out_gain)
         seen = number(effect.visibility, 2)
-        if effect.visibility < CLOSE:
+        if effect.visibility < _core.VISIBLE_FROM:
             seen = f'<span class="flag">{seen}</span>'
         rows.append([
             f"{i}",

@@ -13,11 +13,10 @@ namespace {
 
 constexpr std::size_t most_shown = 12;
 constexpr std::size_t most_unseen = 3;
-constexpr double significant = 0.05;
 
 /// Significant, and yet the rows left out are not predicted better.
 bool is_refused(const EffectFinding& effect) {
-  return effect.status == FindingStatus::not_seen && effect.p_adjusted < significant;
+  return effect.status == FindingStatus::not_seen && effect.p_adjusted < significant_below;
 }
 
 std::string percent(double fraction) {
