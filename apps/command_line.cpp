@@ -34,7 +34,10 @@ std::string list_verbs(const CLI::App& cli) {
 /// "--field 20.1 0.9 43.5" leaves two numbers over: said where numbers alone are.
 std::string explain_extras(const CLI::App& verb, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return "";
-  const auto is_number = [](const std::string& word) { return parse_number(word).has_value(); };
+  const auto is_number = [](std::string_view word) {
+    if (word.ends_with(',')) word.remove_suffix(1);
+    return parse_number(word).has_value();
+  };
   const bool numbers = std::ranges::all_of(verb.remaining(), is_number);
   return numbers ? "; put commas and no blanks between an option's numbers" : "";
 }

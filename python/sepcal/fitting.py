@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The two-stage batch estimator in one call."""
 
+import os
 from typing import Unpack, overload
 
 from sepcal import _core
@@ -50,6 +51,8 @@ def fit(
         TypeError: An option that there isn't, or of the wrong kind.
         Exception: What at() of a model in Python raises, as it is.
     """
+    if isinstance(model, Flight | str | os.PathLike):
+        raise _core.Error("the model comes first, then the data: sepcal.fit(model, flight)")
     if not isinstance(model, Model):
         model = OwnModel(model)
     if isinstance(model, OwnModel):

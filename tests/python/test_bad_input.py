@@ -47,6 +47,8 @@ def test_columns_that_are_none() -> None:
 
 def test_the_name_of_a_file_and_an_array_without_names() -> None:
     refuse(lambda: sepcal.fit(SCALAR, "log.csv"), "'log.csv'", "sepcal.read_csv(")
+    refuse(lambda: sepcal.fit("log.csv", SCALAR), "the model comes first")
+    refuse(lambda: sepcal.report("base.json", "report.html"), "sepcal.load(")
     refuse(lambda: sepcal.Flight(Path("log.csv")), "'log.csv'", "sepcal.read_csv(")
     refuse(lambda: sepcal.Flight(np.ones((3, 2))), "(3, 2)", "names no columns", "dict")
     refuse(lambda: sepcal.fit(SCALAR, np.ones(3)), "(3,)", "names no columns", "dict")

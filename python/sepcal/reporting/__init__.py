@@ -48,6 +48,8 @@ def report(
             plotly is not installed, a file that can't be written.
     """
     chain = [calibrations] if isinstance(calibrations, Calibration) else list(calibrations)
+    if not all(isinstance(one, Calibration) for one in chain):
+        raise _core.Error("a report is of calibrations; read their files by sepcal.load(file)")
     if not chain:
         raise _core.Error("a report needs a calibration; give one or several")
     plotly = read_plotly()

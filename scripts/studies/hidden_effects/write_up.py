@@ -182,7 +182,7 @@ def _draw(rows: list[Row], file: Path) -> None:
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise Error("the power curve needs matplotlib: pip install sepcal[paper]") from error
+        raise Error("the power curve needs matplotlib: pip install matplotlib") from error
     sizes = _sizes(rows)
     figure = Figure(figsize=(6.4, 3.6), layout="constrained")
     axes = figure.add_subplot()
