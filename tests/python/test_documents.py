@@ -63,6 +63,13 @@ def test_python_in_the_documents_defines_all_that_it_uses(block):
     assert used - known == set()
 
 
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: document.name)
+def test_files_of_the_sources_that_a_document_names_are_there(document):
+    ours = r"(?:apps|benchmarks|cpp|docs|examples|python|scripts|tests)"
+    named = set(re.findall(rf"`({ours}/[\w./-]+\.\w+)`", document.read_text()))
+    assert {name for name in named if not (ROOT / name).exists()} == set()
+
+
 def test_documents_quote_cpp_python_shell_and_a_whole_model():
     quoted = {block["mark"].removeprefix("from examples/") for block in QUOTED}
     assert {"01_own_model.cpp", "02_five_hole.cpp", "03_five_hole.py", "04_five_hole.sh"} <= quoted

@@ -2,6 +2,7 @@
 """print() of a result is the app's text to the byte; repr, HTML and data frames beside it."""
 
 import inspect
+import re
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -245,6 +246,22 @@ def test_help_says_what_each_option_is():
         assert f"\n    {name}: " in text
     assert "FitOptions." not in text
     assert "\nReturns:" in text
+
+
+def test_the_defaults_that_help_says_are_the_engines():
+    entries = (inspect.getdoc(sepcal.FitOptions) or "").partition("Attributes:\n")[2]
+    said = {
+        name: re.findall(r"\[([^\]]*)\]", text)
+        for name, text in re.findall(r"^    (\w+): (.*?)(?=^    \w|\Z)", entries, re.M | re.S)
+    }
+    assert set(said) == set(sepcal.FitOptions.__annotations__)
+    engine = sepcal._core.Options()
+    for name in said:
+        default = getattr(engine, name, None)
+        if isinstance(default, str) and default:
+            assert said[name][-1] == f'"{default}"', name
+        elif isinstance(default, int | float) and name != "loss_width":  # 0: the loss's own
+            assert said[name][-1].split(";")[0] == str(default), name
 
 
 def test_many_flights_take_the_options_they_can():
