@@ -163,13 +163,15 @@ NoiseFit fit_white(double square, Index rows) {
   return fit;
 }
 
-void check(std::span<const double> e, const std::vector<Segment>& segments,
-           const NoiseFitOptions& options) {
+void check(const std::vector<Segment>& segments, const NoiseFitOptions& options) {
   if (segments.empty()) throw Error("there are no segments to fit the noise on; give at least one");
   if (options.order.value_or(0) < 0 || options.max_order < 0) {
     throw Error("the order of the noise model is negative; choose 0 or more");
   }
   if (options.start) check_noise_model(*options.start);
+}
+
+void check_finite(std::span<const double> e, const std::vector<Segment>& segments) {
   for (const Segment& segment : segments) {
     for (std::size_t row = segment.first; row < segment.last; ++row) {
       if (std::isfinite(e[row])) continue;
@@ -250,8 +252,9 @@ NoiseFit fit_scaled(const VectorXd& rows, const std::vector<Index>& lengths,
 
 NoiseFit fit_noise(std::span<const double> e, const std::vector<Segment>& segments,
                    const NoiseFitOptions& options) {
-  check(e, segments, options);
+  check(segments, options);
   VectorXd rows = gather_rows(e, segments);
+  check_finite(e, segments);
   const double scale = rows.cwiseAbs().maxCoeff();
   if (!(scale > 0.0)) return fit_white(0.0, rows.size());
   rows /= scale;  // no square under- or overflows
