@@ -44,6 +44,22 @@ TEST_CASE("without a shift the values are the column's, with one those of the si
   }
 }
 
+TEST_CASE("it does not matter from when on time is counted") {
+  std::vector<double> time;
+  for (int k = 0; k < 200; ++k) time.push_back(k / 64.0);
+  const auto sine = [](double t) { return std::sin(t); };
+  const Record early = sepcal::test::sample({{"x", sine}}, time);
+  for (double& t : time) t += 1.7e9;  // exact
+  const Record late =
+      sepcal::test::sample({{"x", [&](double t) { return sine(t - 1.7e9); }}}, time);
+  const auto expected = read(InterpolatedColumn(early, "x"), 20, 100, 0.0123);
+  const auto values = read(InterpolatedColumn(late, "x"), 20, 100, 0.0123);
+  for (std::size_t k = 0; k < 100; ++k) {
+    CHECK(values[k].value == expected[k].value);
+    CHECK(values[k].slope == expected[k].slope);
+  }
+}
+
 TEST_CASE("no value of another segment has a share, however near it is") {
   // A jump of 1000 at row 20. Each side is a straight line, and stays one past the edge.
   Record record;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "sepcal/error.hpp"
@@ -21,13 +22,14 @@ void unwrap(std::vector<double>& angles) {
 InterpolatedColumn::InterpolatedColumn(const Record& record, const std::string& name, bool angle) {
   const std::span<const double> time = record.column("time");
   const std::span<const double> column = record.column(name);
-  time_.assign(time.begin(), time.end());
+  const double origin = time.empty() ? 0.0 : time.front();
+  std::ranges::transform(time, std::back_inserter(time_), [&](double at) { return at - origin; });
   for (const Segment& segment : record.segments()) {
     const auto part = [&](std::span<const double> values) {
       const auto rows = values.subspan(segment.first, segment.rows());
       return std::vector<double>(rows.begin(), rows.end());
     };
-    std::vector<double> times = part(time);
+    std::vector<double> times = part(time_);
     std::vector<double> values = part(column);
     if (angle) unwrap(values);
     if (segment.rows() == 1) {  // a line of no slope through the lone row

@@ -30,7 +30,7 @@ class InterpolatedColumn {
 
   const Piece& piece_of(std::size_t row) const;
 
-  std::vector<double> time_;
+  std::vector<double> time_;  // [s] since the record began: a stamp of 1e9 s leaves few digits
   std::vector<Piece> pieces_;
 };
 
