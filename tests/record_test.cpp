@@ -175,6 +175,29 @@ TEST_CASE("time must increase, and labels must be as many as rows") {
                        Contains("1 labels for 2 rows"), Error);
 }
 
+TEST_CASE("stamps that come in bursts are no gaps, a pause among them is one") {
+  std::vector<double> time;
+  double now = 0.0;
+  for (int burst = 0; burst < 200; ++burst) {
+    for (int row = 0; row < 4; ++row) time.push_back(now += 0.0033);
+    now += 0.008 + 0.0005 * (burst % 60);  // up to 0.038 s: more than five medians
+    if (burst == 120) now += 1.0;
+  }
+  const std::vector<Segment> segments = find_segments(time, {});
+  REQUIRE(segments.size() == 2);
+  CHECK(segments[0].last == 4 * 121);
+}
+
+TEST_CASE("scattered dropouts of any length stay gaps") {
+  std::vector<double> time;
+  double now = 0.0;
+  for (int row = 0; row < 1000; ++row) {
+    now += row % 100 == 99 ? 0.04 * (row / 100 + 1) : 0.01;
+    time.push_back(now);
+  }
+  CHECK(find_segments(time, {}).size() == 10);  // from 0.08 s on: nine
+}
+
 TEST_CASE("a run goes on where a label changes and ends at a gap") {
   const auto runs = [](std::vector<double> time, std::vector<Segment> segments) {
     Record record;
