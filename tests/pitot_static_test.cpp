@@ -110,3 +110,29 @@ TEST_CASE("in still air, and where an offset outweighs the air, all is finite") 
   CHECK(tangent(u, {0, 0, 0}, 0.9, 1.5).allFinite());
   CHECK(read(u, {0, 0, 0}, 1, 0) < 1e-5);
 }
+
+TEST_CASE("the wind from the circles that the ground velocity lies on, whatever scale and bias") {
+  const Eigen::Index rows = 60;
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(rows, 7);
+  Eigen::MatrixXd z(rows, 1);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double heading = 0.1 * static_cast<double>(i);
+    const double airspeed = i % 2 == 0 ? 20.0 : 30.0;
+    u(i, vn) = airspeed * std::cos(heading) + 8.0;
+    u(i, ve) = airspeed * std::sin(heading) - 5.0;
+    z(i, 0) = 1.1 * airspeed;
+  }
+  const Eigen::MatrixXd guess = PitotStatic::guess(u, z);
+  REQUIRE(guess.cols() == 1);
+  CHECK(guess(0, 0) == Approx(8.0).epsilon(1e-9));
+  CHECK(guess(1, 0) == Approx(-5.0).epsilon(1e-9));
+  CHECK(std::abs(guess(2, 0)) < 1e-9);  // a level flight says nothing of it
+
+  z.setConstant(25.0);  // one airspeed: the circle alone
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    u(i, vn) = 25.0 * std::cos(0.1 * static_cast<double>(i)) + 8.0;
+    u(i, ve) = 25.0 * std::sin(0.1 * static_cast<double>(i)) - 5.0;
+  }
+  CHECK(PitotStatic::guess(u, z)(0, 0) == Approx(8.0).epsilon(1e-9));
+  CHECK(PitotStatic::guess(u, z)(1, 0) == Approx(-5.0).epsilon(1e-9));
+}

@@ -72,6 +72,11 @@ class BlockModel {
   virtual bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
                                       Eigen::Ref<Eigen::MatrixXd> sum) const;
 
+  /// Points of xi2 (n_2 x any number, none unless overridden) that a closed form makes of the
+  /// measurements, u of shape (rows, n_u) and z of shape (rows, n_z): stage one descends from them
+  /// too, where a narrow basin slips between its samples. They may lie beyond the bounds.
+  virtual Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const;
+
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.
   virtual std::unique_ptr<Carry> new_carry() const { return nullptr; }

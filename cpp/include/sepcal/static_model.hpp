@@ -80,6 +80,14 @@ class StaticModel final : public BlockModel {
     }
   }
 
+  Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const override {
+    if constexpr (requires { model_.guess(u, z); }) {
+      return model_.guess(u, z);
+    } else {
+      return BlockModel::guess(u, z);
+    }
+  }
+
  private:
   static constexpr int n_u = Sizes<M>::n_u;
   static constexpr int n_z = Sizes<M>::n_z;

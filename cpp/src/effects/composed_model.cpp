@@ -56,4 +56,11 @@ void ComposedModel::input_tangent(const Block& block, const double* xi2, const d
   ComposedRows(*model_, tables(), parts_, block, xi2, xi1, moved).add_slopes(columns);
 }
 
+MatrixXd ComposedModel::guess(const MatrixXd& u, const MatrixXd& z) const {
+  const MatrixXd own = model_->guess(u.leftCols(model_->tables().n_u()), z);
+  MatrixXd all = MatrixXd::Zero(tables().n_2(), own.cols());
+  all.topRows(own.rows()) = own;
+  return all;
+}
+
 }  // namespace sepcal::effects

@@ -29,6 +29,9 @@ class ComposedModel final : public BlockModel {
                      std::span<const int> inputs,
                      Eigen::Ref<Eigen::MatrixXd> columns) const override;
 
+  /// The model's own guess, the effects' parameters at zero.
+  Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const override;
+
   std::unique_ptr<Carry> new_carry() const override { return model_->new_carry(); }
 
  private:

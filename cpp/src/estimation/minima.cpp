@@ -77,15 +77,21 @@ VectorXd half_widths(const Problem& problem) {
 
 std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
                                  const MatrixXd& samples, const VectorXd& trace_r,
-                                 double measurements, const Descend& descend) {
+                                 const MatrixXd& guesses, double measurements,
+                                 const Descend& descend) {
   const VectorXd widths = half_widths(problem);
   const MatrixXd scaled = widths.cwiseInverse().asDiagonal() * samples;
-  std::vector<Descent> minima;
   std::vector<numerics::Basin> basins =
       numerics::find_basins(scaled, trace_r.array().log().matrix());  // depth as a ratio
   basins.resize(std::min(basins.size(), static_cast<std::size_t>(problem.options().descents)));
-  for (const numerics::Basin& basin : basins) {
-    Descent descent = descend(samples.col(basin.lowest));
+  std::vector<VectorXd> starts;
+  for (const numerics::Basin& basin : basins) starts.push_back(samples.col(basin.lowest));
+  for (const auto guess : guesses.colwise()) {
+    if (std::isfinite(objective.square(guess))) starts.push_back(guess);
+  }
+  std::vector<Descent> minima;
+  for (const VectorXd& start : starts) {
+    Descent descent = descend(start);
     if (!std::isfinite(descent.square)) continue;
     descent.x = last_digits(objective, descent.x, problem.nonlinear_box(), widths);
     descent.square = objective.square(descent.x);

@@ -21,12 +21,14 @@ Eigen::VectorXd half_widths(const Problem& problem);
 /// From a start (n_2) to where the cost is lowest nearby, within the bounds.
 using Descend = std::function<Descent(const Eigen::VectorXd& start)>;
 
-/// Lowest first; options.descents of them at most. `samples` is n_2 x S, `trace_r` (S) is Tr[R]
-/// there, infinite where no descent may begin. Ends of descents are refined, and two of them are
+/// Lowest first; of options.descents at most, and of one from each of the model's `guesses` (n_2 x
+/// any number). `samples` is n_2 x S, `trace_r` (S) is Tr[R] there, infinite where no descent may
+/// begin. Ends of descents are refined, and two of them are
 /// one where the record can't tell them apart. `measurements`: rows x outputs.
 std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
                                  const Eigen::MatrixXd& samples, const Eigen::VectorXd& trace_r,
-                                 double measurements, const Descend& descend);
+                                 const Eigen::MatrixXd& guesses, double measurements,
+                                 const Descend& descend);
 
 /// Directions, in words, along which a half width from xi2 moves the fit by less than two standard
 /// errors.

@@ -127,6 +127,16 @@ VectorXd choose_best(const Problem& problem, const model::Measurements& measurem
   return usable;
 }
 
+/// The model's guesses, moved into the bounds.
+MatrixXd guess_within(const Problem& problem, const model::Measurements& measurements) {
+  constexpr std::size_t enough = 4000;
+  const auto [u, z] = measurements.gather(enough);
+  const numerics::Box box = problem.nonlinear_box();
+  MatrixXd guesses = problem.model().guess(u, z);
+  for (auto guess : guesses.colwise()) guess = guess.cwiseMax(box.lower).cwiseMin(box.upper);
+  return guesses;
+}
+
 }  // namespace
 
 StageOne estimation::run_stage_one(const Problem& problem, const model::Measurements& measurements,
@@ -164,7 +174,8 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
                     : minimise(objective, start, problem.nonlinear_box(), within_the_basin);
     };
     for (const Descent& minimum :
-         find_minima(objective, problem, result.samples, usable, count, from_start)) {
+         find_minima(objective, problem, result.samples, usable,
+                     guess_within(problem, measurements), count, from_start)) {
       result.minima.push_back({minimum.x, minimum.square / rows});
     }
     result.xi2 = result.minima.empty() ? result.best : result.minima.front().xi2;

@@ -37,6 +37,10 @@ void BlockModel::input_tangent(const Block& block, const double* xi2, const doub
   differentiate_by_inputs(predict, block, inputs, columns);
 }
 
+MatrixXd BlockModel::guess(const MatrixXd& /*u*/, const MatrixXd& /*z*/) const {
+  return MatrixXd(tables_.n_2(), 0);
+}
+
 bool BlockModel::add_second_derivatives(
     const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,
     // NOLINTNEXTLINE(performance-unnecessary-value-param): an output

@@ -26,6 +26,10 @@ class FixedModel final : public BlockModel {
   bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
                               Eigen::Ref<Eigen::MatrixXd> sum) const override;
 
+  Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const override {
+    return model_.guess(u, z)(free_2_, Eigen::all);
+  }
+
   std::unique_ptr<Carry> new_carry() const override { return model_.new_carry(); }
 
  private:

@@ -7,6 +7,10 @@
 #include "sepcal/error.hpp"
 
 namespace sepcal::model {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
 namespace {
 
 void check_finite(const std::string& name, std::span<const double> values, const Record& record) {
@@ -81,6 +85,27 @@ Block Measurements::block(const Range& range, std::vector<const double*>& pointe
 
 std::span<const double> Measurements::output(int j, const Range& range) const {
   return outputs_[static_cast<std::size_t>(j)].subspan(range.first, range.rows);
+}
+
+std::pair<MatrixXd, MatrixXd> Measurements::gather(std::size_t most) const {
+  const std::size_t stride = (rows_ + most - 1) / most;
+  const std::size_t rows = (rows_ + stride - 1) / stride;
+  MatrixXd u(rows, inputs_.size());
+  MatrixXd z(rows, outputs_.size());
+  std::vector<const double*> pointers;
+  Index at = 0;
+  for (const std::vector<Range>& chunk : chunks_) {
+    for (const Range& range : chunk) {
+      const Block inputs = block(range, pointers);
+      for (std::size_t row = (stride - range.offset % stride) % stride; row < range.rows;
+           row += stride, ++at) {
+        for (Index i = 0; i < u.cols(); ++i)
+          u(at, i) = inputs.inputs[static_cast<std::size_t>(i)][row];
+        for (Index j = 0; j < z.cols(); ++j) z(at, j) = output(static_cast<int>(j), range)[row];
+      }
+    }
+  }
+  return {u, z};
 }
 
 }  // namespace sepcal::model

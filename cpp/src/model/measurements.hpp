@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sepcal/block_model.hpp"
@@ -46,6 +47,9 @@ class Measurements {
 
   /// z of output j over a range.
   std::span<const double> output(int j, const Range& range) const;
+
+  /// u (rows x n_u) and z (rows x n_z), dense, of every row or, evenly, of about `most` of them.
+  std::pair<Eigen::MatrixXd, Eigen::MatrixXd> gather(std::size_t most) const;
 
   /// Sum of z^2 of output j.
   double output_square(int j) const { return output_squares_[static_cast<std::size_t>(j)]; }

@@ -47,6 +47,10 @@ struct PitotStatic {
     return z;
   }
 
+  /// The wind from where the ground velocity's circles lie: |v - W|^2 = a z^2 + b is linear in W, a
+  /// and b - |W|^2. A column, or none where the record doesn't turn.
+  static Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z);
+
  private:
   /// sqrt(square + floor^2), the floor 1e-6 m/s: it has a slope at rest too, and above 0.1 m/s it
   /// is sqrt(square) to 1e-10. A square below zero (an offset that outweighs the air) counts as
