@@ -100,6 +100,25 @@ TEST_CASE("altitude, time and temperature are taken about their mean over the se
   check_column(rows_with("c[current_a^3]").col(2), {1, 8, 27, 216});
 }
 
+TEST_CASE(
+    "a channel that keeps away from zero goes about its mean where the model has a constant") {
+  const auto with_voltage = [](EffectSetting setting) {
+    Record record = make_record();
+    record.add("voltage_v", {0, 14, 15, 15.5, 15.5, 0});
+    return make(std::move(setting), record);
+  };
+  CHECK(with_voltage({.name = "c[voltage_v]"}).setting.centre == 0.0);
+  CHECK(with_voltage({.name = "c[voltage_v]"}).setting.mean.value() == Approx(15).epsilon(1e-14));
+  const double squares = (14.0 * 14 + 15 * 15 + 2 * 15.5 * 15.5) / 4;
+  CHECK(with_voltage({.name = "c[voltage_v^2]"}).setting.mean.value() ==
+        Approx(squares).epsilon(1e-14));
+  CHECK(!make({.name = "c[current_a]"}).setting.mean);          // 1 to 6 A: no current is near
+  CHECK(!with_voltage({.name = "u[voltage_v]"}).setting.mean);  // u has no constant of its own
+  // A calibration of before has a centre and no mean: it keeps what it meant.
+  const EffectSetting before{.name = "c[voltage_v]", .centre = 0.0, .known = true};
+  CHECK(!with_voltage(before).setting.mean);
+}
+
 TEST_CASE("a centre, knots, labels, a span and a time that are known are kept") {
   const Made power = make({.name = "c[altitude_m]", .centre = 100.0, .known = true});
   CHECK(power.setting.centre == 100.0);

@@ -57,8 +57,8 @@ using DriverPointer = std::shared_ptr<const Driver>;
 /// phi = 1.
 DriverPointer constant_driver();
 
-/// phi = (d - centre)^power, power 1 to 9.
-DriverPointer power_driver(Variable input, double centre, int power);
+/// phi = (d - centre)^power - mean, power 1 to 9.
+DriverPointer power_driver(Variable input, double centre, int power, double mean = 0.0);
 
 /// phi = max(d, 0)^exponent, the exponent fitted within [0.3, 2].
 DriverPointer exponent_driver(Variable input);

@@ -21,6 +21,7 @@ namespace sepcal {
 struct EffectSetting {
   std::string name;                                    // whole, aliases resolved
   std::optional<double> centre = {};                   // of a power's driver
+  std::optional<double> mean = {};                     // of the power, where it is taken away
   std::vector<double> knots = {};                      // of a spline
   std::vector<std::string> labels = {};                // of the driver `maneuver`
   std::optional<std::pair<double, double>> span = {};  // the record's first and last time [s]
@@ -44,6 +45,10 @@ struct Port {
   std::string unit;
   std::vector<Component> components;
   double plausible = infinity;  // the most that an effect on an input may amount to
+  /// Whether the model takes a constant on the port as its own: powers of a channel that keeps away
+  /// from zero (a voltage) then go about their mean, so that the model's parameters stay those of
+  /// the flight and not of a zero that nobody saw.
+  bool constant_is_own = true;
 };
 
 /// What a model's effects can be made of.

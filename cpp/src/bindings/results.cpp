@@ -79,6 +79,8 @@ void define_parameters(py::module_& module) {
       "An effect of a fit, with what it took from the record; None or empty where it takes none.")
       .field("name", &EffectSetting::name, R"(Whole, aliases resolved: "wind[altitude_m]".)")
       .field("centre", &EffectSetting::centre, "Of a power's driver, in the driver's unit.")
+      .field("mean", &EffectSetting::mean,
+             "Of the power over the fitted rows, where it is taken away.")
       .tuple("knots", &EffectSetting::knots, "Of a spline.")
       .tuple("labels", &EffectSetting::labels,
              "Of the driver `maneuver`; the first has no coefficient.")

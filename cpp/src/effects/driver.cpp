@@ -137,15 +137,15 @@ DriverPointer constant_driver() {
   return pointwise({}, {}, [](double, double) { return ValueAndSlope{1.0, 0.0}; });
 }
 
-DriverPointer power_driver(Variable input, double centre, int power) {
+DriverPointer power_driver(Variable input, double centre, int power, double mean) {
   if (power < 1 || power > 9) {
     throw Error("the power " + std::to_string(power) + " of '" + input.name +
                 "' must be a whole number from 1 to 9");
   }
-  return pointwise(std::move(input), {}, [centre, power](double d, double) {
+  return pointwise(std::move(input), {}, [centre, power, mean](double d, double) {
     double value = 1.0;
     for (int i = 0; i < power; ++i) value *= d - centre;
-    return ValueAndSlope{value, 0.0};
+    return ValueAndSlope{value - mean, 0.0};
   });
 }
 

@@ -83,9 +83,34 @@ void check_channel(const EffectName& name, const Record& record, bool known) {
               std::to_string(lowest) + "), so that this record can't show the effect");
 }
 
-/// Altitude, time and temperature are taken about their mean: their zero is far from any flight.
-bool is_centred(const std::string& base) {
+/// Altitude, time and temperature are taken about their mean before they are raised to a power:
+/// their zero is far from any flight.
+bool has_far_zero(const std::string& base) {
   return base == "time" || base.starts_with("altitude") || base.starts_with("temp");
+}
+
+/// Whether the values stay further from zero than they change: nobody has seen the sensor at zero.
+bool keep_from_zero(const std::vector<double>& values) {
+  const auto [lowest, highest] = std::ranges::minmax(values);
+  return std::max(lowest, -highest) > highest - lowest;
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+DriverPointer make_power(const EffectName& name, const Variable& channel,
+                         const std::vector<double>& values, bool about_mean,
+                         EffectSetting& setting) {
+  if (!setting.centre) {
+    setting.centre = has_far_zero(name.base) ? mean_of(values) : 0.0;
+    if (about_mean && !has_far_zero(name.base) && keep_from_zero(values)) {
+      std::vector<double> powers;
+      for (const double value : values) powers.push_back(std::pow(value, name.number));
+      setting.mean = mean_of(powers);
+    }
+  }
+  return power_driver(channel, *setting.centre, name.number, setting.mean.value_or(0.0));
 }
 
 }  // namespace
@@ -100,7 +125,8 @@ std::string coefficient_unit(const std::string& port_unit, const EffectName& nam
   return unit;
 }
 
-DriverPointer make_named_driver(const EffectName& name, EffectSetting& setting, Record& record) {
+DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectSetting& setting,
+                                Record& record) {
   check_channel(name, record, setting.known);
   if (name.base == "maneuver") {
     if (setting.labels.empty()) setting.labels = labels_of(record);
@@ -118,13 +144,7 @@ DriverPointer make_named_driver(const EffectName& name, EffectSetting& setting, 
   }
   if (name.shape == Shape::exponent) return exponent_driver(channel);
   if (name.shape == Shape::delay) return delay_driver(channel, record, longest_delay);
-  if (name.shape == Shape::power) {
-    if (!setting.centre) {
-      const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-      setting.centre = is_centred(name.base) ? sum / static_cast<double>(values.size()) : 0.0;
-    }
-    return power_driver(channel, *setting.centre, name.number);
-  }
+  if (name.shape == Shape::power) return make_power(name, channel, values, about_mean, setting);
   if (!setting.span) setting.span = {values.front(), values.back()};
   const auto [first, last] = *setting.span;
   if (name.shape == Shape::decay) return decay_driver(channel, first, last);

@@ -12,9 +12,12 @@
 namespace sepcal::effects {
 
 /// The driver, its gaps in `setting` filled in from `record`, which gets the column `maneuver` for
-/// labels. Throws Error for a channel that isn't there, holds no finite number somewhere or, in the
-/// record that the effect is first made for, doesn't vary.
-DriverPointer make_named_driver(const EffectName& name, EffectSetting& setting, Record& record);
+/// labels. A power of a channel that keeps away from zero goes about its mean where
+/// `about_mean`. Throws Error for a channel that isn't
+/// there, holds no finite number somewhere or, in the record that the effect is first made for,
+/// doesn't vary.
+DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectSetting& setting,
+                                Record& record);
 
 /// "m/s per m", "uT per degC^2"; the port's own unit where the driver is a function without one.
 std::string coefficient_unit(const std::string& port_unit, const EffectName& name);

@@ -50,7 +50,7 @@ Effect make_named(const std::string& owner, const EffectName& means, const Port&
     throw Error("effect " + means.text + ": '" + means.base +
                 "' is what is measured; a driver must be another channel, or it explains itself");
   }
-  const DriverPointer driver = make_named_driver(means, setting, record);
+  const DriverPointer driver = make_named_driver(means, port.constant_is_own, setting, record);
   return make_driven(owner, port, driver, coefficient_unit(port.unit, means), model, record);
 }
 
@@ -61,7 +61,10 @@ EffectKit plain_kit(const Tables& model) {
         {parameter.name, parameter.unit, {{.name = "s", .linear = parameter.name}}});
   }
   for (const Variable& input : model.inputs) {
-    kit.ports.push_back({input.name, input.unit, {{.name = "s", .input = input.name}}});
+    kit.ports.push_back({.name = input.name,
+                         .unit = input.unit,
+                         .components = {{.name = "s", .input = input.name}},
+                         .constant_is_own = false});
   }
   return kit;
 }

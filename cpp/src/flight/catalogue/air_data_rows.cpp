@@ -37,7 +37,9 @@ PortRow airspeed_bias_row(const Port& port, const std::vector<Form>& forms) {
 }
 
 PortRow pressure_offset_row(const std::vector<Form>& forms) {
-  return {.port = on_input("pressure_offset", "Pa", 1000.0),
+  Port port = on_input("pressure_offset", "Pa", 1000.0);
+  port.constant_is_own = false;  // the models have a constant error of airspeed, not of pressure
+  return {.port = std::move(port),
           .sentence = "the pressure difference is off, changing",
           .forms = forms,
           .channels = {"rho"}};

@@ -48,6 +48,7 @@ Screens read_screens(const Json& object) {
 Json write_effect(const EffectSetting& setting) {
   Json effect = {{"name", setting.name}};
   if (setting.centre) effect["centre"] = *setting.centre;
+  if (setting.mean) effect["mean"] = *setting.mean;
   if (!setting.knots.empty()) effect["knots"] = setting.knots;
   if (!setting.labels.empty()) effect["labels"] = setting.labels;
   if (setting.span) effect["span"] = {setting.span->first, setting.span->second};
@@ -58,6 +59,7 @@ Json write_effect(const EffectSetting& setting) {
 EffectSetting read_effect(const Json& object) {
   EffectSetting setting{.name = object.at("name").get<std::string>()};
   if (object.contains("centre")) setting.centre = object.at("centre").get<double>();
+  if (object.contains("mean")) setting.mean = object.at("mean").get<double>();
   if (object.contains("knots")) setting.knots = object.at("knots").get<std::vector<double>>();
   if (object.contains("labels")) {
     setting.labels = object.at("labels").get<std::vector<std::string>>();
