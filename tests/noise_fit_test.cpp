@@ -225,6 +225,13 @@ TEST_CASE("hardly any rows, and residuals that can be predicted, give finite mod
   spike[40] = 1;
   check(spike, make_segments({100}), {});
   check(noise.array() + 1e9, make_segments({400}), {});
+  // What is left of a good fit to a log that was interpolated from a slower sensor.
+  for (const double size : {1e-2, 1e-4, 1e-6, 1e-9}) {
+    const VectorXd t = VectorXd::LinSpaced(400, 0, 30);
+    check(t.array().sin() + 0.3 * (0.31 * t.array()).cos() + size * noise.array(),
+          make_segments({400}), {});
+    check(t.array().cube() + size * noise.array(), make_segments({250, 150}), order(8));
+  }
   // A start of more coefficients than rows.
   NoiseFitOptions start;
   start.start = NoiseModel{0.1, VectorXd::Zero(5), 1.0};

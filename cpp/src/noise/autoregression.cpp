@@ -28,8 +28,13 @@ VectorXd partial_from_phi(VectorXd phi) {
   return phi;
 }
 
+bool is_stationary(const VectorXd& phi) {
+  return (partial_from_phi(phi).array().abs() < 1.0).all();
+}
+
 BurgFit fit_burg(const VectorXd& y, const std::vector<Index>& lengths, int max_order) {
-  BurgFit fit{VectorXd::Zero(max_order + 1), VectorXd::Zero(max_order)};
+  BurgFit fit{VectorXd::Zero(max_order + 1), VectorXd::Zero(max_order + 1),
+              VectorXd::Zero(max_order)};
   VectorXd forward = y;
   VectorXd backward = y;
   const auto rows = static_cast<double>(y.size());
@@ -60,11 +65,13 @@ BurgFit fit_burg(const VectorXd& y, const std::vector<Index>& lengths, int max_o
     }
     const double square = later + early;
     fit.criterion[order] = rows * std::log(square / rows) + log_ratio;
+    fit.log_ratio[order] = log_ratio;
     if (order == max_order) return fit;
     const double r = power > 0.0 ? 2.0 * cross / power : 0.0;
     const double left = 1.0 - r * r;
     if (!(left > 1e-10)) {  // predicted without error: no higher order has anything to add
       fit.criterion.tail(max_order - order).setConstant(fit.criterion[order]);
+      fit.log_ratio.tail(max_order - order).setConstant(log_ratio);
       return fit;
     }
     fit.partial[order] = r;

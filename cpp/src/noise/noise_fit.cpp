@@ -13,6 +13,7 @@
 #include "noise/noise_room.hpp"
 #include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/quantity.hpp"
 
 namespace sepcal {
 
@@ -46,7 +47,9 @@ class Likelihood {
     return theta;
   }
 
+  /// Not a number where rounding takes phi out of what is stationary.
   VectorXd evaluate(const VectorXd& theta) const {
+    if (!is_stationary(phi_of(theta))) return VectorXd::Constant(rows(), not_a_number);
     const ArfimaFactor factor = make_factor(theta);
     VectorXd y = rows_.values;
     factor.whiten(y, rows_.blocks);

@@ -22,7 +22,7 @@ void noise::check_noise_model(const NoiseModel& model) {
   if (!(model.d >= 0.0 && model.d < 1.0)) {
     throw Error("the noise model's d is " + std::to_string(model.d) + "; it must be in [0, 1)");
   }
-  if (!(partial_from_phi(model.phi).array().abs() < 1.0).all()) {
+  if (!is_stationary(model.phi)) {
     throw Error(
         "the noise model's phi is not stationary: every partial autocorrelation must be "
         "within (-1, 1)");
