@@ -25,8 +25,8 @@ struct Arguments {
 };
 
 /// Each returns the exit code: 0, or what the fit's status (4 not identifiable, 5 not converged) or
-/// the diagnosis says (3 a missing effect, 6 unexplained). All throw Error for bad input; nothing
-/// is written then.
+/// the diagnosis says (3 a missing effect, 6 a slow change or unexplained). All throw Error for bad
+/// input; nothing is written then.
 class Verbs {
  public:
   Verbs(const Instrument& instrument, const Arguments& arguments)

@@ -87,7 +87,7 @@ class Calibration(Fit):
         *,
         effects: Sequence[Effect] = (),
         inject: Mapping[str, float | Sequence[float]] | None = None,
-        simulations: int = 199,
+        simulations: int = 80,
         seed: int = 0,
     ) -> Diagnosis:
         """Which physical effect is missing on a flight, by default the fitted one?
@@ -97,7 +97,7 @@ class Calibration(Fit):
             effects: Candidates of your own, beside the catalogue's.
             inject: One effect with its size (or one a coefficient) that is put into the
                 measurements first, to see whether it would have been found.
-            simulations: That calibrate the test of an effect as slow as noise may be.
+            simulations: Of the noise, that calibrate a test.
             seed: Of these simulations.
 
         Raises:

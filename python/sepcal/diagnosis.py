@@ -47,14 +47,16 @@ class EffectFinding:
     visibility: float  # below 0.05 the flight can't show at least a part of it
     absorbed_by: dict[str, float]  # how far ignoring it shifts each parameter
     family: list[str]  # what this flight can't tell apart, itself among them
-    status: str  # "found", "not_seen", "cannot_be_seen"
+    status: str  # "found", "slow_change", "not_seen", "cannot_be_seen"
 
     @property
     def in_words(self) -> str:
         """The status as tables show it; "not held out" is significant and yet refused."""
         if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
             return "not held out"
-        return {"found": "found", "not_seen": "not seen"}.get(self.status, "can't be seen")
+        return {"found": "found", "slow_change": "slow change", "not_seen": "not seen"}.get(
+            self.status, "can't be seen"
+        )
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,8 @@ class Diagnosis(Page):
 
     _shown = ("name", "status", "p_adjusted", "predicted_drop", "held_out_gain", "visibility")
 
-    verdict: str  # "adequate", "effect_missing", "unexplained"
+    verdict: str  # "adequate", "effect_missing", "slow_change", "unexplained"
+    advice: dict[str, Any]  # effect to add, None where none; withheld: why not another one
     sentence: str  # the verdict in one sentence
     rmse: float | None  # over all outputs, in their unit
     noise_floor: float | None  # innovations alone

@@ -15,11 +15,20 @@ from pathlib import Path
 from sepcal import Error
 from sepcal.__main__ import BAD_INPUT, Parser
 from sepcal.progress import progress_bar
-from studies import effect_coverage, field_strength, hidden_effects, intervals, monte_carlo, native
+from studies import (
+    effect_coverage,
+    field_strength,
+    hidden_effects,
+    intervals,
+    monte_carlo,
+    native,
+    trust,
+)
 from studies.study import Finding, Study, check_options
 
 STUDIES: tuple[Study, ...] = (
     hidden_effects.STUDY,
+    trust.STUDY,
     intervals.STUDY,
     monte_carlo.STUDY,
     effect_coverage.STUDY,

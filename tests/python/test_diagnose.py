@@ -12,7 +12,17 @@ from apps import Bench, Outcome, assert_refused, parse_json, read_folder
 
 HIDDEN = {"sepcal-pitot": "airspeed_scale[alpha^2]=-1", "sepcal-mag": "bias[current_a]=0.06"}
 KEYS = {
-    *("schema_version", "model", "inputs", "status", "message", "verdict", "sentence", "rmse"),
+    *(
+        "schema_version",
+        "model",
+        "inputs",
+        "status",
+        "message",
+        "verdict",
+        "sentence",
+        "rmse",
+        "advice",
+    ),
     *("noise_floor", "where", "residual", "effects", "unexplained", "limits", "missing_channels"),
 }
 EFFECT_KEYS = {

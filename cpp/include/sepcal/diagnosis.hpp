@@ -23,19 +23,21 @@ namespace sepcal {
 enum class Verdict {
   adequate,        // nothing is missing that this record can show
   effect_missing,  // at least one candidate was found
+  slow_change,     // a slow effect, or noise that wanders: one record can't tell
   unexplained      // something is missing, and no candidate explains it
 };
 
-/// "adequate", "effect_missing", "unexplained".
+/// "adequate", "effect_missing", "slow_change", "unexplained".
 std::string_view to_string(Verdict verdict);
 
 enum class FindingStatus {
   found,          // significant after Holm's correction, and the held-out error falls
+  slow_change,    // the same of a slow driver, were it known that the noise does not wander
   not_seen,       // nothing of it in the residuals
   cannot_be_seen  // the record can't tell it from what the model has
 };
 
-/// "found", "not_seen", "cannot_be_seen".
+/// "found", "slow_change", "not_seen", "cannot_be_seen".
 std::string_view to_string(FindingStatus status);
 
 /// A coefficient of an effect as one step from the fit estimates it.
@@ -99,8 +101,15 @@ struct Omnibus {
       {};  // and how far off each window is [sigma]
 };
 
+/// What to add, once a real fit with it has shown that it can be.
+struct Advice {
+  std::string effect = {};                 // none where nothing was found or all was withheld
+  std::vector<std::string> withheld = {};  // why not what was found before it: a sentence each
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::adequate;
+  Advice advice = {};
   std::vector<EffectFinding> effects = {};  // ranked, best first
   std::vector<ResidualNoise> residual = {};
   Omnibus omnibus;
@@ -117,7 +126,8 @@ struct DiagnosisOptions {
   double unexplained_below = 0.01;          // p of the omnibus test
   double least_visibility = visible_from;
   double family_correlation = 0.9;
-  int simulations = 199;  // that calibrate the test of a smooth driver
+  int simulations = 80;                     // of the noise, that calibrate a test
+  std::vector<std::string> preferred = {};  // come first among those that explain as much
   std::uint64_t seed = 0;
   int threads = 0;
   FitProgress progress = {};

@@ -41,6 +41,7 @@ ShapeGrid grid_of(const Effect& effect) {
   const Variable& shape = *effect.driver->shape();
   grid.parameter = effect.name + "." + shape.name;
   grid.values = spread(shape, shape.name == "t0" ? times : others);
+  grid.tried = static_cast<double>(grid.values.size());
   return grid;
 }
 
@@ -191,6 +192,10 @@ Candidate CandidateRoom::make(const std::string& name) {
       port_columns(*std::ranges::find(fitted_.kit.ports, effect.port, &Port::name));
     }
   }
+  const Effect& first = candidate.effects.front();
+  if (candidate.effects.size() == 1 && is_driven(first, fitted_.kit) && first.driver->is_step()) {
+    candidate.stepping_port = first.port;
+  }
   std::string joined;
   for (const EffectSetting& setting : candidate.settings) {
     joined += (joined.empty() ? "" : "+") + setting.name;
@@ -200,6 +205,22 @@ Candidate CandidateRoom::make(const std::string& name) {
   }
   candidate.name = joined;
   return candidate;
+}
+
+std::vector<double> CandidateRoom::times() const {
+  Record rows = record_;
+  rows.cut(fitted_.rows);
+  return base::gather_time(rows);
+}
+
+std::vector<double> CandidateRoom::rows_of(const std::string& column) const {
+  const std::span<const double> whole = record_.column(column);
+  std::vector<double> values;
+  for (const Segment& segment : fitted_.rows) {
+    const auto part = whole.subspan(segment.first, segment.rows());
+    values.insert(values.end(), part.begin(), part.end());
+  }
+  return values;
 }
 
 const MatrixXd& CandidateRoom::port_columns(const Port& port) {

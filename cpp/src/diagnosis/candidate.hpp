@@ -19,6 +19,7 @@ namespace sepcal::diagnosis {
 struct ShapeGrid {
   std::string parameter;       // "bias_step.t0"; empty: there is none
   std::vector<double> values;  // at least one: NaN where there is no shape
+  double tried = 1.0;          // among how many the best was chosen
 };
 
 struct Candidate {
@@ -28,6 +29,7 @@ struct Candidate {
   std::vector<Effect> effects = {};
   std::vector<Variable> coefficients = {};  // in the order of the columns
   ShapeGrid shape = {};
+  std::string stepping_port = {};  // of a single effect that is a step in time
 };
 
 /// Makes candidates and their columns for one fit. columns() may be called from several threads.
@@ -50,6 +52,15 @@ class CandidateRoom {
 
   /// The port's columns for a driver that is 1 in every row: a column a component.
   const Eigen::MatrixXd& port_columns(const Port& port);
+
+  /// The same of a port whose columns a candidate has asked for.
+  const Eigen::MatrixXd& known_port_columns(const std::string& port) const {
+    return ports_.at(port);
+  }
+
+  /// The time of each of the N rows [s], and a column's values there.
+  std::vector<double> times() const;
+  std::vector<double> rows_of(const std::string& column) const;
 
   /// count() x coefficients.
   Eigen::MatrixXd columns(const Candidate& candidate, double shape) const {

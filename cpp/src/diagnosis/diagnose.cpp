@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "diagnosis/advice.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/ranking.hpp"
@@ -25,8 +26,13 @@ constexpr std::size_t most_paired = 10;
 constexpr std::size_t most_confirmed = 3;
 constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
 constexpr int few_simulations = 39;
-constexpr std::size_t most_simulated = 3;  // the others are corrected as the worst of these
+constexpr std::size_t most_calibrated = 3;  // the others are corrected as the worst of these
 constexpr std::size_t most_pairs_tested = 5;
+
+/// Whether what there is of it could be a slow change, were its noise known not to wander.
+bool may_be_slow(const Trial& trial, double threshold) {
+  return trial.tested && trial.slow && trial.tails.beside < threshold;
+}
 
 class Recipe {
  public:
@@ -48,6 +54,9 @@ class Recipe {
   /// `tests`: how many could have been chosen.
   std::vector<EffectFinding> judge(Trials& trials, double tests);
   void try_pairs(const std::vector<EffectFinding>& singles);
+  void rank_by_fits();
+  void prefer_known();
+  void advise();
   void report_progress(std::string_view task, double fraction) const {
     if (options_.progress) options_.progress(task, fraction);
   }
@@ -66,6 +75,7 @@ void Recipe::make(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     try {
       Trial trial{.candidate = room_.make(name)};
+      trial.slow = is_slow(room_, trial.candidate);
       const bool twice = std::ranges::any_of(trials_, [&](const Trial& other) {
         return other.candidate.name == trial.candidate.name;
       });
@@ -123,24 +133,27 @@ void Recipe::hold_out_significant(Trials& trials) {
 void Recipe::calibrate_significant(Trials& trials, double threshold) {
   std::vector<Trial*> significant;
   for (Trial& trial : trials) {
-    if (trial.tested && trial.log10_p < threshold) significant.push_back(&trial);
+    if (trial.tested && (trial.log10_p < threshold || may_be_slow(trial, threshold))) {
+      significant.push_back(&trial);
+    }
   }
   std::ranges::stable_sort(significant, {}, &Trial::log10_p);
-  Inflation worst;
+  double worst = 1.0;  // of what is left of a log10 p
   for (std::size_t i = 0; i < significant.size(); ++i) {
     report_progress("calibrating tests",
                     static_cast<double>(i) / static_cast<double>(significant.size()));
-    Inflation inflation = worst;
-    if (i < most_simulated) {
-      const bool beyond_doubt = significant[i]->log10_p < doubtless;
-      const int simulations =
+    Trial& trial = *significant[i];
+    const double plain = trial.log10_p;
+    if (i < most_calibrated) {
+      const bool beyond_doubt = plain < doubtless;
+      const int draws =
           beyond_doubt ? std::min(few_simulations, options_.simulations) : options_.simulations;
-      inflation =
-          simulate_inflation(room_, null_, *significant[i], simulations, options_.seed, pool_);
-      worst = {std::max(worst.median, inflation.median),
-               std::max(worst.ninetieth, inflation.ninetieth)};
+      calibrate(room_, null_, draws, options_.seed, pool_, trial);
+      if (plain < 0.0) worst = std::min(worst, trial.log10_p / plain);
+    } else {
+      trial.log10_p = worst * plain;
+      trial.tails = {worst * trial.tails.either, worst * trial.tails.beside};
     }
-    inflate(inflation, *significant[i]);
   }
   double least_sure = -infinity;
   for (const Trial& trial : trials) {
@@ -189,8 +202,13 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
       finding.p_adjusted = holm[v];
       finding.p_listed = listed[v];
       ++v;
-      if (finding.p_adjusted < options_.significance && finding.held_out_passed) {
+      const double tried = std::log10(static_cast<double>(log10_p.size()));
+      if (!finding.held_out_passed) {
+        // whatever it is, it does not predict
+      } else if (finding.p_adjusted < options_.significance) {
         finding.status = FindingStatus::found;
+      } else if (may_be_slow(trials[i], std::log10(options_.significance) - tried)) {
+        finding.status = FindingStatus::slow_change;
       }
     }
     findings.push_back(std::move(finding));
@@ -242,6 +260,58 @@ void Recipe::try_pairs(const std::vector<EffectFinding>& singles) {
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
 }
 
+/// One step from the fit can't rank what bends the model: of effects beyond doubt the one comes
+/// first whose real fit leaves least.
+void Recipe::rank_by_fits() {
+  constexpr std::size_t most_fitted = 4;
+  constexpr double margin = 5.0;  // in ln L
+  std::vector<double> left;
+  for (const EffectFinding& finding : result_.effects) {
+    const bool found = finding.status == FindingStatus::found;
+    if (!found || !(finding.log10_p < doubtless) || left.size() == most_fitted) break;
+    left.push_back(criterion_with(room_, finding));
+  }
+  if (left.size() < 2) return;
+  const auto best = std::ranges::min_element(left) - left.begin();
+  if (!(left.front() - left[static_cast<std::size_t>(best)] > margin)) return;
+  const auto first = result_.effects.begin();
+  std::rotate(first, first + best, first + best + 1);
+}
+
+/// Of a family's effects one that is preferred comes first where it explains as much but for
+/// little.
+void Recipe::prefer_known() {
+  constexpr double margin = 0.05;  // of log10 p, and of what the error falls by
+  std::vector<EffectFinding>& effects = result_.effects;
+  const auto is_preferred = [&](const EffectFinding& effect) {
+    return std::ranges::find(options_.preferred, effect.name) != options_.preferred.end();
+  };
+  const EffectFinding& first = effects.front();
+  if (is_preferred(first)) return;
+  const auto preferred = std::ranges::find_if(effects, [&](const EffectFinding& effect) {
+    return effect.status == FindingStatus::found && is_preferred(effect) &&
+           effect.log10_p < (1.0 - margin) * first.log10_p &&
+           effect.predicted_drop > (1.0 - margin) * first.predicted_drop &&
+           std::ranges::find(first.family, effect.name) != first.family.end();
+  });
+  if (preferred != effects.end()) std::rotate(effects.begin(), preferred, preferred + 1);
+}
+
+/// The best of what was found that a real fit bears out.
+void Recipe::advise() {
+  constexpr std::size_t most_fitted = 3;
+  std::size_t fitted = 0;
+  for (const EffectFinding& finding : result_.effects) {
+    if (finding.status != FindingStatus::found || fitted++ == most_fitted) return;
+    const std::string reason = reason_against(room_, finding, options_.least_visibility, pool_);
+    if (reason.empty()) {
+      result_.advice.effect = finding.name;
+      return;
+    }
+    result_.advice.withheld.push_back(finding.name + ": " + reason);
+  }
+}
+
 Diagnosis Recipe::run(const std::vector<std::string>& names) {
   if (room_.fit().layout.outputs.empty()) return result_;  // nothing is left to explain
   report_progress("fitting the noise", 0.0);
@@ -257,19 +327,28 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   const auto is_found = [](const EffectFinding& finding) {
     return finding.status == FindingStatus::found;
   };
+  const auto is_slow_change = [](const EffectFinding& finding) {
+    return finding.status == FindingStatus::slow_change;
+  };
   if (std::ranges::none_of(result_.effects, is_found)) try_pairs(result_.effects);
   report_progress("looking for structure", 0.0);
   if (std::ranges::any_of(result_.effects, is_found)) {
     result_.verdict = Verdict::effect_missing;
+    report_progress("fitting what was found", 0.0);
+    rank_by_fits();
+    prefer_known();
     for (const Trial& trial : trials_) {
       if (trial.candidate.name == result_.effects.front().name) {
         result_.floor = std::min(result_.floor, trial.floor);
       }
     }
+    advise();
   } else {
     result_.omnibus = test_for_structure(room_, fitted_.kit, null_, options_, pool_);
     if (result_.omnibus.p_value < options_.unexplained_below) {
       result_.verdict = Verdict::unexplained;
+    } else if (std::ranges::any_of(result_.effects, is_slow_change)) {
+      result_.verdict = Verdict::slow_change;
     }
   }
   result_.limits = find_limits(room_, fitted_.kit, null_, options_.significance, trials_.size());

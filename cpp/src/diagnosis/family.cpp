@@ -44,7 +44,7 @@ Family::Family(const CandidateRoom& room, const NullHypothesis& null, const Tria
   residual_ = remove_span(null.basis, room.fit().residual);
   basis_ = orthonormal_basis(beyond_tangent(first));
   MatrixXd white = null.basis;
-  whiten(room.fit().layout, first.noise, white);
+  null.test->whiten(first.ratios.with.noise, white);
   white_null_ = orthonormal_basis(white);
   white_basis_ = orthonormal_basis(whiten_beside(basis_));
   white_residual_ = whiten_beside(residual_);
@@ -56,7 +56,7 @@ MatrixXd Family::beyond_tangent(const Trial& trial) const {
 
 MatrixXd Family::whiten_beside(const MatrixXd& columns) const {
   MatrixXd white = columns;
-  whiten(room_.fit().layout, first_.noise, white);
+  null_.test->whiten(first_.ratios.with.noise, white);
   return remove_span(white_null_, white);
 }
 

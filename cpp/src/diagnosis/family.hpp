@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "diagnosis/candidate.hpp"
-#include "diagnosis/likelihood_ratio.hpp"
+#include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/trial.hpp"
 
 namespace sepcal::diagnosis {

@@ -15,6 +15,8 @@ std::string_view to_string(Verdict verdict) {
       return "adequate";
     case Verdict::effect_missing:
       return "effect_missing";
+    case Verdict::slow_change:
+      return "slow_change";
     default:
       return "unexplained";
   }
@@ -24,6 +26,8 @@ std::string_view to_string(FindingStatus status) {
   switch (status) {
     case FindingStatus::found:
       return "found";
+    case FindingStatus::slow_change:
+      return "slow_change";
     case FindingStatus::not_seen:
       return "not_seen";
     default:

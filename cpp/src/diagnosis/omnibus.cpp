@@ -127,21 +127,20 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
   const VectorXd residual = remove_span(null.basis, room.fit().residual);
   const std::vector<base::Part> windows = cut_windows(room, correlation_rows(layout, residual));
   const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
-  std::vector<LikelihoodRatio> ratios(sets.size());
-  pool.for_each(sets.size(),
-                [&](std::size_t i) { ratios[i] = compare_with_null(null, sets[i].basis); });
+  std::vector<NoiseTest::Ratios> ratios(sets.size());
+  pool.for_each(sets.size(), [&](std::size_t i) { ratios[i] = null.test->compare(sets[i].basis); });
   Omnibus result;
   const double correction = std::log10(static_cast<double>(std::max<std::size_t>(1, sets.size())));
   double least = 0.0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    const auto freedom = static_cast<double>(sets[i].basis.cols());
-    double log10_p = correction + numerics::log10_chi_squared_tail(ratios[i].value, freedom);
+    const auto freedom = static_cast<int>(sets[i].basis.cols());
+    double log10_p = correction + NoiseTest::tails(ratios[i], freedom).log10_p();
     if (log10_p < std::log10(options.unexplained_below)) {
-      const Inflation inflation = inflation_of(
-          simulate_ratios(null, sets[i].basis, options.simulations, options.seed + i, pool),
-          static_cast<int>(freedom));
-      log10_p =
-          correction + log10_ratio_tail(ratios[i].value, static_cast<int>(freedom), inflation);
+      constexpr bool offsets_are_slow = true;
+      log10_p = correction + null.test
+                                 ->calibrate(ratios[i], sets[i].basis, offsets_are_slow,
+                                             options.simulations, options.seed + i, pool)
+                                 .log10_p();
     }
     if (!(log10_p < least)) continue;
     least = log10_p;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
-#include "diagnosis/likelihood_ratio.hpp"
+#include "diagnosis/null_hypothesis.hpp"
 #include "sepcal/diagnosis.hpp"
 
 namespace sepcal::diagnosis {

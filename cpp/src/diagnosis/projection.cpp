@@ -37,6 +37,12 @@ MatrixXd orthonormal_basis(const MatrixXd& columns) {
   return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
+MatrixXd join(const MatrixXd& left, const MatrixXd& right) {
+  MatrixXd both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
+}
+
 MatrixXd remove_span(const MatrixXd& basis, const MatrixXd& columns) {
   MatrixXd left = columns;
   for (int twice = 0; twice < 2; ++twice) left -= basis * (basis.transpose() * left);

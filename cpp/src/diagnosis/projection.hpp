@@ -12,6 +12,9 @@ namespace sepcal::diagnosis {
 /// An orthonormal basis of some columns, of their numerical rank.
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns);
 
+/// Columns of two matrices, side by side.
+Eigen::MatrixXd join(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right);
+
 /// What of `columns` is orthogonal to a basis.
 Eigen::MatrixXd remove_span(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& columns);
 

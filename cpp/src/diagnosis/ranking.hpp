@@ -6,7 +6,7 @@
 
 #include "base/thread_pool.hpp"
 #include "diagnosis/candidate.hpp"
-#include "diagnosis/likelihood_ratio.hpp"
+#include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/trial.hpp"
 #include "sepcal/diagnosis.hpp"
 

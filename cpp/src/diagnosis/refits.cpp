@@ -94,6 +94,14 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
 
 }  // namespace
 
+Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape) {
+  const auto with = room.model_with(candidate.effects);
+  Record rows = room.record();
+  rows.cut(room.rows());
+  return fit(*with, rows,
+             with_candidate(options_from(room.fitted()), with->tables(), candidate, shape));
+}
+
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
                            const Folds& folds, base::ThreadPool& pool) {
   const auto without = room.model();

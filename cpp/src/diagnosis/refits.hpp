@@ -8,6 +8,9 @@
 
 namespace sepcal::diagnosis {
 
+/// The fit of the model with the candidate to all rows, from the estimates without it.
+Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape);
+
 /// Fits the model with and without the candidate to all folds but one, from the estimates on all
 /// rows and within the fit's bounds, and predicts the rows left out. Not judged where a fit fails.
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "diagnosis/likelihood_ratio.hpp"
+#include "diagnosis/null_hypothesis.hpp"
 #include "sepcal/diagnosis.hpp"
 
 namespace sepcal::diagnosis {

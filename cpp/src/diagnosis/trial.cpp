@@ -22,12 +22,71 @@ MatrixXd thin_out(const MatrixXd& columns) {
   return columns(Eigen::seqN(0, rows, stride), Eigen::all);
 }
 
+/// What a step from each row on explains of the residual, as if that were white (N; the first row
+/// is none): with suffix sums in one pass.
+VectorXd explained_by_steps(const NullHypothesis& null, const MatrixXd& port) {
+  const RowLayout& layout = null.fit->layout;
+  const Index c = port.cols();
+  const VectorXd residual = remove_span(null.basis, null.fit->residual);
+  MatrixXd squares = MatrixXd::Zero(c, c);
+  MatrixXd shares = MatrixXd::Zero(null.basis.cols(), c);
+  VectorXd products = VectorXd::Zero(c);
+  VectorXd explained = VectorXd::Zero(layout.rows);
+  for (Index row = layout.rows - 1; row > 0; --row) {
+    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+      const Index at = layout.first(j) + row;
+      squares += port.row(at).transpose() * port.row(at);
+      shares += null.basis.row(at).transpose() * port.row(at);
+      products += port.row(at).transpose() * residual[at];
+    }
+    const MatrixXd beyond = squares - shares.transpose() * shares;
+    if (!(beyond.trace() > 1e-6 * squares.trace())) continue;
+    explained[row] = products.dot(pseudo_inverse(beyond) * products);
+  }
+  return explained;
+}
+
+/// Adds to the grid the rows at which a step may well be: a grid alone misses where noise that has
+/// nearly swallowed the step shows it in one row.
+void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, Candidate& candidate) {
+  constexpr int most_peaks = 3;
+  constexpr Index around = 2;  // rows
+  const RowLayout& layout = room.fit().layout;
+  const std::vector<double> times = room.times();
+  VectorXd explained = explained_by_steps(null, room.known_port_columns(candidate.stepping_port));
+  VectorXd jumps = VectorXd::Zero(layout.rows);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    jumps += null.white_residual.segment(layout.first(j), layout.rows).cwiseAbs2();
+  }
+  jumps[0] = 0.0;
+  const Index apart = std::max<Index>(2 * around, layout.rows / 40);
+  for (VectorXd* score : {&explained, &jumps}) {
+    for (int peak = 0; peak < most_peaks; ++peak) {
+      Index row = 0;
+      if (!(score->maxCoeff(&row) > 0.0)) break;
+      for (Index near = row - around; near <= row + around; ++near) {
+        if (near < 1 || near >= layout.rows) continue;
+        candidate.shape.values.push_back(times[static_cast<std::size_t>(near)]);
+      }
+      const Index first = std::max<Index>(0, row - apart);
+      score->segment(first, std::min(layout.rows, row + apart + 1) - first).setZero();
+    }
+  }
+  candidate.shape.tried = static_cast<double>(layout.rows);
+}
+
 /// The estimate of the effect from that of its basis.
 void keep_estimate(const Projection& added, const VectorXd& of_basis, const MatrixXd& covariance,
                    Trial& trial) {
   trial.estimate = added.to_effect * of_basis;
   trial.covariance = added.to_effect * covariance * added.to_effect.transpose();
   trial.freedom = static_cast<int>(added.visible());
+}
+
+void set_tails(const NoiseTails& tails, Trial& trial) {
+  const double scan = log10_scan(trial);
+  trial.tails = {std::min(0.0, scan + tails.either), std::min(0.0, scan + tails.beside)};
+  trial.log10_p = trial.tails.log10_p();
 }
 
 }  // namespace
@@ -38,12 +97,11 @@ Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, 
                  room.varying_columns(trial.candidate, shape), trial.least_visibility);
 }
 
-double log10_scan(const Trial& trial) {
-  return std::log10(static_cast<double>(trial.candidate.shape.values.size()));
-}
+double log10_scan(const Trial& trial) { return std::log10(trial.candidate.shape.tried); }
 
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   const RowLayout& layout = room.fit().layout;
+  if (!trial.candidate.stepping_port.empty()) add_step_rows(room, null, trial.candidate);
   double best_white = 1.0;  // log10 of the tail
   double best_plain = 1.0;
   for (const double shape : trial.candidate.shape.values) {
@@ -79,29 +137,28 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
 }
 
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
-  const RowLayout& layout = room.fit().layout;
   const auto by_white = std::ranges::min_element(trial.scores, {}, &ShapeScore::white);
   const auto by_plain = std::ranges::min_element(trial.scores, {}, &ShapeScore::plain);
   std::vector<double> shapes{by_white->shape};
   if (by_plain != by_white) shapes.push_back(by_plain->shape);
   trial.tested = true;
-  trial.ratio = -1.0;
+  NoiseTails least{infinity, infinity};
   for (const double shape : shapes) {
     const Projection added = project_trial(room, null, trial, shape);
-    const LikelihoodRatio ratio = compare_with_null(null, added.basis);
-    if (!(ratio.value > trial.ratio)) continue;
-    trial.ratio = ratio.value;
-    trial.noise = ratio.with.noise;
-    trial.floor = noise_floor(layout, trial.noise);
-    trial.shape = shape;
+    const NoiseTest::Ratios ratios = null.test->compare(added.basis);
     const auto q = added.visible();
-    keep_estimate(added, ratio.with.coefficients.tail(q),
-                  ratio.with.covariance.bottomRightCorner(q, q), trial);
+    const NoiseTails tails = NoiseTest::tails(ratios, static_cast<int>(q));
+    if (!(tails.log10_p() < least.log10_p())) continue;
+    least = tails;
+    trial.ratios = ratios;
+    trial.floor = null.test->floor(ratios.with.noise);
+    trial.shape = shape;
+    keep_estimate(added, ratios.with.coefficients.tail(q),
+                  ratios.with.covariance.bottomRightCorner(q, q), trial);
     trial.predicted_drop = predict_drop(null, added.basis);
     trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
   }
-  trial.log10_p = std::min(
-      0.0, log10_scan(trial) + numerics::log10_chi_squared_tail(trial.ratio, trial.freedom));
+  set_tails(least, trial);
 }
 
 bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
@@ -120,17 +177,31 @@ bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
   return changes < little * spread;
 }
 
-Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
-                             const Trial& trial, int simulations, std::uint64_t seed,
-                             base::ThreadPool& pool) {
+void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
+               base::ThreadPool& pool, Trial& trial) {
   const Projection added = project_trial(room, null, trial, trial.shape);
-  return inflation_of(simulate_ratios(null, added.basis, simulations, seed, pool), trial.freedom);
+  const bool smooth = is_smooth(room.fit().layout, added.basis);
+  const NoiseTails tails =
+      null.test->calibrate(trial.ratios, added.basis, smooth, draws, seed, pool);
+  set_tails(tails, trial);
 }
 
-void inflate(const Inflation& inflation, Trial& trial) {
-  const double calibrated =
-      log10_scan(trial) + log10_ratio_tail(trial.ratio, trial.freedom, inflation);
-  trial.log10_p = std::max(trial.log10_p, std::min(0.0, calibrated));
+bool is_slow(const CandidateRoom& room, const Candidate& candidate) {
+  constexpr double monotone = 0.95;  // correlation with time
+  for (const Effect& effect : candidate.effects) {
+    if (!effect.driver || !effect.driver->input()) return false;
+    const std::string& channel = effect.driver->input()->name;
+    if (channel == "time") continue;
+    const std::vector<double> times = room.times();
+    const std::vector<double> values = room.rows_of(channel);
+    const Eigen::Map<const Eigen::ArrayXd> t(times.data(), static_cast<Index>(times.size()));
+    const Eigen::Map<const Eigen::ArrayXd> d(values.data(), static_cast<Index>(values.size()));
+    const Eigen::ArrayXd from_t = t - t.mean();
+    const Eigen::ArrayXd from_d = d - d.mean();
+    const double spread = std::sqrt(from_t.square().sum() * from_d.square().sum());
+    if (!(std::abs((from_t * from_d).sum()) > monotone * spread)) return false;
+  }
+  return true;
 }
 
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {

@@ -4,12 +4,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/held_out.hpp"
-#include "diagnosis/likelihood_ratio.hpp"
+#include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/projection.hpp"
 
 namespace sepcal::diagnosis {
@@ -33,12 +34,13 @@ struct Trial {
   double log10_plain = 0.0;
   double log10_p = 0.0;  // of the test where it was made, else of the score
   bool tested = false;
-  double ratio = 0.0;
-  NoiseModels noise = {};   // beside the effect
-  double floor = infinity;  // innovations alone with the effect, over all outputs
+  NoiseTest::Ratios ratios = {};  // with the noise beside the effect
+  double floor = infinity;        // innovations alone with the effect, over all outputs
   int freedom = 0;
   Eigen::VectorXd estimate = {};
   Eigen::MatrixXd covariance = {};
+  NoiseTails tails = {};  // of the ratios, corrected for the scan as log10_p is
+  bool slow = false;      // its driver changes as slowly as noise may wander
   double predicted_drop = 0.0;
   HeldOut held_out = {};
   Folds folds = {};
@@ -59,17 +61,16 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
 /// The likelihood ratio at the shapes that score best, with the estimate there.
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
+/// Whether all that drives it is time or a channel that goes with time.
+bool is_slow(const CandidateRoom& room, const Candidate& candidate);
+
 /// Whether the columns hardly change within a hundredth of the record: noise that is as slow
 /// imitates them.
 bool is_smooth(const RowLayout& layout, const Eigen::MatrixXd& columns);
 
-/// By how much noise as slow as the effect enlarges the ratio, by simulation of the null.
-Inflation simulate_inflation(const CandidateRoom& room, const NullHypothesis& null,
-                             const Trial& trial, int simulations, std::uint64_t seed,
-                             base::ThreadPool& pool);
-
-/// Corrects the test's tail.
-void inflate(const Inflation& inflation, Trial& trial);
+/// Corrects the test's tail for what draws of the noise do to the ratios.
+void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
+               base::ThreadPool& pool, Trial& trial);
 
 /// Cross-validation by one step from the fit: of whole segments where the effect isn't smooth and
 /// there are a few, else of blocks in between.

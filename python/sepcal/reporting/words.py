@@ -39,6 +39,7 @@ MODELS = {
 VERDICTS = {
     "adequate": "Nothing missing",
     "effect_missing": "An effect is missing",
+    "slow_change": "A slow change",
     "unexplained": "Unexplained structure",
 }
 

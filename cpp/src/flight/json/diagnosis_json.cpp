@@ -87,6 +87,9 @@ std::string to_json(const FlightDiagnosis& result) {
   root["message"] = result.message;
   root["verdict"] = to_string(diagnosis.verdict);
   root["sentence"] = verdict_sentence(result);
+  root["advice"] = {
+      {"effect", diagnosis.advice.effect.empty() ? Json() : Json(diagnosis.advice.effect)},
+      {"withheld", diagnosis.advice.withheld}};
   root["rmse"] = number(diagnosis.rmse);
   root["noise_floor"] = number(diagnosis.floor);
   root["where"] = Json::array();

@@ -34,6 +34,7 @@ std::string probability(const EffectFinding& effect) {
 
 std::string_view in_words(const EffectFinding& effect) {
   if (effect.status == FindingStatus::found) return "FOUND";
+  if (effect.status == FindingStatus::slow_change) return "slow change";
   return is_refused(effect) ? "not held out" : "not seen";
 }
 
@@ -101,9 +102,15 @@ std::string best_effect(const FlightDiagnosis& result) {
     text += '\n';
   }
   if (result.injection) return text;  // there is nothing to add: it isn't in the log
-  return text +
-         fmt::format("\nnext: {} add {} {} '{}' -o NEXT.json\n", result.app, result.flight.file,
-                     result.calibration.empty() ? "BASE.json" : result.calibration, best.name);
+  text += '\n';
+  for (const std::string& reason : result.diagnosis.advice.withheld) {
+    text += "not to be added: " + reason + '\n';
+  }
+  const std::string& effect = result.diagnosis.advice.effect;
+  if (effect.empty()) return text;
+  return text + fmt::format("next: {} add {} {} '{}' -o NEXT.json\n", result.app,
+                            result.flight.file,
+                            result.calibration.empty() ? "BASE.json" : result.calibration, effect);
 }
 
 std::string unexplained_rows(const Omnibus& omnibus) {

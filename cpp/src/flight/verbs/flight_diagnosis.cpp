@@ -46,25 +46,11 @@ std::vector<std::string> candidates_for(const catalogue::EffectTable& table,
   return names;
 }
 
-/// Among effects that the flight can't tell apart, and that explain as much as surely, the one of
-/// the catalogue comes first: the wind goes with the height and not, as it does as well, with the
-/// temperature.
-void prefer_catalogued(std::string_view model, std::vector<EffectFinding>& effects) {
-  if (effects.empty() || effects.front().status != FindingStatus::found) return;
-  constexpr double margin = 0.05;  // of log10 p, and of what the error falls by
-  const EffectFinding first = effects.front();
-  const auto is_catalogued = [&](const EffectFinding& effect) {
-    return std::ranges::find(effect_catalogue(model), effect.name, &CataloguedEffect::name) !=
-           effect_catalogue(model).end();
-  };
-  if (is_catalogued(first)) return;
-  const auto preferred = std::ranges::find_if(effects, [&](const EffectFinding& effect) {
-    return effect.status == FindingStatus::found && is_catalogued(effect) &&
-           effect.log10_p < (1.0 - margin) * first.log10_p &&
-           effect.predicted_drop > (1.0 - margin) * first.predicted_drop &&
-           std::ranges::find(first.family, effect.name) != first.family.end();
-  });
-  if (preferred != effects.end()) std::rotate(effects.begin(), preferred, preferred + 1);
+/// Names of the probe's catalogue: of effects that do the same they are the ones people know.
+std::vector<std::string> catalogued(std::string_view model) {
+  std::vector<std::string> names;
+  for (const CataloguedEffect& effect : effect_catalogue(model)) names.push_back(effect.name);
+  return names;
 }
 
 /// The misfit of the fitted rows, part by part.
@@ -94,8 +80,9 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   result.message = calibration.fit.message;
   result.notes = prepared.readings.notes;
   note_other_flight(calibration, flight, result.notes);
-  result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight), options);
-  prefer_catalogued(result.model, result.diagnosis.effects);
+  DiagnosisOptions preferring = options;
+  preferring.preferred = catalogued(result.model);
+  result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight), preferring);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(catalogue::describe_effect(table, effect.name));
   }
@@ -263,6 +250,15 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   }
   if (found.verdict == Verdict::adequate) {
     return fmt::format("Nothing is missing that this flight can show: {}.", left);
+  }
+  if (found.verdict == Verdict::slow_change) {
+    const EffectFinding& slow = found.effects.front();
+    const bool by_time = slow.drivers.empty() || slow.drivers.front() == "time";
+    return fmt::format(
+        "A slow change fits {} ({}): {}. Noise that wanders does this too, and one flight can't "
+        "tell: repeat it with {}.",
+        slow.name, diagnosis.sentences.front(), left,
+        by_time ? "the maneuvers in another order" : slow.drivers.front() + " going the other way");
   }
   const EffectFinding& best = found.effects.front();
   return fmt::format(

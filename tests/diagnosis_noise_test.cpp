@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The likelihood ratio of added columns: in closed form where noise is white, against the noise
-// model's own whitening where it isn't, with the drift that a whitener alone would hide.
-#include "diagnosis/likelihood_ratio.hpp"
+// The likelihood ratio of added columns: in closed form where noise is white, by dense generalised
+// least squares where it isn't, with the drift that a whitener alone would hide; and what draws of
+// the noise make of it.
+#include "diagnosis/noise_test.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/residual_noise.hpp"
 #include "linearisations.hpp"
@@ -75,17 +77,15 @@ TEST_CASE("white noise: N ln of the variances' ratio, to the digit where no colo
         fit_to(layout, draws.normal_matrix(500, 3),
                G.col(0) * 0.4 + VectorXd(draws.normal_matrix(500, 1)));
     const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
-    const diagnosis::LikelihoodRatio ratio =
-        diagnosis::compare_with_null(null, perpendicular(fit, G));
+    const diagnosis::NoiseTest::Ratios ratios = null.test->compare(perpendicular(fit, G));
     const double expected = white_ratio(fit, G);
     CAPTURE(seed);
-    CHECK(ratio.value == Approx(expected).epsilon(0.1));
-    const auto is_white = [](const NoiseModel& noise) {
-      return noise.order() == 0 && noise.d < 1e-9 && !noise.level_is_free();
-    };
-    if (!is_white(null.best.noise[0]) || !is_white(ratio.with.noise[0])) continue;
+    CHECK(ratios.joint == Approx(expected).epsilon(0.1));
+    const noise::NoiseMember& with = ratios.with.noise[0];
+    const bool white = with.at == 0 && with.partial.size() == 0;  // of either family
+    if (!white || std::abs(ratios.own[0] - ratios.own[1]) > 1e-9) continue;
     ++without_colour;
-    CHECK(ratio.value == Approx(expected).epsilon(1e-9));
+    CHECK(ratios.joint == Approx(expected).epsilon(1e-9));
   }
   CHECK(without_colour >= 3);
 }
@@ -99,8 +99,7 @@ TEST_CASE("two outputs: the sum over them, whatever their scales") {
   const diagnosis::Linearisation fit =
       fit_to(layout, draws.normal_matrix(1400, 4), 0.5 * G + noise);
   const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
-  const diagnosis::LikelihoodRatio ratio =
-      diagnosis::compare_with_null(null, perpendicular(fit, G));
+  const double ratio = null.test->compare(perpendicular(fit, G)).joint;
 
   // Weighted least squares by turns with the two variances.
   const auto minus_two_log_likelihood = [&](const MatrixXd& columns) {
@@ -119,7 +118,7 @@ TEST_CASE("two outputs: the sum over them, whatever their scales") {
   both << fit.tangent, G;
   const double expected = minus_two_log_likelihood(fit.tangent) - minus_two_log_likelihood(both);
   CHECK(expected > 50.0);
-  CHECK(ratio.value == Approx(expected).epsilon(0.05));
+  CHECK(ratio == Approx(expected).epsilon(0.05));
 }
 
 TEST_CASE("the estimate and its covariance are those of generalised least squares") {
@@ -130,12 +129,15 @@ TEST_CASE("the estimate and its covariance are those of generalised least square
                                               0.3 * G.col(1) + draw_noise("AR(0.9)", 900, draws));
   const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
   const MatrixXd added = perpendicular(fit, G);
-  const diagnosis::Hypothesis with = diagnosis::compare_with_null(null, added).with;
+  const diagnosis::FamilyFit with = null.test->compare(added).with;
   MatrixXd columns(900, 5);
   columns << null.basis, added;
   const MatrixXd identity = MatrixXd::Identity(900, 900);
-  const MatrixXd Sigma = covariance_product(with.noise[0], layout.segments, identity);
-  const MatrixXd inverse = Sigma.ldlt().solve(identity);
+  MatrixXd factor = identity;  // of the noise's covariance
+  for (auto column : factor.colwise()) {
+    noise::NoiseFamilies(layout.segments).colour(with.noise[0], column);
+  }
+  const MatrixXd inverse = (factor * factor.transpose()).ldlt().solve(identity);
   const MatrixXd covariance = (columns.transpose() * inverse * columns).inverse();
   const VectorXd expected = covariance * columns.transpose() * inverse * fit.residual;
   for (Index k = 0; k < 5; ++k) {
@@ -155,15 +157,14 @@ TEST_CASE("the larger hypothesis is never the worse one") {
     const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(800, 4), noise);
     const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
     MatrixXd columns(800, 0);
-    double last = null.best.minus_two_log_likelihood;
+    double last = infinity;
     for (int q = 1; q <= 4; ++q) {
       columns.conservativeResize(Eigen::NoChange, q);
       columns.col(q - 1) = draws.normal_matrix(800, 1);
-      const diagnosis::LikelihoodRatio ratio =
-          diagnosis::compare_with_null(null, perpendicular(fit, columns));
-      CHECK(ratio.value >= 0.0);
-      CHECK(ratio.with.minus_two_log_likelihood < last + 0.05);
-      last = ratio.with.minus_two_log_likelihood;
+      const diagnosis::NoiseTest::Ratios ratios = null.test->compare(perpendicular(fit, columns));
+      CHECK(ratios.joint >= 0.0);
+      CHECK(ratios.with.minus_two_log_likelihood < last + 0.5);  // the grid's coarseness
+      last = ratios.with.minus_two_log_likelihood;
     }
   }
 }
@@ -178,16 +179,15 @@ TEST_CASE("a slow drift that the null's noise model swallows stands out in the r
   diagnosis::whiten(flight.fit.layout, null.best.noise, white);
   white = diagnosis::remove_span(null.white_basis, white);
   const double score = std::pow(white.col(0).dot(null.white_residual), 2) / white.squaredNorm();
-  const diagnosis::LikelihoodRatio ratio = diagnosis::compare_with_null(null, added);
-  CHECK(ratio.value > 90.0);
-  CHECK(score < 0.25 * ratio.value);
+  const diagnosis::NoiseTest::Ratios ratios = null.test->compare(added);
+  CHECK(ratios.joint > 90.0);
+  CHECK(score < 0.3 * ratios.joint);
 
-  // With the ramp taken out the rest is white: the search comes down to its closed form, but for
-  // the level, which is free.
+  // With the ramp taken out the rest is white: the search comes down to its closed form.
   const VectorXd left = diagnosis::remove_span(added, flight.fit.residual);
   const double N = static_cast<double>(Drifting::rows);
-  const double white_noise = N * (1.0 + std::log(2.0 * std::numbers::pi * left.squaredNorm() / N));
-  CHECK(std::abs(ratio.with.minus_two_log_likelihood - white_noise) < 10.0);
+  const double white_noise = N * std::log(left.squaredNorm() / N);
+  CHECK(std::abs(ratios.with.minus_two_log_likelihood - white_noise) < 10.0);
 }
 
 TEST_CASE("the larger a drift, the larger its ratio") {
@@ -198,8 +198,7 @@ TEST_CASE("the larger a drift, the larger its ratio") {
       CAPTURE(drift);
       const Drifting flight(drift, seed);
       const diagnosis::NullHypothesis null = diagnosis::find_null(flight.fit);
-      const double ratio =
-          diagnosis::compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
+      const double ratio = null.test->compare(perpendicular(flight.fit, flight.ramp)).joint;
       CHECK(ratio > 0.5 * last);
       last = std::max(last, ratio);
     }
@@ -212,73 +211,64 @@ TEST_CASE("without a drift the ratio of a ramp is that of chance") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Drifting flight(0.0, seed);
     const diagnosis::NullHypothesis null = diagnosis::find_null(flight.fit);
-    sum += diagnosis::compare_with_null(null, perpendicular(flight.fit, flight.ramp)).value;
+    sum += null.test->compare(perpendicular(flight.fit, flight.ramp)).joint;
   }
   CHECK(sum / 20.0 > 0.2);
   CHECK(sum / 20.0 < 2.5);  // 1 but for what a noise model takes of it
 }
 
-TEST_CASE("simulated under white noise, the ratio has the moments of chi-squared") {
+TEST_CASE("in white noise draws leave a tail as it is, the same with any number of threads") {
   Draws draws(12);
   const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
+  const MatrixXd G = draws.normal_matrix(390, 3);
   const diagnosis::Linearisation fit =
-      fit_to(layout, draws.normal_matrix(390, 4), draws.normal_matrix(390, 1));
+      fit_to(layout, draws.normal_matrix(390, 4), 0.25 * G.col(0) + draws.normal_matrix(390, 1));
   const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
-  const MatrixXd added = perpendicular(fit, draws.normal_matrix(390, 3));
+  const MatrixXd added = perpendicular(fit, G);
+  const diagnosis::NoiseTest::Ratios ratios = null.test->compare(added);
+  const diagnosis::NoiseTails plain = diagnosis::NoiseTest::tails(ratios, 3);
   base::ThreadPool pool(2);
-  const VectorXd ratios = diagnosis::simulate_ratios(null, added, 400, 1, pool);
-  CHECK(std::abs(ratios.mean() - 3.0) < 4.0 * std::sqrt(6.0 / 400.0));
-  CHECK(diagnosis::inflation_of(ratios, 3).median < 1.3);
-  CHECK(diagnosis::inflation_of(ratios, 3).ninetieth < 1.3);
+  const diagnosis::NoiseTails drawn = null.test->calibrate(ratios, added, false, 200, 1, pool);
+  CHECK(drawn.either >= plain.either);
+  CHECK(drawn.either < 0.7 * plain.either);
+  CHECK(drawn.beside < 0.7 * plain.beside);
 
   base::ThreadPool alone(1);
-  CHECK(diagnosis::simulate_ratios(null, added, 400, 1, alone) == ratios);
-  CHECK(diagnosis::simulate_ratios(null, added, 400, 2, pool) != ratios);
+  CHECK(null.test->calibrate(ratios, added, false, 200, 1, alone).log10_p() == drawn.log10_p());
+  CHECK(null.test->calibrate(ratios, added, false, 200, 2, pool).log10_p() != drawn.log10_p());
 }
 
-TEST_CASE("where noise is as slow as the effect, simulations say how much larger ratios get") {
-  Draws draws(3);
-  const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
-  const diagnosis::Linearisation fit = fit_to(layout, waves(390), draw_noise("pink", 390, draws));
-  const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
+TEST_CASE("noise that wanders makes ramps: called found seldom, where chi-squared calls many") {
   base::ThreadPool pool(2);
-  const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
-  CHECK(diagnosis::simulate_ratios(null, ramp, 100, 1, pool).mean() > 1.3);
+  int by_chi_squared = 0;
+  int found = 0;
+  constexpr int flights = 40;
+  for (std::uint64_t seed = 1; seed <= flights; ++seed) {
+    Draws draws(seed);
+    VectorXd noise = draws.normal_matrix(390, 1);
+    double drift = draws.normal_matrix(1, 1)(0, 0);  // Gauss & Markov's, 100 rows
+    const double phi = std::exp(-1.0 / 100.0);
+    for (Index t = 0; t < noise.size(); ++t) {
+      noise[t] += drift;
+      drift = phi * drift + std::sqrt(1.0 - phi * phi) * draws.normal_matrix(1, 1)(0, 0);
+    }
+    const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
+    diagnosis::Linearisation fit = fit_to(layout, waves(390), noise);
+    const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
+    const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
+    const diagnosis::NoiseTest::Ratios ratios = null.test->compare(ramp);
+    const double white = white_ratio(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
+    by_chi_squared += numerics::log10_chi_squared_tail(white, 1.0) < -2.0 ? 1 : 0;
+    found += null.test->calibrate(ratios, ramp, true, 80, 0, pool).log10_p() < -2.0 ? 1 : 0;
+  }
+  CHECK(by_chi_squared > 20);
+  CHECK(found <= 4);  // binomial, 1 % of 40: more than 4 in 1e-5 of all sets of seeds
 }
 
-TEST_CASE("inflation: of chi-squared's own quantiles none, of twice these two, of outliers none") {
-  constexpr int count = 1000;
-  for (const int q : {1, 2, 6, 30}) {
-    VectorXd ratios(count);
-    for (int i = 0; i < count; ++i)
-      ratios[i] = numerics::chi_squared_point(1.0 - (i + 0.5) / count, q);
-    const auto check = [&](const VectorXd& some, double expected) {
-      CHECK(diagnosis::inflation_of(some, q).median == Approx(expected).epsilon(0.02));
-      CHECK(diagnosis::inflation_of(some, q).ninetieth == Approx(expected).epsilon(0.02));
-    };
-    check(ratios, 1.0);
-    check(2.0 * ratios, 2.0);
-    check(0.5 * ratios, 1.0);
-    ratios.tail(count / 20).setConstant(1e4);
-    check(ratios, 1.0);
-    const double ratio = 40.0 + q;
-    CHECK(diagnosis::log10_ratio_tail(ratio, q, {}) ==
-          Approx(numerics::log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
-    CHECK(diagnosis::log10_ratio_tail(2.0 * ratio, q, {2.0, 2.0}) ==
-          Approx(numerics::log10_chi_squared_tail(ratio, q)).epsilon(1e-6));
-  }
+TEST_CASE("points of chi-squared") {
   // SciPy 1.11: chi2.isf(0.5, 2), chi2.isf(0.1, 5)
   CHECK(numerics::chi_squared_point(0.5, 2.0) == Approx(1.3862943611198906).epsilon(1e-9));
   CHECK(numerics::chi_squared_point(0.1, 5.0) == Approx(9.236356899781123).epsilon(1e-9));
-}
-
-TEST_CASE("a ninetieth percentile below the median's inflation makes no tail shorter") {
-  for (const int q : {1, 3, 12}) {
-    CHECK(diagnosis::log10_ratio_tail(60.0, q, {1.8, 1.3}) >=
-          diagnosis::log10_ratio_tail(60.0, q, {1.3, 1.3}) - 1e-9);
-    CHECK(diagnosis::log10_ratio_tail(60.0, q, {1.3, 1.8}) >
-          diagnosis::log10_ratio_tail(60.0, q, {1.3, 1.3}));
-  }
 }
 
 TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the output's unit") {

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "diagnosis/refits.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+/// The parameters that the fit has at a bound and the one before had not.
+std::vector<std::string> newly_at_bounds(const Fit& before, const Fit& after) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : after.parameters) {
+    if (!parameter.at_bound) continue;
+    const auto old = std::ranges::find(before.parameters, parameter.name, &Parameter::name);
+    if (old == before.parameters.end() || !old->at_bound) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+/// The coefficient whose fitted value is least like the step's, where it is of another sign or
+/// several times as large and noise does not explain it.
+std::string disagreement(const EffectFinding& finding, const Fit& fitted) {
+  constexpr double errors = 4.0;
+  constexpr double times = 3.0;
+  for (const Coefficient& coefficient : finding.coefficients) {
+    const Parameter& now = fitted[coefficient.name];
+    const double error = std::max(coefficient.standard_error, now.standard_error);
+    const double change = std::abs(now.value - coefficient.estimate);
+    const bool alike = now.value * coefficient.estimate > 0.0 &&
+                       std::abs(now.value) < times * std::abs(coefficient.estimate) &&
+                       std::abs(coefficient.estimate) < times * std::abs(now.value);
+    if (alike || !(change > errors * error)) continue;
+    return fmt::format("fitted, {} is {:.3g}, where one step from here has {:.3g}",
+                       coefficient.name, now.value, coefficient.estimate);
+  }
+  return {};
+}
+
+double shape_of(const EffectFinding& finding) {
+  return finding.shapes.empty() ? not_a_number : finding.shapes.begin()->second;
+}
+
+}  // namespace
+
+double criterion_with(CandidateRoom& room, const EffectFinding& finding) {
+  try {
+    const Fit fitted = refit_with(room, room.make(finding.name), shape_of(finding));
+    const auto rows = static_cast<double>(fitted.rows);
+    double logarithms = 0.0;
+    for (const OutputValue& rmse : fitted.rmse) {
+      if (rmse.value > 0.0) logarithms += std::log(rmse.value);
+    }
+    return rows * logarithms +
+           0.5 * static_cast<double>(finding.coefficients.size()) * std::log(rows);
+  } catch (const Error&) {
+    return infinity;
+  }
+}
+
+std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
+                           double least_visibility, base::ThreadPool& pool) {
+  if (!(finding.visibility >= least_visibility)) {
+    return fmt::format(
+        "the flight hardly tells it from the model's own parameters (visibility "
+        "{:.2f})",
+        finding.visibility);
+  }
+  const Candidate candidate = room.make(finding.name);
+  const double shape = shape_of(finding);
+  try {
+    const Fit fitted = refit_with(room, candidate, shape);
+    if (fitted.status != FitStatus::converged) {
+      return fmt::format("a fit with it is {}", fitted.status == FitStatus::not_converged
+                                                    ? "not converged"
+                                                    : "not identifiable");
+    }
+    const std::vector<std::string> held = newly_at_bounds(room.fitted(), fitted);
+    if (!held.empty()) {
+      return fmt::format("fitted, it runs into the bounds of {}", fmt::join(held, ", "));
+    }
+    const std::string differs = disagreement(finding, fitted);
+    if (!differs.empty()) return differs;
+    const HeldOut held_out = hold_out_by_refits(
+        room, candidate, shape,
+        interleaved_blocks(room.fit().layout,
+                           correlation_rows(room.fit().layout, room.fit().residual), 12),
+        pool);
+    if (held_out.judged && !(held_out.gain > 0.0)) {
+      return fmt::format("real fits without some rows predict them no better ({:.1f} % more error)",
+                         -100.0 * held_out.gain);
+    }
+  } catch (const Error& error) {
+    return std::string("it can't be fitted here: ") + error.what();
+  }
+  return {};
+}
+
+}  // namespace sepcal::diagnosis

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/noise_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+
+#include "diagnosis/noise_hypothesis.hpp"
+#include "diagnosis/projection.hpp"
+#include "numerics/tails.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using noise::NoiseFamilies;
+using noise::NoiseFamily;
+using noise::NoiseMember;
+
+using Kinds = std::span<const NoiseFamily>;
+
+constexpr double least_sigma = 1e-9;  // of the RMSE: nothing at all can't be whitened
+
+void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
+                    const NoiseMembers& noise, MatrixXd& columns) {
+  for (std::size_t j = 0; j < noise.size(); ++j) {
+    families.whiten(noise[j], columns.middleRows(layout.first(j), layout.rows));
+  }
+}
+
+/// The likeliest members of some families for what coefficients leave.
+NoiseMembers find_members(const NoiseFamilies& families, const RowLayout& layout, Kinds kinds,
+                          const VectorXd& left, const std::vector<int>& orders) {
+  NoiseMembers members;
+  for (std::size_t j = 0; j < orders.size(); ++j) {
+    const VectorXd e = left.segment(layout.first(j), layout.rows);
+    NoiseMember best;
+    best.minus_two_log_likelihood = infinity;
+    for (const NoiseFamily kind : kinds) {
+      NoiseMember member = families.find(kind, e, orders[j]);
+      if (member.minus_two_log_likelihood < best.minus_two_log_likelihood) best = member;
+    }
+    best.sigma = std::max(best.sigma, least_sigma);
+    members.push_back(std::move(best));
+  }
+  return members;
+}
+
+/// Members for coefficients and coefficients for members, in turn until that gains little.
+FamilyFit maximise(const NoiseFamilies& families, const RowLayout& layout, Kinds kinds,
+                   const MatrixXd& columns, const VectorXd& residual,
+                   const std::vector<int>& orders) {
+  constexpr int most_rounds = 5;
+  constexpr double least_gain = 0.05;
+  FamilyFit best;
+  best.minus_two_log_likelihood = infinity;
+  VectorXd coefficients = columns.transpose() * residual;
+  for (int round = 0; round < most_rounds; ++round) {
+    NoiseMembers members =
+        find_members(families, layout, kinds, residual - columns * coefficients, orders);
+    double value = 0.0;
+    for (const NoiseMember& member : members) value += member.minus_two_log_likelihood;
+    const double gain = best.minus_two_log_likelihood - value;
+    if (!(gain > 0.0)) break;
+    MatrixXd white = join(columns, residual);
+    whiten_outputs(families, layout, members, white);
+    const auto X = white.leftCols(columns.cols());
+    best.covariance = pseudo_inverse(X.transpose() * X);
+    best.coefficients = coefficients = best.covariance * (X.transpose() * white.rightCols<1>());
+    best.noise = std::move(members);
+    best.minus_two_log_likelihood = value;
+    if (gain < least_gain) break;
+  }
+  return best;
+}
+
+NoiseTest::Ratios ratios_of(const std::array<FamilyFit, 2>& nulls, const NoiseFamilies& families,
+                            const RowLayout& layout, const MatrixXd& columns,
+                            const VectorXd& residual, const std::vector<int>& orders) {
+  NoiseTest::Ratios ratios;
+  double null = infinity;
+  double with = infinity;
+  for (std::size_t k = 0; k < nulls.size(); ++k) {
+    FamilyFit fit =
+        maximise(families, layout, {&noise::noise_families[k], 1}, columns, residual, orders);
+    const double before = nulls[k].minus_two_log_likelihood;
+    ratios.own[k] = std::max(0.0, before - fit.minus_two_log_likelihood);
+    null = std::min(null, before);
+    if (!(fit.minus_two_log_likelihood < with)) continue;
+    with = fit.minus_two_log_likelihood;
+    ratios.with = std::move(fit);
+  }
+  ratios.joint = std::max(0.0, null - with);
+  return ratios;
+}
+
+std::array<FamilyFit, 2> fit_nulls(const NoiseFamilies& families, const RowLayout& layout,
+                                   const MatrixXd& basis, const VectorXd& residual,
+                                   const std::vector<int>& orders) {
+  std::array<FamilyFit, 2> nulls;
+  for (std::size_t k = 0; k < nulls.size(); ++k) {
+    nulls[k] = maximise(families, layout, {&noise::noise_families[k], 1}, basis, residual, orders);
+  }
+  return nulls;
+}
+
+/// Fewer rows: means of `stride` that follow each other in a run, or one in `stride`.
+struct Reduction {
+  RowLayout layout;
+  Index stride = 1;
+  bool average = false;
+
+  Reduction(const RowLayout& full, Index most, bool averaged) : average(averaged) {
+    stride = (full.rows + most - 1) / most;
+    layout.outputs = full.outputs;
+    for (const Segment& run : full.runs) {
+      const auto first = static_cast<std::size_t>(layout.rows);
+      layout.rows += (static_cast<Index>(run.rows()) + stride - 1) / stride;
+      layout.runs.push_back({run.label, first, static_cast<std::size_t>(layout.rows)});
+    }
+  }
+
+  MatrixXd apply(const RowLayout& full, const MatrixXd& columns) const {
+    if (stride == 1) return columns;
+    MatrixXd reduced(layout.count(), columns.cols());
+    Index at = 0;
+    for (std::size_t j = 0; j < full.outputs.size(); ++j) {
+      for (const Segment& run : full.runs) {
+        for (std::size_t row = run.first; row < run.last; row += static_cast<std::size_t>(stride)) {
+          const Index first = full.first(j) + static_cast<Index>(row);
+          const Index count = std::min(stride, static_cast<Index>(run.last - row));
+          if (average) {
+            reduced.row(at) = columns.middleRows(first, count).colwise().mean();
+          } else {
+            reduced.row(at) = columns.row(first);
+          }
+          ++at;
+        }
+      }
+    }
+    return reduced;
+  }
+};
+
+double median(VectorXd values) {
+  const Index middle = values.size() / 2;
+  std::nth_element(values.begin(), values.begin() + middle, values.end());
+  return values[middle];
+}
+
+/// Sizes of innovations, output by output: no larger than 4 robust standard deviations.
+VectorXd cap_sizes(const RowLayout& layout, const MatrixXd& white) {
+  constexpr double robust = 1.4826;
+  VectorXd sizes = white.col(0).cwiseAbs();
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    auto own = sizes.segment(layout.first(j), layout.rows);
+    own = own.cwiseMin(4.0 * robust * median(own));
+  }
+  return sizes;
+}
+
+/// Noise of members whose innovations have these sizes and signs by chance.
+VectorXd draw(const NoiseFamilies& families, const RowLayout& layout, const NoiseMembers& noise,
+              const VectorXd& sizes, std::mt19937_64& generator) {
+  VectorXd drawn = sizes;
+  std::uint64_t bits = 0;
+  for (Index i = 0; i < drawn.size(); ++i, bits >>= 1U) {
+    if (i % 64 == 0) bits = generator();
+    if ((bits & 1U) != 0) drawn[i] = -drawn[i];
+  }
+  for (std::size_t j = 0; j < noise.size(); ++j) {
+    families.colour(noise[j], drawn.segment(layout.first(j), layout.rows));
+  }
+  return drawn;
+}
+
+/// By how much draws of a ratio are larger than chi-squared's: at the median or at the ninetieth
+/// percentile, at least 1.
+double enlargement(std::vector<double> ratios, int freedom) {
+  if (freedom == 0) return 1.0;
+  std::ranges::sort(ratios);
+  const auto at = [&](double share) {
+    const auto place = static_cast<std::size_t>(share * static_cast<double>(ratios.size()));
+    return ratios[place] / numerics::chi_squared_point(1.0 - share, freedom);
+  };
+  return std::max({1.0, at(0.5), at(0.9)});
+}
+
+double log10_tail(double ratio, int freedom) {
+  return numerics::log10_chi_squared_tail(ratio, static_cast<double>(freedom));
+}
+
+}  // namespace
+
+NoiseTest::NoiseTest(const Linearisation& fit, MatrixXd basis, std::vector<int> orders)
+    : fit_(fit),
+      basis_(std::move(basis)),
+      orders_(std::move(orders)),
+      families_(fit.layout.runs),
+      nulls_(fit_nulls(families_, fit.layout, basis_, fit.residual, orders_)) {}
+
+NoiseTest::Ratios NoiseTest::compare(const MatrixXd& added) const {
+  return ratios_of(nulls_, families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+}
+
+NoiseTails NoiseTest::tails(const Ratios& ratios, int freedom) {
+  return {std::max(log10_tail(ratios.own[0], freedom), log10_tail(ratios.own[1], freedom)),
+          log10_tail(ratios.joint, freedom)};
+}
+
+NoiseTails NoiseTest::calibrate(const Ratios& ratios, const MatrixXd& added, bool smooth, int draws,
+                                std::uint64_t seed, base::ThreadPool& pool) const {
+  constexpr Index most_rows = 600;
+  const RowLayout& layout = fit_.layout;
+  const MatrixXd columns = join(basis_, added);
+  const Reduction reduction(layout, most_rows, smooth);
+  const bool whole = reduction.stride == 1;
+  const MatrixXd basis = whole ? basis_ : orthonormal_basis(reduction.apply(layout, basis_));
+  const MatrixXd reduced_added =
+      whole ? added : orthonormal_basis(remove_span(basis, reduction.apply(layout, added)));
+  const MatrixXd reduced_columns = join(basis, reduced_added);
+  const NoiseFamilies reduced_families(reduction.layout.runs);
+
+  // What a step leaves in its own row must not be drawn as noise.
+  MatrixXd beside = fit_.residual - columns * ratios.with.coefficients;
+  whiten(ratios.with.noise, beside);
+  const VectorXd beside_sizes = cap_sizes(layout, beside);
+  VectorXd largest = beside.col(0).cwiseAbs();
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    auto own = largest.segment(layout.first(j), layout.rows);
+    own.array() += 3.0 * median(own);
+  }
+  const auto enlarge = [&](const FamilyFit& noise, const VectorXd& sizes, std::size_t which) {
+    std::vector<VectorXd> residuals;
+    std::mt19937_64 generator(seed + which);
+    for (int i = 0; i < draws; ++i) {
+      const VectorXd full = draw(families_, layout, noise.noise, sizes, generator);
+      residuals.emplace_back(reduction.apply(layout, full).col(0));
+    }
+    std::vector<double> drawn(residuals.size());
+    pool.for_each(residuals.size(), [&](std::size_t i) {
+      if (which < 2) {
+        const Kinds kind{&noise::noise_families[which], 1};
+        drawn[i] = maximise(reduced_families, reduction.layout, kind, basis, residuals[i], orders_)
+                       .minus_two_log_likelihood -
+                   maximise(reduced_families, reduction.layout, kind, reduced_columns, residuals[i],
+                            orders_)
+                       .minus_two_log_likelihood;
+      } else {
+        const auto nulls =
+            fit_nulls(reduced_families, reduction.layout, basis, residuals[i], orders_);
+        drawn[i] = ratios_of(nulls, reduced_families, reduction.layout, reduced_columns,
+                             residuals[i], orders_)
+                       .joint;
+      }
+    });
+    return enlargement(std::move(drawn), static_cast<int>(reduced_added.cols()));
+  };
+  const auto freedom = static_cast<int>(added.cols());
+  NoiseTails result{-infinity, 0.0};
+  for (std::size_t k = 0; k < nulls_.size(); ++k) {
+    MatrixXd white = fit_.residual - basis_ * nulls_[k].coefficients;
+    whiten(nulls_[k].noise, white);
+    const double factor = enlarge(nulls_[k], cap_sizes(layout, white).cwiseMin(largest), k);
+    result.either = std::max(result.either, log10_tail(ratios.own[k] / factor, freedom));
+  }
+  result.beside = log10_tail(ratios.joint / enlarge(ratios.with, beside_sizes, 2), freedom);
+  return result;
+}
+
+void NoiseTest::whiten(const NoiseMembers& noise, MatrixXd& columns) const {
+  whiten_outputs(families_, fit_.layout, noise, columns);
+}
+
+double NoiseTest::floor(const NoiseMembers& noise) const {
+  double square = 0.0;
+  for (std::size_t j = 0; j < noise.size(); ++j) {
+    const double sigma = families_.innovation(noise[j]) * fit_.layout.outputs[j].scale;
+    square += sigma * sigma;
+  }
+  return std::sqrt(square / static_cast<double>(noise.size()));
+}
+
+}  // namespace sepcal::diagnosis

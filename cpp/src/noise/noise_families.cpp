@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "noise/noise_families.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "noise/autoregression.hpp"
+#include "noise/noise_autocovariance.hpp"
+#include "noise/noise_room.hpp"
+#include "sepcal/quantity.hpp"
+
+namespace sepcal::noise {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Ref;
+using Eigen::VectorXd;
+
+constexpr std::array grid_of_d{0.0, 0.15, 0.3, 0.45, 0.6, 0.8, 0.999};
+constexpr double differences_from = 0.5;
+constexpr std::array white_shares{0.0, 0.1, 0.25, 0.45, 0.65, 0.8, 0.9, 0.96, 0.99, 0.999};
+constexpr int correlation_times = 10;
+constexpr Index longest_settling = 4096;  // rows that gains are kept for
+
+/// The variance of the sum of `rows` increments (1 - B)^delta u = w.
+double variance_of_sum(double delta, Index rows) {
+  const VectorXd gamma = find_moments(delta, VectorXd(), rows).autocovariance;
+  double variance = 0.0;
+  double slope = gamma[0];
+  for (Index h = 0; h < rows; ++h) {
+    if (h > 0) slope += 2.0 * gamma[h];
+    variance += slope;
+  }
+  return variance;
+}
+
+/// prod_{t<j<=p} (1 - r_j^2) for t = 0, ..., p.
+VectorXd variance_ratios(const VectorXd& partial) {
+  VectorXd ratios = VectorXd::Ones(partial.size() + 1);
+  for (Index t = partial.size() - 1; t >= 0; --t) {
+    ratios[t] = ratios[t + 1] * (1.0 - partial[t] * partial[t]);
+  }
+  return ratios;
+}
+
+/// A block's rows become innovations of the AR, all of one variance.
+void whiten_autoregression(const VectorXd& partial, Ref<VectorXd> x) {
+  const Index p = std::min(partial.size(), x.size());
+  if (partial.size() == 0) return;
+  const VectorXd ratios = variance_ratios(partial);
+  VectorXd backward = x;
+  for (Index order = 0; order < p; ++order) {
+    const double r = partial[order];
+    for (Index t = x.size() - 1; t > order; --t) {
+      const double f = x[t];
+      x[t] = f - r * backward[t - 1];
+      backward[t] = backward[t - 1] - r * f;
+    }
+  }
+  for (Index t = 0; t < p; ++t) x[t] *= std::sqrt(ratios[t]);
+}
+
+void colour_autoregression(const VectorXd& partial, Ref<VectorXd> w) {
+  if (partial.size() == 0) return;
+  const VectorXd ratios = variance_ratios(partial);
+  VectorXd phi;
+  for (Index t = 0; t < w.size(); ++t) {
+    const Index order = std::min(t, partial.size());
+    if (order > phi.size()) phi = phi_from_partial(partial.head(order));
+    w[t] /= std::sqrt(ratios[order]);
+    if (order > 0) w[t] += phi.dot(w.segment(t - order, order).reverse());
+  }
+}
+
+}  // namespace
+
+NoiseFamilies::NoiseFamilies(const std::vector<Segment>& runs) : lengths_(find_lengths(runs)) {
+  for (const Index length : lengths_) rows_ += length;
+  for (const double d : grid_of_d) fractions_.push_back(make_fraction(d));
+  const Index longest = *std::ranges::max_element(lengths_);
+  const double shortest_time = 2.0;
+  const double longest_time = 2.0 * static_cast<double>(std::max<Index>(longest, 4));
+  wanders_.push_back(make_wander(1.0, 1.0));
+  for (int i = 0; i < correlation_times; ++i) {
+    const double time =
+        shortest_time * std::pow(longest_time / shortest_time, i / (correlation_times - 1.0));
+    for (const double white : white_shares) wanders_.push_back(make_wander(time, white));
+  }
+  Index settled = 0;
+  for (const Wander& wander : wanders_) settled = std::max(settled, wander.gain.size());
+  const auto members = static_cast<Index>(wanders_.size());
+  gains_.resize(members, settled);
+  precisions_.resize(members, settled);
+  log_variances_ = VectorXd::Zero(members);
+  for (Index m = 0; m < members; ++m) {
+    const Wander& wander = wanders_[static_cast<std::size_t>(m)];
+    const Index own = wander.gain.size();
+    gains_.row(m).setConstant(wander.gain[own - 1]);
+    precisions_.row(m).setConstant(std::pow(wander.deviation[own - 1], -2));
+    gains_.row(m).head(own) = wander.gain;
+    precisions_.row(m).head(own) = wander.deviation.cwiseAbs2().cwiseInverse();
+    for (const Index length : lengths_) {
+      const Index first = std::min(length, own);
+      log_variances_[m] +=
+          2.0 * wander.deviation.head(first).array().log().sum() +
+          2.0 * static_cast<double>(length - first) * std::log(wander.deviation[own - 1]);
+    }
+  }
+}
+
+NoiseFamilies::Fraction NoiseFamilies::make_fraction(double d) const {
+  const bool differences = d >= differences_from;
+  const double delta = differences ? d - 1.0 : d;
+  std::vector<Index> blocks = find_blocks(lengths_, differences);
+  ArfimaFactor factor(delta, VectorXd(), blocks);
+  double log_determinant = factor.log_determinant(blocks);
+  std::vector<double> deviations;
+  if (differences) {
+    for (const Index length : lengths_) {
+      const double variance = variance_of_sum(delta, length);
+      deviations.push_back(std::sqrt(variance));
+      log_determinant += std::log(variance);
+    }
+  }
+  return {differences, std::move(blocks), std::move(factor), std::move(deviations),
+          log_determinant};
+}
+
+NoiseFamilies::Wander NoiseFamilies::make_wander(double rows, double white) const {
+  constexpr double settled = 1e-12;
+  const Index longest = std::min(longest_settling, *std::ranges::max_element(lengths_));
+  Wander wander{std::exp(-1.0 / rows), white, VectorXd(longest), VectorXd(longest)};
+  const double wandering = 1.0 - white;
+  double P = wandering;  // variance of g as predicted
+  for (Index t = 0; t < longest; ++t) {
+    const double F = P + white;
+    wander.gain[t] = P / F;
+    wander.deviation[t] = std::sqrt(F);
+    const double next =
+        wander.a * wander.a * P * white / F + wandering * (1.0 - wander.a * wander.a);
+    if (std::abs(next - P) <= settled * P) {
+      wander.gain.conservativeResize(t + 1);
+      wander.deviation.conservativeResize(t + 1);
+      break;
+    }
+    P = next;
+  }
+  return wander;
+}
+
+void NoiseFamilies::difference(const Fraction& fraction, Ref<VectorXd> x) const {
+  if (!fraction.differences) {
+    fraction.factor.whiten(x, fraction.blocks);
+    return;
+  }
+  Index first = 0;
+  for (std::size_t i = 0; i < lengths_.size(); ++i) {
+    const Index rest = lengths_[i] - 1;
+    for (Index t = first + rest; t > first; --t) x[t] -= x[t - 1];
+    x[first] /= fraction.first_deviation[i];
+    fraction.factor.whiten(x.segment(first + 1, rest));
+    first += lengths_[i];
+  }
+}
+
+VectorXd NoiseFamilies::gather_blocks(const Fraction& fraction, const VectorXd& x) const {
+  if (!fraction.differences) return x;
+  VectorXd rows(rows_ - static_cast<Index>(lengths_.size()));
+  Index from = 0;
+  Index to = 0;
+  for (const Index length : lengths_) {
+    rows.segment(to, length - 1) = x.segment(from + 1, length - 1);
+    from += length;
+    to += length - 1;
+  }
+  return rows;
+}
+
+NoiseMember NoiseFamilies::find_fractional(const VectorXd& e, int order) const {
+  NoiseMember best;
+  best.minus_two_log_likelihood = infinity;
+  const auto n = static_cast<double>(rows_);
+  for (std::size_t k = 0; k < fractions_.size(); ++k) {
+    const Fraction& fraction = fractions_[k];
+    VectorXd y = e;
+    difference(fraction, y);
+    const VectorXd rows = gather_blocks(fraction, y);
+    const BurgFit burg = fit_burg(rows, fraction.blocks, order);
+    // Burg's criterion profiles sigma over its rows; the first ones of the runs join them.
+    const auto m = static_cast<double>(rows.size());
+    const double log_ratio = burg.log_ratio[order];
+    const double square = m * std::exp((burg.criterion[order] - log_ratio) / m) +
+                          std::max(0.0, y.squaredNorm() - rows.squaredNorm());
+    const double value = n * std::log(square / n) + log_ratio + fraction.log_determinant;
+    if (!(value < best.minus_two_log_likelihood)) continue;
+    best = {NoiseFamily::fractional, k, burg.partial, std::sqrt(square / n), value};
+  }
+  return best;
+}
+
+NoiseMember NoiseFamilies::find_wandering(const VectorXd& e) const {
+  const auto members = static_cast<Index>(wanders_.size());
+  ArrayXd a(members);
+  for (Index m = 0; m < members; ++m) a[m] = wanders_[static_cast<std::size_t>(m)].a;
+  ArrayXd state(members);
+  ArrayXd square = ArrayXd::Zero(members);
+  const Index settled = gains_.cols() - 1;
+  Index first = 0;
+  for (const Index length : lengths_) {
+    state.setZero();
+    for (Index t = 0; t < length; ++t) {
+      const Index at = std::min(t, settled);
+      const double value = e[first + t];
+      for (Index m = 0; m < members; ++m) {
+        const double innovation = value - state[m];
+        square[m] += innovation * innovation * precisions_(m, at);
+        state[m] = a[m] * (state[m] + gains_(m, at) * innovation);
+      }
+    }
+    first += length;
+  }
+  const auto n = static_cast<double>(rows_);
+  NoiseMember best{.family = NoiseFamily::wandering};
+  Index least = 0;
+  best.minus_two_log_likelihood =
+      (n * (square / n).log() + log_variances_.array()).minCoeff(&least);
+  best.at = static_cast<std::size_t>(least);
+  best.sigma = std::sqrt(square[least] / n);
+  return best;
+}
+
+NoiseMember NoiseFamilies::find(NoiseFamily family, const VectorXd& e, int order) const {
+  return family == NoiseFamily::fractional ? find_fractional(e, order) : find_wandering(e);
+}
+
+void NoiseFamilies::whiten(const NoiseMember& member, Ref<MatrixXd> columns) const {
+  for (auto column : columns.colwise()) {
+    if (member.family == NoiseFamily::fractional) {
+      const Fraction& fraction = fractions_[member.at];
+      difference(fraction, column);
+      Index first = 0;
+      for (const Index length : lengths_) {
+        const Index skipped = fraction.differences ? 1 : 0;
+        whiten_autoregression(member.partial, column.segment(first + skipped, length - skipped));
+        first += length;
+      }
+      continue;
+    }
+    const Wander& wander = wanders_[member.at];
+    const Index settled = wander.gain.size() - 1;
+    Index first = 0;
+    for (const Index length : lengths_) {
+      double state = 0.0;
+      for (Index t = 0; t < length; ++t) {
+        const Index at = std::min(t, settled);
+        const double innovation = column[first + t] - state;
+        column[first + t] = innovation / wander.deviation[at];
+        state = wander.a * (state + wander.gain[at] * innovation);
+      }
+      first += length;
+    }
+  }
+  columns /= member.sigma;
+}
+
+void NoiseFamilies::colour(const NoiseMember& member, Ref<VectorXd> innovations) const {
+  Index first = 0;
+  for (std::size_t i = 0; i < lengths_.size(); ++i) {
+    auto run = innovations.segment(first, lengths_[i]);
+    first += lengths_[i];
+    if (member.family == NoiseFamily::fractional) {
+      const Fraction& fraction = fractions_[member.at];
+      const Index skipped = fraction.differences ? 1 : 0;
+      auto block = run.tail(run.size() - skipped);
+      colour_autoregression(member.partial, block);
+      fraction.factor.colour(block);
+      if (fraction.differences) {
+        run[0] *= fraction.first_deviation[i];
+        for (Index t = 1; t < run.size(); ++t) run[t] += run[t - 1];
+      }
+      continue;
+    }
+    const Wander& wander = wanders_[member.at];
+    const Index settled = wander.gain.size() - 1;
+    double state = 0.0;
+    for (Index t = 0; t < run.size(); ++t) {
+      const Index at = std::min(t, settled);
+      const double innovation = run[t] * wander.deviation[at];
+      run[t] = state + innovation;
+      state = wander.a * (state + wander.gain[at] * innovation);
+    }
+  }
+  innovations *= member.sigma;
+}
+
+}  // namespace sepcal::noise
