@@ -233,7 +233,7 @@ class EffectSetting:
     An effect of a fit, with what it took from the record; None or empty where it takes none.
     """
 
-    _fields: typing.ClassVar[tuple] = ("name", "centre", "knots", "labels", "span", "t0")
+    _fields: typing.ClassVar[tuple] = ("name", "centre", "mean", "knots", "labels", "span", "t0")
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -257,6 +257,11 @@ class EffectSetting:
     def labels(self) -> tuple[str, ...]:
         """
         Of the driver `maneuver`; the first has no coefficient.
+        """
+    @property
+    def mean(self) -> float | None:
+        """
+        Of the power over the fitted rows, where it is taken away.
         """
     @property
     def name(self) -> str:

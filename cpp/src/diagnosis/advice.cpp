@@ -43,6 +43,18 @@ std::string disagreement(const EffectFinding& finding, const Fit& fitted) {
   return {};
 }
 
+/// A third of the record at a time, in blocks in between: each fold is two fits.
+Folds few_folds(const Linearisation& fit, const Eigen::MatrixXd& G) {
+  constexpr int count = 3;
+  constexpr int fewest_blocks = 12;
+  Folds folds =
+      interleaved_blocks(fit.layout, correlation_rows(fit.layout, fit.residual), fewest_blocks);
+  for (HeldOutBlock& block : folds.blocks) block.fold %= count;
+  folds.count = count;
+  judge_interpolated(fit.layout, G, folds);
+  return folds;
+}
+
 double shape_of(const EffectFinding& finding) {
   return finding.shapes.empty() ? not_a_number : finding.shapes.begin()->second;
 }
@@ -87,11 +99,8 @@ std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
     }
     const std::string differs = disagreement(finding, fitted);
     if (!differs.empty()) return differs;
-    const HeldOut held_out = hold_out_by_refits(
-        room, candidate, shape,
-        interleaved_blocks(room.fit().layout,
-                           correlation_rows(room.fit().layout, room.fit().residual), 12),
-        pool);
+    const Folds folds = few_folds(room.fit(), room.columns(candidate, shape));
+    const HeldOut held_out = hold_out_by_refits(room, candidate, shape, folds, pool);
     if (held_out.judged && !(held_out.gain > 0.0)) {
       return fmt::format("real fits without some rows predict them no better ({:.1f} % more error)",
                          -100.0 * held_out.gain);

@@ -265,13 +265,19 @@ void Recipe::try_pairs(const std::vector<EffectFinding>& singles) {
 void Recipe::rank_by_fits() {
   constexpr std::size_t most_fitted = 4;
   constexpr double margin = 5.0;  // in ln L
-  std::vector<double> left;
+  constexpr double near = 0.8;    // of the first's log10 p
+  const double first_p = result_.effects.front().log10_p;
+  std::size_t rivals = 0;
   for (const EffectFinding& finding : result_.effects) {
     const bool found = finding.status == FindingStatus::found;
-    if (!found || !(finding.log10_p < doubtless) || left.size() == most_fitted) break;
-    left.push_back(criterion_with(room_, finding));
+    if (!found || !(finding.log10_p < std::min(doubtless, near * first_p))) break;
+    if (++rivals == most_fitted) break;
   }
-  if (left.size() < 2) return;
+  if (rivals < 2) return;
+  std::vector<double> left;
+  for (std::size_t i = 0; i < rivals; ++i) {
+    left.push_back(criterion_with(room_, result_.effects[i]));
+  }
   const auto best = std::ranges::min_element(left) - left.begin();
   if (!(left.front() - left[static_cast<std::size_t>(best)] > margin)) return;
   const auto first = result_.effects.begin();

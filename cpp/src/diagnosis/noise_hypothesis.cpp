@@ -15,8 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double least_sigma = 1e-9;  // of the RMSE: nothing at all can't be whitened
-
 std::span<const double> rows_of(const RowLayout& layout, const VectorXd& values, std::size_t j) {
   return {values.data() + layout.first(j), static_cast<std::size_t>(layout.rows)};
 }

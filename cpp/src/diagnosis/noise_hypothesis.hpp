@@ -12,6 +12,8 @@
 
 namespace sepcal::diagnosis {
 
+inline constexpr double least_sigma = 1e-9;  // of the RMSE: nothing at all can't be whitened
+
 using NoiseModels = std::vector<NoiseModel>;  // of each used output, in units of its RMSE
 
 struct Hypothesis {

@@ -22,8 +22,6 @@ using noise::NoiseMember;
 
 using Kinds = std::span<const NoiseFamily>;
 
-constexpr double least_sigma = 1e-9;  // of the RMSE: nothing at all can't be whitened
-
 void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
                     const NoiseMembers& noise, MatrixXd& columns) {
   for (std::size_t j = 0; j < noise.size(); ++j) {

@@ -18,6 +18,7 @@ from typing import Any, TypeAlias
 
 from scipy.stats import beta
 
+from sepcal import Error
 from studies.hidden_effects.cases import CASES, PROBES, calibrate, factor_for
 from studies.study import Finding, Outcome, Progress, Study, check_folder, seeds
 from studies.trust.flights import NOISES, fly
@@ -61,11 +62,14 @@ def _try(key: Key) -> Row:
     begun = time.process_time()
     hide = None
     probe = label
-    if part == "power":
-        case = next(case for case in CASES if f"{case.probe}: {case.effect}" == label)
-        probe = case.probe
-        hide = {case.effect: case.sizes(factor_for(case, sigmas))}
-    flight, quiet = fly(probe, noise, seed, rows, hide)
+    try:
+        if part == "power":
+            case = next(case for case in CASES if f"{case.probe}: {case.effect}" == label)
+            probe = case.probe
+            hide = {case.effect: case.sizes(factor_for(case, sigmas))}
+        flight, quiet = fly(probe, noise, seed, rows, hide)
+    except Error:  # an effect so large that the sensor reads nothing
+        return {"key": key, "verdict": "not flown", "visible": False, "seconds": 0.0}
     diagnosis = calibrate(probe, flight).diagnose()
     row: Row = {"key": key, "verdict": diagnosis.verdict, "advice": diagnosis.advice["effect"]}
     if diagnosis.effects:
