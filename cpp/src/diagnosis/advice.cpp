@@ -97,7 +97,7 @@ std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
     if (!held.empty()) {
       return fmt::format("fitted, it runs into the bounds of {}", fmt::join(held, ", "));
     }
-    const std::string differs = disagreement(finding, fitted);
+    std::string differs = disagreement(finding, fitted);
     if (!differs.empty()) return differs;
     const Folds folds = few_folds(room.fit(), room.columns(candidate, shape));
     const HeldOut held_out = hold_out_by_refits(room, candidate, shape, folds, pool);

@@ -107,12 +107,12 @@ std::array<FamilyFit, 2> fit_nulls(const NoiseFamilies& families, const RowLayou
 
 /// Fewer rows: means of `stride` that follow each other in a run, or one in `stride`.
 struct Reduction {
-  RowLayout layout;
+  RowLayout layout = {};
   Index stride = 1;
   bool average = false;
 
-  Reduction(const RowLayout& full, Index most, bool averaged) : average(averaged) {
-    stride = (full.rows + most - 1) / most;
+  Reduction(const RowLayout& full, Index most, bool averaged)
+      : stride((full.rows + most - 1) / most), average(averaged) {
     layout.outputs = full.outputs;
     for (const Segment& run : full.runs) {
       const auto first = static_cast<std::size_t>(layout.rows);

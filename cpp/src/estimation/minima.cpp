@@ -85,9 +85,9 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
       numerics::find_basins(scaled, trace_r.array().log().matrix());  // depth as a ratio
   basins.resize(std::min(basins.size(), static_cast<std::size_t>(problem.options().descents)));
   std::vector<VectorXd> starts;
-  for (const numerics::Basin& basin : basins) starts.push_back(samples.col(basin.lowest));
+  for (const numerics::Basin& basin : basins) starts.emplace_back(samples.col(basin.lowest));
   for (const auto guess : guesses.colwise()) {
-    if (std::isfinite(objective.square(guess))) starts.push_back(guess);
+    if (std::isfinite(objective.square(guess))) starts.emplace_back(guess);
   }
   std::vector<Descent> minima;
   for (const VectorXd& start : starts) {
