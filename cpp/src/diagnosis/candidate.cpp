@@ -213,16 +213,6 @@ std::vector<double> CandidateRoom::times() const {
   return base::gather_time(rows);
 }
 
-std::vector<double> CandidateRoom::rows_of(const std::string& column) const {
-  const std::span<const double> whole = record_.column(column);
-  std::vector<double> values;
-  for (const Segment& segment : fitted_.rows) {
-    const auto part = whole.subspan(segment.first, segment.rows());
-    values.insert(values.end(), part.begin(), part.end());
-  }
-  return values;
-}
-
 const MatrixXd& CandidateRoom::port_columns(const Port& port) {
   const auto known = ports_.find(port.name);
   if (known != ports_.end()) return known->second;

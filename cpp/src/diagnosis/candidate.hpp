@@ -58,9 +58,8 @@ class CandidateRoom {
     return ports_.at(port);
   }
 
-  /// The time of each of the N rows [s], and a column's values there.
+  /// The time of each of the N rows [s].
   std::vector<double> times() const;
-  std::vector<double> rows_of(const std::string& column) const;
 
   /// count() x coefficients.
   Eigen::MatrixXd columns(const Candidate& candidate, double shape) const {

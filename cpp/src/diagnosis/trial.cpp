@@ -193,9 +193,8 @@ bool is_slow(const CandidateRoom& room, const Candidate& candidate) {
     const std::string& channel = effect.driver->input()->name;
     if (channel == "time") continue;
     const std::vector<double> times = room.times();
-    const std::vector<double> values = room.rows_of(channel);
     const Eigen::Map<const Eigen::ArrayXd> t(times.data(), static_cast<Index>(times.size()));
-    const Eigen::Map<const Eigen::ArrayXd> d(values.data(), static_cast<Index>(values.size()));
+    const Eigen::ArrayXd d = gather_rows(room.record().column(channel), room.rows());
     const Eigen::ArrayXd from_t = t - t.mean();
     const Eigen::ArrayXd from_d = d - d.mean();
     const double spread = std::sqrt(from_t.square().sum() * from_d.square().sum());

@@ -131,7 +131,7 @@ NoiseFamilies::Fraction NoiseFamilies::make_fraction(double d) const {
 NoiseFamilies::Wander NoiseFamilies::make_wander(double rows, double white) const {
   constexpr double settled = 1e-12;
   const Index longest = std::min(longest_settling, *std::ranges::max_element(lengths_));
-  Wander wander{std::exp(-1.0 / rows), white, VectorXd(longest), VectorXd(longest)};
+  Wander wander{std::exp(-1.0 / rows), VectorXd(longest), VectorXd(longest)};
   const double wandering = 1.0 - white;
   double P = wandering;  // variance of g as predicted
   for (Index t = 0; t < longest; ++t) {

@@ -61,7 +61,6 @@ class NoiseFamilies {
   /// One correlation time and share of white noise; gains of the Kalman filter settle.
   struct Wander {
     double a;
-    double white;  // of the variance 1
     Eigen::VectorXd gain;
     Eigen::VectorXd deviation;  // of the innovations
   };
