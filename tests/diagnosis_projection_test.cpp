@@ -160,21 +160,3 @@ TEST_CASE("nothing is seen of a candidate within the tangent, nor of one that is
   const MatrixXd wide = problem.draws.normal_matrix(4, 6);
   CHECK(diagnosis::project(MatrixXd(4, 0), wide, wide, least_visibility).visible() == 0);
 }
-
-TEST_CASE("the smallest canonical correlation of two spans, from their projectors' eigenvalues") {
-  Problem problem;
-  const MatrixXd a = diagnosis::orthonormal_basis(problem.J);
-  const MatrixXd b = diagnosis::orthonormal_basis(problem.G);
-  MatrixXd P = a.transpose() * b;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(P.transpose() * P);
-  CHECK(diagnosis::canonical_correlation(a, b) ==
-        Approx(std::sqrt(solver.eigenvalues()[0])).epsilon(1e-10));
-  CHECK(diagnosis::canonical_correlation(b, a) ==
-        Approx(diagnosis::canonical_correlation(a, b)).epsilon(1e-13));
-
-  const MatrixXd inside =
-      diagnosis::orthonormal_basis(problem.J.leftCols(2) * problem.draws.normal_matrix(2, 2));
-  CHECK(diagnosis::canonical_correlation(inside, a) == Approx(1.0).epsilon(1e-13));
-  CHECK(diagnosis::canonical_correlation(problem.projected().basis, a) < 1e-12);
-  CHECK(diagnosis::canonical_correlation(a, MatrixXd(rows, 0)) == 0.0);
-}

@@ -46,8 +46,8 @@ class EffectFinding:
     held_out_interleaved: bool  # blocks in between, not whole segments, were left out
     visibility: float  # below 0.05 the flight can't show at least a part of it
     absorbed_by: dict[str, float]  # how far ignoring it shifts each parameter
-    family: list[str]  # what this flight can't tell apart, itself among them
     status: str  # "found", "slow_change", "not_seen", "cannot_be_seen"
+    beside: str  # the first found: "equivalent", "fades", "counts"; "untried" of others
 
     @property
     def in_words(self) -> str:
@@ -59,14 +59,22 @@ class EffectFinding:
         )
 
 
+    @property
+    def beside_in_words(self) -> str:
+        """What becomes of it beside the first found, as tables show it."""
+        return {"equivalent": "as good instead", "fades": "fades", "counts": "counts too"}.get(
+            self.beside, ""
+        )
+
+
 @dataclass(frozen=True)
 class Injection:
     """An effect that was put into the measurements, to see whether it would have been found."""
 
     effect: str
     sizes: list[float]
-    found: bool  # itself or one of its family
-    rank: int | None  # of the first of its family, from 1; None: the flight can't show it
+    found: bool  # itself, or it would do as well as what was
+    rank: int | None  # from 1, the first where it would do as well; None: the flight can't show it
     p_adjusted: float
     estimate: dict[str, float | None]
 
@@ -79,6 +87,7 @@ class Diagnosis(Page):
 
     verdict: str  # "adequate", "effect_missing", "slow_change", "unexplained"
     advice: dict[str, Any]  # effect to add, None where none; withheld: why not another one
+    pairs: list[str]  # two causes at once that explain it as well as anything, best first
     sentence: str  # the verdict in one sentence
     rmse: float | None  # over all outputs, in their unit
     noise_floor: float | None  # innovations alone
@@ -116,6 +125,10 @@ class Diagnosis(Page):
     def found(self) -> list[EffectFinding]:
         """Those of the effects that were found, best first."""
         return [effect for effect in self.effects if effect.status == "found"]
+
+    def list_beside(self, beside: str) -> list[str]:
+        """The names of those that stand so beside the first: "equivalent", "fades" or "counts"."""
+        return [effect.name for effect in self.effects if effect.beside == beside]
 
     def __getitem__(self, name: str) -> EffectFinding:
         """The candidate of that name. Raises Error where it was not tried."""

@@ -40,6 +40,17 @@ enum class FindingStatus {
 /// "found", "slow_change", "not_seen", "cannot_be_seen".
 std::string_view to_string(FindingStatus status);
 
+/// What becomes of an effect once the first of those found is added, by real fits.
+enum class Beside {
+  untried,     // nothing was found, or not this, or it is the first
+  equivalent,  // added instead, it explains as much: -2 ln L within 9.2
+  fades,       // once the first is added it is no longer significant, or not held out
+  counts       // it is significant beside the first, and rows held out are predicted better
+};
+
+/// "untried", "equivalent", "fades", "counts".
+std::string_view to_string(Beside beside);
+
 /// A coefficient of an effect as one step from the fit estimates it.
 struct Coefficient {
   std::string name;  // "wind[altitude_m].n"
@@ -70,8 +81,8 @@ struct EffectFinding {
 
   double visibility = 0.0;  // sine of the smallest angle to the model's own tangent
   std::map<std::string, double> absorbed_by = {};  // how far ignoring it shifts each parameter
-  std::vector<std::string> family = {};  // what this record can't tell apart; itself among them
   FindingStatus status = FindingStatus::not_seen;
+  Beside beside = Beside::untried;
 };
 
 /// An output's residual. Undefined numbers are NaN.
@@ -111,12 +122,18 @@ struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   Advice advice = {};
   std::vector<EffectFinding> effects = {};  // ranked, best first
+  /// Two causes at once: the pairs that explain it as well as anything does and of which neither
+  /// does so alone, best first.
+  std::vector<std::string> pairs = {};
   std::vector<ResidualNoise> residual = {};
   Omnibus omnibus;
   std::vector<DetectionLimit> limits = {};
   double rmse = 0.0;   // over all outputs
   double floor = 0.0;  // innovations alone, over all outputs
 };
+
+/// The names of those that stand so beside the first, in their order.
+std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside);
 
 inline constexpr double significant_below = 0.05;  // p after Holm
 inline constexpr double visible_from = 0.05;       // a sine: below, an effect can't be seen
@@ -125,9 +142,8 @@ struct DiagnosisOptions {
   double significance = significant_below;  // of the verdict
   double unexplained_below = 0.01;          // p of the omnibus test
   double least_visibility = visible_from;
-  double family_correlation = 0.9;
   int simulations = 80;                     // of the noise, that calibrate a test
-  std::vector<std::string> preferred = {};  // come first among those that explain as much
+  std::vector<std::string> preferred = {};  // come first among those as likely
   std::uint64_t seed = 0;
   int threads = 0;
   FitProgress progress = {};

@@ -55,26 +55,7 @@ Folds few_folds(const Linearisation& fit, const Eigen::MatrixXd& G) {
   return folds;
 }
 
-double shape_of(const EffectFinding& finding) {
-  return finding.shapes.empty() ? not_a_number : finding.shapes.begin()->second;
-}
-
 }  // namespace
-
-double criterion_with(CandidateRoom& room, const EffectFinding& finding) {
-  try {
-    const Fit fitted = refit_with(room, room.make(finding.name), shape_of(finding));
-    const auto rows = static_cast<double>(fitted.rows);
-    double logarithms = 0.0;
-    for (const OutputValue& rmse : fitted.rmse) {
-      if (rmse.value > 0.0) logarithms += std::log(rmse.value);
-    }
-    return rows * logarithms +
-           0.5 * static_cast<double>(finding.coefficients.size()) * std::log(rows);
-  } catch (const Error&) {
-    return infinity;
-  }
-}
 
 std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
                            double least_visibility, base::ThreadPool& pool) {

@@ -9,10 +9,6 @@
 
 namespace sepcal::diagnosis {
 
-/// Minus the logarithm of the likelihood of a real fit with the effect, its noise taken for white,
-/// plus Schwarz's penalty; infinite where it can't be fitted.
-double criterion_with(CandidateRoom& room, const EffectFinding& finding);
-
 /// Why the effect that was found should not be added, as the end of a sentence; empty where a fit
 /// with it converges within its bounds, agrees with the step and predicts rows left out better.
 std::string reason_against(CandidateRoom& room, const EffectFinding& finding,

@@ -35,6 +35,27 @@ std::string_view to_string(FindingStatus status) {
   }
 }
 
+std::string_view to_string(Beside beside) {
+  switch (beside) {
+    case Beside::equivalent:
+      return "equivalent";
+    case Beside::fades:
+      return "fades";
+    case Beside::counts:
+      return "counts";
+    default:
+      return "untried";
+  }
+}
+
+std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside) {
+  std::vector<std::string> names;
+  for (const EffectFinding& effect : diagnosis.effects) {
+    if (effect.beside == beside) names.push_back(effect.name);
+  }
+  return names;
+}
+
 EffectFinding diagnosis::describe(const CandidateRoom& room, const Tangent& tangent,
                                   const Trial& trial) {
   EffectFinding finding{.name = trial.candidate.name,
@@ -45,8 +66,7 @@ EffectFinding diagnosis::describe(const CandidateRoom& room, const Tangent& tang
                         .held_out_before = not_a_number,
                         .held_out_after = not_a_number,
                         .held_out_gain = not_a_number,
-                        .visibility = trial.visibility,
-                        .family = {trial.candidate.name}};
+                        .visibility = trial.visibility};
   finding.status = trial.visible ? FindingStatus::not_seen : FindingStatus::cannot_be_seen;
   for (std::size_t k = 0; k < trial.candidate.coefficients.size(); ++k) {
     const Variable& coefficient = trial.candidate.coefficients[k];

@@ -74,10 +74,4 @@ Projection project(const MatrixXd& tangent_basis, const MatrixXd& G, const Matri
   return projection;
 }
 
-double canonical_correlation(const MatrixXd& a, const MatrixXd& b) {
-  if (a.cols() == 0 || b.cols() == 0) return 0.0;
-  const VectorXd cosines = Eigen::JacobiSVD<MatrixXd>(a.transpose() * b).singularValues();
-  return cosines[std::min(a.cols(), b.cols()) - 1];
-}
-
 }  // namespace sepcal::diagnosis

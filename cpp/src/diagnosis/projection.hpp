@@ -33,8 +33,4 @@ struct Projection {
 Projection project(const Eigen::MatrixXd& tangent_basis, const Eigen::MatrixXd& G,
                    const Eigen::MatrixXd& whole, double least_visibility);
 
-/// Smallest canonical correlation between the spans of two orthonormal bases, over the directions
-/// of the smaller one: 1 where it lies within the larger.
-double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-
 }  // namespace sepcal::diagnosis

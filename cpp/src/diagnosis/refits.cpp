@@ -94,6 +94,10 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
 
 }  // namespace
 
+double shape_of(const EffectFinding& finding) {
+  return finding.shapes.empty() ? not_a_number : finding.shapes.begin()->second;
+}
+
 Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape) {
   const auto with = room.model_with(candidate.effects);
   Record rows = room.record();

@@ -8,6 +8,9 @@
 
 namespace sepcal::diagnosis {
 
+/// Where a scanned effect was found; NaN for others.
+double shape_of(const EffectFinding& finding);
+
 /// The fit of the model with the candidate to all rows, from the estimates without it.
 Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape);
 

@@ -14,14 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_thinned_rows = 3000;
-
-MatrixXd thin_out(const MatrixXd& columns) {
-  const Index stride = (columns.rows() + most_thinned_rows - 1) / most_thinned_rows;
-  const Index rows = (columns.rows() + stride - 1) / stride;
-  return columns(Eigen::seqN(0, rows, stride), Eigen::all);
-}
-
 /// What a step from each row on explains of the residual, as if that were white (N; the first row
 /// is none): with suffix sums in one pass.
 VectorXd explained_by_steps(const NullHypothesis& null, const MatrixXd& port) {
@@ -124,7 +116,6 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     if (!(score.white < best_white)) continue;
     best_white = score.white;
     trial.shape = shape;
-    trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
     keep_estimate(added, step, covariance, trial);
     trial.predicted_drop = predict_drop(null, added.basis);
   }
@@ -156,7 +147,6 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     keep_estimate(added, ratios.with.coefficients.tail(q),
                   ratios.with.covariance.bottomRightCorner(q, q), trial);
     trial.predicted_drop = predict_drop(null, added.basis);
-    trial.thinned_basis = orthonormal_basis(thin_out(added.basis));
   }
   set_tails(least, trial);
 }

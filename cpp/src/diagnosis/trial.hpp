@@ -45,7 +45,6 @@ struct Trial {
   HeldOut held_out = {};
   Folds folds = {};
   Eigen::VectorXd absorbed = {};       // shift of each column of the tangent
-  Eigen::MatrixXd thinned_basis = {};  // orthonormal, of some rows of G_perp
 };
 
 /// The trial's columns at a shape, beside the tangent.

@@ -15,7 +15,7 @@ from sepcal.reporting import tables
 from sepcal.reporting.gather import Material
 from sepcal.reporting.words import number, with_unit
 
-TWINS = 4  # members of a family that are named
+TWINS = 4  # effects that would do as well, or pairs, that are named
 
 
 def warn(last: Calibration) -> list[str]:
@@ -45,17 +45,20 @@ def advise(material: Material) -> str:
         lines.append(
             f"<b>Log</b> what this flight lacks and what could explain more of the error: {names}."
         )
-    families: set[frozenset[str]] = set()
-    for effect in found.found:
-        family = frozenset(effect.family)
-        if len(family) < 2 or any(effect.name in known for known in families):
-            continue
-        families.add(family)
-        others = [escape(name) for name in effect.family if name != effect.name]
-        more = f" and {len(others) - TWINS} more" if len(others) > TWINS else ""
+    instead = [escape(name) for name in found.list_beside("equivalent")]
+    if instead:
+        more = f" and {len(instead) - TWINS} more" if len(instead) > TWINS else ""
         lines.append(
-            f"<b>Fly</b> so that their drivers vary one without the other: this flight can't tell "
-            f"<code>{escape(effect.name)}</code> from {', '.join(others[:TWINS])}{more}."
+            f"<b>Fly</b> so that their drivers vary one without the other: added instead of "
+            f"<code>{escape(found.effects[0].name)}</code>, {', '.join(instead[:TWINS])}{more} "
+            "would do as well."
+        )
+    if found.pairs:
+        pairs = "; ".join(f"<code>{escape(pair)}</code>" for pair in found.pairs[:TWINS])
+        more = f" and {len(found.pairs) - TWINS} more" if len(found.pairs) > TWINS else ""
+        lines.append(
+            f"<b>Fly</b> so that channels vary one by one: it may be two causes at once, "
+            f"and this flight can't say which: {pairs}{more}."
         )
     for effect in found.found[:1]:
         if effect.visibility < _core.VISIBLE_FROM:

@@ -131,12 +131,12 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> str:
             percent(effect.predicted_drop),
             held,
             seen,
-            _family(effect),
+            effect.beside_in_words,
             f'<span class="{"found" if effect.status == "found" else "pill"}">{status}</span>',
         ])  # fmt: skip
     head = [("", True), ("candidate", False), ("estimate ± standard error", False),
             ("p,<br>adjusted", True), ("predicted<br>drop", True), ("held-out<br>gain", True),
-            ("visi-<br>bility", True), ("can't be told from", False),
+            ("visi-<br>bility", True), ("beside<br>the first", False),
             ("status", False)]  # fmt: skip
     return table(head, rows)
 
@@ -156,13 +156,6 @@ def _coefficients(effect: EffectFinding, most: int = 4) -> str:
         for name, value in effect.shapes.items()
     ]
     return "<br>".join(lines)
-
-
-def _family(effect: EffectFinding, most: int = 3) -> str:
-    others = [name for name in effect.family if name != effect.name]
-    shown = "<br>".join(f"<small>{escape(name)}</small>" for name in others[:most])
-    left = len(others) - most
-    return shown + (f"<br><small>and {left} more</small>" if left > 0 else "")
 
 
 def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5) -> str:

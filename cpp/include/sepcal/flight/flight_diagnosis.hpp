@@ -18,8 +18,8 @@ namespace sepcal {
 struct Injection {
   std::string effect;
   std::vector<double> sizes;  // of its coefficients
-  bool found = false;         // itself or one of its family
-  std::size_t rank = 0;       // of the first of its family, from 1; 0: the flight can't show it
+  bool found = false;         // itself or what would do as well
+  std::size_t rank = 0;       // from 1, the first where it would do as well; 0: not seen
   double p_adjusted = 1.0;
   std::vector<Coefficient> estimate;
 };

@@ -44,8 +44,8 @@ Json write_effect(const EffectFinding& effect, const std::string& sentence) {
           {"held_out_interleaved", effect.held_out_interleaved},
           {"visibility", number(effect.visibility)},
           {"absorbed_by", write_values(effect.absorbed_by)},
-          {"family", effect.family},
-          {"status", to_string(effect.status)}};
+          {"status", to_string(effect.status)},
+          {"beside", to_string(effect.beside)}};
 }
 
 Json write_residual(const ResidualNoise& residual) {
@@ -90,6 +90,7 @@ std::string to_json(const FlightDiagnosis& result) {
   root["advice"] = {
       {"effect", diagnosis.advice.effect.empty() ? Json() : Json(diagnosis.advice.effect)},
       {"withheld", diagnosis.advice.withheld}};
+  root["pairs"] = diagnosis.pairs;
   root["rmse"] = number(diagnosis.rmse);
   root["noise_floor"] = number(diagnosis.floor);
   root["where"] = Json::array();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "flight/text/status_text.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
@@ -90,17 +91,31 @@ std::string effect_rows(const FlightDiagnosis& result) {
   return text;
 }
 
+/// Names in a line, the first few of them.
+std::string name_line(std::string_view what, const std::vector<std::string>& names,
+                      std::string_view between) {
+  constexpr std::size_t most = 8;
+  if (names.empty()) return {};
+  const std::size_t shown = std::min(most, names.size());
+  std::string line = fmt::format("  {}: {}", what,
+                                 fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), between));
+  if (names.size() > shown) line += fmt::format(" and {} more", names.size() - shown);
+  return line + '\n';
+}
+
+/// What the others are beside the first.
+std::string beside_rows(const Diagnosis& diagnosis) {
+  return name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent), ", ") +
+         name_line("fades once it is added", list_beside(diagnosis, Beside::fades), ", ") +
+         name_line("counts beside it", list_beside(diagnosis, Beside::counts), ", ") +
+         name_line("or two causes at once, one of these pairs", diagnosis.pairs, ", ");
+}
+
 std::string best_effect(const FlightDiagnosis& result) {
   const EffectFinding& best = result.diagnosis.effects.front();
   std::string text =
       fmt::format("\n{}: {}\n  {}\n", best.name, result.sentences.front(), estimates(best));
-  if (best.family.size() > 1) {
-    text += "  this flight can't tell it from:";
-    for (const std::string& relative : best.family) {
-      if (relative != best.name) text += " " + relative;
-    }
-    text += '\n';
-  }
+  text += beside_rows(result.diagnosis);
   if (result.injection) return text;  // there is nothing to add: it isn't in the log
   text += '\n';
   for (const std::string& reason : result.diagnosis.advice.withheld) {

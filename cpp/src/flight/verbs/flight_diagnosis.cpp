@@ -190,6 +190,20 @@ FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
 
 namespace {
 
+/// Where the injected effect came; in the first place too where it would have done as well as the
+/// first.
+void judge_injection(const Diagnosis& diagnosis, Injection& injection) {
+  const std::vector<EffectFinding>& effects = diagnosis.effects;
+  const auto own = std::ranges::find(effects, injection.effect, &EffectFinding::name);
+  if (own == effects.end()) return;
+  injection.estimate = own->coefficients;
+  injection.p_adjusted = own->p_adjusted;
+  if (own->status == FindingStatus::cannot_be_seen) return;
+  const bool as_good = own->beside == Beside::equivalent;
+  injection.rank = as_good ? 1 : static_cast<std::size_t>(own - effects.begin()) + 1;
+  injection.found = as_good || own->status == FindingStatus::found;
+}
+
 FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibration,
                        PreparedFlight prepared, const OwnEffects& own,
                        const DiagnosisOptions& options) {
@@ -205,20 +219,7 @@ FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibrati
   refit.own_effects = all;
   const Calibration again = calibrate(calibration.probe, prepared.readings.record, refit);
   FlightDiagnosis result = run(again, prepared, all, options);
-  std::vector<std::string> relatives{injection.effect};
-  for (const EffectFinding& effect : result.diagnosis.effects) {
-    if (effect.name != injection.effect) continue;
-    relatives = effect.family;
-    injection.estimate = effect.coefficients;
-    injection.p_adjusted = effect.p_adjusted;
-  }
-  for (std::size_t i = 0; i < result.diagnosis.effects.size(); ++i) {
-    const EffectFinding& effect = result.diagnosis.effects[i];
-    if (effect.status == FindingStatus::cannot_be_seen) continue;
-    if (std::ranges::find(relatives, effect.name) == relatives.end()) continue;
-    if (injection.rank == 0) injection.rank = i + 1;
-    injection.found = injection.found || effect.status == FindingStatus::found;
-  }
+  judge_injection(result.diagnosis, injection);
   result.injection = std::move(injection);
   return result;
 }

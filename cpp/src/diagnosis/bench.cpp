@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+constexpr std::size_t most_confirmed = 3;
+constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
+constexpr int few_simulations = 39;
+constexpr std::size_t most_calibrated = 3;  // the others are corrected as the worst of these
+
+}  // namespace
+
+bool may_be_slow(const Trial& trial, double threshold) {
+  return trial.tested && trial.slow && trial.tails.beside < threshold;
+}
+
+Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool)
+    : fitted_(fitted), options_(options), pool_(pool), room_(fitted, pool) {
+  if (!is_exact()) null_ = find_null(room_.fit());
+}
+
+void Bench::report_progress(std::string_view task, double fraction) const {
+  if (options_.progress) options_.progress(task, fraction);
+}
+
+Trials Bench::make(const std::vector<std::string>& names) {
+  Trials trials;
+  for (const std::string& name : names) {
+    try {
+      Trial trial{.candidate = room_.make(name)};
+      trial.slow = is_slow(room_, trial.candidate);
+      const bool twice = std::ranges::any_of(trials, [&](const Trial& other) {
+        return other.candidate.name == trial.candidate.name;
+      });
+      if (!twice) trials.push_back(std::move(trial));
+    } catch (const Error&) {
+      continue;  // the record doesn't have what it takes
+    }
+  }
+  return trials;
+}
+
+void Bench::screen_all(Trials& trials) const {
+  std::mutex mutex;
+  double done = 0.0;
+  pool_.for_each(trials.size(), [&](std::size_t i) {
+    trials[i].least_visibility = options_.least_visibility;
+    screen(room_, null_, trials[i]);
+    const std::lock_guard lock(mutex);
+    report_progress("screening effects", ++done / static_cast<double>(trials.size()));
+  });
+}
+
+void Bench::test_best(Trials& trials, std::size_t most) const {
+  std::vector<std::size_t> chosen;
+  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      if (trials[i].visible) order.push_back(i);
+    }
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return trials[i].*by; });
+    if (order.size() > most) order.resize(most);
+    for (const std::size_t i : order) {
+      if (std::ranges::find(chosen, i) == chosen.end()) chosen.push_back(i);
+    }
+  }
+  std::mutex mutex;
+  double done = 0.0;
+  pool_.for_each(chosen.size(), [&](std::size_t k) {
+    test(room_, null_, trials[chosen[k]]);
+    const std::lock_guard lock(mutex);
+    report_progress("testing effects", ++done / static_cast<double>(chosen.size()));
+  });
+}
+
+void Bench::hold_out_significant(Trials& trials) const {
+  const double threshold = std::log10(options_.significance);
+  pool_.for_each(trials.size(), [&](std::size_t i) {
+    if (trials[i].tested || (trials[i].visible && trials[i].log10_p < threshold)) {
+      hold_out(room_, null_, trials[i]);
+    }
+  });
+}
+
+void Bench::calibrate_significant(Trials& trials, double threshold) const {
+  std::vector<Trial*> significant;
+  for (Trial& trial : trials) {
+    if (trial.tested && (trial.log10_p < threshold || may_be_slow(trial, threshold))) {
+      significant.push_back(&trial);
+    }
+  }
+  std::ranges::stable_sort(significant, {}, &Trial::log10_p);
+  double worst = 1.0;  // of what is left of a log10 p
+  for (std::size_t i = 0; i < significant.size(); ++i) {
+    report_progress("calibrating tests",
+                    static_cast<double>(i) / static_cast<double>(significant.size()));
+    Trial& trial = *significant[i];
+    const double plain = trial.log10_p;
+    if (i < most_calibrated) {
+      const bool beyond_doubt = plain < doubtless;
+      const int draws =
+          beyond_doubt ? std::min(few_simulations, options_.simulations) : options_.simulations;
+      calibrate(room_, null_, draws, options_.seed, pool_, trial);
+      if (plain < 0.0) worst = std::min(worst, trial.log10_p / plain);
+    } else {
+      trial.log10_p = worst * plain;
+      trial.tails = {worst * trial.tails.either, worst * trial.tails.beside};
+    }
+  }
+  double least_sure = -infinity;
+  for (const Trial& trial : trials) {
+    if (trial.tested) least_sure = std::max(least_sure, trial.log10_p);
+  }
+  for (Trial& trial : trials) {
+    if (trial.visible && !trial.tested) trial.log10_p = std::max(trial.log10_p, least_sure);
+  }
+}
+
+void Bench::confirm_best(Trials& trials, double threshold) const {
+  std::vector<Trial*> order;
+  for (Trial& trial : trials) {
+    if (trial.held_out.judged && trial.log10_p < threshold) order.push_back(&trial);
+  }
+  std::ranges::stable_sort(order, {}, &Trial::log10_p);
+  std::size_t confirmed = 0;
+  for (Trial* trial : order) {
+    if (trial->held_out.passed || confirmed == most_confirmed) break;
+    confirm(room_, pool_, *trial);
+    ++confirmed;
+    if (trial->held_out.passed) break;
+  }
+}
+
+}  // namespace sepcal::diagnosis

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Candidates on the bench: made, screened, tested, calibrated and held out at one fit.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/thread_pool.hpp"
+#include "diagnosis/candidate.hpp"
+#include "diagnosis/null_hypothesis.hpp"
+#include "diagnosis/trial.hpp"
+#include "sepcal/diagnosis.hpp"
+
+namespace sepcal::diagnosis {
+
+using Trials = std::vector<Trial>;
+
+/// Whether what there is of it could be a slow change, were its noise known not to wander.
+/// `threshold`: log10 of the probability below which it is significant.
+bool may_be_slow(const Trial& trial, double threshold);
+
+class Bench {
+ public:
+  /// All must outlive it. Throws Error as CandidateRoom does.
+  Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool);
+  Bench(const Bench&) = delete;  // the null hypothesis points into it
+  Bench& operator=(const Bench&) = delete;
+
+  const DiagnosedFit& fitted() const { return fitted_; }
+  CandidateRoom& room() { return room_; }
+  const CandidateRoom& room() const { return room_; }
+  const NullHypothesis& null() const { return null_; }
+  base::ThreadPool& pool() const { return pool_; }
+  const DiagnosisOptions& options() const { return options_; }
+
+  void report_progress(std::string_view task, double fraction) const;
+
+  /// Whether every output's residual is zero: then there is no null to hold anything against.
+  bool is_exact() const { return room_.fit().layout.outputs.empty(); }
+
+  /// Each once; those that the record can't make are left out.
+  Trials make(const std::vector<std::string>& names);
+
+  void screen_all(Trials& trials) const;
+
+  /// Tests the best `most` of either screen.
+  void test_best(Trials& trials, std::size_t most) const;
+
+  void hold_out_significant(Trials& trials) const;
+
+  /// Corrects the tails of what would be significant; what was only screened is no surer than the
+  /// least sure of what was tested.
+  void calibrate_significant(Trials& trials, double threshold) const;
+
+  /// One step may fail an effect that bends the model: those that explain more than the best that
+  /// passed get real fits.
+  void confirm_best(Trials& trials, double threshold) const;
+
+ private:
+  const DiagnosedFit& fitted_;
+  const DiagnosisOptions& options_;
+  base::ThreadPool& pool_;
+  CandidateRoom room_;
+  NullHypothesis null_;
+};
+
+}  // namespace sepcal::diagnosis

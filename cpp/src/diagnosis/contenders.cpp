@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/contenders.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/projection.hpp"
+#include "diagnosis/refits.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+constexpr std::size_t most_fitted = 8;
+constexpr double worth_a_fit = 0.01;       // p, of what was not found
+constexpr double hardly_worse = 2.0;       // in the criterion
+constexpr std::size_t most_beside = 12;    // asked beside the first
+constexpr double counts_below = 0.01;      // p beside the first, over their number
+
+using Findings = std::vector<EffectFinding>;
+
+bool may_stand_first(const EffectFinding& finding) {
+  return finding.status == FindingStatus::found ||
+         (finding.status != FindingStatus::cannot_be_seen && finding.p_value < worth_a_fit);
+}
+
+DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit) {
+  DiagnosedFit next = fitted;
+  next.effects.insert(next.effects.end(), candidate.settings.begin(), candidate.settings.end());
+  next.fit = std::move(fit);
+  return next;
+}
+
+/// -2 ln L of a fit's residual in the likeliest noise of autoregressions of these orders, but for
+/// what any fit to the same rows has; minus infinity where it leaves nothing of an output.
+double minus_two_log_likelihood(const DiagnosedFit& fitted, const std::vector<int>& orders) {
+  base::ThreadPool alone(1);
+  const CandidateRoom room(fitted, alone);
+  const RowLayout& layout = room.fit().layout;
+  if (layout.outputs.size() != orders.size()) return -infinity;
+  double scales = 0.0;
+  for (const UsedOutput& output : layout.outputs) scales += std::log(output.scale);
+  const NoiseTest test(room.fit(), orthonormal_basis(room.fit().tangent), orders);
+  return test.null() + 2.0 * static_cast<double>(layout.rows) * scales;
+}
+
+/// Schwarz's penalty for coefficients, and for a shape that of the number tried.
+double penalty(const RowLayout& layout, const Candidate& candidate) {
+  return static_cast<double>(candidate.coefficients.size()) *
+             std::log(static_cast<double>(layout.count())) +
+         2.0 * std::log(candidate.shape.tried);
+}
+
+EffectFinding& finding_of(Findings& findings, const std::string& name) {
+  return *std::ranges::find(findings, name, &EffectFinding::name);
+}
+
+}  // namespace
+
+std::vector<Contender> fit_contenders(Bench& bench, const Findings& findings) {
+  std::vector<Contender> contenders;
+  std::vector<Candidate> candidates;
+  std::vector<double> shapes;
+  for (const EffectFinding& finding : findings) {
+    if (contenders.size() == most_fitted) break;
+    if (!may_stand_first(finding)) continue;
+    contenders.push_back({.name = finding.name});
+    candidates.push_back(bench.room().make(finding.name));
+    shapes.push_back(shape_of(finding));
+  }
+  const std::vector<int> orders = noise_orders(bench.null());
+  bench.pool().for_each(contenders.size(), [&](std::size_t i) {
+    Contender& contender = contenders[i];
+    try {
+      contender.fit = refit_with(bench.room(), candidates[i], shapes[i]);
+      contender.minus_two_log_likelihood = minus_two_log_likelihood(
+          with_candidate(bench.fitted(), candidates[i], contender.fit), orders);
+      contender.criterion = contender.minus_two_log_likelihood +
+                            penalty(bench.room().fit().layout, candidates[i]);
+    } catch (const Error&) {
+      contender.criterion = contender.minus_two_log_likelihood = infinity;
+    }
+  });
+  return contenders;
+}
+
+const Contender* put_first(const std::vector<Contender>& contenders,
+                           const std::vector<std::string>& preferred, Findings& findings) {
+  const Contender* first = nullptr;
+  const auto offer = [&](const Contender& contender, double margin) {
+    if (finding_of(findings, contender.name).status != FindingStatus::found) return;
+    const double least = first ? first->criterion + margin : infinity;
+    if (contender.criterion < least) first = &contender;
+  };
+  for (const Contender& contender : contenders) offer(contender, 0.0);
+  if (!first) return nullptr;
+  const auto is_preferred = [&](const std::string& name) {
+    return std::ranges::find(preferred, name) != preferred.end();
+  };
+  for (const Contender& contender : contenders) {
+    if (is_preferred(first->name)) break;
+    if (is_preferred(contender.name)) offer(contender, hardly_worse);
+  }
+  for (const Contender& contender : contenders) {
+    const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
+    if (&contender == first || !(std::abs(more) < as_likely)) continue;
+    finding_of(findings, contender.name).beside = Beside::equivalent;
+  }
+  std::ranges::stable_partition(findings, [](const EffectFinding& finding) {
+    return finding.beside == Beside::equivalent && finding.status == FindingStatus::found;
+  });
+  const auto place = std::ranges::find(findings, first->name, &EffectFinding::name);
+  std::rotate(findings.begin(), place, place + 1);
+  return first;
+}
+
+void test_beside(Bench& bench, const Contender& first, Findings& findings) {
+  const DiagnosedFit fitted =
+      with_candidate(bench.fitted(), bench.room().make(first.name), first.fit);
+  DiagnosisOptions options = bench.options();
+  options.progress = {};
+  std::vector<std::string> names;
+  for (const EffectFinding& finding : findings) {
+    if (names.size() == most_beside) break;
+    if (finding.status != FindingStatus::found || finding.name == first.name) continue;
+    if (finding.beside == Beside::untried) names.push_back(finding.name);
+  }
+  if (names.empty()) return;
+  Bench beside(fitted, options, bench.pool());
+  if (beside.is_exact()) return;
+  Trials trials = beside.make(names);
+  const double threshold = std::log10(counts_below / static_cast<double>(names.size()));
+  beside.screen_all(trials);
+  beside.test_best(trials, trials.size());
+  beside.hold_out_significant(trials);
+  beside.calibrate_significant(trials, threshold);
+  for (const Trial& trial : trials) {
+    const bool counts =
+        trial.visible && trial.log10_p < threshold && trial.held_out.judged && trial.held_out.passed;
+    finding_of(findings, trial.candidate.name).beside = counts ? Beside::counts : Beside::fades;
+  }
+}
+
+}  // namespace sepcal::diagnosis

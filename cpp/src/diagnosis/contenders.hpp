@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contenders for the first place, each fitted for real: one step from the fit can't rank what bends
+// the model, nor say what would do as well instead.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/bench.hpp"
+
+namespace sepcal::diagnosis {
+
+inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's with two degrees
+
+/// The fit of the model with one more effect, its shape held.
+struct Contender {
+  std::string name = {};
+  Fit fit = {};
+  double minus_two_log_likelihood = infinity;  // in the likeliest noise; infinite: can't be fitted
+  double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried
+};
+
+/// Fits the first of the findings that may stand for what is missing, in their order.
+std::vector<Contender> fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings);
+
+/// Of those found the one whose fit has the least criterion comes first, or one that is preferred
+/// and hardly worse. What would do as well in its place is marked equivalent and comes next.
+/// Returns the first's fit; null where none could be made.
+const Contender* put_first(const std::vector<Contender>& contenders,
+                           const std::vector<std::string>& preferred,
+                           std::vector<EffectFinding>& findings);
+
+/// What of the other effects found fades beside the first and what counts: tested anew at its fit.
+void test_beside(Bench& bench, const Contender& first, std::vector<EffectFinding>& findings);
+
+}  // namespace sepcal::diagnosis

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/pair_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/projection.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t most_paired = 10;
+constexpr double within = 9.2;  // of the least criterion
+
+/// One trial, or two, and Schwarz's criterion of what they explain.
+struct Combination {
+  std::vector<std::size_t> members = {};
+  double criterion = 0.0;  // -(what they explain) + ln(count) a direction
+};
+
+/// The surest trials that need no scan, beyond the tangent.
+struct Causes {
+  std::vector<const Trial*> trials;
+  std::vector<MatrixXd> bases;  // orthonormal, of each
+};
+
+Causes choose_causes(const Bench& bench, const Trials& trials) {
+  Causes causes;
+  for (const Trial& trial : trials) {
+    const bool single = trial.candidate.settings.size() == 1;
+    const bool scanned = !trial.candidate.shape.parameter.empty();
+    if (trial.visible && single && !scanned) causes.trials.push_back(&trial);
+  }
+  std::ranges::stable_sort(causes.trials, {}, &Trial::log10_p);
+  if (causes.trials.size() > most_paired) causes.trials.resize(most_paired);
+  for (const Trial* trial : causes.trials) {
+    causes.bases.push_back(project_trial(bench.room(), bench.null(), *trial, not_a_number).basis);
+  }
+  return causes;
+}
+
+/// What the causes explain of the residual in one noise, by the products of their columns there.
+class Explained {
+ public:
+  Explained(const Bench& bench, const Causes& causes, const NoiseMembers& noise) {
+    const NullHypothesis& null = bench.null();
+    MatrixXd columns = null.fit->residual;
+    for (const MatrixXd& basis : causes.bases) {
+      first_.push_back(columns.cols());
+      columns = join(columns, basis);
+    }
+    first_.push_back(columns.cols());
+    MatrixXd tangent = null.basis;
+    null.test->whiten(noise, tangent);
+    null.test->whiten(noise, columns);
+    const MatrixXd beyond = remove_span(orthonormal_basis(tangent), columns);
+    products_ = beyond.transpose() * beyond;
+    penalty_ = std::log(static_cast<double>(columns.rows()));
+  }
+
+  Combination combine(std::vector<std::size_t> members) const {
+    std::vector<Index> columns;
+    for (const std::size_t member : members) {
+      for (Index k = first_[member]; k < first_[member + 1]; ++k) columns.push_back(k);
+    }
+    const VectorXd shares = products_(columns, 0);
+    const MatrixXd square = products_(columns, columns);
+    const double explained = shares.dot(pseudo_inverse(square) * shares);
+    return {std::move(members), penalty_ * static_cast<double>(columns.size()) - explained};
+  }
+
+ private:
+  std::vector<Index> first_;  // column of each cause, behind the residual
+  MatrixXd products_;
+  double penalty_ = 0.0;
+};
+
+/// Every pair, best first.
+std::vector<Combination> rank_pairs(const Explained& explained, std::size_t causes) {
+  std::vector<Combination> pairs;
+  for (std::size_t a = 0; a < causes; ++a) {
+    for (std::size_t b = a + 1; b < causes; ++b) pairs.push_back(explained.combine({a, b}));
+  }
+  std::ranges::stable_sort(pairs, {}, &Combination::criterion);
+  return pairs;
+}
+
+/// The noise that is left beside a pair.
+NoiseMembers noise_beside(const Bench& bench, const Causes& causes, const Combination& pair) {
+  const MatrixXd both = join(causes.bases[pair.members[0]], causes.bases[pair.members[1]]);
+  return bench.null().test->compare(orthonormal_basis(both)).with.noise;
+}
+
+}  // namespace
+
+std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials) {
+  const Causes causes = choose_causes(bench, trials);
+  const std::size_t count = causes.trials.size();
+  if (count < 2 || !causes.trials.front()->tested) return {};
+  const NoiseMembers beside_one = causes.trials.front()->ratios.with.noise;
+  const auto start = rank_pairs(Explained(bench, causes, beside_one), count);
+  const Explained explained(bench, causes, noise_beside(bench, causes, start.front()));
+  const auto pairs = rank_pairs(explained, count);
+  std::vector<double> alone;
+  for (std::size_t a = 0; a < count; ++a) alone.push_back(explained.combine({a}).criterion);
+  const double most =
+      std::min(pairs.front().criterion, *std::ranges::min_element(alone)) + within;
+  std::vector<std::string> names;
+  for (const Combination& pair : pairs) {
+    const std::size_t a = pair.members[0];
+    const std::size_t b = pair.members[1];
+    if (!(pair.criterion < most) || alone[a] < most || alone[b] < most) continue;
+    names.push_back(causes.trials[a]->candidate.name + "+" + causes.trials[b]->candidate.name);
+  }
+  return names;
+}
+
+}  // namespace sepcal::diagnosis

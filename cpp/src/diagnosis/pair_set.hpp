@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two causes at once: a channel that goes with both may pass for them, and a flight seldom says
+// which two they are. What it does say is the set of pairs that explain it as well as anything.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/bench.hpp"
+
+namespace sepcal::diagnosis {
+
+/// Pairs of the surest trials, best first, whose Schwarz criterion is within 9.2 of the least that a
+/// single trial or a pair has, in the noise beside the best pair; none of which a member alone is.
+std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials);
+
+}  // namespace sepcal::diagnosis
