@@ -126,6 +126,12 @@ class Diagnosis(Page):
         """Those of the effects that were found, best first."""
         return [effect for effect in self.effects if effect.status == "found"]
 
+    @property
+    def explanations(self) -> list[str]:
+        """The first found and what would do as well instead; none where nothing was found."""
+        first = [effect.name for effect in self.found[:1]]
+        return [*first, *self.list_beside("equivalent")]
+
     def list_beside(self, beside: str) -> list[str]:
         """The names of those that stand so beside the first: "equivalent", "fades" or "counts"."""
         return [effect.name for effect in self.effects if effect.beside == beside]

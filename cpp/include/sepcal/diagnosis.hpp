@@ -122,8 +122,8 @@ struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   Advice advice = {};
   std::vector<EffectFinding> effects = {};  // ranked, best first
-  /// Two causes at once: the pairs that explain it as well as anything does and of which neither
-  /// does so alone, best first.
+  /// Two causes at once: the pairs that explain it as well as anything does and better than either
+  /// of the two alone, best first.
   std::vector<std::string> pairs = {};
   std::vector<ResidualNoise> residual = {};
   Omnibus omnibus;
@@ -164,6 +164,7 @@ struct Promise {
   double predicted_drop = not_a_number;   // of the RMSE over all outputs, by one step from the fit
   double held_out_before = not_a_number;  // RMSE of rows left out, by real fits to the others
   double held_out_after = not_a_number;
+  std::string against = {};  // why diagnose() would not advise it; empty where a fit bears it out
 };
 
 /// Of `effect`, a name or "E1+E2". `shapes`: where a step or another shape was found. Throws Error

@@ -169,10 +169,28 @@ std::shared_ptr<const BlockModel> CandidateRoom::model_with(
   return compose(fitted_.model, all, record_);
 }
 
-Candidate CandidateRoom::make(const std::string& name) {
+const Candidate& CandidateRoom::make(const std::string& name) {
+  const auto known = made_.find(name);
+  if (known != made_.end()) return known->second;
+  Candidate candidate = make_anew(name);
+  const std::string resolved = candidate.name;
+  const auto made = made_.emplace(resolved, std::move(candidate)).first;
+  return resolved == name ? made->second : made_.emplace(name, made->second).first->second;
+}
+
+Candidate CandidateRoom::make_anew(const std::string& name) {
   Candidate candidate{.name = name};
-  for (const std::string& part : split_effects(name)) candidate.settings.push_back({.name = part});
-  candidate.effects = make_effects(fitted_.kit, *fitted_.model, candidate.settings, record_);
+  const std::vector<std::string> parts = split_effects(name);
+  if (parts.size() == 1) {
+    candidate.settings = {{.name = parts.front()}};
+    candidate.effects = make_effects(fitted_.kit, *fitted_.model, candidate.settings, record_);
+  } else {
+    for (const std::string& part : parts) {
+      const Candidate& single = make(part);
+      candidate.settings.push_back(single.settings.front());
+      candidate.effects.push_back(single.effects.front());
+    }
+  }
   std::vector<Effect> all = effects_;
   candidate.shape = {"", {not_a_number}};
   for (const Effect& effect : candidate.effects) {

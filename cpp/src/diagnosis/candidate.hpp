@@ -48,7 +48,7 @@ class CandidateRoom {
   std::shared_ptr<const BlockModel> model_with(const std::vector<Effect>& added) const;
 
   /// Throws Error where the record can't make it.
-  Candidate make(const std::string& name);
+  const Candidate& make(const std::string& name);
 
   /// The port's columns for a driver that is 1 in every row: a column a component.
   const Eigen::MatrixXd& port_columns(const Port& port);
@@ -73,6 +73,7 @@ class CandidateRoom {
   }
 
  private:
+  Candidate make_anew(const std::string& name);
   Eigen::MatrixXd fill(const Candidate& candidate, double shape, bool centred) const;
   Eigen::MatrixXd driven_columns(const Effect& effect, double shape, bool centred) const;
   Eigen::MatrixXd composed_columns(const std::vector<Effect>& added,
@@ -89,6 +90,7 @@ class CandidateRoom {
   base::ParameterValues values_;
   Linearisation linearisation_;
   std::map<std::string, Eigen::MatrixXd> ports_;
+  std::map<std::string, Candidate> made_;  // once: an effect may leave columns in the record
 };
 
 }  // namespace sepcal::diagnosis

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "diagnosis/projection.hpp"
@@ -13,6 +14,7 @@ namespace sepcal::diagnosis {
 namespace {
 
 constexpr std::size_t most_fitted = 8;
+constexpr std::size_t most_pairs = 12;
 constexpr double worth_a_fit = 0.01;       // p, of what was not found
 constexpr double hardly_worse = 2.0;       // in the criterion
 constexpr std::size_t most_beside = 12;    // asked beside the first
@@ -52,6 +54,31 @@ double penalty(const RowLayout& layout, const Candidate& candidate) {
          2.0 * std::log(candidate.shape.tried);
 }
 
+struct Asked {
+  Candidate candidate;
+  double shape;
+};
+
+std::vector<Contender> fit_all(const Bench& bench, const std::vector<Asked>& asked) {
+  const std::vector<int> orders = noise_orders(bench.null());
+  std::vector<Contender> contenders(asked.size());
+  bench.pool().for_each(asked.size(), [&](std::size_t i) {
+    const auto& [candidate, shape] = asked[i];
+    Contender& contender = contenders[i];
+    contender.name = candidate.name;
+    try {
+      contender.fit = refit_with(bench.room(), candidate, shape);
+      contender.minus_two_log_likelihood = minus_two_log_likelihood(
+          with_candidate(bench.fitted(), candidate, contender.fit), orders);
+      contender.criterion =
+          contender.minus_two_log_likelihood + penalty(bench.room().fit().layout, candidate);
+    } catch (const Error&) {
+      contender.criterion = contender.minus_two_log_likelihood = infinity;
+    }
+  });
+  return contenders;
+}
+
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
   return *std::ranges::find(findings, name, &EffectFinding::name);
 }
@@ -59,30 +86,42 @@ EffectFinding& finding_of(Findings& findings, const std::string& name) {
 }  // namespace
 
 std::vector<Contender> fit_contenders(Bench& bench, const Findings& findings) {
-  std::vector<Contender> contenders;
-  std::vector<Candidate> candidates;
-  std::vector<double> shapes;
+  std::vector<Asked> asked;
   for (const EffectFinding& finding : findings) {
-    if (contenders.size() == most_fitted) break;
+    if (asked.size() == most_fitted) break;
     if (!may_stand_first(finding)) continue;
-    contenders.push_back({.name = finding.name});
-    candidates.push_back(bench.room().make(finding.name));
-    shapes.push_back(shape_of(finding));
+    asked.push_back({bench.room().make(finding.name), shape_of(finding)});
   }
-  const std::vector<int> orders = noise_orders(bench.null());
-  bench.pool().for_each(contenders.size(), [&](std::size_t i) {
-    Contender& contender = contenders[i];
+  return fit_all(bench, asked);
+}
+
+std::vector<std::string> keep_as_likely(Bench& bench, const std::vector<Contender>& contenders,
+                                        const std::vector<Pair>& pairs) {
+  std::vector<Asked> asked;
+  for (const Pair& pair : pairs) {
+    if (asked.size() == most_pairs) break;
     try {
-      contender.fit = refit_with(bench.room(), candidates[i], shapes[i]);
-      contender.minus_two_log_likelihood = minus_two_log_likelihood(
-          with_candidate(bench.fitted(), candidates[i], contender.fit), orders);
-      contender.criterion = contender.minus_two_log_likelihood +
-                            penalty(bench.room().fit().layout, candidates[i]);
+      asked.push_back({bench.room().make(pair.name), pair.shape});
     } catch (const Error&) {
-      contender.criterion = contender.minus_two_log_likelihood = infinity;
+      continue;  // the two can't stand in one model
     }
-  });
-  return contenders;
+  }
+  const std::vector<Contender> fitted = fit_all(bench, asked);
+  double least = infinity;
+  for (const auto* all : {&contenders, &fitted}) {
+    for (const Contender& contender : *all) least = std::min(least, contender.criterion);
+  }
+  const auto alone = [&](const std::string& name) {
+    const auto single = std::ranges::find(contenders, name, &Contender::name);
+    return single == contenders.end() ? infinity : single->criterion;
+  };
+  std::vector<std::string> kept;
+  for (const Contender& pair : fitted) {
+    const std::vector<std::string> members = split_effects(pair.name);
+    const double single = std::ranges::min(members | std::views::transform(alone));
+    if (pair.criterion < std::min(least + as_likely, single)) kept.push_back(pair.name);
+  }
+  return kept;
 }
 
 const Contender* put_first(const std::vector<Contender>& contenders,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/bench.hpp"
+#include "diagnosis/pair_set.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -15,13 +16,18 @@ inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's wi
 /// The fit of the model with one more effect, its shape held.
 struct Contender {
   std::string name = {};
-  Fit fit = {};
+  Fit fit = {};  // undefined where the criterion is infinite
   double minus_two_log_likelihood = infinity;  // in the likeliest noise; infinite: can't be fitted
   double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried
 };
 
 /// Fits the first of the findings that may stand for what is missing, in their order.
 std::vector<Contender> fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings);
+
+/// Of pairs those whose fits are about as likely as anything, by Schwarz's criterion, and likelier
+/// than either member alone.
+std::vector<std::string> keep_as_likely(Bench& bench, const std::vector<Contender>& contenders,
+                                        const std::vector<Pair>& pairs);
 
 /// Of those found the one whose fit has the least criterion comes first, or one that is preferred
 /// and hardly worse. What would do as well in its place is marked equivalent and comes next.

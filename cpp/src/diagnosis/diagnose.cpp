@@ -56,6 +56,7 @@ class Recipe {
   Bench bench_;
   Tangent tangent_;
   Trials trials_;
+  std::vector<Contender> contenders_;
   Diagnosis result_;
 };
 
@@ -132,10 +133,10 @@ void Recipe::try_pairs() {
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
   bench_.report_progress("fitting what was found", 0.0);
-  const std::vector<Contender> contenders = fit_contenders(bench_, result_.effects);
-  const Contender* first = put_first(contenders, options_.preferred, result_.effects);
+  contenders_ = fit_contenders(bench_, result_.effects);
+  const Contender* first = put_first(contenders_, options_.preferred, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
-  result_.pairs = find_pair_set(bench_, trials_);
+  result_.pairs = keep_as_likely(bench_, contenders_, find_pair_set(bench_, trials_));
   for (const Trial& trial : trials_) {
     if (trial.candidate.name == result_.effects.front().name) {
       result_.floor = std::min(result_.floor, trial.floor);

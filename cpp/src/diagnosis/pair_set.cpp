@@ -19,10 +19,10 @@ constexpr double within = 9.2;  // of the least criterion
 /// One trial, or two, and Schwarz's criterion of what they explain.
 struct Combination {
   std::vector<std::size_t> members = {};
-  double criterion = 0.0;  // -(what they explain) + ln(count) a direction
+  double criterion = 0.0;  // -(what they explain) + ln(count) a direction + scans
 };
 
-/// The surest trials that need no scan, beyond the tangent.
+/// The surest trials, each at its best shape, beyond the tangent.
 struct Causes {
   std::vector<const Trial*> trials;
   std::vector<MatrixXd> bases;  // orthonormal, of each
@@ -31,14 +31,12 @@ struct Causes {
 Causes choose_causes(const Bench& bench, const Trials& trials) {
   Causes causes;
   for (const Trial& trial : trials) {
-    const bool single = trial.candidate.settings.size() == 1;
-    const bool scanned = !trial.candidate.shape.parameter.empty();
-    if (trial.visible && single && !scanned) causes.trials.push_back(&trial);
+    if (trial.visible && trial.candidate.settings.size() == 1) causes.trials.push_back(&trial);
   }
   std::ranges::stable_sort(causes.trials, {}, &Trial::log10_p);
   if (causes.trials.size() > most_paired) causes.trials.resize(most_paired);
   for (const Trial* trial : causes.trials) {
-    causes.bases.push_back(project_trial(bench.room(), bench.null(), *trial, not_a_number).basis);
+    causes.bases.push_back(project_trial(bench.room(), bench.null(), *trial, trial->shape).basis);
   }
   return causes;
 }
@@ -54,6 +52,9 @@ class Explained {
       columns = join(columns, basis);
     }
     first_.push_back(columns.cols());
+    for (const Trial* trial : causes.trials) {
+      scans_.push_back(2.0 * std::log(trial->candidate.shape.tried));
+    }
     MatrixXd tangent = null.basis;
     null.test->whiten(noise, tangent);
     null.test->whiten(noise, columns);
@@ -64,26 +65,34 @@ class Explained {
 
   Combination combine(std::vector<std::size_t> members) const {
     std::vector<Index> columns;
+    double scans = 0.0;
     for (const std::size_t member : members) {
+      scans += scans_[member];
       for (Index k = first_[member]; k < first_[member + 1]; ++k) columns.push_back(k);
     }
     const VectorXd shares = products_(columns, 0);
     const MatrixXd square = products_(columns, columns);
     const double explained = shares.dot(pseudo_inverse(square) * shares);
-    return {std::move(members), penalty_ * static_cast<double>(columns.size()) - explained};
+    return {std::move(members), penalty_ * static_cast<double>(columns.size()) + scans - explained};
   }
 
  private:
   std::vector<Index> first_;  // column of each cause, behind the residual
+  std::vector<double> scans_;  // penalty for each cause's shapes
   MatrixXd products_;
-  double penalty_ = 0.0;
+  double penalty_ = 0.0;  // of a direction
 };
 
-/// Every pair, best first.
-std::vector<Combination> rank_pairs(const Explained& explained, std::size_t causes) {
+bool is_scanned(const Trial& trial) { return !trial.candidate.shape.parameter.empty(); }
+
+/// Every pair of which one at most was scanned, best first.
+std::vector<Combination> rank_pairs(const Explained& explained, const Causes& causes) {
   std::vector<Combination> pairs;
-  for (std::size_t a = 0; a < causes; ++a) {
-    for (std::size_t b = a + 1; b < causes; ++b) pairs.push_back(explained.combine({a, b}));
+  for (std::size_t a = 0; a < causes.trials.size(); ++a) {
+    for (std::size_t b = a + 1; b < causes.trials.size(); ++b) {
+      if (is_scanned(*causes.trials[a]) && is_scanned(*causes.trials[b])) continue;
+      pairs.push_back(explained.combine({a, b}));
+    }
   }
   std::ranges::stable_sort(pairs, {}, &Combination::criterion);
   return pairs;
@@ -97,26 +106,27 @@ NoiseMembers noise_beside(const Bench& bench, const Causes& causes, const Combin
 
 }  // namespace
 
-std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials) {
+std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials) {
   const Causes causes = choose_causes(bench, trials);
   const std::size_t count = causes.trials.size();
   if (count < 2 || !causes.trials.front()->tested) return {};
   const NoiseMembers beside_one = causes.trials.front()->ratios.with.noise;
-  const auto start = rank_pairs(Explained(bench, causes, beside_one), count);
+  const auto start = rank_pairs(Explained(bench, causes, beside_one), causes);
+  if (start.empty()) return {};
   const Explained explained(bench, causes, noise_beside(bench, causes, start.front()));
-  const auto pairs = rank_pairs(explained, count);
-  std::vector<double> alone;
-  for (std::size_t a = 0; a < count; ++a) alone.push_back(explained.combine({a}).criterion);
-  const double most =
-      std::min(pairs.front().criterion, *std::ranges::min_element(alone)) + within;
-  std::vector<std::string> names;
-  for (const Combination& pair : pairs) {
-    const std::size_t a = pair.members[0];
-    const std::size_t b = pair.members[1];
-    if (!(pair.criterion < most) || alone[a] < most || alone[b] < most) continue;
-    names.push_back(causes.trials[a]->candidate.name + "+" + causes.trials[b]->candidate.name);
+  const auto ranked = rank_pairs(explained, causes);
+  double least = ranked.front().criterion;
+  for (std::size_t a = 0; a < count; ++a) {
+    least = std::min(least, explained.combine({a}).criterion);
   }
-  return names;
+  std::vector<Pair> pairs;
+  for (const Combination& pair : ranked) {
+    if (!(pair.criterion < least + within)) break;
+    const Trial& a = *causes.trials[pair.members[0]];
+    const Trial& b = *causes.trials[pair.members[1]];
+    pairs.push_back({a.candidate.name + "+" + b.candidate.name, (is_scanned(a) ? a : b).shape});
+  }
+  return pairs;
 }
 
 }  // namespace sepcal::diagnosis

@@ -10,8 +10,14 @@
 
 namespace sepcal::diagnosis {
 
+/// Two effects as one candidate: "wind[time]+bias_step".
+struct Pair {
+  std::string name;
+  double shape = not_a_number;  // where one of the two was scanned
+};
+
 /// Pairs of the surest trials, best first, whose Schwarz criterion is within 9.2 of the least that a
-/// single trial or a pair has, in the noise beside the best pair; none of which a member alone is.
-std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials);
+/// single trial or a pair has, in the noise beside the best pair; by one step from the fit.
+std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials);
 
 }  // namespace sepcal::diagnosis

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/advice.hpp"
+#include "diagnosis/finding.hpp"
 #include "diagnosis/trial.hpp"
 
 namespace sepcal {
@@ -17,7 +19,12 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
   if (shape != shapes.end()) trial.shape = shape->second;
   const NullHypothesis null{.fit = &fit, .basis = orthonormal_basis(fit.tangent)};
   const Projection added = project_trial(room, null, trial, trial.shape);
-  if (added.visible() == 0) return promised;  // whatever it explained would be chance
+  if (added.visible() == 0) {  // whatever it explained would be chance
+    promised.against = "this flight can't tell it from what the model has";
+    return promised;
+  }
+  estimate_plainly(added, fit.residual, trial);
+  promised.against = reason_against(room, describe(room, {}, trial), visible_from, pool);
   promised.predicted_drop = predict_drop(null, added.basis);
   hold_out(room, null, trial);
   confirm(room, pool, trial);

@@ -127,6 +127,13 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
   trial.log10_p = trial.log10_white;
 }
 
+void estimate_plainly(const Projection& added, const VectorXd& residual, Trial& trial) {
+  trial.visible = added.visible() > 0;
+  trial.visibility = added.visibility;
+  const Index q = added.visible();
+  keep_estimate(added, added.basis.transpose() * residual, MatrixXd::Identity(q, q), trial);
+}
+
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   const auto by_white = std::ranges::min_element(trial.scores, {}, &ShapeScore::white);
   const auto by_plain = std::ranges::min_element(trial.scores, {}, &ShapeScore::plain);

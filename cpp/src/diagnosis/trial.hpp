@@ -57,6 +57,9 @@ double log10_scan(const Trial& trial);
 /// Scores every shape in the directions that can be seen.
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
+/// The estimate of one step, as if the residual were white.
+void estimate_plainly(const Projection& added, const Eigen::VectorXd& residual, Trial& trial);
+
 /// The likelihood ratio at the shapes that score best, with the estimate there.
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 

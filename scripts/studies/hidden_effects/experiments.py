@@ -95,8 +95,13 @@ def _run(experiment: str, arguments: tuple[Any, ...]) -> tuple[str, Row]:
     return experiment, EXPERIMENTS[experiment](*arguments)
 
 
-def _is_in_family(name: str, diagnosis: Diagnosis) -> bool:
-    return bool(diagnosis.effects) and name in diagnosis.effects[0].family
+def _stands_first(name: str, diagnosis: Diagnosis) -> bool:
+    """The first by name, or one that would do as well instead."""
+    return name in [diagnosis.effects[0].name, *diagnosis.explanations]
+
+
+def _is_found(name: str, diagnosis: Diagnosis) -> bool:
+    return name in [effect.name for effect in diagnosis.found] + diagnosis.explanations
 
 
 def _power(case: Case, sigmas: float, factor: float, seed: int) -> Row:
@@ -109,8 +114,8 @@ def _power(case: Case, sigmas: float, factor: float, seed: int) -> Row:
         "effect": name,
         "sigmas": sigmas,
         "seed": seed,
-        "first": _is_in_family(name, diagnosis),
-        "found": any(name in effect.family for effect in diagnosis.found),
+        "first": _stands_first(name, diagnosis),
+        "found": _is_found(name, diagnosis),
         "top": diagnosis.effects[0].name,
         "p": diagnosis.effects[0].p_adjusted,
     }
@@ -173,15 +178,15 @@ def _pairs(pair: tuple[Case, Case], factors: tuple[float, float], seed: int) -> 
     hide = {case.effect: case.sizes(factor) for case, factor in zip(pair, factors, strict=True)}
     flight = fly(probe, hide, seed, rows)
     calibration = calibrate(probe, flight)
-    families: list[list[str]] = []
+    named: list[str] = []
     for _ in range(MOST_ADDED):
         diagnosis = calibration.diagnose()
         if not diagnosis.found:
             break
         best = diagnosis.found[0]
-        families.append([*best.family, *best.name.split("+")])
+        named += [*diagnosis.explanations, *best.name.split("+")]
         calibration = calibration.add(best.name)
-    met = [any(name in family for family in families) for name in flight.effects]
+    met = [name in named for name in flight.effects]
     added = sum(len(setting.name.split("+")) for setting in calibration.effects)
     return {
         "probe": probe,
@@ -213,13 +218,12 @@ def _proxy(case: Case, factor: float, seed: int) -> Row:
     columns = {**flight, "voltage_v": 16.0 - 0.05 * sag}
     proxied = Flight(columns, maneuver=flight.maneuvers)
     diagnosis = calibrate(case.probe, proxied).diagnose()
-    family = diagnosis.effects[0].family
     return {
         "probe": case.probe,
         "seed": seed,
         "top": diagnosis.effects[0].name,
-        "true_in_family": case.effect in family,
-        "proxy_in_family": "bias[voltage_v]" in family,
+        "true_stands_first": _stands_first(case.effect, diagnosis),
+        "proxy_found": _is_found("bias[voltage_v]", diagnosis),
         "verdict": diagnosis.verdict,
     }
 
@@ -251,8 +255,8 @@ def _slow(seed: int) -> Row:
     diagnosis = calibrate("five-hole", flight).diagnose()
     return {
         "seed": seed,
-        "first": _is_in_family(SLOW, diagnosis),
-        "found": any(SLOW in effect.family for effect in diagnosis.found),
+        "first": _stands_first(SLOW, diagnosis),
+        "found": _is_found(SLOW, diagnosis),
         "top": diagnosis.effects[0].name,
     }
 

@@ -23,12 +23,16 @@ STEPS = {"_mps": 0.5, "_rad": 0.01, "_pa": 5.0, "_ut": 0.3}  # of a coarse colum
 
 
 def fly(
-    probe: str, noise: str, seed: int, rows: int, hide: dict[str, list[float]] | None = None
+    probe: str,
+    noise: str,
+    seed: int,
+    rows: int,
+    hide: dict[str, list[float]] | None = None,
+    decoys: int = 0,
 ) -> tuple[Flight, SimulatedFlight]:
     """A condensed flight with a noise of the probe's usual size, and the quiet flight behind it."""
-    quiet = simulate(
-        probe, hide=hide, noise=dict.fromkeys(OUTPUTS[probe], 1e-9), rows=rows, seed=seed
-    )
+    silence = dict.fromkeys(OUTPUTS[probe], 1e-9)
+    quiet = simulate(probe, hide=hide, noise=silence, decoys=decoys, rows=rows, seed=seed)
     columns: dict[str, Array] = {name: np.array(quiet[name]) for name in quiet}
     rng = np.random.default_rng([seed, NOISES.index(noise), rows])
     time = columns["time_s"]

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flight/text/status_text.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 
 namespace sepcal {
@@ -79,7 +80,7 @@ std::string effect_rows(const FlightDiagnosis& result) {
   const auto others = static_cast<std::ptrdiff_t>(effects.size() - shown) - hidden;
   if (others > 0) text += fmt::format("and {} more\n", others);
   if (refused > 0) {
-    text += "not held out: significant, but the error of rows left out does not fall\n";
+    text += "not held out: significant, but rows left out gain no more than by chance\n";
   }
   if (hidden > 0) {
     text += fmt::format("{} cannot be seen in this flight:", hidden);
@@ -105,10 +106,12 @@ std::string name_line(std::string_view what, const std::vector<std::string>& nam
 
 /// What the others are beside the first.
 std::string beside_rows(const Diagnosis& diagnosis) {
+  const bool is_pair = split_effects(diagnosis.effects.front().name).size() > 1;
   return name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent), ", ") +
          name_line("fades once it is added", list_beside(diagnosis, Beside::fades), ", ") +
          name_line("counts beside it", list_beside(diagnosis, Beside::counts), ", ") +
-         name_line("or two causes at once, one of these pairs", diagnosis.pairs, ", ");
+         name_line(is_pair ? "pairs that explain it as well" : "or two causes at once, one of these pairs",
+                   diagnosis.pairs, ", ");
 }
 
 std::string best_effect(const FlightDiagnosis& result) {

@@ -52,25 +52,42 @@ Promise promise_of(const Calibration& base, const Calibration& next, const Prepa
   }
 }
 
-/// The base's model with the effect, fitted from the base's estimates.
-Calibration refit(const Calibration& base, const PreparedFlight& prepared,
-                  const std::string& effect, const OwnEffects& own, const FitProgress& progress) {
+/// The base's options for a fit that begins at its estimates.
+CalibrationOptions options_from(const Calibration& base, const OwnEffects& own,
+                                const FitProgress& progress) {
   CalibrationOptions options = base.options;
   options.fit.progress = progress;
-  for (const auto& [name, maker] : own) options.own_effects[name] = maker;
-  for (const std::string& name : split_effects(effect)) options.effects.push_back({.name = name});
   options.fit.start = base.fit.nonlinear_estimates();
+  for (const auto& [name, maker] : own) options.own_effects[name] = maker;
+  return options;
+}
+
+/// The base's model with the effect.
+Calibration refit(const Calibration& base, const PreparedFlight& prepared,
+                  const std::string& effect, const OwnEffects& own, const FitProgress& progress) {
+  CalibrationOptions options = options_from(base, own, progress);
+  for (const std::string& name : split_effects(effect)) options.effects.push_back({.name = name});
   refuse_twice(options);
   Calibration next = calibrate(base.probe, prepared, options);
   refuse_twice(next.options);  // now that aliases are resolved
   return next;
 }
 
-}  // namespace
+/// The base as it would be of this flight: an effect must not be praised for what a new wind
+/// brings.
+Calibration refit_to(const Calibration& base, const PreparedFlight& prepared,
+                     const OwnEffects& own, const FitProgress& progress) {
+  Calibration here = calibrate(base.probe, prepared, options_from(base, own, progress));
+  here.history = base.history;
+  here.notes = {fmt::format(
+      "{}: not the flight that the calibration was fitted to, {}; it was fitted to this one before "
+      "the effect was added",
+      prepared.flight.name(), base.flight.file)};
+  return here;
+}
 
-Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
-                const OwnEffects& own, const FitProgress& progress) {
-  const PreparedFlight prepared = prepare(base, flight);
+Calibration add_to(const Calibration& base, const PreparedFlight& prepared,
+                   const std::string& effect, const OwnEffects& own, const FitProgress& progress) {
   Calibration next = refit(base, prepared, effect, own, progress);
   const EffectiveFlight after = with_effects_of(next, prepared);
   const Record& record = after.prepared.record.select(next.options.fit.stage_two_segments);
@@ -82,7 +99,9 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
   Record rows = before.prepared.record;
   rows.cut(record.segments());
   const Promise promised = promise_of(base, next, prepared, added);
-  note_other_flight(base, flight, next.notes);
+  if (!promised.against.empty()) {
+    next.notes.push_back(fmt::format("diagnose would not advise {}: {}", added, promised.against));
+  }
   next.history = base.history;
   next.history.push_back({.effect = added,
                           .rmse_before = total_rmse(base, before, rows),
@@ -90,6 +109,18 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
                           .held_out_before = promised.held_out_before,
                           .held_out_after = promised.held_out_after,
                           .predicted_drop = promised.predicted_drop});
+  return next;
+}
+
+}  // namespace
+
+Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
+                const OwnEffects& own, const FitProgress& progress) {
+  const PreparedFlight prepared = prepare(base, flight);
+  if (!is_other_flight(base, flight)) return add_to(base, prepared, effect, own, progress);
+  const Calibration here = refit_to(base, prepared, own, progress);
+  Calibration next = add_to(here, prepared, effect, own, progress);
+  next.notes.insert(next.notes.begin(), here.notes.begin(), here.notes.end());
   return next;
 }
 

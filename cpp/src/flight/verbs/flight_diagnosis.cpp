@@ -263,10 +263,10 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   }
   const EffectFinding& best = found.effects.front();
   return fmt::format(
-      "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less, {:.0f} % on rows "
-      "held out).",
+      "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less on rows held out, "
+      "{:.0f} % on all).",
       best.name, diagnosis.sentences.front(), left, found.rmse * (1.0 - best.predicted_drop), unit,
-      100.0 * best.predicted_drop, 100.0 * best.held_out_gain);
+      100.0 * best.held_out_gain, 100.0 * best.predicted_drop);
 }
 
 }  // namespace sepcal

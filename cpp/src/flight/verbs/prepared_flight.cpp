@@ -57,14 +57,18 @@ DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& reading
       .fit = calibration.fit};
 }
 
+bool is_other_flight(const Calibration& calibration, const Flight& flight) {
+  const std::string& fitted = calibration.flight.sha256;
+  return !fitted.empty() && !flight.sha256().empty() && fitted != flight.sha256();
+}
+
 void note_other_flight(const Calibration& calibration, const Flight& flight,
                        std::vector<std::string>& notes) {
-  const FittedFlight& fitted = calibration.flight;
-  if (fitted.sha256.empty() || flight.sha256().empty() || fitted.sha256 == flight.sha256()) return;
+  if (!is_other_flight(calibration, flight)) return;
   notes.push_back(fmt::format(
       "{}: not the flight that the calibration was fitted to, {}; the errors here are those of a "
       "prediction",
-      flight.name(), fitted.file));
+      flight.name(), calibration.flight.file));
 }
 
 }  // namespace sepcal::verbs

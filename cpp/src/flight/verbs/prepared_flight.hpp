@@ -40,6 +40,9 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& 
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,
                            const OwnEffects& own);
 
+/// Whether the flight is another file than the calibration was fitted to.
+bool is_other_flight(const Calibration& calibration, const Flight& flight);
+
 /// Adds a note where the flight is another file than the calibration was fitted to: its errors are
 /// no longer those of a fit.
 void note_other_flight(const Calibration& calibration, const Flight& flight,

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether effects are found and come first, what the advice does to the probe's parameters, and
+whether what would do as well instead does so.
+
+First is the true effect, or one that explains as much when it is added in its place.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+from functools import cache
+
+from sepcal import Calibration, Error
+from sepcal.diagnosis import Diagnosis
+from studies.hidden_effects.cases import CASES, Case, calibrate, factor_for
+from studies.study import Finding, seed_range
+from studies.trust.flights import fly
+from studies.trust.part import Key, Part, Row
+
+NOISES = ("white", "white + GM 60 s")
+STEPS = ("bias_step", "water_blockage")
+AS_LIKELY = 9.2  # in -2 ln L
+MOST_ADDED = 3  # of what would do as well
+
+
+def _label(case: Case) -> str:
+    return f"{case.probe}: {case.effect}"
+
+
+BY_LABEL = {_label(case): case for case in CASES}
+size_for = cache(factor_for)
+
+
+def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
+    for seed in seed_range(arguments):
+        for sigmas in arguments.sigmas:
+            for noise in NOISES:
+                for case in CASES:
+                    yield "power", _label(case), noise, sigmas, case.rows, seed
+
+
+def _try(key: Key) -> Row:
+    _, label, noise, sigmas, rows, seed = key
+    case = BY_LABEL[label]
+    try:
+        hide = {case.effect: case.sizes(size_for(case, sigmas))}
+        flight, quiet = fly(case.probe, noise, seed, rows, hide)
+    except Error:  # so large that the sensor reads nothing
+        return {"verdict": "not flown", "visible": False}
+    base = calibrate(case.probe, flight)
+    diagnosis = base.diagnose()
+    name = quiet.effects[0]
+    stands_first = name in diagnosis.explanations
+    row: Row = {
+        "verdict": diagnosis.verdict,
+        "top": diagnosis.effects[0].name,
+        "p": diagnosis.effects[0].p_adjusted,
+        "effect": name,
+        "first": stands_first,
+        "found": stands_first or name in [effect.name for effect in diagnosis.found],
+        "visible": diagnosis[name].status != "cannot_be_seen",
+        "advice": diagnosis.advice["effect"],
+        "withheld": diagnosis.advice["withheld"],
+    }
+    if row["advice"]:
+        row["harm"] = _harm(base, base.add(row["advice"]), quiet.truth)
+    if noise == "white" and diagnosis.found:
+        row["differences"] = _differences(base, diagnosis)
+    return row
+
+
+def _harm(base: Calibration, better: Calibration, truth: dict[str, float]) -> float:
+    """How much further from the truth the worst of the probe's parameters is than before, in
+    standard errors of after."""
+    moves = [
+        (abs(better[name].value - truth[name]) - abs(before.value - truth[name]))
+        / better[name].standard_error
+        for name, before in base.parameters.items()
+        if name in truth and not before.fixed and better[name].standard_error > 0.0
+    ]
+    return max((move for move in moves if math.isfinite(move)), default=0.0)
+
+
+def _likelihood(calibration: Calibration) -> float:
+    """-2 ln L in white noise, but for a constant."""
+    return sum(2.0 * calibration.rows * math.log(rmse) for rmse in calibration.rmse.values())
+
+
+def _differences(base: Calibration, diagnosis: Diagnosis) -> list[float]:
+    """-2 ln L of what is said to do as well instead, less the first's."""
+    names = [name for name in diagnosis.explanations[1:] if not diagnosis[name].shapes]
+    if not names or diagnosis.effects[0].shapes:
+        return []
+    first = _likelihood(base.add(diagnosis.effects[0].name))
+    return [_likelihood(base.add(name)) - first for name in names[:MOST_ADDED]]
+
+
+def _sizes(rows: Sequence[Row]) -> list[Finding]:
+    by_size: dict[tuple[str, float], list[Row]] = defaultdict(list)
+    for row in rows:
+        by_size[row["key"][2], row["key"][3]].append(row)
+    findings = []
+    for (noise, sigmas), flights in sorted(by_size.items()):
+        seen = [row for row in flights if row["visible"]]
+        both = sum(row["first"] and row["found"] for row in seen)
+        slow = sum(row["verdict"] == "slow_change" for row in seen)
+        missed = Counter(row["effect"] for row in seen if not (row["first"] and row["found"]))
+        failures = ", ".join(f"{name} ({n})" for name, n in sorted(missed.items()))
+        asked = noise == "white" and sigmas >= 30.0
+        steps = any(missed[name] for name in STEPS)
+        findings.append(
+            Finding(
+                f"{sigmas:g} sigmas in {noise}",
+                f"first and found {both} of {len(seen)}, {slow} slow_change; missed: {failures}",
+                "98 %, no step missed" if asked else "reported",
+                not asked or (both >= 0.98 * len(seen) and not steps),
+            )
+        )
+    return findings
+
+
+def _advice(rows: Sequence[Row]) -> list[Finding]:
+    given = [row for row in rows if row.get("advice")]
+    harmed = Counter(row["effect"] for row in given if row["harm"] > 2.0)
+    names = ", ".join(f"{name} ({n})" for name, n in sorted(harmed.items()))
+    wrongly = sum(
+        row["first"] and not row["advice"] and bool(row["withheld"]) for row in rows if "first" in row
+    )
+    return [
+        Finding(
+            "advice that moves a parameter from the truth by over two standard errors",
+            f"{sum(harmed.values())} of {len(given)}: {names}",
+            "none",
+            not harmed,
+        ),
+        Finding("advice withheld though the true effect came first", f"{wrongly}", "reported", True),
+    ]
+
+
+def _instead(rows: Sequence[Row]) -> list[Finding]:
+    differences = [d for row in rows for d in row.get("differences", ())]
+    if not differences:
+        return []
+    right = sum(abs(d) < AS_LIKELY for d in differences)
+    figure = f"{right} of {len(differences)}"
+    holds = right >= 0.95 * len(differences)
+    return [Finding("said to do as well, and does when it is added", figure, "95 %", holds)]
+
+
+def _summarise(rows: Sequence[Row]) -> list[Finding]:
+    return [*_sizes(rows), *_advice(rows), *_instead(rows)]
+
+
+POWER = Part(_keys, _try, _summarise)
