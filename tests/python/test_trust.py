@@ -46,6 +46,47 @@ def test_advice_is_withheld_where_a_fit_says_otherwise_than_a_step():
     assert "next:" not in str(diagnosis)
 
 
+def test_what_would_do_as_well_instead_does_so():
+    """In white noise -2 ln L is a sum of logarithms of RMSEs, whoever fits."""
+    size = {"bias[current_a]": [0.03, -0.02, 0.03]}
+    flight = sepcal.simulate("magnetometer", hide=size, rows=400, seed=5)
+    base = sepcal.fit(sepcal.Magnetometer(), flight, threads=1)
+    diagnosis = base.diagnose()
+    assert diagnosis.found
+
+    def likelihood(fitted: sepcal.Calibration) -> float:
+        return 2.0 * fitted.rows * sum(np.log(list(fitted.rmse.values())))
+
+    first = likelihood(base.add(diagnosis.effects[0].name))
+    for effect in diagnosis.found[1:]:
+        fitted = base.add(effect.name)
+        if fitted.rows < base.rows or effect.shapes:
+            continue  # a delay takes the ends off; add() fits shapes, diagnose() holds them
+        difference = likelihood(fitted) - first
+        assert (effect.beside == "equivalent") == (abs(difference) < 9.2), effect.name
+    assert diagnosis.list_beside("fades")
+
+
+def test_an_effect_is_not_praised_for_the_wind_of_another_flight(tmp_path):
+    """The base is of a flight in another wind: fitted to this one first, it needs no effect."""
+    flights = []
+    for seed, wind in ((1, 2.0), (2, -9.0)):
+        flight = sepcal.simulate("five-hole", parameters={"w_n": wind}, rows=400, seed=seed)
+        file = tmp_path / f"{seed}.csv"
+        values = np.column_stack([flight[name] for name in flight])
+        np.savetxt(file, values, delimiter=",", header=",".join(flight), comments="", fmt="%.12g")
+        flights.append(sepcal.read_csv(file))
+    probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+    base = sepcal.fit(probe, flights[0])
+    better = base.add("airspeed_bias[throttle]", flights[1])
+    own = sepcal.fit(probe, flights[1])
+    before = np.sqrt(np.mean(np.square(list(own.rmse.values()))))
+    assert better.history[-1].rmse_before == pytest.approx(before, rel=1e-4)
+    assert better.history[-1].rmse_after > 0.98 * before
+    assert any("was fitted to this one before the effect was added" in n for n in better.notes)
+    assert any("diagnose would not advise airspeed_bias[throttle]" in n for n in better.notes)
+
+
 def fly_tube(seed: int, rows: int, spread: float, wind: float) -> tuple[dict, np.ndarray]:
     """A tube in a steady turn whose airspeed changes by a share `spread`; the wind's too."""
     rng = np.random.default_rng(seed)

@@ -20,7 +20,14 @@ constexpr double hardly_worse = 2.0;       // in the criterion
 constexpr std::size_t most_beside = 12;    // asked beside the first
 constexpr double counts_below = 0.01;      // p beside the first, over their number
 
+using Eigen::Index;
+using Eigen::MatrixXd;
 using Findings = std::vector<EffectFinding>;
+
+struct Asked {
+  Candidate candidate;
+  double shape;
+};
 
 bool may_stand_first(const EffectFinding& finding) {
   return finding.status == FindingStatus::found ||
@@ -34,17 +41,39 @@ DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candida
   return next;
 }
 
-/// -2 ln L of a fit's residual in the likeliest noise of autoregressions of these orders, but for
-/// what any fit to the same rows has; minus infinity where it leaves nothing of an output.
-double minus_two_log_likelihood(const DiagnosedFit& fitted, const std::vector<int>& orders) {
+/// The noise that is left beside all of them at once, by one step: what is judged in it must not
+/// bring a noise that swallows what it leaves. Of short records that beside the first.
+NoiseMembers noise_beside(const Bench& bench, const std::vector<Asked>& asked) {
+  constexpr Index fewest_rows = 10;  // a column
+  const CandidateRoom& room = bench.room();
+  MatrixXd columns;
+  for (const auto& [candidate, shape] : asked) {
+    const MatrixXd G = room.columns(candidate, shape);
+    const Index rows_needed = fewest_rows * (columns.cols() + G.cols());
+    if (columns.cols() > 0 && rows_needed > room.fit().layout.count()) break;
+    columns = columns.cols() == 0 ? G : join(columns, G);
+  }
+  const MatrixXd added = orthonormal_basis(remove_span(bench.null().basis, columns));
+  return bench.null().test->compare(added).with.noise;
+}
+
+/// -2 ln L of a fit in a noise that is known, but for a constant; minus infinity where it leaves
+/// nothing of an output.
+double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
+                                const DiagnosedFit& fitted) {
   base::ThreadPool alone(1);
   const CandidateRoom room(fitted, alone);
   const RowLayout& layout = room.fit().layout;
-  if (layout.outputs.size() != orders.size()) return -infinity;
-  double scales = 0.0;
-  for (const UsedOutput& output : layout.outputs) scales += std::log(output.scale);
-  const NoiseTest test(room.fit(), orthonormal_basis(room.fit().tangent), orders);
-  return test.null() + 2.0 * static_cast<double>(layout.rows) * scales;
+  const RowLayout& known = bench.room().fit().layout;
+  if (layout.outputs.size() != known.outputs.size()) return -infinity;
+  MatrixXd white = join(room.fit().tangent, room.fit().residual);
+  for (std::size_t j = 0; j < known.outputs.size(); ++j) {
+    white.middleRows(layout.first(j), layout.rows) *=
+        layout.outputs[j].scale / known.outputs[j].scale;
+  }
+  bench.null().test->whiten(noise, white);
+  const MatrixXd tangent = orthonormal_basis(white.leftCols(white.cols() - 1));
+  return remove_span(tangent, white.rightCols<1>()).squaredNorm();
 }
 
 /// Schwarz's penalty for coefficients, and for a shape that of the number tried.
@@ -54,13 +83,8 @@ double penalty(const RowLayout& layout, const Candidate& candidate) {
          2.0 * std::log(candidate.shape.tried);
 }
 
-struct Asked {
-  Candidate candidate;
-  double shape;
-};
-
-std::vector<Contender> fit_all(const Bench& bench, const std::vector<Asked>& asked) {
-  const std::vector<int> orders = noise_orders(bench.null());
+std::vector<Contender> fit_all(const Bench& bench, const NoiseMembers& noise,
+                               const std::vector<Asked>& asked) {
   std::vector<Contender> contenders(asked.size());
   bench.pool().for_each(asked.size(), [&](std::size_t i) {
     const auto& [candidate, shape] = asked[i];
@@ -69,7 +93,7 @@ std::vector<Contender> fit_all(const Bench& bench, const std::vector<Asked>& ask
     try {
       contender.fit = refit_with(bench.room(), candidate, shape);
       contender.minus_two_log_likelihood = minus_two_log_likelihood(
-          with_candidate(bench.fitted(), candidate, contender.fit), orders);
+          bench, noise, with_candidate(bench.fitted(), candidate, contender.fit));
       contender.criterion =
           contender.minus_two_log_likelihood + penalty(bench.room().fit().layout, candidate);
     } catch (const Error&) {
@@ -85,17 +109,19 @@ EffectFinding& finding_of(Findings& findings, const std::string& name) {
 
 }  // namespace
 
-std::vector<Contender> fit_contenders(Bench& bench, const Findings& findings) {
+Contest fit_contenders(Bench& bench, const Findings& findings) {
   std::vector<Asked> asked;
   for (const EffectFinding& finding : findings) {
     if (asked.size() == most_fitted) break;
     if (!may_stand_first(finding)) continue;
     asked.push_back({bench.room().make(finding.name), shape_of(finding)});
   }
-  return fit_all(bench, asked);
+  Contest contest{.noise = noise_beside(bench, asked)};
+  contest.contenders = fit_all(bench, contest.noise, asked);
+  return contest;
 }
 
-std::vector<std::string> keep_as_likely(Bench& bench, const std::vector<Contender>& contenders,
+std::vector<std::string> keep_as_likely(Bench& bench, const Contest& contest,
                                         const std::vector<Pair>& pairs) {
   std::vector<Asked> asked;
   for (const Pair& pair : pairs) {
@@ -106,14 +132,14 @@ std::vector<std::string> keep_as_likely(Bench& bench, const std::vector<Contende
       continue;  // the two can't stand in one model
     }
   }
-  const std::vector<Contender> fitted = fit_all(bench, asked);
+  const std::vector<Contender> fitted = fit_all(bench, contest.noise, asked);
   double least = infinity;
-  for (const auto* all : {&contenders, &fitted}) {
+  for (const auto* all : {&contest.contenders, &fitted}) {
     for (const Contender& contender : *all) least = std::min(least, contender.criterion);
   }
   const auto alone = [&](const std::string& name) {
-    const auto single = std::ranges::find(contenders, name, &Contender::name);
-    return single == contenders.end() ? infinity : single->criterion;
+    const auto single = std::ranges::find(contest.contenders, name, &Contender::name);
+    return single == contest.contenders.end() ? infinity : single->criterion;
   };
   std::vector<std::string> kept;
   for (const Contender& pair : fitted) {
@@ -124,24 +150,24 @@ std::vector<std::string> keep_as_likely(Bench& bench, const std::vector<Contende
   return kept;
 }
 
-const Contender* put_first(const std::vector<Contender>& contenders,
-                           const std::vector<std::string>& preferred, Findings& findings) {
+const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
+                           Findings& findings) {
   const Contender* first = nullptr;
   const auto offer = [&](const Contender& contender, double margin) {
     if (finding_of(findings, contender.name).status != FindingStatus::found) return;
     const double least = first ? first->criterion + margin : infinity;
     if (contender.criterion < least) first = &contender;
   };
-  for (const Contender& contender : contenders) offer(contender, 0.0);
+  for (const Contender& contender : contest.contenders) offer(contender, 0.0);
   if (!first) return nullptr;
   const auto is_preferred = [&](const std::string& name) {
     return std::ranges::find(preferred, name) != preferred.end();
   };
-  for (const Contender& contender : contenders) {
+  for (const Contender& contender : contest.contenders) {
     if (is_preferred(first->name)) break;
     if (is_preferred(contender.name)) offer(contender, hardly_worse);
   }
-  for (const Contender& contender : contenders) {
+  for (const Contender& contender : contest.contenders) {
     const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
     if (&contender == first || !(std::abs(more) < as_likely)) continue;
     finding_of(findings, contender.name).beside = Beside::equivalent;

@@ -17,23 +17,28 @@ inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's wi
 struct Contender {
   std::string name = {};
   Fit fit = {};  // undefined where the criterion is infinite
-  double minus_two_log_likelihood = infinity;  // in the likeliest noise; infinite: can't be fitted
+  double minus_two_log_likelihood = infinity;  // in the contest's noise; infinite: can't be fitted
   double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried
 };
 
+/// All are judged in one noise: that beside all of them at once.
+struct Contest {
+  NoiseMembers noise = {};
+  std::vector<Contender> contenders = {};
+};
+
 /// Fits the first of the findings that may stand for what is missing, in their order.
-std::vector<Contender> fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings);
+Contest fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings);
 
 /// Of pairs those whose fits are about as likely as anything, by Schwarz's criterion, and likelier
 /// than either member alone.
-std::vector<std::string> keep_as_likely(Bench& bench, const std::vector<Contender>& contenders,
+std::vector<std::string> keep_as_likely(Bench& bench, const Contest& contest,
                                         const std::vector<Pair>& pairs);
 
 /// Of those found the one whose fit has the least criterion comes first, or one that is preferred
 /// and hardly worse. What would do as well in its place is marked equivalent and comes next.
-/// Returns the first's fit; null where none could be made.
-const Contender* put_first(const std::vector<Contender>& contenders,
-                           const std::vector<std::string>& preferred,
+/// Returns the first's contender; null where none could be fitted.
+const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
                            std::vector<EffectFinding>& findings);
 
 /// What of the other effects found fades beside the first and what counts: tested anew at its fit.

@@ -56,7 +56,6 @@ class Recipe {
   Bench bench_;
   Tangent tangent_;
   Trials trials_;
-  std::vector<Contender> contenders_;
   Diagnosis result_;
 };
 
@@ -133,10 +132,11 @@ void Recipe::try_pairs() {
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
   bench_.report_progress("fitting what was found", 0.0);
-  contenders_ = fit_contenders(bench_, result_.effects);
-  const Contender* first = put_first(contenders_, options_.preferred, result_.effects);
+  const Contest contest = fit_contenders(bench_, result_.effects);
+  const Contender* first = put_first(contest, options_.preferred, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
-  result_.pairs = keep_as_likely(bench_, contenders_, find_pair_set(bench_, trials_));
+  result_.pairs =
+      keep_as_likely(bench_, contest, find_pair_set(bench_, trials_, contest.noise));
   for (const Trial& trial : trials_) {
     if (trial.candidate.name == result_.effects.front().name) {
       result_.floor = std::min(result_.floor, trial.floor);

@@ -200,10 +200,6 @@ NoiseTest::NoiseTest(const Linearisation& fit, MatrixXd basis, std::vector<int> 
       families_(fit.layout.runs),
       nulls_(fit_nulls(families_, fit.layout, basis_, fit.residual, orders_)) {}
 
-double NoiseTest::null() const {
-  return std::min(nulls_[0].minus_two_log_likelihood, nulls_[1].minus_two_log_likelihood);
-}
-
 NoiseTest::Ratios NoiseTest::compare(const MatrixXd& added) const {
   return ratios_of(nulls_, families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
 }

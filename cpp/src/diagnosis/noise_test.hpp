@@ -42,9 +42,6 @@ class NoiseTest {
   /// autoregression in the fractional family.
   NoiseTest(const Linearisation& fit, Eigen::MatrixXd basis, std::vector<int> orders);
 
-  /// -2 ln L of the residual on the basis, in the likelier family.
-  double null() const;
-
   /// Twice the logarithms of the ratios, not negative, for columns that are orthonormal and
   /// orthogonal to the basis.
   struct Ratios {

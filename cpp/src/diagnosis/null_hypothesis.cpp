@@ -19,14 +19,10 @@ NullHypothesis find_null(const Linearisation& fit) {
   whiten(fit.layout, null.best.noise, white);
   null.white_basis = orthonormal_basis(white.leftCols(null.basis.cols()));
   null.white_residual = remove_span(null.white_basis, white.rightCols<1>());
-  null.test = std::make_shared<const NoiseTest>(fit, null.basis, noise_orders(null));
-  return null;
-}
-
-std::vector<int> noise_orders(const NullHypothesis& null) {
   std::vector<int> orders;
   for (const NoiseModel& model : null.best.noise) orders.push_back(model.order());
-  return orders;
+  null.test = std::make_shared<const NoiseTest>(fit, null.basis, std::move(orders));
+  return null;
 }
 
 double predict_drop(const NullHypothesis& null, const MatrixXd& added) {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <vector>
 
 #include "diagnosis/noise_hypothesis.hpp"
 #include "diagnosis/noise_test.hpp"
@@ -23,9 +22,6 @@ struct NullHypothesis {
 
 /// `fit` must outlive it.
 NullHypothesis find_null(const Linearisation& fit);
-
-/// Of each used output's autoregression.
-std::vector<int> noise_orders(const NullHypothesis& null);
 
 /// What of the fit's RMSE over all outputs goes, 1 - after / before, once columns that are
 /// orthonormal and orthogonal to the null's basis join it.

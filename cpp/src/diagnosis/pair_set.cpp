@@ -98,23 +98,15 @@ std::vector<Combination> rank_pairs(const Explained& explained, const Causes& ca
   return pairs;
 }
 
-/// The noise that is left beside a pair.
-NoiseMembers noise_beside(const Bench& bench, const Causes& causes, const Combination& pair) {
-  const MatrixXd both = join(causes.bases[pair.members[0]], causes.bases[pair.members[1]]);
-  return bench.null().test->compare(orthonormal_basis(both)).with.noise;
-}
-
 }  // namespace
 
-std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials) {
+std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials,
+                                const NoiseMembers& noise) {
   const Causes causes = choose_causes(bench, trials);
   const std::size_t count = causes.trials.size();
-  if (count < 2 || !causes.trials.front()->tested) return {};
-  const NoiseMembers beside_one = causes.trials.front()->ratios.with.noise;
-  const auto start = rank_pairs(Explained(bench, causes, beside_one), causes);
-  if (start.empty()) return {};
-  const Explained explained(bench, causes, noise_beside(bench, causes, start.front()));
+  const Explained explained(bench, causes, noise);
   const auto ranked = rank_pairs(explained, causes);
+  if (ranked.empty()) return {};
   double least = ranked.front().criterion;
   for (std::size_t a = 0; a < count; ++a) {
     least = std::min(least, explained.combine({a}).criterion);

@@ -17,7 +17,8 @@ struct Pair {
 };
 
 /// Pairs of the surest trials, best first, whose Schwarz criterion is within 9.2 of the least that a
-/// single trial or a pair has, in the noise beside the best pair; by one step from the fit.
-std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials);
+/// single trial or a pair has in this noise; by one step from the fit.
+std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials,
+                                const NoiseMembers& noise);
 
 }  // namespace sepcal::diagnosis

@@ -94,8 +94,11 @@ def _differences(base: Calibration, diagnosis: Diagnosis) -> list[float]:
     names = [name for name in diagnosis.explanations[1:] if not diagnosis[name].shapes]
     if not names or diagnosis.effects[0].shapes:
         return []
-    first = _likelihood(base.add(diagnosis.effects[0].name))
-    return [_likelihood(base.add(name)) - first for name in names[:MOST_ADDED]]
+    first = base.add(diagnosis.effects[0].name)
+    others = [base.add(name) for name in names[:MOST_ADDED]]
+    return [  # of the same rows: a delay takes the ends off
+        _likelihood(other) - _likelihood(first) for other in others if other.rows == first.rows
+    ]
 
 
 def _sizes(rows: Sequence[Row]) -> list[Finding]:
