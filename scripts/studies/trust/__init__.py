@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The study of trust: what is called found on noise that nobody fitted, and what large effects do.
 
+And whether fits end in the lowest minimum, or say that they may not (minima.py).
+
 Every trial is a line in a file; a run takes up where the lines end, and files of several machines
 may be joined by `cat`.
 """
@@ -21,6 +23,7 @@ from scipy.stats import beta
 from sepcal import Error
 from studies.hidden_effects.cases import CASES, PROBES, calibrate, factor_for
 from studies.study import Finding, Outcome, Progress, Study, check_folder, seeds
+from studies.trust import minima
 from studies.trust.flights import NOISES, fly
 
 Key: TypeAlias = tuple[str, str, str, float, int, int]  # part, case, noise, sigmas, rows, seed
@@ -32,10 +35,12 @@ STEPS = ("bias_step", "water_blockage")
 
 
 def _options(parser: argparse.ArgumentParser) -> None:
-    seeds(100, "null flights of each probe and noise; a tenth as many of each effect and size")(
-        parser
-    )
-    parser.add_argument("--part", choices=("alarms", "power"), help="one of the two alone")
+    seeds(
+        100,
+        "null flights of each probe and noise; a tenth as many of each effect and size; half as "
+        "many of each kind of minimum",
+    )(parser)
+    parser.add_argument("--part", choices=("alarms", "power", "minima"), help="one of them alone")
     parser.add_argument("--sigmas", type=float, nargs="*", default=[10.0, 30.0, 100.0, 300.0])
     parser.add_argument("--noise", nargs="*", default=list(NOISES), help="of the null flights")
     parser.add_argument("-o", "--output", type=Path, default=Path("trust.jsonl"))
@@ -55,11 +60,29 @@ def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
                     for case in CASES:
                         label = f"{case.probe}: {case.effect}"
                         yield "power", label, noise, sigmas, case.rows, seed
+    if arguments.part in (None, "minima"):
+        for seed in range(first, first + max(1, arguments.seeds // 2)):
+            for kind in minima.TUBE_CASES:
+                for rows in minima.TUBE_ROWS:
+                    yield "minima", kind, "white", 0.0, rows, seed
+            for kind in minima.HARD_CASES:
+                yield "hard", kind, "white", 0.0, 0, seed
 
 
 def _try(key: Key) -> Row:
-    part, label, noise, sigmas, rows, seed = key
+    part, label, *_, rows, seed = key
     begun = time.process_time()
+    if part == "minima":
+        row = minima.try_tube(label, rows, seed)
+    elif part == "hard":
+        row = minima.try_hard(label, seed)
+    else:
+        row = _try_diagnosis(key)
+    return {"key": key, **row, "seconds": time.process_time() - begun}
+
+
+def _try_diagnosis(key: Key) -> Row:
+    part, label, noise, sigmas, rows, seed = key
     hide = None
     probe = label
     try:
@@ -69,9 +92,9 @@ def _try(key: Key) -> Row:
             hide = {case.effect: case.sizes(factor_for(case, sigmas))}
         flight, quiet = fly(probe, noise, seed, rows, hide)
     except Error:  # an effect so large that the sensor reads nothing
-        return {"key": key, "verdict": "not flown", "visible": False, "seconds": 0.0}
+        return {"verdict": "not flown", "visible": False}
     diagnosis = calibrate(probe, flight).diagnose()
-    row: Row = {"key": key, "verdict": diagnosis.verdict, "advice": diagnosis.advice["effect"]}
+    row: Row = {"verdict": diagnosis.verdict, "advice": diagnosis.advice["effect"]}
     if diagnosis.effects:
         row |= {"top": diagnosis.effects[0].name, "p": diagnosis.effects[0].p_adjusted}
     if quiet.effects:
@@ -83,7 +106,6 @@ def _try(key: Key) -> Row:
             "found": any(name in effect.family for effect in diagnosis.found),
             "visible": own.status != "cannot_be_seen",
         }
-    row["seconds"] = time.process_time() - begun
     return row
 
 
@@ -143,6 +165,24 @@ def _power(rows: Iterable[Row]) -> list[Finding]:
     return findings
 
 
+def _minima(rows: Iterable[Row]) -> list[Finding]:
+    by_kind: dict[str, list[Row]] = defaultdict(list)
+    for row in rows:
+        part, case, *_ = row["key"]
+        by_kind["tubes" if part == "minima" else case].append(row)
+    findings = []
+    for kind, tried in by_kind.items():
+        converged = sum(row["status"] == "converged" for row in tried)
+        wrong = sum(minima.is_wrong(row) for row in tried)
+        silent = sum(minima.is_silent(row) for row in tried)
+        figure = f"of {len(tried)}, {converged} converged, {wrong} wrong, {silent} silent failures"
+        good = silent == 0 and (wrong == 0 or kind != "tubes")
+        findings.append(
+            Finding(f"minima, {kind}", figure, "0 wrong" if kind == "tubes" else "0 silent", good)
+        )
+    return findings
+
+
 def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     output: Path = arguments.output
     check_folder(output)
@@ -164,12 +204,14 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     power = [row for row in rows if row["key"][0] == "power"]
     findings += _alarms(alarms) if alarms else []
     findings += _power(power) if power else []
+    findings += _minima(row for row in rows if row["key"][0] in ("minima", "hard"))
     return Outcome(f"{len(rows)} flights, {hours:.2f} core-hours", findings)
 
 
 STUDY = Study(
     "trust",
-    "what is called found on noise as instruments have it, and whether large effects are",
+    "what is called found on noise as instruments have it, whether large effects are, and whether "
+    "fits end in the lowest minimum",
     _run,
     _options,
 )
