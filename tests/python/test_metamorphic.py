@@ -12,6 +12,8 @@ import pytest
 
 import sepcal
 from sepcal.columns import Array
+from shifts import largest_shift
+from studies.hidden_effects.cases import PROBES
 
 EPOCH = 1.7e9  # [s] a stamp of today, counted from 1970
 EFFECTS = [
@@ -27,12 +29,6 @@ EFFECTS = [
     ("icing_ramp",),
     ("icing_ramp", "time_offset"),
 ]
-FIVE_HOLE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
-PROBES = {
-    "five-hole": FIVE_HOLE,
-    "pitot-static": sepcal.PitotStatic(),
-    "magnetometer": sepcal.Magnetometer(),
-}
 SIMULATED = [  # with time in it, each with what is hidden
     ("five-hole", "wind[time]", (0.02, -0.01)),
     ("five-hole", "time_offset", 0.08),
@@ -52,18 +48,8 @@ def fly(start: float, step: float, hide: Mapping[str, float] | None = None) -> s
     return sepcal.Flight(columns)
 
 
-def largest_shift(first: sepcal.Fit, second: sepcal.Fit, expected: Mapping[str, float]) -> float:
-    """The largest difference of a parameter from what is expected, in standard errors."""
-    assert first.status == second.status
-    return max(
-        abs(second[name].value - expected.get(name, parameter.value)) / parameter.standard_error
-        for name, parameter in first.parameters.items()
-        if parameter.standard_error > 0
-    )
-
-
 def shifted_by(flight: sepcal.Flight, other: sepcal.Flight, effects: tuple[str, ...]) -> float:
-    """The same between two fits, the other's time counted from EPOCH before."""
+    """The largest shift between two fits, the other's time counted from EPOCH before."""
     first, second = (
         sepcal.fit(sepcal.PitotStatic(), at, effects=effects) for at in (flight, other)
     )

@@ -3,9 +3,11 @@
 
 import numpy as np
 import pytest
-from test_metamorphic import PROBES, Columns, largest_shift
 
 import sepcal
+from sepcal.columns import Array
+from shifts import largest_shift
+from studies.hidden_effects.cases import PROBES
 
 HIDDEN = [
     ("five-hole", {"airspeed_bias[throttle]": [4.0]}),
@@ -15,7 +17,7 @@ HIDDEN = [
 ]
 
 
-def log(probe: str, hide: dict[str, list[float]] | None, rows: int = 450) -> Columns:
+def log(probe: str, hide: dict[str, list[float]] | None, rows: int = 450) -> dict[str, Array]:
     return dict(sepcal.simulate(probe, hide=hide, rows=rows, seed=11))
 
 
