@@ -178,12 +178,21 @@ def try_hard(case: str, seed: int) -> dict[str, Any]:
         widths = {name: WIDE[name.split("_")[0]] for name in model.nonlinear}
         bounds = {name: (-width, width) for name, width in widths.items()}
     fitted = sepcal.fit(PROBES[probe], _to_flight(columns), bounds=bounds, threads=1)
-    try:
-        excess = fitted.cost - fit_with_noise(model, columns, xi).cost
-    except RuntimeError:  # SciPy finds no minimum either
-        excess = None
     truth = dict(zip(model.parameters, xi.tolist(), strict=True))
-    return _judge(fitted, truth) | {"excess": excess}
+    return _judge(fitted, truth) | {"excess": _excess_over_oracle(fitted, model, columns, xi)}
+
+
+def _excess_over_oracle(
+    fitted: sepcal.Fit, model: Model, columns: Columns, xi: Array
+) -> float | None:
+    """Over SciPy's minimum from the truth; None where it finds none, or one beyond the bounds."""
+    try:
+        found = fit_with_noise(model, columns, xi)
+    except RuntimeError:
+        return None
+    parameters = [fitted[name] for name in model.parameters]
+    inside = [one.lower <= x <= one.upper for one, x in zip(parameters, found.values, strict=True)]
+    return fitted.cost - found.cost if all(inside) else None
 
 
 def _draw(probe: str, seed: int, rows: int) -> Columns:
@@ -232,6 +241,7 @@ def _judge(fitted: sepcal.Fit, truth: Mapping[str, float]) -> dict[str, Any]:
     return {
         "status": fitted.status,
         "message": fitted.message,
+        "at_bound": fitted.at_bound,
         "scale": min(scales),
         "off": max(off, default=0.0),
     }
@@ -246,4 +256,5 @@ def is_wrong(row: Mapping[str, Any]) -> bool:
 def is_silent(row: Mapping[str, Any]) -> bool:
     """Exit code 0, no message, and another minimum, a scale that is none or far from the truth."""
     failed = is_wrong(row) or row["off"] > SURE or not 0.5 < row["scale"] < 2.0
-    return row["status"] == "converged" and not row["message"] and failed
+    said = row["message"] or row["at_bound"]  # which stands in the status too
+    return row["status"] == "converged" and not said and failed
