@@ -118,8 +118,8 @@ TEST_CASE("so it does where next to nothing was determined; what is not finite i
   CHECK(root["status"] == "not_identifiable");
   CHECK(!root["unobservable"].empty());
   CHECK(root["parameters"]["lambda_va"]["standard_error"].is_null());
-  CHECK(root["parameters"]["lambda_va"]["lower"].is_null());
-  CHECK(parse_calibration(to_json(calibration), "base.json").fit["lambda_va"].lower == -infinity);
+  CHECK(root["parameters"]["b_va"]["lower"].is_null());
+  CHECK(parse_calibration(to_json(calibration), "base.json").fit["b_va"].lower == -infinity);
 }
 
 TEST_CASE("so it does where the fit did not converge") {

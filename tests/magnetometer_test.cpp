@@ -93,3 +93,19 @@ TEST_CASE("given its noise, the fit is the linear regression of m on h in disgui
   CHECK((matrix_by_hand(xi1, xi2) - expected.leftCols<3>()).norm() < 1e-10);
   CHECK((xi1.tail<3>() - expected.col(3)).norm() < 1e-9);
 }
+
+TEST_CASE("the linear fit m = C h + n, split into its factors, is where the minimum is") {
+  sepcal::test::Draws draws(22);
+  for (int i = 0; i < 20; ++i) {
+    const Vec<double, 6> xi1 = 0.1 * draws.normal_matrix(6, 1);
+    const Vec<double, 6> xi2 = 0.15 * draws.normal_matrix(6, 1);
+    const Eigen::MatrixXd h = 40 * draws.normal_matrix(12, 3);
+    Eigen::MatrixXd m = h * matrix_by_hand(xi1, xi2).transpose();
+    m.rowwise() += xi1.tail<3>().transpose();
+    const Eigen::MatrixXd guess = Magnetometer::guess(h, m);
+    REQUIRE(guess.cols() == 1);
+    CHECK((guess.col(0) - xi2).norm() < 1e-9);
+  }
+  // A sensor that reads nothing: C can't be split.
+  CHECK(Magnetometer::guess(draws.normal_matrix(12, 3), Eigen::MatrixXd::Zero(12, 3)).cols() == 0);
+}

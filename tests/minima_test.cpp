@@ -18,6 +18,7 @@ using sepcal::FitOptions;
 using sepcal::infinity;
 using sepcal::estimation::Descent;
 using sepcal::estimation::describe_flat_directions;
+using sepcal::estimation::describe_other_minima;
 using sepcal::estimation::find_minima;
 using sepcal::estimation::half_widths;
 using sepcal::estimation::Problem;
@@ -159,4 +160,20 @@ TEST_CASE("a direction is flat where half the bounds move the fit by less than t
   };
   CHECK(count(1.01 * edge) == 1);
   CHECK(count(0.99 * edge) == 2);
+}
+
+TEST_CASE("another minimum is spoken of where its residuals are less than twice as large") {
+  const Unasked unasked;
+  const FitOptions options;
+  const Problem problem(unasked.model(), options);  // x, y
+  const auto at = [](double x, double y, double trace_r) {
+    return sepcal::LocalMinimum{Eigen::Vector2d(x, y), trace_r};
+  };
+  CHECK(describe_other_minima(problem, {}).empty());
+  CHECK(describe_other_minima(problem, {at(1, 2, 0.25)}).empty());
+  CHECK(describe_other_minima(problem, {at(1, 2, 0.25), at(3, 4, 1.01)}).empty());
+  CHECK(describe_other_minima(problem, {at(1, 2, 0.25), at(-3.14159, 40, 0.36)}) ==
+        "another minimum lies at x -3.14, y 40, where residuals are 1.2 times as large");
+  CHECK(describe_other_minima(problem, {at(1, 2, 0.25), at(3, 4, 0.36), at(5, 6, 0.5)})
+            .ends_with("1.2 times as large, and 1 more (see stage_one)"));
 }

@@ -291,3 +291,23 @@ TEST_CASE(
   CHECK((rows.leftCols<5>().transpose() * rows.rightCols<1>()).norm() <
         1e-9 * rows.leftCols<5>().norm());
 }
+
+TEST_CASE("projected: a bound of a linear parameter costs what holding it there costs") {
+  const Simulated flight = sepcal::test::simulate_five_hole(200);
+  const sepcal::model::Measurements measurements(*flight.model, flight.record);
+  sepcal::base::ThreadPool pool(1);
+  const sepcal::model::Sweep sweep(*flight.model, measurements, pool);
+  ProjectedObjective objective(sweep, deviations(3).cwiseInverse());
+  sepcal::numerics::Box box{VectorXd::Constant(5, -sepcal::infinity),
+                            VectorXd::Constant(5, sepcal::infinity)};
+  CHECK(objective.square_within(flight.xi2, box) == objective.square(flight.xi2));
+
+  box.lower[0] = objective.linear_estimate(flight.xi2)[0] + 0.1;
+  MatrixXd rows = sepcal::test::dense_values(*flight.model, flight.record, flight.xi2);
+  rows.col(5) = sepcal::test::dense_outputs(*flight.model, flight.record) - rows.col(5);
+  rows = sepcal::test::whiten(rows, deviations(3));
+  const VectorXd held = rows.col(5) - box.lower[0] * rows.col(0);
+  const MatrixXd others = rows.middleCols(1, 4);
+  const VectorXd left = held - others * others.colPivHouseholderQr().solve(held);
+  CHECK(objective.square_within(flight.xi2, box) == Approx(left.squaredNorm()).epsilon(1e-9));
+}

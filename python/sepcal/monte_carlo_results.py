@@ -18,6 +18,7 @@ from sepcal.quantiles import binomial_limits, student_quantile
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
 
 MOST_FAILURES_SHOWN = 3
+FAR = 6.0  # standard errors from the truth: not by chance
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,16 @@ class MonteCarlo:
         """Of the T fits."""
         return [fit.status for fit in self.fits]
 
+    @property
+    def far(self) -> list[int]:
+        """Indices of the trials with an estimate over six of its standard errors from the truth.
+
+        They ended in another minimum, or their standard errors are too small.
+        """
+        off = np.abs(self.estimates - self.truth) > FAR * self.standard_errors
+        kept = [record.index for record in self.trials if record.failure is None]
+        return [kept[row] for row in np.flatnonzero(off.any(axis=1))]
+
     def __getitem__(self, name: str) -> Array:
         """What the T trials gave under a name: (T,) numbers, or (T, ...) of arrays in a mapping.
 
@@ -153,6 +164,11 @@ class MonteCarlo:
     def __str__(self) -> str:
         lines = [_headline(self)]
         try:
+            if far := self.far:
+                lines.append(
+                    f"{len(far)} of {len(self.fits)} lie over {FAR:g} standard errors from the "
+                    "truth: another minimum, or errors that are too small; `far` lists them"
+                )
             lines += _table(self.summary())
         except Error as error:
             lines.append(str(error))

@@ -108,10 +108,15 @@ def about_zero(column: str, exponent: int = 1) -> Callable[[Columns], Driver]:
 
 
 def smooth(column: str, knots: int) -> Callable[[Columns], Driver]:
-    """A spline with evenly spaced knots."""
-    return lambda record: drivers.spline(
-        column, np.linspace(record[column].min(), record[column].max(), knots)
-    )
+    """A spline with evenly spaced knots, those of time in multiples of 2^-22 s."""
+
+    def make(record: Columns) -> Driver:
+        even = np.linspace(record[column].min(), record[column].max(), knots)
+        return drivers.spline(
+            column, np.round(even * 2.0**22) / 2.0**22 if column == "time" else even
+        )
+
+    return make
 
 
 def by_label(record: Columns) -> Driver:

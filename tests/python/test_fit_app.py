@@ -71,7 +71,8 @@ def test_parameters(bench: Bench):
         if name in bounds:
             assert [entry["lower"], entry["upper"]] == pytest.approx([-bounds[name], bounds[name]])
         else:
-            assert entry["lower"] is None
+            is_scale = name in ("lambda_va", "lambda_x", "lambda_y", "lambda_z")
+            assert entry["lower"] == (pytest.approx(-0.95) if is_scale else None)
             assert entry["upper"] is None
 
 

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A study as it prints: failures first, no truth, no bias."""
 
+import numpy as np
+
 import sepcal
+from sepcal.trials import Estimates
 
 
 def test_failures_are_counted_in_the_table():
@@ -40,3 +43,22 @@ def test_the_table_without_a_truth():
         "x               1        1           -   3",
         "longer_name     2        0           -   3",
     ]
+
+
+def test_trials_far_from_the_truth_are_counted():
+    """Two of five end 20 standard errors off, which `5 converged` alone would hide."""
+
+    def trial(rng, index):
+        value = 1.0 if index in (1, 3) else 0.0
+        errors = np.array([0.05, np.nan])
+        estimates = np.array([value, 9.0])
+        return Estimates(("x", "fixed"), estimates, errors, 10, "converged", "", np.zeros(2))
+
+    study = sepcal.monte_carlo(trial, 5)
+    assert study.far == [1, 3]
+    assert str(study).splitlines()[:2] == [
+        "5 trials: 5 converged",
+        "2 of 5 lie over 6 standard errors from the truth: another minimum, or errors that are too "
+        "small; `far` lists them",
+    ]
+    assert "lie over" not in str(sepcal.monte_carlo(trial, range(4, 8)))

@@ -7,6 +7,7 @@ import pytest
 import sepcal
 from recorded import find_fixture
 from studies.hidden_effects.cases import calibrate
+from studies.trust import minima
 from studies.trust.flights import fly
 
 
@@ -87,25 +88,6 @@ def test_an_effect_is_not_praised_for_the_wind_of_another_flight(tmp_path):
     assert any("diagnose would not advise airspeed_bias[throttle]" in n for n in better.notes)
 
 
-def fly_tube(seed: int, rows: int, spread: float, wind: float) -> tuple[dict, np.ndarray]:
-    """A tube in a steady turn whose airspeed changes by a share `spread`; the wind's too."""
-    rng = np.random.default_rng(seed)
-    time = np.linspace(0.0, 120.0, rows)
-    heading = rng.uniform(0, 2 * np.pi) + 2 * np.pi * time / 120.0 * rng.choice([0.6, 1.0, 2.0])
-    airspeed = 25.0 * (1.0 + spread * np.sin(time / 6.0 + rng.uniform(0, 6)))
-    angle = rng.uniform(0, 2 * np.pi)
-    blows = wind * 25.0 * np.array([np.cos(angle), np.sin(angle), 0.0])
-    columns = {
-        "vn": airspeed * np.cos(heading) + blows[0],
-        "ve": airspeed * np.sin(heading) + blows[1],
-        "vd": 0.3 * np.sin(time / 5.0),
-        "airspeed": rng.uniform(0.85, 1.15) * airspeed
-        + rng.uniform(-2, 2)
-        + 0.3 * rng.standard_normal(rows),
-    }
-    return columns, blows
-
-
 @pytest.mark.parametrize("samples", [500, 50])
 @pytest.mark.parametrize("rows", [60, 150, 400])
 def test_a_tube_ends_in_the_best_minimum(rows: int, samples: int):
@@ -113,8 +95,57 @@ def test_a_tube_ends_in_the_best_minimum(rows: int, samples: int):
     for spread in (0.02, 0.2):
         for wind in (0.3, 0.8, 1.1):
             for seed in range(4):
-                columns, blows = fly_tube(seed, rows, spread, wind)
+                columns, truth = minima.fly_tube(seed, rows, spread, wind)
                 fitted = sepcal.fit(sepcal.PitotStatic(), columns, samples=samples, threads=1)
-                start = dict(zip(("w_n", "w_e", "w_d"), blows, strict=True))
+                start = {"w_n": truth["w_n"], "w_e": truth["w_e"], "w_d": 0.0}
                 best = sepcal.fit(sepcal.PitotStatic(), columns, start=start, threads=1)
                 assert fitted.status != "converged" or fitted.cost < best.cost + 0.5
+
+
+@pytest.mark.parametrize("case", minima.TUBE_CASES)
+def test_a_tube_ends_as_low_as_an_exhaustive_search(case: str):
+    """`scripts/study trust --part minima` tries 1,000."""
+    assert not minima.is_wrong(minima.try_tube(case, 60, seed=7))
+
+
+@pytest.mark.parametrize("case", minima.HARD_CASES)
+def test_no_hard_problem_fails_in_silence(case: str):
+    """Tubes turned over on a short turn, s_va -1; magnetometers with wide bounds, 530 too high."""
+    for seed in (1, 6):
+        tried = minima.try_hard(case, seed)
+        assert not minima.is_silent(tried)
+        assert tried["status"] != "converged" or tried["scale"] > 0.1
+
+
+def test_the_search_finds_a_minimum_in_a_narrow_dip():
+    """By the closed form at the truth: it is as low, whatever the grid."""
+    columns, truth = minima.fly_tube(3, 150, 0.02, 1.1)
+    least = minima.search_exhaustively(columns, truth, 100.0)
+    speed = np.sqrt(
+        (columns["vn"] - truth["w_n"]) ** 2
+        + (columns["ve"] - truth["w_e"]) ** 2
+        + columns["vd"] ** 2
+    )
+    line = np.stack([speed, np.ones_like(speed)], axis=-1)
+    (left,) = np.linalg.lstsq(line, columns["airspeed"], rcond=None)[1]
+    elsewhere = minima.search_exhaustively(columns, {"w_n": 90.0, "w_e": 90.0}, 100.0)
+    assert least <= left
+    assert elsewhere == pytest.approx(least, rel=1e-9)
+
+
+def test_a_wrong_unit_is_said():
+    """m/s under a header in knots: half of what a tube reads, and yet it converges."""
+    columns = dict(sepcal.simulate("pitot-static", rows=300, seed=2))
+    columns["airspeed_kt"] = columns.pop("airspeed_mps")
+    fitted = sepcal.fit(sepcal.PitotStatic(), sepcal.Flight(columns))
+    assert fitted["s_va"].value == pytest.approx(0.95 * 1852 / 3600, abs=0.05)
+    assert "mostly a wrong unit or sign in a header" in fitted.message
+
+
+def test_an_axis_that_is_turned_over_is_no_calibration():
+    """Its scale factor is -1, which no sensor has: not converged, and the axis is named."""
+    columns = dict(sepcal.simulate("magnetometer", rows=300, seed=2))
+    columns["mx_ut"] = -columns["mx_ut"]
+    fitted = sepcal.fit(sepcal.Magnetometer(), sepcal.Flight(columns))
+    assert fitted.status != "converged"
+    assert any("lambda_x" in line and "sign" in line for line in fitted.message.split("; "))

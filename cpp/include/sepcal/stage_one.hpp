@@ -15,7 +15,7 @@
 
 namespace sepcal {
 
-/// A local minimum of Tr[R] within the bounds.
+/// A local minimum of Tr[R] within the bounds of xi2; xi1 is the best within its own there.
 struct LocalMinimum {
   Eigen::VectorXd xi2;   // n_2
   double trace_r = 0.0;  // sum over outputs of the mean squared residual, in the outputs' units

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "base/name_list.hpp"
 #include "sepcal/error.hpp"
@@ -95,6 +96,14 @@ bool keep_from_zero(const std::vector<double>& values) {
   return std::max(lowest, -highest) > highest - lowest;
 }
 
+/// Knots in time, rounded to what a stamp of today, counted from 1970, resolves: the same splines
+/// whatever time is counted from.
+std::vector<double> resolved(std::vector<double> knots) {
+  constexpr double resolution = 0x1p-22;  // [s]
+  for (double& knot : knots) knot = std::round(knot / resolution) * resolution;
+  return knots;
+}
+
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -139,6 +148,7 @@ DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectS
     if (setting.knots.empty()) {
       const auto [lowest, highest] = std::ranges::minmax(values);
       setting.knots = even_knots(lowest, highest, name.number);
+      if (name.base == "time") setting.knots = resolved(std::move(setting.knots));
     }
     return spline_driver(channel, setting.knots);
   }

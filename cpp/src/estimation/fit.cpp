@@ -6,8 +6,10 @@
 #include <iterator>
 
 #include "base/sentences.hpp"
+#include "estimation/bend.hpp"
 #include "estimation/covariance.hpp"
 #include "estimation/likelihood.hpp"
+#include "estimation/minima.hpp"
 #include "estimation/model_trial.hpp"
 #include "estimation/plausibility.hpp"
 #include "estimation/prior_checks.hpp"
@@ -115,6 +117,11 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   result.rows = measurements.rows();
   std::vector<std::string> sentences = two.sentences;
   sentences.push_back(result.identifiability.message());
+  sentences.push_back(describe_other_minima(problem, result.stage_one.minima));
+  const bool are_asked_for = problem.options().coloured_errors;  // standard errors
+  if (are_asked_for && result.identifiability.unobservable.empty()) {
+    sentences.push_back(describe_bend(problem, sweep, two));
+  }
   std::ranges::move(judge_priors(result.parameters, problem.options()),
                     std::back_inserter(sentences));
   result.message = base::join_sentences(sentences);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/sentences.hpp"
+#include "base/short_number.hpp"
 #include "estimation/refine.hpp"
 #include "numerics/basins.hpp"
 #include "numerics/decompositions.hpp"
@@ -132,6 +134,29 @@ std::vector<std::string> describe_flat_directions(Objective& objective, const Pr
     texts.push_back(combination_text(widths.cwiseProduct(direction), names));
   }
   return texts;
+}
+
+std::string describe_other_minima(const Problem& problem, const std::vector<LocalMinimum>& minima) {
+  constexpr double rivals = 2.0;  // in residuals
+  const std::vector<Variable> parameters = problem.nonlinear();
+  std::string text;
+  int more = 0;
+  for (std::size_t i = 1; i < minima.size(); ++i) {
+    const double ratio = std::sqrt(minima[i].trace_r / minima[0].trace_r);
+    if (!(ratio < rivals)) break;
+    if (!text.empty()) {
+      ++more;
+      continue;
+    }
+    text = "another minimum lies at ";
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const double value = minima[i].xi2[static_cast<Index>(k)];
+      text += (k == 0 ? "" : ", ") + parameters[k].name + " " + base::short_number(value);
+    }
+    text += ", where residuals are " + base::short_number(ratio) + " times as large";
+  }
+  if (more > 0) text += ", and " + std::to_string(more) + " more (see stage_one)";
+  return base::one_sentence(text);
 }
 
 }  // namespace sepcal::estimation

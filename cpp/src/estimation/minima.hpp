@@ -11,6 +11,7 @@
 #include "estimation/minimise.hpp"
 #include "estimation/objective.hpp"
 #include "estimation/problem.hpp"
+#include "sepcal/stage_one.hpp"
 
 namespace sepcal::estimation {
 
@@ -34,5 +35,9 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
 /// errors.
 std::vector<std::string> describe_flat_directions(Objective& objective, const Problem& problem,
                                                   const Eigen::VectorXd& xi2, double measurements);
+
+/// A sentence on the other minima whose residuals are less than twice as large as the lowest's: a
+/// model that lacks something may fit best at the wrong one. Empty where there is none.
+std::string describe_other_minima(const Problem& problem, const std::vector<LocalMinimum>& minima);
 
 }  // namespace sepcal::estimation

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "numerics/bounded_least_squares.hpp"
+
 namespace sepcal::estimation {
 
 using Eigen::Index;
@@ -60,6 +62,17 @@ double ProjectedObjective::square(const VectorXd& xi2) {
   double sum = remaining_square(factor);
   for (const Prior& prior : priors_) sum += prior.tail(xi2.size()).square(xi2);
   return sum;
+}
+
+double ProjectedObjective::square_within(const VectorXd& xi2, const numerics::Box& linear) {
+  const VectorXd free = linear_estimate(xi2);
+  const VectorXd within = linear.clip(free);
+  if (within == free) return square(xi2);
+  const Index n_1 = free.size();
+  const MatrixXd R = linear_factor(xi2).matrix().topLeftCorner(n_1, n_1);
+  const numerics::BoundedSolution step = numerics::solve_bounded(
+      R, R * (free - within), {linear.lower - within, linear.upper - within});
+  return square(xi2) + (R * (within + step.x - free)).squaredNorm();
 }
 
 bool ProjectedObjective::linearise(const VectorXd& xi2, VectorXd& residual, MatrixXd& jacobian) {

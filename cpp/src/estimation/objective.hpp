@@ -13,6 +13,7 @@
 #include "estimation/plausibility.hpp"
 #include "model/loss.hpp"
 #include "model/sweep.hpp"
+#include "numerics/box.hpp"
 
 namespace sepcal::estimation {
 
@@ -83,6 +84,9 @@ class ProjectedObjective final : public Objective {
 
   /// xi1hat(xi2), Eq. 27 (n_1).
   Eigen::VectorXd linear_estimate(const Eigen::VectorXd& xi2);
+
+  /// square() where xi1 is the best within its bounds.
+  double square_within(const Eigen::VectorXd& xi2, const numerics::Box& linear);
 
  private:
   /// The whitened factor of [A | z - b]; kept for the point asked for last.

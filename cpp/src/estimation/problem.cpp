@@ -46,6 +46,12 @@ std::vector<Variable> Problem::nonlinear() const {
 
 numerics::Box Problem::box() const { return box_of(parameters_, 0); }
 
+numerics::Box Problem::linear_box() const {
+  const auto [lower, upper] = box();
+  const Index n_1 = model().tables().n_1();
+  return {lower.head(n_1), upper.head(n_1)};
+}
+
 numerics::Box Problem::nonlinear_box() const {
   return box_of(parameters_, static_cast<std::size_t>(model().tables().n_1()));
 }

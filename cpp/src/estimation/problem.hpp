@@ -28,6 +28,7 @@ class Problem {
   std::vector<Variable> nonlinear() const;
 
   numerics::Box box() const;            // of all free parameters
+  numerics::Box linear_box() const;     // of xi1
   numerics::Box nonlinear_box() const;  // of xi2
 
   /// Of the free parameters: one prior over all of them, or none.

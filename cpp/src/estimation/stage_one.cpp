@@ -169,6 +169,7 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
 
     // Step 4: how many minima there are, and whether they are points.
     const double count = rows * static_cast<double>(n_z);
+    const numerics::Box linear = problem.linear_box();
     const Descend from_start = [&](const VectorXd& start) {
       return global ? descend(objective, start, problem.nonlinear_box(), half_widths(problem))
                     : minimise(objective, start, problem.nonlinear_box(), within_the_basin);
@@ -176,8 +177,9 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
     for (const Descent& minimum :
          find_minima(objective, problem, result.samples, usable,
                      guess_within(problem, measurements), count, from_start)) {
-      result.minima.push_back({minimum.x, minimum.square / rows});
+      result.minima.push_back({minimum.x, objective.square_within(minimum.x, linear) / rows});
     }
+    std::ranges::stable_sort(result.minima, {}, &LocalMinimum::trace_r);
     result.xi2 = result.minima.empty() ? result.best : result.minima.front().xi2;
     result.flat_directions = describe_flat_directions(objective, problem, result.xi2, count);
     result.unique_minimum = result.minima.size() == 1 && result.flat_directions.empty();

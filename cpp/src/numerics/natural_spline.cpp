@@ -96,8 +96,9 @@ std::vector<double> even_knots(double lowest, double highest, int count) {
   std::vector<double> knots(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);
-    knots[static_cast<std::size_t>(i)] = (1.0 - share) * lowest + share * highest;
+    knots[static_cast<std::size_t>(i)] = lowest + share * (highest - lowest);
   }
+  knots.back() = highest;  // to the last digit
   check_knots(knots, 2);
   return knots;
 }

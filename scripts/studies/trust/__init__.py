@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The study of trust: what is called found on noise that nobody fitted, and what large effects do.
+"""The study of trust: what is called found on noise that nobody fitted, what large effects do, and
+whether fits end in the lowest minimum.
 
 Every trial is a line in a file; a run takes up where the lines end, and files of several machines
 may be joined by `cat`.
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from studies.study import Finding, Outcome, Progress, Study, check_folder, seeds
 from studies.trust.flights import NOISES
+from studies.trust.minima import HARD_PROBLEMS, MINIMA
 from studies.trust.pairs import PAIR_SETS
 from studies.trust.part import Key, Part, Row
 from studies.trust.power import POWER
@@ -25,6 +27,8 @@ PARTS: dict[str, Part] = {
     "decoys": DECOY_CHANNELS,
     "power": POWER,
     "pairs": PAIR_SETS,
+    "minima": MINIMA,
+    "hard": HARD_PROBLEMS,
 }
 
 
@@ -74,7 +78,8 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
 
 STUDY = Study(
     "trust",
-    "what is called found on noise as instruments have it, and whether large effects are",
+    "what is called found on noise as instruments have it, whether large effects are, and whether "
+    "fits end in the lowest minimum",
     _run,
     _options,
 )

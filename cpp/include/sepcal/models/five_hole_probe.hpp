@@ -10,6 +10,7 @@
 
 #include "sepcal/eigen.hpp"
 #include "sepcal/model.hpp"
+#include "sepcal/models/scale.hpp"
 #include "sepcal/rotation.hpp"
 #include "sepcal/static_model.hpp"
 
@@ -29,7 +30,7 @@ struct FiveHoleProbe {
       port("alpha_offset", "rad"), port("beta_offset", "rad")};
   static constexpr std::array outputs{Quantity{"vn", "m/s"}, Quantity{"ve", "m/s"},
                                       Quantity{"vd", "m/s"}};
-  static constexpr std::array linear{Quantity{"lambda_va", "1"}, Quantity{"b_va", "m/s"},
+  static constexpr std::array linear{scale_error("lambda_va"), Quantity{"b_va", "m/s"},
                                      Quantity{"w_n", "m/s"}, Quantity{"w_e", "m/s"},
                                      Quantity{"w_d", "m/s"}};
   static constexpr double ten_degrees = 10.0 * std::numbers::pi / 180.0;

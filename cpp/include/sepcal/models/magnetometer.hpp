@@ -8,6 +8,7 @@
 #include <array>
 
 #include "sepcal/model.hpp"
+#include "sepcal/models/scale.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -17,9 +18,9 @@ struct Magnetometer {
                                      Quantity{"hz", "uT"}};  // the true field in body axes
   static constexpr std::array outputs{Quantity{"mx", "uT"}, Quantity{"my", "uT"},
                                       Quantity{"mz", "uT"}};
-  static constexpr std::array linear{Quantity{"lambda_x", "1"}, Quantity{"lambda_y", "1"},
-                                     Quantity{"lambda_z", "1"}, Quantity{"n_x", "uT"},
-                                     Quantity{"n_y", "uT"},     Quantity{"n_z", "uT"}};
+  static constexpr std::array linear{scale_error("lambda_x"), scale_error("lambda_y"),
+                                     scale_error("lambda_z"), Quantity{"n_x", "uT"},
+                                     Quantity{"n_y", "uT"},   Quantity{"n_z", "uT"}};
   static constexpr std::array nonlinear{
       Quantity{"eta_x", "rad", -0.5, 0.5},  Quantity{"eta_y", "rad", -0.5, 0.5},
       Quantity{"eta_z", "rad", -0.5, 0.5},  Quantity{"alpha_xy", "1", -0.5, 0.5},
@@ -36,6 +37,10 @@ struct Magnetometer {
     z.b = CC * h;
     return z;
   }
+
+  /// xi2 of the linear fit m = C h + n, a column: within wide bounds, or from few rows, descents
+  /// from samples end elsewhere. None where C can't be split.
+  static Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z);
 
   /// C_alpha C_eta (3 x 3).
   template <class X>

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sepcal/model.hpp"
+#include "sepcal/models/scale.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -24,7 +25,8 @@ struct PitotStatic {
       port("pressure_offset", "Pa"),
       Quantity{"rho", "kg/m^3", -infinity, infinity, sea_level_density}};
   static constexpr std::array outputs{Quantity{"airspeed", "m/s"}};
-  static constexpr std::array linear{Quantity{"s_va", "1"}, Quantity{"c_va", "m/s"}};
+  static constexpr std::array linear{Quantity{"s_va", "1", least_scale, infinity},
+                                     Quantity{"c_va", "m/s"}};
   static constexpr std::array nonlinear{Quantity{"w_n", "m/s", -100, 100},
                                         Quantity{"w_e", "m/s", -100, 100},
                                         Quantity{"w_d", "m/s", -100, 100}};

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/plausible_scales.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
@@ -73,7 +75,11 @@ class StrengthOnlyMagnetometer final : public Probe {
     return attitude_independent_probe(setup_.field_strength, standard_deviation);
   }
 
-  void judge(Fit& fit) const override { judge_attitude_independent(fit, setup_.field_strength); }
+  void judge(Fit& fit) const override {
+    judge_scales(
+        fit, std::array{Scale{"lambda_x", 0.0}, Scale{"lambda_y", 0.0}, Scale{"lambda_z", 0.0}});
+    judge_attitude_independent(fit, setup_.field_strength);
+  }
 
  private:
   AttitudeIndependentMagnetometer setup_;

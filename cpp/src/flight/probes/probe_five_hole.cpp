@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/plausible_scales.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/option_error.hpp"
@@ -91,6 +93,8 @@ class FiveHole final : public Probe {
     }
     return columns;
   }
+
+  void judge(Fit& fit) const override { judge_scales(fit, std::array{Scale{"lambda_va", 0.0}}); }
 
  private:
   FiveHoleProbe setup_;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+
 #include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/plausible_scales.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/static_model.hpp"
@@ -45,6 +48,11 @@ class KnownFieldMagnetometer final : public Probe {
     const Eigen::Vector3d scale = values.head<3>().array() + 1.0;
     return correct_field(readings, CC * scale.asDiagonal(), values.segment<3>(3),
                          corrected_headers(), effects);
+  }
+
+  void judge(Fit& fit) const override {
+    judge_scales(
+        fit, std::array{Scale{"lambda_x", 0.0}, Scale{"lambda_y", 0.0}, Scale{"lambda_z", 0.0}});
   }
 
  private:

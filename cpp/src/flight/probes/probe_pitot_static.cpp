@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/plausible_scales.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
@@ -60,6 +62,8 @@ class PitotStaticTube final : public Probe {
   }
 
   std::map<std::string, double> held() const override { return {{"w_d", 0.0}}; }
+
+  void judge(Fit& fit) const override { judge_scales(fit, std::array{Scale{"s_va", 1.0}}); }
 
   /// The correction of the reading as in the five-hole probe, V = (1 + lambda_va) z + b_va.
   std::vector<DerivedQuantity> derive(const Fit& fit) const override {
