@@ -21,7 +21,8 @@ from scipy.stats import beta
 from sepcal import Error
 from studies.hidden_effects.cases import CASES, PROBES, calibrate, factor_for
 from studies.study import Finding, Outcome, Progress, Study, check_folder, seeds
-from studies.trust.flights import NOISES, fly
+from studies.trust import errors
+from studies.trust.flights import FURTHER, NOISES, fly
 
 Key: TypeAlias = tuple[str, str, str, float, int, int]  # part, case, noise, sigmas, rows, seed
 Row: TypeAlias = dict[str, Any]
@@ -35,9 +36,10 @@ def _options(parser: argparse.ArgumentParser) -> None:
     seeds(100, "null flights of each probe and noise; a tenth as many of each effect and size")(
         parser
     )
-    parser.add_argument("--part", choices=("alarms", "power"), help="one of the two alone")
+    parser.add_argument("--part", choices=("alarms", "power", "errors"), help="one alone")
     parser.add_argument("--sigmas", type=float, nargs="*", default=[10.0, 30.0, 100.0, 300.0])
     parser.add_argument("--noise", nargs="*", default=list(NOISES), help="of the null flights")
+    parser.add_argument("--rows", type=int, nargs="*", default=[400, 4000], help="of errors")
     parser.add_argument("-o", "--output", type=Path, default=Path("trust.jsonl"))
 
 
@@ -56,9 +58,19 @@ def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
                         label = f"{case.probe}: {case.effect}"
                         yield "power", label, noise, sigmas, case.rows, seed
 
+    if arguments.part in (None, "errors"):
+        noises = [*arguments.noise, *(FURTHER if arguments.noise == list(NOISES) else ())]
+        for seed in range(first, first + arguments.seeds):
+            for rows in arguments.rows:
+                for noise in noises:
+                    for probe in PROBES:
+                        yield "errors", probe, noise, 0.0, rows, seed
+
 
 def _try(key: Key) -> Row:
     part, label, noise, sigmas, rows, seed = key
+    if part == "errors":
+        return {"key": key, **errors.measure(label, noise, seed, rows)}
     begun = time.process_time()
     hide = None
     probe = label
@@ -164,6 +176,8 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     power = [row for row in rows if row["key"][0] == "power"]
     findings += _alarms(alarms) if alarms else []
     findings += _power(power) if power else []
+    errors_made = [row for row in rows if row["key"][0] == "errors"]
+    findings += errors.judge(errors_made) if errors_made else []
     return Outcome(f"{len(rows)} flights, {hours:.2f} core-hours", findings)
 
 
