@@ -119,7 +119,9 @@ std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd&
       noise::restricted_likelihood(columns.rightCols(basis.cols() + 1), runs, fractional);
   const Index left = e.size() - spent;
   const double of_white = criterion(white.minus_two_log_likelihood, 1.0, left);
-  const double of_wandering = criterion(wandering.minus_two_log_likelihood, 3.0, left);
+  constexpr double none = 1e-3;  // of the variance: an AR(1) has no white share to estimate
+  const double parameters = wandering.noise.white < none ? 2.0 : 3.0;
+  const double of_wandering = criterion(wandering.minus_two_log_likelihood, parameters, left);
   const double of_fractional = criterion(likelihood, fractional.order() + 2.0, left);
   if (!(std::min(of_wandering, of_fractional) < of_white)) return OutputNoise{white.noise};
   if (of_fractional < of_wandering) return OutputNoise{fractional};

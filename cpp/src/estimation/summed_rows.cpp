@@ -59,7 +59,8 @@ double rows_a_jump(const VectorXd& e, const std::vector<Segment>& runs) {
 Index find_held_rows(const VectorXd& e, const std::vector<Segment>& runs) {
   constexpr double follows = 0.2;  // a random walk's changes: 0; white noise's: -0.5
   constexpr Index fewest_sums = 40;
-  Index stride = std::max<Index>(1, std::lround(rows_a_jump(e, runs)));
+  const auto jump = static_cast<Index>(std::lround(rows_a_jump(e, runs)));
+  Index stride = std::clamp<Index>(jump, 1, std::max<Index>(1, e.size() / fewest_sums));
   while (e.size() / (stride + 1) >= fewest_sums) {
     const SummedRows sums(e, runs, stride);
     if (correlation_of_changes(sums.columns, sums.runs) < follows) break;
