@@ -20,6 +20,9 @@ using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::Record;
 using sepcal::estimation::find_residual_noise;
+using sepcal::estimation::find_restricted_noise;
+using sepcal::estimation::is_white;
+using sepcal::estimation::OutputNoise;
 using sepcal::test::as_span;
 using sepcal::test::draw_noise;
 using sepcal::test::Draws;
@@ -68,10 +71,19 @@ MatrixXd ar1_covariance(double phi, const std::vector<Index>& lengths) {
   return Sigma;
 }
 
-double phi_of(const sepcal::NoiseModel& model) {
-  REQUIRE(model.d == 0.0);
-  REQUIRE(model.order() == 1);
-  return model.phi[0];
+/// Of an autoregression of order 1, or of white noise beside one.
+MatrixXd dense(const OutputNoise& noise, const std::vector<Index>& lengths) {
+  REQUIRE(noise.stride == 1);
+  if (const auto* model = std::get_if<sepcal::NoiseModel>(&noise.model)) {
+    REQUIRE(model->d == 0.0);
+    REQUIRE(model->order() == 1);
+    return model->sigma * model->sigma * ar1_covariance(model->phi[0], lengths);
+  }
+  const auto& model = std::get<sepcal::noise::WanderingNoise>(noise.model);
+  const double phi = std::exp(-1.0 / model.rows);
+  MatrixXd Sigma = (1.0 - model.white) * (1.0 - phi * phi) * ar1_covariance(phi, lengths);
+  Sigma.diagonal().array() += model.white;
+  return model.sigma * model.sigma * Sigma;
 }
 
 }  // namespace
@@ -122,19 +134,20 @@ TEST_CASE("the covariance is the sandwich with a dense Sigma of each output's no
     J_z.col(0) = Eigen::Map<const VectorXd>(u.data(), rows);
     const VectorXd e_y = noise_y - J_y * fit.values();
     const VectorXd e_z = noise_z - J_z * fit.values();
-    const auto y = find_residual_noise(as_span(e_y), record.segments());
-    const auto z = find_residual_noise(as_span(e_z), record.segments());
+    const auto y = find_restricted_noise(e_y, J_y, record.segments());
+    const auto z = find_restricted_noise(e_z, J_z, record.segments());
     REQUIRE(y);
     REQUIRE(z);
-    CHECK(z->order() == 0);
-    CHECK(z->sigma == Approx(std::sqrt(e_z.squaredNorm() / rows)));
+    REQUIRE(is_white(*z));
+    // What z alone would leave, less its two parameters.
+    const VectorXd left = e_z - J_z * J_z.householderQr().solve(e_z);
+    const double sigma_z = std::sqrt(left.squaredNorm() / (rows - 2));
     const double r_y = std::pow(fit.noise[0].value, 2);
     const double r_z = std::pow(fit.noise[1].value, 2);
     const MatrixXd H = J_y.transpose() * J_y / r_y + J_z.transpose() * J_z / r_z;
-    const MatrixXd Sigma = y->sigma * y->sigma * ar1_covariance(phi_of(*y), lengths);
-    const MatrixXd middle = J_y.transpose() * Sigma * J_y / (r_y * r_y) +
-                            z->sigma * z->sigma * J_z.transpose() * J_z / (r_z * r_z);
-    const MatrixXd expected = H.inverse() * middle * H.inverse() * (1200.0 / 1198.0);
+    const MatrixXd middle = J_y.transpose() * dense(*y, lengths) * J_y / (r_y * r_y) +
+                            sigma_z * sigma_z * J_z.transpose() * J_z / (r_z * r_z);
+    const MatrixXd expected = H.inverse() * middle * H.inverse();
     CHECK((fit.covariance - expected).norm() < 1e-6 * expected.norm());
     CHECK((fit.covariance_white - H.inverse() * (given ? 1.0 : 1200.0 / 1198.0)).norm() <
           1e-8 * H.inverse().norm());
@@ -163,9 +176,8 @@ TEST_CASE("parameters at a bound or fixed take no part") {
   CHECK(std::isnan(stopped["s"].standard_error));
   CHECK(std::isnan(fixed["s"].standard_error));
   CHECK(fixed["c"].standard_error > 2.0 * fixed["c"].standard_error_white);
-  // M / (M - n) counts the parameter at its bound, and not the one that is fixed.
-  CHECK(stopped["c"].standard_error ==
-        Approx(fixed["c"].standard_error * std::sqrt(499.0 / 498.0)).epsilon(1e-9));
+  // The noise's sigma is found beside the columns of those that are free.
+  CHECK(stopped["c"].standard_error == Approx(fixed["c"].standard_error).epsilon(1e-9));
 }
 
 TEST_CASE("what has no noise model is white") {

@@ -143,6 +143,8 @@ class Parameter:
         "value",
         "standard_error",
         "standard_error_white",
+        "standard_error_noise_model",
+        "standard_error_blocks",
         "unit",
         "lower",
         "upper",
@@ -183,7 +185,17 @@ class Parameter:
     @property
     def standard_error(self) -> float:
         """
-        NaN where undefined: fixed, at a bound, singular.
+        The one to believe. NaN where undefined: fixed, at a bound, singular.
+        """
+    @property
+    def standard_error_blocks(self) -> float:
+        """
+        By leaving out blocks of the record; NaN where too few tell.
+        """
+    @property
+    def standard_error_noise_model(self) -> float:
+        """
+        By a noise model of each output's residual.
         """
     @property
     def standard_error_white(self) -> float:
@@ -420,6 +432,8 @@ class Fit:
         "covariance",
         "correlation",
         "covariance_white",
+        "covariance_noise_model",
+        "covariance_blocks",
         "noise",
         "rmse",
         "cost",
@@ -457,6 +471,18 @@ class Fit:
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         (n, n), in that order; NaN where there is no standard error.
+        """
+    @property
+    def covariance_blocks(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n), as it is among blocks of the record; of a loaded one only its diagonal.
+        """
+    @property
+    def covariance_noise_model(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n), as each output's noise model has it; of a loaded one only its diagonal.
         """
     @property
     def covariance_white(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -1033,6 +1059,8 @@ class Derived:
         "value",
         "standard_error",
         "standard_error_white",
+        "standard_error_noise_model",
+        "standard_error_blocks",
         "unit",
     )
     def __eq__(self, arg0: typing.Any) -> bool: ...
@@ -1050,6 +1078,16 @@ class Derived:
     def standard_error(self) -> float:
         """
         NaN where that of a parameter it depends on is.
+        """
+    @property
+    def standard_error_blocks(self) -> float:
+        """
+        By leaving out blocks of the record; NaN where too few tell.
+        """
+    @property
+    def standard_error_noise_model(self) -> float:
+        """
+        By a noise model of each output's residual.
         """
     @property
     def standard_error_white(self) -> float:

@@ -59,8 +59,8 @@ def test_parameters(bench: Bench):
     }  # fmt: skip
     for name, entry in parameters.items():
         assert list(entry) == [
-            "value", "standard_error", "standard_error_white", "unit", "lower", "upper", "at_bound",
-            "kind",
+            "value", "standard_error", "standard_error_white", "standard_error_noise_model",
+            "standard_error_blocks", "unit", "lower", "upper", "at_bound", "kind",
         ]  # fmt: skip
         unit = "m/s" if name == "b_va" else "rad" if name[:2] == "b_" else None
         assert entry["unit"] == (unit or UNITS[name.split("_")[0]])

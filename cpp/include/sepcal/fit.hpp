@@ -29,8 +29,12 @@ struct Parameter {
   std::string name;
   std::string unit;
   double value = 0.0;
-  double standard_error = 0.0;        // NaN where undefined: fixed, at a bound, singular
+  double standard_error = 0.0;        // the one to believe; NaN where undefined: fixed, at a bound,
+                                      // singular
   double standard_error_white = 0.0;  // what it would be if the residuals were white
+  double standard_error_noise_model = not_a_number;  // by a noise model of each output's residual
+  double standard_error_blocks = not_a_number;  // by leaving out blocks of the record; NaN also
+                                                // where too few blocks determine the parameter
   double lower = -infinity;
   double upper = infinity;
   bool at_bound = false;
@@ -51,15 +55,20 @@ struct Fit {
   std::vector<Parameter> parameters;
   int n_1 = 0;  // how many of them are linear
 
-  /// Covariance of the estimates (n x n, parameters' order), behind standard_error and correlation:
-  /// as the noise model of each output's residual has it. Equal to the white one where no other
-  /// noise is better by BIC, under 30 rows, and by FitOptions::coloured_errors. NaN in the rows of
-  /// parameters without a standard error.
+  /// Covariance of the estimates (n x n, parameters' order), behind standard_error and correlation,
+  /// as the way to believe has it (docs/method.md): nearly always the noise model. The white one by
+  /// FitOptions::coloured_errors. NaN in the rows of parameters without a standard error.
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd correlation;
   /// The same for white residuals: (J' R^-1 J)^-1, times M / (M - n) where R was estimated, M =
   /// rows x outputs. Of a calibration that was read from JSON: its diagonal, NaN elsewhere.
   Eigen::MatrixXd covariance_white;
+  /// As the noise model of each output's residual has it; of an output that has none, the white
+  /// one. Of a calibration that was read, like covariance_white.
+  Eigen::MatrixXd covariance_noise_model;
+  /// As it is among blocks of the record, whatever the noise (delete-a-block jackknife). NaN for
+  /// what too few blocks determine. Of a calibration that was read, like covariance_white.
+  Eigen::MatrixXd covariance_blocks;
 
   std::vector<OutputValue> noise;  // standard deviation: given, or from R-hat = SSE / N
   std::vector<OutputValue> rmse;   // unwhitened, in the output's unit

@@ -282,6 +282,10 @@ void define_calibration_parts(py::module_& module) {
              "NaN where that of a parameter it depends on is.")
       .field("standard_error_white", &Derived::standard_error_white,
              "What it would be if the residuals were white.")
+      .field("standard_error_noise_model", &Derived::standard_error_noise_model,
+             "By a noise model of each output's residual.")
+      .field("standard_error_blocks", &Derived::standard_error_blocks,
+             "By leaving out blocks of the record; NaN where too few tell.")
       .field("unit", &Derived::unit, "")
       .comparable()
       .finish();

@@ -50,9 +50,13 @@ void define_parameters(py::module_& module) {
       .field("name", &Parameter::name, "")
       .field("value", &Parameter::value, "")
       .field("standard_error", &Parameter::standard_error,
-             "NaN where undefined: fixed, at a bound, singular.")
+             "The one to believe. NaN where undefined: fixed, at a bound, singular.")
       .field("standard_error_white", &Parameter::standard_error_white,
              "What it would be if the residuals were white.")
+      .field("standard_error_noise_model", &Parameter::standard_error_noise_model,
+             "By a noise model of each output's residual.")
+      .field("standard_error_blocks", &Parameter::standard_error_blocks,
+             "By leaving out blocks of the record; NaN where too few tell.")
       .field("unit", &Parameter::unit, "")
       .field("lower", &Parameter::lower, "Its bounds; infinite where there is none.")
       .field("upper", &Parameter::upper, "")
@@ -151,6 +155,10 @@ void define_results(py::module_& module) {
       .field("correlation", &FittedModel::fit, &Fit::correlation, "(n, n).")
       .field("covariance_white", &FittedModel::fit, &Fit::covariance_white,
              "(n, n), of white residuals; of a loaded one only its diagonal.")
+      .field("covariance_noise_model", &FittedModel::fit, &Fit::covariance_noise_model,
+             "(n, n), as each output's noise model has it; of a loaded one only its diagonal.")
+      .field("covariance_blocks", &FittedModel::fit, &Fit::covariance_blocks,
+             "(n, n), as it is among blocks of the record; of a loaded one only its diagonal.")
       .field("noise", &FittedModel::fit, &Fit::noise,
              "By output: standard deviation, given or from R-hat = SSE / N.")
       .field("rmse", &FittedModel::fit, &Fit::rmse, "By output, unwhitened, in its unit.")

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "estimation/residual_colour.hpp"
 #include "model/loss.hpp"
 #include "numerics/decompositions.hpp"
 
@@ -118,15 +117,18 @@ class Sandwich {
   bool is_finite() const { return residuals_.allFinite() && R_.allFinite(); }
 
   /// Gives each output's residual its noise model; whether any is coloured.
-  bool find_colours() {
+  bool find_colours(const std::vector<Index>& inside) {
     // An estimated R above its own residual stands at its floor: what is left is rounding.
     const bool may_be_rounding = !loss_ && problem_.noise().size() == 0;
-    colours_ = find_output_noise(residuals_, sweep_.measurements().runs(),
+    colours_ = find_output_noise(sweep_.tangent_rows(xi1(), xi2()), inside, residuals_,
+                                 sweep_.measurements().runs(),
                                  (may_be_rounding ? 0.99 : 0.0) * two_.noise, sweep_.pool());
-    return std::ranges::any_of(colours_, [](const std::optional<NoiseModel>& colour) {
+    return std::ranges::any_of(colours_, [](const std::optional<OutputNoise>& colour) {
       return colour && !is_white(*colour);
     });
   }
+
+  const std::vector<std::optional<OutputNoise>>& noise() const { return colours_; }
 
   /// The covariance (k x k); with a loss, of white residuals before find_colours() was asked.
   Slices covariance(const std::vector<Index>& inside) const {
@@ -137,7 +139,7 @@ class Sandwich {
     if (loss_) {
       weigh_each_row(std::move(tangents), inside, bread, middle);
     } else {
-      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs(), ratio_};
+      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs()};
       middle = find_score_covariance(std::move(tangents), noise, inside, R_, sweep_.pool());
     }
     for (const Prior& prior : problem_.prior()) {
@@ -170,11 +172,10 @@ class Sandwich {
       const VectorXd slopes =
           tangents[j].rightCols<1>().unaryExpr([&](double r) { return loss_->slope(r / noise); });
       breads[j] = Q.transpose() * slopes.asDiagonal() * Q;
-      std::optional<NoiseModel> colour;
+      std::optional<OutputNoise> colour;
       if (!colours_.empty()) colour = colours_[j];
       if (colour && !is_white(*colour)) {
-        colour->sigma /= judged;
-        middles[j] = ratio_ * covariance_product(*colour, sweep_.measurements().runs(), Q);
+        middles[j] = covariance_product(*colour, judged, sweep_.measurements().runs(), Q);
       } else {
         const VectorXd s = residuals_.col(static_cast<Index>(j)) / judged;
         middles[j] = ratio_ * Q.transpose() * s.cwiseAbs2().asDiagonal() * Q;
@@ -195,7 +196,7 @@ class Sandwich {
   double ratio_;
   MatrixXd residuals_;  // rows x n_z; with a loss, noise_j psi(r / noise_j)
   std::optional<model::RobustLoss> loss_;
-  std::vector<std::optional<NoiseModel>> colours_;
+  std::vector<std::optional<OutputNoise>> colours_;
 };
 
 }  // namespace
@@ -214,9 +215,10 @@ Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
 
   const VectorXd judged = judge_noise(problem, two, rows, freedom > 0.0 ? ratio : 1.0);
   result.tangent = whiten(problem, two, judged);
+  result.judged = judged;
   const MatrixXd R = select_columns(result.tangent, result.inside);
   result.white = noise_given || freedom > 0.0 ? inverse_of_square(R) : nothing(k);
-  result.coloured = result.inverse_hessian = result.white;
+  result.noise_model = result.inverse_hessian = result.white;
   const bool forgiving = options.loss != Loss::squares;
   if (k == 0 || std::isnan(ratio) || !result.white.allFinite()) return result;
   if (!forgiving && !options.coloured_errors) return result;
@@ -225,12 +227,15 @@ Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
   if (!sandwich.is_finite()) return result;
   if (forgiving) {
     const Slices slices = sandwich.covariance(result.inside);
-    result.coloured = result.white = slices.covariance;
+    result.noise_model = result.white = slices.covariance;
     result.inverse_hessian = slices.inverse_hessian;
   }
-  if (!options.coloured_errors || !(sandwich.find_colours() || noise_given)) return result;
+  if (!options.coloured_errors) return result;
+  const bool coloured_noise = sandwich.find_colours(result.inside);
+  result.noise = sandwich.noise();
+  if (!coloured_noise && !noise_given) return result;
   const MatrixXd coloured = sandwich.covariance(result.inside).covariance;
-  if (coloured.allFinite()) result.coloured = coloured;
+  if (coloured.allFinite()) result.noise_model = coloured;
   return result;
 }
 

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "estimation/residual_colour.hpp"
 #include "estimation/stage_two.hpp"
 #include "model/sweep.hpp"
 
@@ -17,15 +19,18 @@ namespace sepcal::estimation {
 struct Covariances {
   std::vector<Eigen::Index> inside;  // k free parameters that no bound holds
   Eigen::MatrixXd white;             // k x k, as if residuals were white
-  Eigen::MatrixXd coloured;          // k x k, as each output's residual is coloured
+  Eigen::MatrixXd noise_model;       // k x k, as each output's residual is coloured
   Eigen::MatrixXd inverse_hessian;   // k x k, H^-1: white where there is no loss
   /// n x n, upper: the rows of all free parameters over the noise that white residuals are judged
   /// to have, and those of the prior.
   Eigen::MatrixXd tangent;
+  Eigen::VectorXd judged;  // n_z, that noise
+  /// n_z, or none where nobody asked: behind noise_model.
+  std::vector<std::optional<OutputNoise>> noise = {};
 };
 
 /// Where R was estimated, variances are M / (M - p) times what R-hat = SSE / N gives: M
-/// measurements, p parameters less what their prior paid. `coloured` is `white` where
+/// measurements, p parameters less what their prior paid. `noise_model` is `white` where
 /// every output is white at an estimated R, without FitOptions::coloured_errors, and where
 /// something is not finite.
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,

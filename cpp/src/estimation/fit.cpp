@@ -15,6 +15,7 @@
 #include "estimation/prior_checks.hpp"
 #include "estimation/stage_one.hpp"
 #include "estimation/stage_two.hpp"
+#include "estimation/standard_errors.hpp"
 
 namespace sepcal {
 
@@ -36,7 +37,8 @@ std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values)
 
 /// Spreads the free parameters' estimate and covariances over all of the model's parameters.
 void fill_parameters(Fit& result, const BlockModel& model, const Problem& problem,
-                     const StageTwo& two, const Covariances& covariances) {
+                     const StageTwo& two, const Covariances& covariances,
+                     const StandardErrors& errors) {
   const std::vector<Variable> all = model.tables().parameters();
   const auto n = static_cast<Index>(all.size());
   result.n_1 = model.tables().n_1();
@@ -59,13 +61,17 @@ void fill_parameters(Fit& result, const BlockModel& model, const Problem& proble
   }
   std::vector<Index> places;
   for (const Index k : covariances.inside) places.push_back(place[static_cast<std::size_t>(k)]);
-  result.covariance = spread(covariances.coloured, places, n);
+  result.covariance = spread(errors.believed, places, n);
   result.covariance_white = spread(covariances.white, places, n);
+  result.covariance_noise_model = spread(covariances.noise_model, places, n);
+  result.covariance_blocks = spread(errors.blocks, places, n);
   result.correlation = correlation_of(result.covariance);
   for (Index k = 0; k < n; ++k) {
     Parameter& parameter = result.parameters[static_cast<std::size_t>(k)];
     parameter.standard_error = std::sqrt(result.covariance(k, k));
     parameter.standard_error_white = std::sqrt(result.covariance_white(k, k));
+    parameter.standard_error_noise_model = std::sqrt(result.covariance_noise_model(k, k));
+    parameter.standard_error_blocks = std::sqrt(result.covariance_blocks(k, k));
   }
 }
 
@@ -93,7 +99,8 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   const auto rows = static_cast<double>(measurements.rows());
   const model::Sweep sweep(problem.model(), measurements, pool);
   const Covariances covariances = find_covariances(problem, sweep, two);
-  fill_parameters(result, model, problem, two, covariances);
+  const StandardErrors errors = find_standard_errors(problem, sweep, two, covariances);
+  fill_parameters(result, model, problem, two, covariances, errors);
 
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
@@ -122,6 +129,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   if (are_asked_for && result.identifiability.unobservable.empty()) {
     sentences.push_back(describe_bend(problem, sweep, two));
   }
+  std::ranges::copy(errors.sentences, std::back_inserter(sentences));
   std::ranges::move(judge_priors(result.parameters, problem.options()),
                     std::back_inserter(sentences));
   result.message = base::join_sentences(sentences);

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "noise/noise_autocovariance.hpp"
+#include "numerics/decompositions.hpp"
+
 namespace sepcal::estimation {
 namespace {
 
@@ -27,13 +30,41 @@ double white_likelihood(const VectorXd& e, const std::vector<Segment>& segments,
          whitener.log_determinant();
 }
 
+constexpr Index fewest_rows = 30;
+
+/// A column for the level of each run, of unit length.
+MatrixXd levels_of(const std::vector<Segment>& runs, Index rows) {
+  MatrixXd levels = MatrixXd::Zero(rows, static_cast<Index>(runs.size()));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto length = static_cast<Index>(runs[i].rows());
+    levels.col(static_cast<Index>(i))
+        .segment(static_cast<Index>(runs[i].first), length)
+        .setConstant(1.0 / std::sqrt(static_cast<double>(length)));
+  }
+  return levels;
+}
+
+/// An orthonormal basis of what of X is orthogonal to `levels`.
+MatrixXd orthonormal(MatrixXd X, const MatrixXd& levels) {
+  const VectorXd lengths = X.colwise().norm();
+  for (int twice = 0; twice < 2; ++twice) X -= levels * (levels.transpose() * X);
+  for (Index k = 0; k < X.cols(); ++k) {
+    if (lengths[k] > 0.0) X.col(k) /= lengths[k];
+  }
+  const MatrixXd square = X.transpose() * X;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(square);
+  constexpr double least = 1e-10;
+  const Index seen = (parts.eigenvalues().array() > least).count();
+  return X * parts.eigenvectors().rightCols(seen) *
+         parts.eigenvalues().tail(seen).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
 }  // namespace
 
 bool is_white(const NoiseModel& noise) { return noise.d == 0.0 && noise.order() == 0; }
 
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
                                               const std::vector<Segment>& segments) {
-  constexpr Index fewest_rows = 30;
   const VectorXd rows = gather_rows(e, segments);
   const double square = rows.squaredNorm();
   if (rows.size() < fewest_rows || !(square > 0.0)) return std::nullopt;
@@ -47,18 +78,128 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
   return coloured < plain ? fit.model : white;
 }
 
-std::vector<std::optional<NoiseModel>> find_output_noise(const MatrixXd& residuals,
-                                                         const std::vector<Segment>& runs,
-                                                         const VectorXd& rounding,
-                                                         base::ThreadPool& pool) {
-  std::vector<std::optional<NoiseModel>> models(static_cast<std::size_t>(residuals.cols()));
+namespace {
+
+OutputNoise white_noise(double sigma) {
+  return {noise::WanderingNoise{.rows = 1.0, .white = 1.0, .sigma = sigma}};
+}
+
+/// Whether white sums vary as the rows that were summed do: then these are white as well.
+bool is_as_large(const VectorXd& sums, const VectorXd& rows) {
+  const auto count = static_cast<double>(sums.size());
+  const double ratio =
+      sums.squaredNorm() / count / (rows.squaredNorm() / static_cast<double>(rows.size()));
+  return std::abs(ratio - 1.0) < 2.5 * std::sqrt(2.0 / count);
+}
+
+/// find_restricted_noise() of rows that need not be summed.
+std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd& X,
+                                              const std::vector<Segment>& runs) {
+  constexpr std::size_t most_levels = 20;
+  const auto rows = std::span(e.data(), static_cast<std::size_t>(e.size()));
+  if (e.size() < fewest_rows || !(e.squaredNorm() > 0.0)) return std::nullopt;
+  NoiseModel fractional = fit_noise(rows, runs).model;
+  const bool free = fractional.level_is_free();
+  const MatrixXd levels =
+      free && runs.size() <= most_levels ? levels_of(runs, e.size()) : MatrixXd(e.size(), 0);
+  const MatrixXd basis = orthonormal(X, levels);
+  const Index spent = basis.cols() + levels.cols();
+  if (spent + fewest_rows > e.size() || (free && runs.size() > most_levels)) {
+    std::optional<NoiseModel> plain = find_residual_noise(rows, runs);
+    if (!plain) return std::nullopt;
+    const auto n = static_cast<double>(e.size());
+    plain->sigma *= std::sqrt(n / std::max(1.0, n - static_cast<double>(basis.cols())));
+    return OutputNoise{*plain};
+  }
+  MatrixXd columns(e.size(), spent + 1);
+  columns << levels, basis, e;
+  const noise::WanderingFit white = noise::fit_white_rows(columns);
+  const noise::WanderingFit wandering = noise::fit_wandering(columns, runs);
+  const double likelihood =
+      noise::restricted_likelihood(columns.rightCols(basis.cols() + 1), runs, fractional);
+  const Index left = e.size() - spent;
+  const double of_white = criterion(white.minus_two_log_likelihood, 1.0, left);
+  constexpr double none = 1e-3;  // of the variance: an AR(1) has no white share to estimate
+  const double parameters = wandering.noise.white < none ? 2.0 : 3.0;
+  const double of_wandering = criterion(wandering.minus_two_log_likelihood, parameters, left);
+  const double of_fractional = criterion(likelihood, fractional.order() + 2.0, left);
+  if (!(std::min(of_wandering, of_fractional) < of_white)) return OutputNoise{white.noise};
+  if (of_fractional < of_wandering) return OutputNoise{fractional};
+  return OutputNoise{wandering.noise};
+}
+
+}  // namespace
+
+bool is_white(const OutputNoise& noise) {
+  if (noise.stride > 1) return false;
+  if (const auto* model = std::get_if<NoiseModel>(&noise.model)) return is_white(*model);
+  return std::get<noise::WanderingNoise>(noise.model).white == 1.0;
+}
+
+double correlation_rows(const OutputNoise& noise) {
+  const auto stride = static_cast<double>(noise.stride);
+  if (is_white(noise)) return 1.0;
+  if (const auto* wandering = std::get_if<noise::WanderingNoise>(&noise.model)) {
+    return stride * (wandering->white == 1.0 ? 1.0 : wandering->rows);
+  }
+  const auto& model = std::get<NoiseModel>(noise.model);
+  if (model.level_is_free()) return infinity;
+  constexpr Index most = 100'000;
+  const double border = std::exp(-1.0);
+  for (Index lags = 64; lags <= most; lags *= 4) {
+    const VectorXd gamma = noise::find_moments(model.d, model.phi, lags).autocovariance;
+    for (Index lag = 1; lag < gamma.size(); ++lag) {
+      if (gamma[lag] < border * gamma[0]) return stride * static_cast<double>(lag);
+    }
+  }
+  return infinity;
+}
+
+std::optional<OutputNoise> find_restricted_noise(const VectorXd& e, const MatrixXd& X,
+                                                 const std::vector<Segment>& runs) {
+  const Index held = find_held_rows(e, runs);
+  const Index stride = std::max(held, find_slow_rows(X, runs));
+  if (stride == 1) return find_noise_of_rows(e, X, runs);
+  const SummedRows sums(e, runs, stride);
+  std::optional<OutputNoise> noise =
+      find_noise_of_rows(sums.columns, SummedRows(X, runs, stride).columns, sums.runs);
+  if (!noise) return noise;
+  if (held == 1 && is_white(*noise) && is_as_large(sums.columns, e)) {
+    return white_noise(std::sqrt(e.squaredNorm() / static_cast<double>(e.size() - X.cols())));
+  }
+  noise->stride = stride;
+  noise->held = held;
+  return noise;
+}
+
+std::vector<std::optional<OutputNoise>> find_output_noise(const std::vector<MatrixXd>& tangents,
+                                                          const std::vector<Index>& columns,
+                                                          const MatrixXd& residuals,
+                                                          const std::vector<Segment>& runs,
+                                                          const VectorXd& rounding,
+                                                          base::ThreadPool& pool) {
+  std::vector<std::optional<OutputNoise>> models(static_cast<std::size_t>(residuals.cols()));
   pool.for_each(models.size(), [&](std::size_t j) {
     const auto e = residuals.col(static_cast<Index>(j));
     const double rms = e.norm() / std::sqrt(static_cast<double>(e.size()));
     if (rms < rounding[static_cast<Index>(j)]) return;
-    models[j] = find_residual_noise({e.data(), static_cast<std::size_t>(e.size())}, runs);
+    models[j] = find_restricted_noise(e, tangents[j](Eigen::all, columns), runs);
   });
   return models;
+}
+
+MatrixXd covariance_product(const OutputNoise& noise, double deviation,
+                            const std::vector<Segment>& runs, const MatrixXd& X) {
+  if (noise.stride > 1) {
+    const SummedRows sums(X, runs, noise.stride);
+    return covariance_product(OutputNoise{noise.model}, deviation, sums.runs, sums.columns);
+  }
+  return std::visit(
+      [&](auto model) -> MatrixXd {
+        model.sigma /= deviation;
+        return covariance_product(model, runs, X);
+      },
+      noise.model);
 }
 
 MatrixXd find_score_covariance(std::vector<MatrixXd> tangents, const ScoreNoise& noise,
@@ -70,9 +211,8 @@ MatrixXd find_score_covariance(std::vector<MatrixXd> tangents, const ScoreNoise&
     MatrixXd Q = tangents[j](Eigen::all, columns) / deviation;  // whitened, then in K's coordinates
     tangents[j].resize(0, 0);
     K.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
-    if (std::optional<NoiseModel> model = noise.models[j]) {
-      model->sigma /= deviation;
-      parts[j] = noise.inflation * covariance_product(*model, noise.runs, Q);
+    if (const std::optional<OutputNoise>& model = noise.models[j]) {
+      parts[j] = covariance_product(*model, deviation, noise.runs, Q);
     } else {
       parts[j] = Q.transpose() * Q;
     }

@@ -6,9 +6,12 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "base/thread_pool.hpp"
+#include "estimation/summed_rows.hpp"
+#include "noise/wandering_noise.hpp"
 #include "sepcal/noise_model.hpp"
 
 namespace sepcal::estimation {
@@ -21,19 +24,43 @@ bool is_white(const NoiseModel& noise);
 std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
                                               const std::vector<Segment>& segments);
 
-/// find_residual_noise() of every output (column); none where a column's root mean square is below
-/// `rounding` (n_z).
-std::vector<std::optional<NoiseModel>> find_output_noise(const Eigen::MatrixXd& residuals,
-                                                         const std::vector<Segment>& runs,
-                                                         const Eigen::VectorXd& rounding,
-                                                         base::ThreadPool& pool);
+/// Noise behind the residual of a fit: of two families, the one of less BIC. It is that of
+/// sums of `stride` rows that follow each other in a run, over sqrt(stride): where a residual is
+/// held or interpolated, `held` rows count as one; of a long one only slow noise matters.
+struct OutputNoise {
+  std::variant<NoiseModel, noise::WanderingNoise> model;
+  Eigen::Index stride = 1;
+  Eigen::Index held = 1;
+};
+
+/// Rows after which the noise's autocorrelation is below 1/e (but for the share of it that is
+/// white); infinite for a level that is free.
+double correlation_rows(const OutputNoise& noise);
+
+bool is_white(const OutputNoise& noise);
+
+/// The noise of an output's residual `e` (rows) by restricted likelihood, X (rows x k) being the
+/// columns that were fitted. As find_residual_noise() where the noise's level is free in many runs,
+/// each of which would take a column of its own.
+std::optional<OutputNoise> find_restricted_noise(const Eigen::VectorXd& e, const Eigen::MatrixXd& X,
+                                                 const std::vector<Segment>& runs);
+
+/// That of every output, `columns` of its tangent [A | D | r] and its column of `residuals`; none
+/// where that column's root mean square is below `rounding` (n_z).
+std::vector<std::optional<OutputNoise>> find_output_noise(
+    const std::vector<Eigen::MatrixXd>& tangents, const std::vector<Eigen::Index>& columns,
+    const Eigen::MatrixXd& residuals, const std::vector<Segment>& runs,
+    const Eigen::VectorXd& rounding, base::ThreadPool& pool);
+
+/// X' Sigma X / deviation^2.
+Eigen::MatrixXd covariance_product(const OutputNoise& noise, double deviation,
+                                   const std::vector<Segment>& runs, const Eigen::MatrixXd& X);
 
 /// The noise behind a score J' R^-1 r.
 struct ScoreNoise {
   const Eigen::VectorXd& deviations;  // n_z, R's
-  const std::vector<std::optional<NoiseModel>>& models;
+  const std::vector<std::optional<OutputNoise>>& models;
   const std::vector<Segment>& runs;
-  double inflation = 1.0;  // of the models' variances, M / (M - n)
 };
 
 /// The sandwich's middle in the coordinates of an upper triangle K (k x k): the covariance K^-T

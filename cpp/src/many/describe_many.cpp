@@ -33,7 +33,7 @@ void set_errors(std::vector<Parameter>& parameters, const std::vector<Index>& pl
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto at = static_cast<Index>(k);
     Parameter& parameter = parameters[static_cast<std::size_t>(places[k])];
-    parameter.standard_error = std::sqrt(coloured(at, at));
+    parameter.standard_error = parameter.standard_error_noise_model = std::sqrt(coloured(at, at));
     parameter.standard_error_white = std::sqrt(white(at, at));
   }
 }

@@ -137,10 +137,9 @@ MatrixXd FlightProblem::score_covariance(const ScoreQuestion& question) const {
   const auto freedom = static_cast<double>(residuals.size() - x.size());
   if (!(freedom > 0.0) || !residuals.allFinite()) return {};
   const std::vector<Segment>& runs = parts_->measurements.runs();
-  const auto models =
-      estimation::find_output_noise(residuals, runs, question.rounding, parts_->pool);
-  const estimation::ScoreNoise noise{question.noise, models, runs,
-                                     static_cast<double>(residuals.size()) / freedom};
+  const auto models = estimation::find_output_noise(tangents, columns, residuals, runs,
+                                                    question.rounding, parts_->pool);
+  const estimation::ScoreNoise noise{question.noise, models, runs};
   MatrixXd covariance = estimation::find_score_covariance(std::move(tangents), noise, columns,
                                                           question.K, parts_->pool);
   if (!covariance.allFinite()) return {};

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The study of trust: what is called found on noise that nobody fitted, what large effects do, and
-whether fits end in the lowest minimum.
+"""The study of trust: what is called found on noise that nobody fitted, what large effects do,
+whether fits end in the lowest minimum and whether standard errors hold.
 
 Every trial is a line in a file; a run takes up where the lines end, and files of several machines
 may be joined by `cat`.
@@ -15,6 +15,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from studies.study import Finding, Outcome, Progress, Study, check_folder, seeds
+from studies.trust.errors import ERRORS
 from studies.trust.flights import NOISES
 from studies.trust.minima import HARD_PROBLEMS, MINIMA
 from studies.trust.pairs import PAIR_SETS
@@ -27,6 +28,7 @@ PARTS: dict[str, Part] = {
     "decoys": DECOY_CHANNELS,
     "power": POWER,
     "pairs": PAIR_SETS,
+    "errors": ERRORS,
     "minima": MINIMA,
     "hard": HARD_PROBLEMS,
 }
@@ -37,7 +39,7 @@ def _options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--part", choices=tuple(PARTS), nargs="*", default=list(PARTS))
     parser.add_argument("--sigmas", type=float, nargs="*", default=[5.0, 10.0, 30.0, 100.0, 300.0])
     parser.add_argument("--noise", nargs="*", default=list(NOISES), help="of the null flights")
-    parser.add_argument("--rows", type=int, nargs="*", default=[400], help="of the null flights")
+    parser.add_argument("--rows", type=int, nargs="*", help="of null flights (400), and of those for errors (400, 4000)")
     parser.add_argument("-o", "--output", type=Path, default=Path("trust.jsonl"))
 
 
@@ -78,8 +80,8 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
 
 STUDY = Study(
     "trust",
-    "what is called found on noise as instruments have it, whether large effects are, and whether "
-    "fits end in the lowest minimum",
+    "what is called found on noise as instruments have it, whether large effects are, whether fits "
+    "end in the lowest minimum and whether standard errors hold",
     _run,
     _options,
 )

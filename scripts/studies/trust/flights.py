@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sepcal.flight import Flight
 from sepcal.simulation import SimulatedFlight, simulate
 from studies.hidden_effects.cases import NOISE, OUTPUTS
-from studies.trust.noises import OUTPUT_NOISES, Array
+from studies.trust.noises import FURTHER_NOISES, OUTPUT_NOISES, Array
 
 HEADERS = {
     "five-hole": ("vn_mps", "ve_mps", "vd_mps"),
@@ -19,6 +20,10 @@ FIELD = ("bn_ut", "be_ut", "bd_ut")  # from a model, not from a sensor
 ATTITUDE = "attitude AR(0.99)"  # of the columns that the model believes
 COARSE = "quantised"  # inputs and outputs in coarse steps
 NOISES = (*OUTPUT_NOISES, ATTITUDE, COARSE)
+JITTERY = "AR(0.9), stamps in bursts"
+COLUMNS_INTERPOLATED = "columns interpolated tenfold"  # a slow sensor's, its noise with it
+FURTHER = (*FURTHER_NOISES, JITTERY, COLUMNS_INTERPOLATED)  # of standard errors alone
+DRAWS = {**OUTPUT_NOISES, **FURTHER_NOISES, JITTERY: OUTPUT_NOISES["AR(0.9)"]}
 STEPS = {"_mps": 0.5, "_rad": 0.01, "_pa": 5.0, "_ut": 0.3}  # of a coarse column, by its unit
 
 
@@ -31,12 +36,19 @@ def fly(
     decoys: int = 0,
 ) -> tuple[Flight, SimulatedFlight]:
     """A condensed flight with a noise of the probe's usual size, and the quiet flight behind it."""
-    silence = dict.fromkeys(OUTPUTS[probe], 1e-9)
-    quiet = simulate(probe, hide=hide, noise=silence, decoys=decoys, rows=rows, seed=seed)
-    columns: dict[str, Array] = {name: np.array(quiet[name]) for name in quiet}
-    rng = np.random.default_rng([seed, NOISES.index(noise), rows])
+    rng = np.random.default_rng([seed, (*NOISES, *FURTHER).index(noise), rows])
+    kept = _rows_in_bursts(rng, rows) if noise == JITTERY else np.arange(rows)
+    quiet = simulate(
+        probe,
+        hide=hide,
+        noise=dict.fromkeys(OUTPUTS[probe], 1e-9),
+        decoys=decoys,
+        rows=int(kept[-1]) + 1,
+        seed=seed,
+    )
+    columns: dict[str, Array] = {name: np.array(quiet[name])[kept] for name in quiet}
     time = columns["time_s"]
-    output = OUTPUT_NOISES.get(noise, OUTPUT_NOISES["white"])
+    output = DRAWS.get(noise, OUTPUT_NOISES["white"])
     for header in HEADERS[probe]:
         columns[header] += NOISE[probe] * output(rng, time)
     if noise == ATTITUDE:
@@ -47,4 +59,14 @@ def fly(
             step = next((s for unit, s in STEPS.items() if name.endswith(unit)), None)
             if step is not None and name not in FIELD:
                 columns[name] = np.round(values / step) * step
-    return Flight(columns, maneuver=quiet.maneuvers), quiet
+    if noise == COLUMNS_INTERPOLATED:
+        for header in HEADERS[probe]:
+            columns[header] = np.interp(time, time[::10], columns[header][::10])
+    maneuvers = quiet.maneuvers
+    return Flight(columns, maneuver=[maneuvers[row] for row in kept] if maneuvers else None), quiet
+
+
+def _rows_in_bursts(rng: np.random.Generator, rows: int) -> NDArray[np.intp]:
+    """About one row of three: some that follow each other, then up to twelve that are missed."""
+    steps = np.where(rng.random(rows) < 0.25, rng.integers(3, 14, rows), 1)
+    return np.asarray(np.cumsum(steps) - 1, dtype=np.intp)

@@ -101,6 +101,13 @@ def _held(rng: np.random.Generator, time: Array) -> Array:
     return np.repeat(answers, 5)[: time.size]
 
 
+def _interpolated(rng: np.random.Generator, time: Array) -> Array:
+    """A sensor that answers at every tenth row, and straight lines between its answers."""
+    knots = np.arange(time.size // 10 + 2) * 10.0 - float(rng.integers(10))
+    return np.asarray(np.interp(np.arange(time.size), knots, rng.standard_normal(knots.size)))
+
+
+INTERPOLATED = "interpolated tenfold"
 OUTPUT_NOISES: dict[str, Draw] = {
     "white": _white,
     "AR(0.9)": _first_order(0.9),
@@ -118,3 +125,4 @@ OUTPUT_NOISES: dict[str, Draw] = {
     "resonance 0.3 Hz": _resonance,
     "held fivefold": _held,
 }
+FURTHER_NOISES: dict[str, Draw] = {INTERPOLATED: _interpolated}

@@ -39,6 +39,8 @@ struct Derived {
   double value = 0.0;
   double standard_error = 0.0;        // NaN where that of a parameter it depends on is
   double standard_error_white = 0.0;  // what it would be if the residuals were white
+  double standard_error_noise_model = not_a_number;  // these two as in Parameter
+  double standard_error_blocks = not_a_number;
 };
 
 /// One step of a chain of added effects. Undefined numbers are NaN; errors are RMSE over all

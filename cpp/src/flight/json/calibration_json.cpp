@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -55,14 +56,17 @@ Json write_parameters(const Fit& fit) {
   Json parameters = Json::object();
   int k = 0;
   for (const Parameter& parameter : fit.parameters) {
-    parameters[parameter.name] = {{"value", number(parameter.value)},
-                                  {"standard_error", number(parameter.standard_error)},
-                                  {"standard_error_white", number(parameter.standard_error_white)},
-                                  {"unit", parameter.unit},
-                                  {"lower", number(parameter.lower)},
-                                  {"upper", number(parameter.upper)},
-                                  {"at_bound", parameter.at_bound},
-                                  {"kind", k < fit.n_1 ? "linear" : "nonlinear"}};
+    parameters[parameter.name] = {
+        {"value", number(parameter.value)},
+        {"standard_error", number(parameter.standard_error)},
+        {"standard_error_white", number(parameter.standard_error_white)},
+        {"standard_error_noise_model", number(parameter.standard_error_noise_model)},
+        {"standard_error_blocks", number(parameter.standard_error_blocks)},
+        {"unit", parameter.unit},
+        {"lower", number(parameter.lower)},
+        {"upper", number(parameter.upper)},
+        {"at_bound", parameter.at_bound},
+        {"kind", k < fit.n_1 ? "linear" : "nonlinear"}};
     ++k;
   }
   return parameters;
@@ -84,6 +88,8 @@ void read_parameters(const Json& parameters, const Calibration& calibration, Fit
          .value = entry.at("value").get<double>(),
          .standard_error = number_or(entry.at("standard_error"), undefined),
          .standard_error_white = number_or(entry.at("standard_error_white"), undefined),
+         .standard_error_noise_model = number_at(entry, "standard_error_noise_model"),
+         .standard_error_blocks = number_at(entry, "standard_error_blocks"),
          .lower = number_or(entry.at("lower"), -infinity),
          .upper = number_or(entry.at("upper"), infinity),
          .at_bound = entry.at("at_bound").get<bool>(),
@@ -93,8 +99,8 @@ void read_parameters(const Json& parameters, const Calibration& calibration, Fit
   for (const Variable& own : calibration.probe->model().tables().parameters()) fit[own.name];
 }
 
-/// Correlation holds all that the covariance does beyond the standard errors. Of the white one
-/// nothing but the standard errors is kept.
+/// Correlation holds all that the covariance does beyond the standard errors. Of the others nothing
+/// but the standard errors is kept.
 void read_correlation(const Json& correlation, Fit& fit) {
   const auto n = static_cast<Index>(fit.parameters.size());
   fit.correlation = Eigen::MatrixXd::Constant(n, n, undefined);
@@ -103,10 +109,13 @@ void read_correlation(const Json& correlation, Fit& fit) {
       matrix_of(correlation.at("matrix"), static_cast<Index>(indices.size()));
   VectorXd errors(n);
   fit.covariance_white = Eigen::MatrixXd::Constant(n, n, undefined);
+  fit.covariance_noise_model = fit.covariance_blocks = fit.covariance_white;
   for (Index k = 0; k < n; ++k) {
     const Parameter& parameter = fit.parameters[static_cast<std::size_t>(k)];
     errors[k] = parameter.standard_error;
-    fit.covariance_white(k, k) = parameter.standard_error_white * parameter.standard_error_white;
+    fit.covariance_white(k, k) = std::pow(parameter.standard_error_white, 2);
+    fit.covariance_noise_model(k, k) = std::pow(parameter.standard_error_noise_model, 2);
+    fit.covariance_blocks(k, k) = std::pow(parameter.standard_error_blocks, 2);
   }
   fit.covariance = errors.asDiagonal() * fit.correlation * errors.asDiagonal();
 }

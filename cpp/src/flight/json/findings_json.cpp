@@ -12,10 +12,13 @@ Json write_misfit(const Misfit& misfit) {
 Json write_derived(const std::vector<Derived>& derived) {
   Json object = Json::object();
   for (const Derived& quantity : derived) {
-    object[quantity.name] = {{"value", number(quantity.value)},
-                             {"standard_error", number(quantity.standard_error)},
-                             {"standard_error_white", number(quantity.standard_error_white)},
-                             {"unit", quantity.unit}};
+    object[quantity.name] = {
+        {"value", number(quantity.value)},
+        {"standard_error", number(quantity.standard_error)},
+        {"standard_error_white", number(quantity.standard_error_white)},
+        {"standard_error_noise_model", number(quantity.standard_error_noise_model)},
+        {"standard_error_blocks", number(quantity.standard_error_blocks)},
+        {"unit", quantity.unit}};
   }
   return object;
 }
@@ -28,7 +31,9 @@ std::vector<Derived> read_derived(const Json& object) {
          .unit = entry.at("unit").get<std::string>(),
          .value = number_or(entry.at("value"), not_a_number),
          .standard_error = number_or(entry.at("standard_error"), not_a_number),
-         .standard_error_white = number_or(entry.at("standard_error_white"), not_a_number)});
+         .standard_error_white = number_or(entry.at("standard_error_white"), not_a_number),
+         .standard_error_noise_model = number_at(entry, "standard_error_noise_model"),
+         .standard_error_blocks = number_at(entry, "standard_error_blocks")});
   }
   return derived;
 }

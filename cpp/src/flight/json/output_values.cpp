@@ -9,6 +9,10 @@ Json by_name(const std::vector<OutputValue>& values) {
   return object;
 }
 
+double number_at(const Json& object, const char* key) {
+  return object.contains(key) ? number_or(object.at(key), not_a_number) : not_a_number;
+}
+
 std::vector<OutputValue> values_by_name(const std::vector<std::string>& names, const Json& object) {
   std::vector<OutputValue> values;
   for (const std::string& name : names) {

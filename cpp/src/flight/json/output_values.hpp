@@ -26,6 +26,9 @@ using files::whole_number;
 /// {"vn": 0.15, ...}
 Json by_name(const std::vector<OutputValue>& values);
 
+/// A number that calibrations of before lack, or null: NaN.
+double number_at(const Json& object, const char* key);
+
 /// A value of every one of `names`. Throws Json::exception where one is missing.
 std::vector<OutputValue> values_by_name(const std::vector<std::string>& names, const Json& object);
 

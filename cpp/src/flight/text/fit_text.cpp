@@ -62,6 +62,17 @@ std::string stage_line(const Fit& fit, const CalibrationOptions& options) {
                             fit.noise_iterations);
 }
 
+/// Of a parameter or a derived quantity: the error to believe, the white one and, explained, those
+/// by the other ways.
+template <class Estimate>
+std::string error_columns(const Estimate& estimate, Detail detail) {
+  std::string text = fmt::format("{:>12} {:>9}", defined(estimate.standard_error, "{:.2g}"),
+                                 defined(estimate.standard_error_white, "{:.2g}"));
+  if (detail == Detail::brief) return text;
+  return text + fmt::format(" {:>11} {:>9}", defined(estimate.standard_error_noise_model, "{:.2g}"),
+                            defined(estimate.standard_error_blocks, "{:.2g}"));
+}
+
 }  // namespace
 
 std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
@@ -73,24 +84,24 @@ std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
     name = std::max(name, parameter.name.size());
     unit = std::max(unit, parameter.unit.size());
   }
-  const auto add_row = [&](std::string_view what, const std::string& value, std::string_view error,
-                           std::string_view white, std::string_view of, std::string_view remark) {
-    const std::string row = fmt::format("{:<{}} {:>13} {:>12} {:>9}  {:<{}} {}", what, name, value,
-                                        error, white, of, unit, remark);
+  const auto add_row = [&](std::string_view what, const std::string& value, std::string_view errors,
+                           std::string_view of, std::string_view remark) {
+    const std::string row =
+        fmt::format("{:<{}} {:>13} {}  {:<{}} {}", what, name, value, errors, of, unit, remark);
     text += row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
   };
   text += '\n';
-  add_row("parameter", "value", "std. error", "white", "unit", "bounds");
+  add_row("parameter", "value",
+          detail == Detail::brief ? "  std. error     white"
+                                  : "  std. error     white noise model    blocks",
+          "unit", "bounds");
   for (const Parameter& parameter : fit.parameters) {
     add_row(parameter.name, fmt::format("{:.6g}", parameter.value),
-            defined(parameter.standard_error, "{:.2g}"),
-            defined(parameter.standard_error_white, "{:.2g}"), parameter.unit,
-            remark(options, parameter));
+            error_columns(parameter, detail), parameter.unit, remark(options, parameter));
   }
   for (const Derived& quantity : derived) {
-    add_row(quantity.name, fmt::format("{:.6g}", quantity.value),
-            defined(quantity.standard_error, "{:.2g}"),
-            defined(quantity.standard_error_white, "{:.2g}"), quantity.unit, "derived");
+    add_row(quantity.name, fmt::format("{:.6g}", quantity.value), error_columns(quantity, detail),
+            quantity.unit, "derived");
   }
   text += fmt::format("\n{:<14} {:>13} {:>12}\n", "output", "rmse", "noise");
   for (std::size_t j = 0; j < fit.rmse.size(); ++j) {

@@ -66,8 +66,13 @@ std::vector<Derived> derive(const Probe& probe, const Fit& fit) {
     const auto error = [&](const Eigen::MatrixXd& covariance) {
       return n == 0 ? not_a_number : std::sqrt(g.dot(covariance(from, from) * g));
     };
-    derived.push_back({quantity.name, quantity.unit, quantity.value, error(fit.covariance),
-                       error(fit.covariance_white)});
+    derived.push_back({.name = quantity.name,
+                       .unit = quantity.unit,
+                       .value = quantity.value,
+                       .standard_error = error(fit.covariance),
+                       .standard_error_white = error(fit.covariance_white),
+                       .standard_error_noise_model = error(fit.covariance_noise_model),
+                       .standard_error_blocks = error(fit.covariance_blocks)});
   }
   return derived;
 }

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/block_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "numerics/decompositions.hpp"
+#include "sepcal/triangular_factor.hpp"
+
+namespace sepcal::estimation {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Ref;
+using Eigen::VectorXd;
+
+/// Sum of squares about nothing of the means of `length` rows within runs, and how many there are.
+struct Means {
+  double square = 0.0;
+  Index count = 0;
+};
+
+Means average(const Ref<const VectorXd>& e, const std::vector<Segment>& runs, Index length) {
+  Means means;
+  for (const Segment& run : runs) {
+    const Index last = static_cast<Index>(run.last) - length;
+    for (auto row = static_cast<Index>(run.first); row <= last; row += length) {
+      const double mean = e.segment(row, length).mean();
+      means.square += mean * mean;
+      ++means.count;
+    }
+  }
+  return means;
+}
+
+/// A block in coordinates in which the information of all rows and the prior is I.
+struct Share {
+  MatrixXd axes;      // k x k, of the information J_b'J_b
+  VectorXd own;       // k, the block's share of the information along them
+  VectorXd others;    // k, what the other blocks have: 1 less that
+  VectorXd gradient;  // k, J_b'r_b
+
+  /// The step of the estimates when the block is left out, but for its sign.
+  VectorXd step() const { return axes * (axes.transpose() * gradient).cwiseQuotient(others); }
+};
+
+Share share_of(const std::vector<MatrixXd>& tangents, const MatrixXd& R, Index first, Index rows) {
+  constexpr double least = 1e-9;  // of the information that the others may be said to have
+  const Index k = R.cols();
+  TriangularFactor factor(static_cast<int>(k) + 1);
+  for (const MatrixXd& tangent : tangents) {
+    MatrixXd part = tangent.middleRows(first, rows);
+    Ref<MatrixXd> J = part.leftCols(k);
+    R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(J);
+    factor.absorb(part);
+  }
+  const MatrixXd S = factor.matrix().topLeftCorner(k, k);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(MatrixXd(S.transpose() * S));
+  return {.axes = parts.eigenvectors(),
+          .own = parts.eigenvalues().cwiseMax(0.0),
+          .others = (1.0 - parts.eigenvalues().array()).max(least),
+          .gradient = S.transpose() * factor.matrix().col(k).head(k)};
+}
+
+/// Satterthwaite's degrees of freedom of sum_b (y_b'r)^2, r the residual of white noise: y_b, in
+/// the rows of block b, takes the step of the combination `l` (k) when b is left out.
+double degrees_of_freedom(const std::vector<Share>& shares, const VectorXd& l) {
+  const auto blocks = static_cast<Index>(shares.size());
+  MatrixXd taken(l.size(), blocks);  // J_b'y_b
+  VectorXd variances(blocks);        // of y_b'r: |y_b|^2 - |J_b'y_b|^2, without its rounding
+  for (Index b = 0; b < blocks; ++b) {
+    const Share& share = shares[static_cast<std::size_t>(b)];
+    const VectorXd along = share.axes.transpose() * l;
+    const VectorXd ratio = share.own.cwiseQuotient(share.others);
+    taken.col(b) = share.axes * ratio.cwiseProduct(along);
+    variances[b] = along.cwiseAbs2().dot(ratio);
+  }
+  MatrixXd P = -taken.transpose() * taken;
+  P.diagonal() = variances;
+  return P.trace() * P.trace() / P.squaredNorm();
+}
+
+}  // namespace
+
+double find_memory(const MatrixXd& e, const std::vector<Segment>& runs) {
+  constexpr Index fewest = 16;
+  double memory = 1.0;
+  for (Index j = 0; j < e.cols(); ++j) {
+    const Means single = average(e.col(j), runs, 1);
+    const double variance = single.square / static_cast<double>(single.count);
+    if (!(variance > 0.0)) continue;
+    for (Index length = 2;; length *= 2) {
+      const Means means = average(e.col(j), runs, length);
+      if (means.count < fewest) break;
+      const double ratio = means.square / static_cast<double>(means.count) / variance;
+      memory = std::max(memory, ratio * static_cast<double>(length));
+    }
+  }
+  return memory;
+}
+
+int choose_blocks(Index rows, double memory) {
+  constexpr double most = 40.0;
+  constexpr double fewest = 8.0;
+  constexpr double memories = 3.0;  // a block is as long as so many
+  const double count = static_cast<double>(rows) / (memories * memory);
+  const double possible = std::min(most, static_cast<double>(rows) / 2.0);
+  if (possible < fewest) return 0;
+  return static_cast<int>(std::clamp(count, fewest, possible));
+}
+
+std::vector<Index> cut_blocks(Index rows, int blocks) {
+  std::vector<Index> first;
+  for (Index b = 0; b <= blocks; ++b) first.push_back(b * rows / blocks);
+  return first;
+}
+
+BlockErrors find_block_errors(const std::vector<MatrixXd>& tangents, const MatrixXd& R,
+                              const std::vector<Index>& blocks) {
+  constexpr double least_freedom = 4.0;  // a variance known to 70 %
+  const Index k = R.cols();
+  std::vector<Share> shares;
+  MatrixXd steps = MatrixXd::Zero(k, k);
+  for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
+    shares.push_back(share_of(tangents, R, blocks[b], blocks[b + 1] - blocks[b]));
+    const VectorXd step = shares.back().step();
+    steps += step * step.transpose();
+  }
+  const auto count = static_cast<double>(shares.size());
+  const MatrixXd inverse =
+      R.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
+  BlockErrors errors{.covariance = inverse * ((count - 1.0) / count * steps) * inverse.transpose(),
+                     .freedom = VectorXd(k)};
+  for (Index i = 0; i < k; ++i) {
+    errors.freedom[i] = degrees_of_freedom(shares, inverse.row(i).transpose());
+    if (errors.freedom[i] >= least_freedom) continue;
+    errors.covariance.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    errors.covariance.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return errors;
+}
+
+}  // namespace sepcal::estimation

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/error_sentences.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/name_list.hpp"
+#include "base/short_number.hpp"
+
+namespace sepcal::estimation {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using Names = std::vector<std::string>;
+
+/// The largest of some ratios, as words say it.
+std::string times(const std::vector<double>& ratios) {
+  return base::short_number(std::round(10.0 * std::ranges::max(ratios)) / 10.0) + " times";
+}
+
+/// Where noise model and blocks disagree: who is believed, and why.
+std::vector<std::string> describe_disagreement(const Names& parameters, const VectorXd& noise_model,
+                                               const VectorXd& blocks) {
+  Names larger;
+  Names smaller;
+  std::vector<double> above;
+  std::vector<double> below;
+  for (Index k = 0; k < blocks.size(); ++k) {
+    const double ratio = blocks[k] / noise_model[k];
+    if (ratio > far_apart) {
+      larger.push_back(parameters[static_cast<std::size_t>(k)]);
+      above.push_back(ratio);
+    } else if (ratio * far_apart < 1.0) {
+      smaller.push_back(parameters[static_cast<std::size_t>(k)]);
+      below.push_back(1.0 / ratio);
+    }
+  }
+  std::vector<std::string> sentences;
+  if (!larger.empty()) {
+    sentences.push_back("standard error of " + base::list_names(larger) +
+                        " is by blocks of the record, up to " + times(above) +
+                        " the noise model's: no noise model here explains how it varies");
+  }
+  if (!smaller.empty()) {
+    sentences.push_back("standard error of " + base::list_names(smaller) +
+                        " is by the noise model, up to " + times(below) +
+                        " that of blocks: the noise is slow, and blocks of the record miss that");
+  }
+  return sentences;
+}
+
+/// Outputs whose noise remembers more than a tenth of the record.
+std::string describe_memory(const Covariances& covariances, const model::Sweep& sweep) {
+  constexpr double enough = 10.0;  // correlation times
+  const auto rows = static_cast<double>(sweep.measurements().rows());
+  Names slow;
+  double fewest = enough;
+  for (std::size_t j = 0; j < covariances.noise.size(); ++j) {
+    if (!covariances.noise[j]) continue;
+    const double times = rows / correlation_rows(*covariances.noise[j]);
+    if (times >= enough) continue;
+    slow.push_back(sweep.tables().outputs[j].name);
+    fewest = std::min(fewest, times);
+  }
+  if (slow.empty()) return "";
+  const std::string spanned =
+      fewest < 1.0 ? "less than one" : "about " + base::short_number(std::floor(fewest));
+  return "standard errors are a lower bound: the record spans " + spanned +
+         " of the correlation times of the noise of " + base::list_names(slow) +
+         ", and ten are needed";
+}
+
+/// Outputs of which only one row in several tells something.
+std::string describe_strides(const Covariances& covariances, const model::Sweep& sweep) {
+  Names smooth;
+  Index longest = 1;
+  for (std::size_t j = 0; j < covariances.noise.size(); ++j) {
+    if (!covariances.noise[j] || covariances.noise[j]->held == 1) continue;
+    smooth.push_back(sweep.tables().outputs[j].name);
+    longest = std::max(longest, covariances.noise[j]->held);
+  }
+  if (smooth.empty()) return "";
+  return "residual of " + base::list_names(smooth) +
+         " was held, interpolated or smoothed: in its noise model " + std::to_string(longest) +
+         " rows count as one";
+}
+
+/// A record in many short pieces, and one of very few rows.
+std::string describe_rows(const model::Sweep& sweep) {
+  constexpr std::size_t few = 24;
+  constexpr std::size_t piece = 200;
+  const std::size_t rows = sweep.measurements().rows();
+  const std::size_t runs = sweep.measurements().runs().size();
+  if (rows < few) {
+    return "standard errors of " + std::to_string(rows) +
+           " rows are too small: estimate -+ 1.96 of them holds the truth in about 90 % (of 12 "
+           "rows "
+           "in 87 %)";
+  }
+  if (runs == 1 || rows / runs >= piece) return "";
+  return "gaps cut the record into " + std::to_string(runs) + " pieces of about " +
+         std::to_string(rows / runs) +
+         " rows: noise slower than a piece is not in the noise model's standard errors";
+}
+
+}  // namespace
+
+std::vector<std::string> describe_errors(const Names& parameters, const Covariances& covariances,
+                                         const VectorXd& blocks, const model::Sweep& sweep) {
+  const VectorXd noise_model = covariances.noise_model.diagonal().cwiseSqrt();
+  std::vector<std::string> sentences = describe_disagreement(parameters, noise_model, blocks);
+  for (const std::string& sentence : {describe_memory(covariances, sweep),
+                                      describe_strides(covariances, sweep), describe_rows(sweep)}) {
+    if (!sentence.empty()) sentences.push_back(sentence);
+  }
+  return sentences;
+}
+
+}  // namespace sepcal::estimation

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "noise/wandering_noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "noise/noise_room.hpp"
+#include "numerics/decompositions.hpp"
+#include "sepcal/quantity.hpp"
+
+namespace sepcal::noise {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Ref;
+using Eigen::VectorXd;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// -2 ln L of `white`, [X | e] whitened but for sigma, whose square is returned beside it.
+struct Restricted {
+  double minus_two_log_likelihood = infinity;
+  double sigma = 0.0;
+};
+
+Restricted restrict(const MatrixXd& gram, Index rows, double log_determinant) {
+  const Index p = gram.cols() - 1;
+  const Eigen::LLT<MatrixXd> factor(gram);
+  const VectorXd diagonal = factor.matrixLLT().diagonal();
+  const auto n = static_cast<double>(rows - p);
+  if (factor.info() != Eigen::Success || !(diagonal[p] > 0.0)) return {};
+  const double variance = diagonal[p] * diagonal[p] / n;
+  return {n * std::log(variance) + log_determinant + 2.0 * diagonal.head(p).array().log().sum(),
+          std::sqrt(variance)};
+}
+
+/// The restricted likelihood of wandering noises of unit variance, by a Kalman filter over all
+/// columns at once.
+class Filter {
+ public:
+  Filter(const MatrixXd& columns, const std::vector<Segment>& runs)
+      : columns_(columns), white_(columns.rows(), columns.cols()), lengths_(find_lengths(runs)) {}
+
+  Restricted evaluate(const WanderingNoise& noise) {
+    const double a = std::exp(-1.0 / noise.rows);
+    const double wandering = 1.0 - noise.white;
+    ArrayXd state(columns_.cols());
+    ArrayXd innovation(columns_.cols());
+    double log_determinant = 0.0;
+    Index t = 0;
+    for (const Index length : lengths_) {
+      state.setZero();
+      double P = wandering;  // variance of g as predicted
+      for (const Index last = t + length; t < last; ++t) {
+        const double F = P + noise.white;
+        const double gain = P / F;
+        log_determinant += std::log(F);
+        innovation = columns_.row(t).transpose().array() - state;
+        white_.row(t) = innovation.matrix().transpose() / std::sqrt(F);
+        state = a * (state + gain * innovation);
+        P = a * a * P * noise.white / F + wandering * (1.0 - a * a);
+      }
+    }
+    return restrict(white_.transpose() * white_, columns_.rows(), log_determinant);
+  }
+
+ private:
+  Rows columns_;
+  Rows white_;
+  std::vector<Index> lengths_;
+};
+
+/// Of ln(rows) and the logit of the white share.
+using Point = std::array<double, 2>;
+
+WanderingNoise noise_at(const Point& point) {
+  return {.rows = std::exp(point[0]), .white = 1.0 / (1.0 + std::exp(-point[1])), .sigma = 1.0};
+}
+
+}  // namespace
+
+MatrixXd covariance_product(const WanderingNoise& noise, const std::vector<Segment>& runs,
+                            const Ref<const MatrixXd>& X) {
+  const double a = std::exp(-1.0 / noise.rows);
+  MatrixXd before = MatrixXd::Zero(X.rows(), X.cols());  // sum_{s<t} a^(t-s) x_s
+  Index first = 0;
+  for (const Index length : find_lengths(runs)) {
+    for (Index t = first + 1; t < first + length; ++t) {
+      before.row(t) = a * (before.row(t - 1) + X.row(t - 1));
+    }
+    first += length;
+  }
+  const MatrixXd crossed = (1.0 - noise.white) * (X.transpose() * before);
+  return noise.sigma * noise.sigma * (X.transpose() * X + crossed + crossed.transpose());
+}
+
+WanderingFit fit_wandering(const MatrixXd& columns, const std::vector<Segment>& runs) {
+  constexpr double least_step = 0.06;  // of ln(rows): less moves a standard error by 3 %
+  // A memory longer than the record can't be told from one as long.
+  const double longest = std::log(static_cast<double>(columns.rows()));
+  const double shortest = std::log(0.3);
+  constexpr double widest = 9.0;  // of the logit
+  Filter filter(columns, runs);
+  Point best{};
+  Restricted lowest;
+  const auto try_point = [&](Point point) {
+    point[0] = std::clamp(point[0], shortest, longest);
+    point[1] = std::clamp(point[1], -widest, widest);
+    const Restricted tried = filter.evaluate(noise_at(point));
+    if (!(tried.minus_two_log_likelihood < lowest.minus_two_log_likelihood)) return false;
+    lowest = tried;
+    best = point;
+    return true;
+  };
+  for (double time = 0.0; time < longest; time += std::log(4.0)) {
+    for (const double logit : {-4.0, 0.0, 3.0}) try_point({time, logit});
+  }
+  for (Point step{std::log(2.0), 1.0}; step[0] > least_step;) {
+    bool found = false;
+    for (const Point& way : {Point{1, 0}, Point{-1, 0}, Point{0, 1}, Point{0, -1}}) {
+      const Point from = best;
+      found = try_point({from[0] + way[0] * step[0], from[1] + way[1] * step[1]}) || found;
+    }
+    if (!found) step = {0.5 * step[0], 0.5 * step[1]};
+  }
+  WanderingFit fit{noise_at(best), lowest.minus_two_log_likelihood};
+  fit.noise.sigma = lowest.sigma;
+  return fit;
+}
+
+WanderingFit fit_white_rows(const MatrixXd& columns) {
+  const Restricted white = restrict(columns.transpose() * columns, columns.rows(), 0.0);
+  return {{.rows = 1.0, .white = 1.0, .sigma = white.sigma}, white.minus_two_log_likelihood};
+}
+
+double restricted_likelihood(const MatrixXd& columns, const std::vector<Segment>& runs,
+                             NoiseModel& model) {
+  model.sigma = 1.0;
+  const Whitener whitener(model, runs);
+  MatrixXd white = columns;
+  whitener.apply(white);
+  const Restricted restricted =
+      restrict(white.transpose() * white, whitener.informative_rows(), whitener.log_determinant());
+  model.sigma = restricted.sigma;
+  double levels = 0.0;  // of the differences' covariance: that of their sums is not so scaled
+  if (model.level_is_free()) {
+    for (const Segment& run : runs) levels += std::log(static_cast<double>(run.rows()));
+  }
+  return restricted.minus_two_log_likelihood - levels;
+}
+
+}  // namespace sepcal::noise
