@@ -91,8 +91,9 @@ TEST_CASE("a speed in another unit than its header's is told with the unit") {
     const FlightCheck checked = check_tube(log);
     const LogNote note = first(checked, "units");
     CHECK(note.concern == Concern::wrong);
-    CHECK(contains(note.found, std::string(", as ") + slip.unit + " under a header of"));
-    CHECK(contains(note.advice, std::string("rename it to airspeed_") + slip.unit));
+    CHECK(
+        contains(note.found, std::string("as ") + slip.unit + " under the header " + slip.header));
+    CHECK(contains(note.advice, std::string(" to airspeed_") + slip.unit));
     CHECK(checked.notes.size() == 1);
   }
 }
@@ -106,11 +107,44 @@ TEST_CASE("a strong wind is no wrong unit") {
 TEST_CASE("north and east that are swapped or of the wrong sign are told by the yaw") {
   Log swapped = tube_log();
   swap_columns(swapped, "vn_mps", "ve_mps");
-  CHECK(contains(first(check_tube(swapped), "axes").found, "with ve, vn it would"));
+  CHECK(contains(first(check_tube(swapped), "axes").found,
+                 "with ve, vn in the place of vn, ve it would"));
   Log reversed = tube_log();
   scale(reversed, "ve_mps", -1);
-  CHECK(contains(first(check_tube(reversed), "axes").found, "with vn, -ve it would"));
+  CHECK(contains(first(check_tube(reversed), "axes").found,
+                 "with vn, -ve in the place of vn, ve it would"));
   CHECK(kinds(check_tube(reversed)) == "axes");
+  Log radians = tube_log();
+  radians.rename("yaw_rad", "yaw_deg");
+  const LogNote note = first(check_tube(radians), "axes");
+  CHECK(contains(note.found, "does not go where yaw_deg points"));
+  CHECK(contains(note.advice, "check the unit and the sense of yaw_deg"));
+}
+
+TEST_CASE("a swap is told on a vehicle that hardly tilts, a wind across is none") {
+  // Yaw alone: the field's vertical part, most of it, does not vary.
+  Log level = sphere_log();
+  for (std::size_t row = 0; row < 1500; ++row) {
+    const double yaw = std::sin(0.01 * static_cast<double>(row));
+    level["hx_ut"][row] = 20 * std::cos(yaw);
+    level["hy_ut"][row] = -20 * std::sin(yaw);
+    level["hz_ut"][row] = 45 + std::sin(0.3 * static_cast<double>(row));
+    for (const char axis : {'x', 'y', 'z'}) {
+      level[std::string("m") + axis + "_ut"][row] = level[std::string("h") + axis + "_ut"][row];
+    }
+  }
+  for (const char* header : {"mx_ut", "my_ut", "mz_ut"}) blur(level[header], 0.2, 3);
+  CHECK(kinds(check_sphere(level)) == "sphere");
+  swap_columns(level, "mx_ut", "my_ut");
+  CHECK(contains(first(check_sphere(level), "axes").found, "(my, mx, mz)"));
+
+  Log drift = tube_log();  // one heading, and a track 40 degrees off it
+  for (std::size_t row = 0; row < 3000; ++row) {
+    drift["vn_mps"][row] = drift["airspeed_mps"][row] * std::cos(1.2);
+    drift["ve_mps"][row] = drift["airspeed_mps"][row] * std::sin(1.2);
+    drift["yaw_rad"][row] = 0.5 + 0.001 * drift["pitch_rad"][row];
+  }
+  CHECK(notes_of(check_tube(drift), "axes").empty());
 }
 
 TEST_CASE("the axes of a magnetometer, its strength, and the part of the sphere") {
@@ -127,7 +161,7 @@ TEST_CASE("the axes of a magnetometer, its strength, and the part of the sphere"
     nano.rename(std::string(header) + "_ut", std::string(header) + "_nt");
   }
   const LogNote note = first(check_sphere(nano), "units");
-  CHECK(contains(note.found, ", as gauss under a header of nt"));
+  CHECK(contains(note.found, ": as gauss under the header mx_nt would be"));
   CHECK(contains(note.advice, "mx_gauss"));
 
   Log part = sphere_log();
@@ -198,5 +232,5 @@ TEST_CASE("a fit notes what the check found") {
   scale(log, "airspeed_mps", 1.0);
   log.rename("airspeed_mps", "airspeed_kt");
   const Calibration calibration = calibrate(pitot_static_probe(), log.build());
-  CHECK(mentions(calibration.notes, "as mps under a header of kt"));
+  CHECK(mentions(calibration.notes, "as mps under the header airspeed_kt"));
 }

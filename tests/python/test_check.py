@@ -72,10 +72,10 @@ def test_metres_per_second_under_a_header_of_knots(tube: Bench) -> None:
     note = result["notes"][0]
     assert (note["kind"], note["concern"]) == ("units", "wrong")
     assert "airspeed_kt" in note["columns"]
-    assert "as mps under a header of kt" in note["found"]
-    assert "rename it to airspeed_mps" in note["advice"]
+    assert "as mps under the header airspeed_kt" in note["found"]
+    assert "rename airspeed_kt to airspeed_mps" in note["advice"]
     fitted = tube.run("fit", "tube.csv")
-    assert "as mps under a header of kt" in fitted.err
+    assert "as mps under the header airspeed_kt" in fitted.err
     assert fitted.err.startswith("note: tube.csv: ")
 
 
@@ -201,7 +201,7 @@ def test_python_has_the_notes_and_columns(tube: Bench) -> None:
     assert [column.header for column in checked.columns] == list(flight.columns)
     assert "units" in checked._repr_html_() or "wrong" in checked._repr_html_()
     fitted = sepcal.fit(sepcal.PitotStatic(), flight)
-    assert any("as mps under a header of kt" in line for line in fitted.notes)
+    assert any("as mps under the header airspeed_kt" in line for line in fitted.notes)
 
 
 def test_python_refuses_what_is_no_flight() -> None:

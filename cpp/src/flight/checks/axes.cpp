@@ -11,25 +11,21 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 
-constexpr double good = 0.85;
-constexpr double poor = 0.5;
-
-/// Best of what was tried, where it is good and the log as it stands, which is tried first, poor.
+/// The best of what was tried; the log as it stands is tried first.
 class Contest {
  public:
   void enter(std::string axes, double agreement) {
-    if (first_) as_logged_ = agreement;
-    if (first_ || agreement > best_.agreement) best_ = {std::move(axes), agreement, as_logged_};
+    if (first_) best_.agreement_as_logged = agreement;
+    if (first_ || agreement > best_.agreement) {
+      best_.axes = std::move(axes);
+      best_.agreement = agreement;
+    }
     first_ = false;
   }
-  std::optional<BetterAxes> winner() const {
-    if (first_ || !(as_logged_ < poor) || !(best_.agreement > good)) return std::nullopt;
-    return best_;
-  }
+  const BetterAxes& best() const { return best_; }
 
  private:
   bool first_ = true;
-  double as_logged_ = 0.0;
   BetterAxes best_;
 };
 
@@ -47,6 +43,7 @@ std::string name_axes(std::span<const char* const> names, std::span<const int> o
 }  // namespace
 
 std::optional<BetterAxes> find_track_axes(const std::vector<std::array<double, 3>>& moving) {
+  if (moving.empty()) return std::nullopt;
   constexpr std::array names{"vn", "ve"};
   Contest contest;
   for (const std::array<int, 2> order : {std::array{0, 1}, std::array{1, 0}}) {
@@ -57,12 +54,13 @@ std::optional<BetterAxes> find_track_axes(const std::vector<std::array<double, 3
         const double east = (signs & 2U ? -1 : 1) * row[static_cast<std::size_t>(order[1])];
         sum += std::cos(std::atan2(east, north) - row[2]);
       }
-      if (!moving.empty()) {
-        contest.enter(name_axes(names, order, signs), sum / static_cast<double>(moving.size()));
-      }
+      contest.enter(name_axes(names, order, signs), sum / static_cast<double>(moving.size()));
     }
   }
-  return contest.winner();
+  const BetterAxes& best = contest.best();
+  if (best.agreement_as_logged < 0.5 && best.agreement > 0.85) return best;
+  if (best.agreement_as_logged < 0.3) return BetterAxes{"", 0.0, best.agreement_as_logged};
+  return std::nullopt;
 }
 
 std::optional<BetterAxes> find_field_axes(const Matrix3Xd& read, const Matrix3Xd& truth) {
@@ -84,7 +82,10 @@ std::optional<BetterAxes> find_field_axes(const Matrix3Xd& read, const Matrix3Xd
       contest.enter(name_axes(names, order, signs), sum / scale);
     }
   } while (std::ranges::next_permutation(order).found);
-  return contest.winner();
+  const auto& [axes, agreement, as_logged] = contest.best();
+  if (agreement > 0.9 && as_logged < 0.9 && 5 * (1 - agreement) < 1 - as_logged)
+    return contest.best();
+  return std::nullopt;
 }
 
 }  // namespace sepcal::checks

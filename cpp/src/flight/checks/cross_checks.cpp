@@ -61,22 +61,24 @@ void note_speeds(const Log& log, std::vector<LogNote>& notes) {
   columns.push_back(log.find("ve")->header());
   LogNote note = note_on(log, "units", Concern::wrong, std::move(columns));
   note.found =
-      fmt::format("{} is {:.3g} times the speed over the ground (half of the rows above)",
+      fmt::format("{} is usually {:.3g} times the speed over the ground",
                   read != nullptr ? read->header() : "the airspeed of the pressures", ratio);
-  if (reads != nullptr) {
-    note.found +=
-        fmt::format(", as {} under a header of {}", reads->suffix, read->logged.unit->suffix);
-  } else if (moves != nullptr) {
-    note.found += fmt::format(", as {} of {} under a header of {}", north->header(), moves->suffix,
-                              north->logged.unit->suffix);
-  }
   note.effect = fmt::format("the scale of the airspeed comes out {:.2g} times what it is", ratio);
-  note.advice =
-      reads != nullptr
-          ? fmt::format("check the unit: rename it to {}", renamed(read->header(), *reads))
-      : moves != nullptr ? fmt::format("check the unit of the velocity: rename it to {}",
-                                       renamed(north->header(), *moves))
-                         : "check the units of both; a wind alone would have to be strong";
+  std::vector<std::string> renamings;
+  std::vector<std::string> slips;
+  for (const auto& [column, unit] : {std::pair(read, reads), std::pair(north, moves)}) {
+    if (unit == nullptr) continue;
+    slips.push_back(fmt::format("{} under the header {}", unit->suffix, column->header()));
+    renamings.push_back(fmt::format("rename {} to {}{}", column->header(),
+                                    renamed(column->header(), *unit),
+                                    column == north ? " and so on" : ""));
+  }
+  if (slips.empty()) {
+    note.advice = "check the units of both; a wind alone would have to be strong";
+  } else {
+    note.found += fmt::format(": as {} would be", fmt::join(slips, ", or "));
+    note.advice = fmt::format("check the unit: {}", fmt::join(renamings, ", or "));
+  }
   notes.push_back(std::move(note));
 }
 
@@ -117,13 +119,14 @@ void note_strength(const Log& log, const FieldRows& field, std::vector<LogNote>&
       "{:.3g} uT",
       list_headers(field.headers), ratio * field.strength, ratio, field.strength);
   if (unit != nullptr) {
-    note.found += fmt::format(", as {} under a header of {}", unit->suffix, field.unit->suffix);
+    note.found +=
+        fmt::format(": as {} under the header {} would be", unit->suffix, field.headers.front());
   }
   note.effect = fmt::format("scale errors come out near {:.2g}, or at their bounds", ratio - 1);
-  note.advice = unit != nullptr
-                    ? fmt::format("check the unit: rename them to {} and so on",
-                                  renamed(field.headers.front(), *unit))
-                    : "check the unit of the readings and the field that is given, in uT";
+  note.advice = unit != nullptr ? fmt::format("check the unit: rename them to {} and so on",
+                                              renamed(field.headers.front(), *unit))
+                                : "check the unit of the readings; the true field is to be given "
+                                  "in uT, not in nT or gauss";
   notes.push_back(std::move(note));
 }
 
@@ -152,11 +155,17 @@ void note_track_axes(const Log& log, std::vector<LogNote>& notes) {
   if (!better) return;
   LogNote note = note_on(log, "axes", Concern::wrong,
                          {velocity[0]->header(), velocity[1]->header(), yaw->header()});
-  note.found = fmt::format(
-      "the motion does not go where {} points (agreement {:.2f} of 1); with {} it would ({:.2f})",
-      yaw->header(), better->agreement_as_logged, better->axes, better->agreement);
+  note.found = fmt::format("the motion does not go where {} points (agreement {:.2f} of 1)",
+                           yaw->header(), better->agreement_as_logged);
   note.effect = "the wind and the angles come out wrong";
-  note.advice = "swap the columns or their signs in the log so; or check the sense of the yaw";
+  if (better->axes.empty()) {
+    note.advice = fmt::format("check the unit and the sense of {}, and the frame of the velocity",
+                              yaw->header());
+  } else {
+    note.found += fmt::format("; with {} in the place of vn, ve it would ({:.2f})", better->axes,
+                              better->agreement);
+    note.advice = "swap the columns or their signs in the log so; or check the sense of the yaw";
+  }
   notes.push_back(std::move(note));
 }
 
