@@ -76,8 +76,8 @@ std::optional<BetterAxes> find_field_axes(const Matrix3Xd& read, const Matrix3Xd
   do {
     for (unsigned signs = 0; signs < 8; ++signs) {
       double sum = 0.0;
-      for (int j = 0; j < 3; ++j) {
-        sum += (signs >> j & 1U ? -1 : 1) * products(order[static_cast<std::size_t>(j)], j);
+      for (unsigned j = 0; j < 3; ++j) {
+        sum += (signs >> j & 1U ? -1 : 1) * products(order[j], j);
       }
       contest.enter(name_axes(names, order, signs), sum / scale);
     }

@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using files::Unit;
-using files::UnitKind;
 
 /// What two measures of one quantity may differ by: a wind of a third of the airspeed, say.
 constexpr double least_ratio = 0.6;

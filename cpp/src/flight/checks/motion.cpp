@@ -115,7 +115,7 @@ std::optional<FieldRows> find_field(const Log& log, const Settings& settings) {
   std::vector<double> strengths;
   for (std::size_t row = 0; row < log.flight().rows(); ++row) {
     const Vector3d reading = vector_at(read, row);
-    const Vector3d truth = known ? *field.at(row) : Vector3d::Zero();
+    const Vector3d truth = field.at(row).value_or(Vector3d::Zero());
     if (!reading.allFinite() || !truth.allFinite()) continue;
     readings.push_back(reading);
     truths.push_back(truth);
