@@ -122,6 +122,7 @@ class CommandLine {
   CommandLine(Instrument& instrument, CLI::App& cli)
       : instrument_(instrument),
         cli_(cli),
+        check_(cli.add_subcommand("check", "says what a log is, and what that does to a fit")),
         fit_(cli.add_subcommand("fit", "fits the model to a flight")),
         compare_(add_later_verb("compare", "shows where the model fails")),
         intervals_(
@@ -130,6 +131,12 @@ class CommandLine {
         add_(add_later_verb("add", "adds a physical effect and fits again")),
         apply_(add_later_verb("apply", "adds the calibrated readings to a log")),
         simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
+    add_flight(*check_);
+    add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
+        ->type_name("C.json");
+    instrument.add_probe_options(*check_);
+    add_json(*check_);
+
     add_flight(*fit_);
     add_file(*fit_, "-o,--output", typed_.output, "writes the calibration there")
         ->type_name("BASE.json");
@@ -154,6 +161,7 @@ class CommandLine {
   /// Does what the verb that was typed says, and gives the exit code.
   int perform() {
     const Verbs verbs(instrument_, typed_);
+    if (check_->parsed()) return verbs.check();
     if (fit_->parsed()) return verbs.fit(fit_arguments_.resolve());
     if (compare_->parsed()) return verbs.compare();
     if (intervals_->parsed()) return verbs.intervals();
@@ -195,6 +203,7 @@ class CommandLine {
   Arguments typed_;
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
+  CLI::App* check_;
   CLI::App* fit_;
   CLI::App* compare_;
   CLI::App* intervals_;

@@ -12,6 +12,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
+#include "sepcal/flight/check.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
@@ -55,12 +56,15 @@ class Delivery {
   template <class Result>
   void deliver(const Result& result) {
     print_notes(result.notes);
-    const std::string json = to_json(result);
+    deliver(to_json(result), to_text(result, detail_of(arguments_)));
+  }
+
+  void deliver(const std::string& json, const std::string& page) {
     if (file_) {
       file_->write(json);
       file_->commit();
     }
-    print(arguments_.json ? json : to_text(result, detail_of(arguments_)));
+    print(arguments_.json ? json : page);
     if (file_ && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
   }
 
@@ -115,6 +119,14 @@ int Verbs::fit(CalibrationOptions options) const {
   line.clear();
   delivery.deliver(calibration);
   return exit_code(calibration.fit.status);
+}
+
+int Verbs::check() const {
+  Delivery delivery(arguments_, {arguments_.flight});
+  const Flight flight = read_flight();
+  const FlightCheck check = sepcal::check(*instrument_.probe(flight), flight);
+  delivery.deliver(to_json(check), to_text(check));
+  return 0;
 }
 
 int Verbs::compare() const {

@@ -32,6 +32,7 @@ class Verbs {
   Verbs(const Instrument& instrument, const Arguments& arguments)
       : instrument_(instrument), arguments_(arguments) {}
 
+  int check() const;
   int fit(CalibrationOptions options) const;
   int compare() const;
   int intervals() const;

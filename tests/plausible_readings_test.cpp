@@ -12,7 +12,8 @@
 
 using doctest::Contains;
 using sepcal::files::UnitKind;
-using sepcal::probes::describe_implausible;
+using sepcal::probes::find_implausible;
+using sepcal::probes::Implausible;
 using sepcal::probes::Reading;
 using sepcal::test::Log;
 using sepcal::test::mentions;
@@ -30,10 +31,13 @@ struct Readings {
     return *this;
   }
   std::vector<std::string> describe() const {
-    return describe_implausible([this](std::string_view quantity) -> std::optional<Reading> {
+    std::vector<std::string> sentences;
+    const auto find = [this](std::string_view quantity) -> std::optional<Reading> {
       const auto found = readings.find(quantity);
       return found == readings.end() ? std::nullopt : std::optional(found->second);
-    });
+    };
+    for (const Implausible& found : find_implausible(find)) sentences.push_back(found.sentence);
+    return sentences;
   }
 };
 

@@ -16,6 +16,7 @@ from sepcal._core import (
     Applied,
     CataloguedEffect,
     ChannelMisfit,
+    ColumnCheck,
     Combination,
     Departure,
     Derived,
@@ -24,6 +25,7 @@ from sepcal._core import (
     FlightFit,
     HistoryEntry,
     LocalMinimum,
+    LogNote,
     Misfit,
     Parameter,
     ParameterInterval,
@@ -34,6 +36,7 @@ from sepcal._core import (
 )
 from sepcal.calibration import Calibration, load
 from sepcal.catalogue import effects
+from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.fitting import fit
@@ -65,6 +68,7 @@ __all__ = [
     "Calibration",
     "CataloguedEffect",
     "ChannelMisfit",
+    "ColumnCheck",
     "Combination",
     "Comparison",
     "Departure",
@@ -80,11 +84,13 @@ __all__ = [
     "FitOptions",
     "FiveHoleProbe",
     "Flight",
+    "FlightCheck",
     "FlightFit",
     "HistoryEntry",
     "Injection",
     "Intervals",
     "LocalMinimum",
+    "LogNote",
     "Magnetometer",
     "ManyFit",
     "Misfit",
@@ -106,6 +112,7 @@ __all__ = [
     "TrialRecord",
     "Window",
     "__version__",
+    "check",
     "effects",
     "fit",
     "fit_many",

@@ -11,6 +11,7 @@ __all__: list[str] = [
     "Calibration",
     "CataloguedEffect",
     "ChannelMisfit",
+    "ColumnCheck",
     "Combination",
     "Comparison",
     "Departure",
@@ -20,11 +21,13 @@ __all__: list[str] = [
     "Error",
     "Fit",
     "Flight",
+    "FlightCheck",
     "FlightFigures",
     "FlightFit",
     "HistoryEntry",
     "Intervals",
     "LocalMinimum",
+    "LogNote",
     "ManyFit",
     "Misfit",
     "Model",
@@ -44,6 +47,7 @@ __all__: list[str] = [
     "bin_means",
     "calibrate",
     "channels",
+    "check",
     "effects",
     "fit",
     "fit_many",
@@ -1228,6 +1232,194 @@ class Calibration:
     @property
     def unit(self) -> str: ...
 
+class ColumnCheck:
+    """
+    One column of a log, in the header's unit; NaN where there is none.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "header",
+        "quantity",
+        "missing",
+        "least",
+        "median",
+        "largest",
+        "step",
+        "repeated",
+        "rate",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def header(self) -> str: ...
+    @property
+    def largest(self) -> float: ...
+    @property
+    def least(self) -> float: ...
+    @property
+    def median(self) -> float: ...
+    @property
+    def missing(self) -> int:
+        """
+        Cells that are no finite number.
+        """
+    @property
+    def quantity(self) -> str:
+        """
+        That the probe reads it as, "airspeed"; empty: a channel.
+        """
+    @property
+    def rate(self) -> float:
+        """
+        New values a second [Hz].
+        """
+    @property
+    def repeated(self) -> float:
+        """
+        Share of rows that repeat the one before.
+        """
+    @property
+    def step(self) -> float:
+        """
+        That its values stand apart by, where they lie on steps.
+        """
+
+class LogNote:
+    """
+    Something about a log.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "kind",
+        "concern",
+        "columns",
+        "rows",
+        "first_s",
+        "last_s",
+        "found",
+        "effect",
+        "advice",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def advice(self) -> str:
+        """
+        What to do.
+        """
+    @property
+    def columns(self) -> list[str]: ...
+    @property
+    def concern(self) -> str:
+        """
+        "wrong": a result is, or there is none; "matters": estimates or their errors suffer; "slight": good to know.
+        """
+    @property
+    def effect(self) -> str:
+        """
+        What it does to the result.
+        """
+    @property
+    def first_s(self) -> float:
+        """
+        Time of the first of these rows; NaN: of all.
+        """
+    @property
+    def found(self) -> str:
+        """
+        What it is.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        "held", "units", ...
+        """
+    @property
+    def last_s(self) -> float:
+        """
+        And of the last.
+        """
+    @property
+    def rows(self) -> int:
+        """
+        Concerned.
+        """
+
+class FlightCheck:
+    """
+    What a log is, and what that does to a calibration.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "model",
+        "file",
+        "refused",
+        "duration",
+        "rate",
+        "columns",
+        "notes",
+        "json",
+        "text",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: FlightCheck) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def columns(self) -> list[ColumnCheck]: ...
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def file(self) -> str:
+        """
+        Of the flight.
+        """
+    @property
+    def json(self) -> str: ...
+    @property
+    def model(self) -> str: ...
+    @property
+    def notes(self) -> list[LogNote]:
+        """
+        Worst first.
+        """
+    @property
+    def rate(self) -> float:
+        """
+        Rows a second [Hz].
+        """
+    @property
+    def refused(self) -> str:
+        """
+        What a fit would refuse it with; empty: it would not.
+        """
+    @property
+    def text(self) -> str:
+        """
+        What print() shows: the app's page.
+        """
+
 class FlightFigures:
     def channel(
         self, arg0: str
@@ -1535,6 +1727,7 @@ def calibrate(
     arg3: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
 ) -> Calibration: ...
 def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
+def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def fit(
     arg0: Model,

@@ -41,6 +41,7 @@ run effects-json pitot effects --json
 
 run simulate-five-hole pitot simulate -o five_hole.csv --truth five_hole.truth.json --rate 10 \
   --hide "wind[altitude_m]=0.03:0.01"
+run five_hole-check pitot check five_hole.csv "${five_hole[@]}" -o five_hole.check.json
 loop five_hole pitot five_hole.csv "wind[altitude_m]" "${five_hole[@]}"
 run five_hole-intervals pitot intervals five_hole.csv five_hole.json -o five_hole.intervals.json
 run five_hole-inject pitot diagnose five_hole.csv five_hole.json --inject "propwash=40"
@@ -49,10 +50,12 @@ loop five_hole_huber pitot five_hole.csv "propwash" "${five_hole[@]}" --loss hub
 
 run simulate-tube pitot simulate --probe pitot-static -o tube.csv --rows 400 --noise ar \
   --hide "pressure_offset[throttle]=30" --decoys 3
+run tube-check pitot check tube.csv
 loop tube pitot tube.csv "pressure_offset[throttle]" --probe pitot-static
 run tube-intervals pitot intervals tube.csv tube.json
 
 run simulate-mag mag simulate -o mag.csv --rows 500 --hide "bias[current_a]=0.2:-0.1:0.15"
+run mag-check mag check mag.csv
 loop mag mag mag.csv "bias[current_a]"
 loop mag_strength mag mag.csv "bias[current_a]" --field-strength 53.2
 run mag_short-simulate mag simulate -o mag_short.csv --rows 20 --excitation poor
@@ -70,6 +73,11 @@ run help-fit pitot fit --help
 run help-mag mag fit --help
 
 [[ -n $recordings ]] || exit 0
+run bench-check mag check "$recordings/bench_tilt_sphere_mag.csv" --field-strength 48
+run octocopter-check mag check "$recordings/octocopter_internal_mag.csv" --field 19.72,-1.41,49.44
+for log in uav_pitot_static_2022_05_07_11 airliner_mode_s rv_deceleration_stall; do
+  run "$log-check" pitot check "$recordings/$log.csv"
+done
 loop bench mag "$recordings/bench_tilt_sphere_mag.csv" "bias_step" --field-strength 48
 loop octocopter_external mag "$recordings/octocopter_external_mag.csv" "bias[current_a]" \
   --field 19.72,-1.41,49.44

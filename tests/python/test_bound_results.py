@@ -34,6 +34,7 @@ def results() -> dict[str, object]:
         "derived": added.derived["lambda_va"],
         "history": added.history[-1],
         "comparison": added.compare(),
+        "check": sepcal.check(TUBE, flight),
         "intervals": base.intervals(names=["c_va"]),
         "prediction": base.predict(),
         "many": many,

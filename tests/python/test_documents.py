@@ -17,7 +17,7 @@ from documents import BLOCKS, DOCUMENTS, EXAMPLES, ROOT, TYPED, run
 
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
 WHOLE = [b for b in BLOCKS if b["language"] == "python" and "import sepcal" in b["text"]]
-VERBS = ("fit", "compare", "intervals", "diagnose", "add", "apply", "simulate", "effects")
+VERBS = ("check", "fit", "compare", "intervals", "diagnose", "add", "apply", "simulate", "effects")
 
 # How many lines of an example a document promises at most.
 PROMISES = {"07_own_model.py": 15, "08_own_effect.py": 6, "09_own_effect.cpp": 11}

@@ -8,11 +8,15 @@
 #include <set>
 #include <sstream>
 
+#include "base/gaps.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {
+
+using namespace base;  // this room's own
+
 namespace {
 
 /// Seconds, both ends included.
@@ -69,27 +73,6 @@ std::string describe_time(const Record& record) {
   text.precision(10);
   text << ", within " << record.column("time").front() << " to " << record.column("time").back();
   return text.str();
-}
-
-/// A gap is an interval > 5 (1 + 1e-6) usual ones: four lost samples of a regular record are
-/// exactly five intervals, which rounding must not turn into a gap. The usual interval is the
-/// median; of stamps that come in bursts it is the longest that is reached from there without a
-/// jump by five, but one in twenty may be longer. Infinite where there is no interval.
-double find_gap(std::vector<double> intervals) {
-  constexpr double jump = 5 * (1 + 1e-6);
-  if (intervals.empty()) return infinity;
-  std::ranges::sort(intervals);
-  const std::size_t n = intervals.size();
-  const double longest = intervals[static_cast<std::size_t>(0.95 * static_cast<double>(n - 1))];
-  double usual = (intervals[(n - 1) / 2] + intervals[n / 2]) / 2;
-  constexpr std::size_t fewest = 20;  // of which one in twenty can be told
-  while (n >= fewest) {
-    const double reached = std::min(jump * usual, longest);
-    const double next = *std::prev(std::ranges::upper_bound(intervals, std::max(usual, reached)));
-    if (!(next > usual)) break;
-    usual = next;
-  }
-  return jump * usual;
 }
 
 /// Appends the intervals within some rows.

@@ -33,6 +33,11 @@ struct Model {
   std::shared_ptr<const Probe> probe;  // may be empty
 };
 
+/// Throws Error where the model has none.
+const Probe& probe_of(const Model& model);
+
+void define_check(py::module_& module);
+
 void define_options(py::module_& module);
 void define_results(py::module_& module);
 void define_effects(py::module_& module);

@@ -162,10 +162,7 @@ Applied apply_file(const Calibration& calibration, const std::string& file,
 
 Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
                             const std::vector<PythonEffect>& own) {
-  if (model.probe == nullptr) {
-    throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
-  }
-  options.own_effects = own_effects(own, effect_kit(model.probe->name()));
+  options.own_effects = own_effects(own, effect_kit(probe_of(model).name()));
   const py::gil_scoped_release release;
   return calibrate(model.probe, flight, options);
 }
@@ -351,6 +348,11 @@ void define_calibration(py::module_& module) {
 }
 
 }  // namespace
+
+const Probe& probe_of(const Model& model) {
+  if (model.probe != nullptr) return *model.probe;
+  throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
+}
 
 void define_flight(py::module_& module) {
   define_flights(module);

@@ -13,6 +13,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/check.hpp"
 #include "sepcal/profile.hpp"
 
 namespace pybind11::detail {
@@ -82,6 +83,10 @@ struct NamedCaster {
   }
 };
 
+template <>
+struct type_caster<sepcal::Concern>
+    : WordCaster<sepcal::Concern, sepcal::Concern::wrong, sepcal::Concern::matters,
+                 sepcal::Concern::slight> {};
 template <>
 struct type_caster<sepcal::FitStatus>
     : WordCaster<sepcal::FitStatus, sepcal::FitStatus::converged, sepcal::FitStatus::not_converged,

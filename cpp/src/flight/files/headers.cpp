@@ -187,19 +187,28 @@ std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind ki
   return headers;
 }
 
-std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind) {
+std::vector<double> LoggedQuantity::values() const {
+  std::vector<double> values(column->values.size());
+  std::ranges::transform(column->values, values.begin(),
+                         [this](double value) { return unit->convert(value); });
+  return values;
+}
+
+std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
+                                            UnitKind kind) {
   for (const Flight::Column& column : flight.columns()) {
     const std::string_view header = column.header;
     const std::size_t split = header.rfind('_');
     if (split == std::string_view::npos || header.substr(0, split) != quantity) continue;
     const Unit* unit = find_unit(kind, header.substr(split + 1));
-    if (unit == nullptr) continue;
-    std::vector<double> values(column.values.size());
-    std::ranges::transform(column.values, values.begin(),
-                           [unit](double value) { return unit->convert(value); });
-    return values;
+    if (unit != nullptr) return LoggedQuantity{&column, unit};
   }
-  return {};
+  return std::nullopt;
+}
+
+std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind) {
+  const auto logged = find_quantity(flight, quantity, kind);
+  return logged ? logged->values() : std::vector<double>();
 }
 
 std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,

@@ -3,6 +3,7 @@
 // roll_deg.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,8 +17,23 @@ namespace sepcal::files {
 /// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg.
 std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind);
 
-/// The flight's first column under one of these headers, in the unit used inside (a value a row);
-/// empty where there is none.
+/// A quantity as a flight has it.
+struct LoggedQuantity {
+  const Flight::Column* column = nullptr;
+  const Unit* unit = nullptr;
+
+  /// In the unit used inside.
+  double at(std::size_t row) const { return unit->convert(column->values[row]); }
+
+  /// A value a row, in the unit used inside.
+  std::vector<double> values() const;
+};
+
+/// The flight's first column under one of these headers; nothing where there is none.
+std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
+                                            UnitKind kind);
+
+/// Its values(); empty where there is none.
 std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind);
 
 /// "; did you mean 'Roll_Deg'? Rename it to roll_deg": the one of `others`, a log's headers without

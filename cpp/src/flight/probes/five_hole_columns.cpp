@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The columns of a five-hole probe: attitude and rates, inertial velocity, the four pressures and
 // density (Sun & Gebre-Egziabher, Eqs. 35-41).
-#include <array>
-
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/record_builder.hpp"
 #include "sepcal/flight/probe_columns.hpp"
@@ -12,19 +10,6 @@ namespace sepcal {
 using namespace probes;  // this room's own
 
 namespace {
-
-using files::UnitKind;
-
-constexpr std::array probe_quantities{
-    ProbeQuantity{"time", UnitKind::time},    ProbeQuantity{"roll", UnitKind::angle},
-    ProbeQuantity{"pitch", UnitKind::angle},  ProbeQuantity{"yaw", UnitKind::angle},
-    ProbeQuantity{"p", UnitKind::rate},       ProbeQuantity{"q", UnitKind::rate},
-    ProbeQuantity{"r", UnitKind::rate},       ProbeQuantity{"vn", UnitKind::speed},
-    ProbeQuantity{"ve", UnitKind::speed},     ProbeQuantity{"vd", UnitKind::speed},
-    ProbeQuantity{"pt", UnitKind::pressure},  ProbeQuantity{"ps", UnitKind::pressure},
-    ProbeQuantity{"dpa", UnitKind::pressure}, ProbeQuantity{"dpb", UnitKind::pressure},
-    ProbeQuantity{"rho", UnitKind::density},  ProbeQuantity{"temp", UnitKind::temperature, true},
-};
 
 /// What the probe reads, with the density: needed, valid, and positive.
 void need_readings(RecordBuilder& builder, const Flight& flight) {
@@ -54,7 +39,7 @@ void compute_angle(RecordBuilder& builder, const char* name, const char* port, d
 }  // namespace
 
 ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& options) {
-  RecordBuilder builder(flight, probe_quantities, options.drop_invalid);
+  RecordBuilder builder(flight, quantities_of("five-hole"), options.drop_invalid);
   builder.need({"time", "roll", "pitch", "yaw", "vn", "ve", "vd"});
   if (options.lever_arm) builder.need({"p", "q", "r"});
   need_readings(builder, flight);
@@ -73,7 +58,7 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
 }
 
 ProbeReadings read_five_hole(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, probe_quantities, drop_invalid);
+  RecordBuilder builder(flight, quantities_of("five-hole"), drop_invalid);
   need_readings(builder, flight);
   builder.keep(air_moves(builder), still_air);
   return builder.finish_readings();

@@ -17,19 +17,6 @@ using namespace probes;  // this room's own
 
 namespace {
 
-using files::UnitKind;
-
-constexpr std::array field_quantities{
-    ProbeQuantity{"time", UnitKind::time},   ProbeQuantity{"mx", UnitKind::field},
-    ProbeQuantity{"my", UnitKind::field},    ProbeQuantity{"mz", UnitKind::field},
-    ProbeQuantity{"hx", UnitKind::field},    ProbeQuantity{"hy", UnitKind::field},
-    ProbeQuantity{"hz", UnitKind::field},    ProbeQuantity{"roll", UnitKind::angle},
-    ProbeQuantity{"pitch", UnitKind::angle}, ProbeQuantity{"yaw", UnitKind::angle},
-    ProbeQuantity{"p", UnitKind::rate},      ProbeQuantity{"q", UnitKind::rate},
-    ProbeQuantity{"r", UnitKind::rate},      ProbeQuantity{"bn", UnitKind::field},
-    ProbeQuantity{"be", UnitKind::field},    ProbeQuantity{"bd", UnitKind::field},
-};
-
 using Vector = std::array<double, 3>;
 
 /// The components of the navigation-frame vector `b` in body axes: turn by yaw about down, by pitch
@@ -87,7 +74,7 @@ void use_logged_field(RecordBuilder& builder) {
 
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
   if (options.field) check_field(*options.field);
-  RecordBuilder builder(flight, field_quantities, options.drop_invalid);
+  RecordBuilder builder(flight, quantities_of("magnetometer"), options.drop_invalid);
   builder.need({"time", "mx", "my", "mz"});
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
   if (options.field) {
@@ -118,7 +105,7 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
 }
 
 ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, field_quantities, drop_invalid);
+  RecordBuilder builder(flight, quantities_of("magnetometer"), drop_invalid);
   builder.need({"time", "mx", "my", "mz"});
   builder.keep_valid();
   builder.check_time();
@@ -128,7 +115,7 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, bool drop_invalid
 }
 
 ProbeReadings read_magnetometer(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, field_quantities, drop_invalid);
+  RecordBuilder builder(flight, quantities_of("magnetometer"), drop_invalid);
   builder.need({"mx", "my", "mz"});
   builder.keep_valid();
   return builder.finish_readings();

@@ -3,7 +3,6 @@
 // differential pressure that it comes from, v = sqrt(2 dp / rho).
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
 #include "flight/probes/air_columns.hpp"
@@ -16,26 +15,6 @@ namespace sepcal {
 using namespace probes;  // this room's own
 
 namespace {
-
-using files::UnitKind;
-
-constexpr std::array tube_quantities{
-    ProbeQuantity{"time", UnitKind::time},
-    ProbeQuantity{"roll", UnitKind::angle},
-    ProbeQuantity{"pitch", UnitKind::angle},
-    ProbeQuantity{"yaw", UnitKind::angle},
-    ProbeQuantity{"p", UnitKind::rate},
-    ProbeQuantity{"q", UnitKind::rate},
-    ProbeQuantity{"r", UnitKind::rate},
-    ProbeQuantity{"vn", UnitKind::speed},
-    ProbeQuantity{"ve", UnitKind::speed},
-    ProbeQuantity{"vd", UnitKind::speed},
-    ProbeQuantity{"airspeed", UnitKind::speed},
-    ProbeQuantity{"dp", UnitKind::pressure},
-    ProbeQuantity{"ps", UnitKind::pressure},
-    ProbeQuantity{"rho", UnitKind::density},
-    ProbeQuantity{"temp", UnitKind::temperature, true},
-};
 
 /// A logged airspeed goes before one that would have to be computed.
 bool has_airspeed(const RecordBuilder& builder) { return builder.has({"airspeed"}); }
@@ -77,7 +56,7 @@ const char* still_air(const RecordBuilder& builder) {
 }  // namespace
 
 ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, tube_quantities, drop_invalid);
+  RecordBuilder builder(flight, quantities_of("pitot-static"), drop_invalid);
   builder.need({"time", "vn", "ve", "vd"});
   need_airspeed(builder, flight);
   builder.check_time();
@@ -95,7 +74,7 @@ ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
 }
 
 ProbeReadings read_pitot_static(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, tube_quantities, drop_invalid);
+  RecordBuilder builder(flight, quantities_of("pitot-static"), drop_invalid);
   need_airspeed(builder, flight);
   builder.keep(air_moves(builder), still_air(builder));
   if (has_airspeed(builder) && !offer_density(builder)) {

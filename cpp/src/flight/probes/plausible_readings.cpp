@@ -63,7 +63,7 @@ std::string suggest_units(const Reading& reading, const Range& range, double sma
 }
 
 void check_range(const QuantityRange& entry, const FindReading& find,
-                 std::vector<std::string>& sentences) {
+                 std::vector<Implausible>& found) {
   const auto reading = find(entry.quantity);
   if (!reading || reading->values.empty()) return;
   const bool counts_turns = entry.unit == "rad" && !reading->relabel;  // as degrees may
@@ -72,17 +72,18 @@ void check_range(const QuantityRange& entry, const FindReading& find,
       reading->values, [&](double value) { return !entry.range.contains(value); });
   if (outside == 0) return;
   const auto [smallest, largest] = std::ranges::minmax(reading->values);
-  sentences.push_back(
-      fmt::format("column '{}' lies outside {:g} to {:g} {} in {} of {} rows (it goes from {:.4g} "
-                  "to {:.4g}){}",
-                  reading->header, entry.range.low, entry.range.high, entry.unit, outside,
-                  reading->values.size(), smallest, largest,
-                  suggest_units(*reading, entry.range, smallest, largest)));
+  found.push_back(
+      {{reading->header},
+       fmt::format("column '{}' lies outside {:g} to {:g} {} in {} of {} rows (it goes from {:.4g} "
+                   "to {:.4g}){}",
+                   reading->header, entry.range.low, entry.range.high, entry.unit, outside,
+                   reading->values.size(), smallest, largest,
+                   suggest_units(*reading, entry.range, smallest, largest))});
 }
 
 /// Returns whether the three columns are there.
 bool check_field(const Field& names, const Range& range, const FindReading& find,
-                 std::vector<std::string>& sentences) {
+                 std::vector<Implausible>& found) {
   std::array<Reading, 3> field;
   for (std::size_t axis = 0; axis < field.size(); ++axis) {
     auto reading = find(names[axis]);
@@ -99,22 +100,27 @@ bool check_field(const Field& names, const Range& range, const FindReading& find
   const std::string whose = given ? "given is"
                                   : fmt::format("of {}, {}, {} is usually", field[0].header,
                                                 field[1].header, field[2].header);
-  sentences.push_back(fmt::format(
-      "the field {} {:.4g} uT strong, which lies outside {:g} to {:g} uT{}", whose, strength,
-      range.low, range.high, suggest_units(field[0], range, strength, strength)));
+  std::vector<std::string> headers;
+  if (!given) headers = {field[0].header, field[1].header, field[2].header};
+  found.push_back(
+      {std::move(headers),
+       fmt::format("the field {} {:.4g} uT strong, which lies outside {:g} to {:g} uT{}", whose,
+                   strength, range.low, range.high,
+                   suggest_units(field[0], range, strength, strength))});
   return true;
 }
 
 /// pt - ps, or what a plain tube reads of it; nothing where neither is in use.
-std::vector<double> find_dynamic_pressure(const FindReading& find, std::string& headers) {
+std::vector<double> find_dynamic_pressure(const FindReading& find,
+                                          std::vector<std::string>& headers) {
   if (auto difference = find("dp")) {
-    headers = "column '" + difference->header + "'";
+    headers = {difference->header};
     return std::move(difference->values);
   }
   auto total = find("pt");
   const auto fixed = find("ps");
   if (!total || !fixed) return {};
-  headers = fmt::format("{} - {}", total->header, fixed->header);
+  headers = {total->header, fixed->header};
   for (std::size_t row = 0; row < total->values.size(); ++row) {
     total->values[row] -= fixed->values[row];
   }
@@ -122,8 +128,8 @@ std::vector<double> find_dynamic_pressure(const FindReading& find, std::string& 
 }
 
 void check_ports(std::string_view port, const std::vector<double>& dynamic,
-                 const std::string& dynamic_headers, const FindReading& find,
-                 std::vector<std::string>& sentences) {
+                 const std::string& dynamic_name, const FindReading& find,
+                 std::vector<Implausible>& found) {
   const auto reading = find(port);
   if (!reading) return;
   std::vector<double> ratios;
@@ -135,39 +141,42 @@ void check_ports(std::string_view port, const std::vector<double>& dynamic,
   const double usual = median(std::move(ratios));
   if (largest == 0 || (largest >= port_ratios.low && usual <= port_ratios.high)) return;
   const bool too_large = usual > port_ratios.high;
-  sentences.push_back(
-      fmt::format("column '{}' is out of proportion: it is {} {:.3g} times {}; "
-                  "check both units",
-                  reading->header, too_large ? "usually" : "at most", too_large ? usual : largest,
-                  dynamic_headers));
+  found.push_back({{reading->header},
+                   fmt::format("column '{}' is out of proportion: it is {} {:.3g} times {}; "
+                               "check both units",
+                               reading->header, too_large ? "usually" : "at most",
+                               too_large ? usual : largest, dynamic_name)});
 }
 
-void check_pressures(const FindReading& find, std::vector<std::string>& sentences) {
-  std::string headers;
+void check_pressures(const FindReading& find, std::vector<Implausible>& found) {
+  std::vector<std::string> headers;
   const std::vector<double> dynamic = find_dynamic_pressure(find, headers);
   if (dynamic.empty()) return;
+  const std::string name = headers.size() == 1 ? fmt::format("column '{}'", headers[0])
+                                               : fmt::format("{} - {}", headers[0], headers[1]);
   const double usual = median(dynamic);
   if (!dynamic_pressures.contains(usual)) {
-    sentences.push_back(
-        fmt::format("{} is usually {:.3g} Pa, which lies outside {:g} to {:g} Pa; check the unit",
-                    headers, usual, dynamic_pressures.low, dynamic_pressures.high));
+    found.push_back(
+        {headers,
+         fmt::format("{} is usually {:.3g} Pa, which lies outside {:g} to {:g} Pa; check the unit",
+                     name, usual, dynamic_pressures.low, dynamic_pressures.high)});
   }
   for (const std::string_view port : {"dpa", "dpb"}) {
-    check_ports(port, dynamic, headers, find, sentences);
+    check_ports(port, dynamic, name, find, found);
   }
 }
 
 }  // namespace
 
-std::vector<std::string> describe_implausible(const FindReading& find) {
-  std::vector<std::string> sentences;
-  for (const QuantityRange& entry : quantity_ranges) check_range(entry, find, sentences);
-  check_pressures(find, sentences);
-  check_field(read_field, read_fields, find, sentences);
-  if (!check_field(true_field_in_navigation, true_fields, find, sentences)) {
-    check_field(true_field_in_body, true_fields, find, sentences);
+std::vector<Implausible> find_implausible(const FindReading& find) {
+  std::vector<Implausible> found;
+  for (const QuantityRange& entry : quantity_ranges) check_range(entry, find, found);
+  check_pressures(find, found);
+  check_field(read_field, read_fields, find, found);
+  if (!check_field(true_field_in_navigation, true_fields, find, found)) {
+    check_field(true_field_in_body, true_fields, find, found);
   }
-  return sentences;
+  return found;
 }
 
 }  // namespace sepcal::probes

@@ -24,10 +24,16 @@ struct Reading {
 /// Looks a quantity up by its base name ("yaw"); nothing where it is not in use.
 using FindReading = std::function<std::optional<Reading>(std::string_view quantity)>;
 
-/// A sentence for each implausible quantity: angles beyond a turn (pitch: a quarter of one), an
-/// absolute temperature outside 150 to 400 K, a density outside 0.02 to 2 kg/m^3, a static pressure
-/// outside 5 to 120 kPa, a dynamic pressure outside 1 Pa to 50 kPa, flow-angle pressures out of
-/// proportion to it, a field outside 5 to 200 uT (read: 400 uT).
-std::vector<std::string> describe_implausible(const FindReading& find);
+/// What is wrong with some columns.
+struct Implausible {
+  std::vector<std::string> headers;
+  std::string sentence;
+};
+
+/// One for each implausible quantity: angles beyond a turn (pitch: a quarter of one), an absolute
+/// temperature outside 150 to 400 K, a density outside 0.02 to 2 kg/m^3, a static pressure outside
+/// 5 to 120 kPa, a dynamic pressure outside 1 Pa to 50 kPa, flow-angle pressures out of proportion
+/// to it, a field outside 5 to 200 uT (read: 400 uT).
+std::vector<Implausible> find_implausible(const FindReading& find);
 
 }  // namespace sepcal::probes

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
-#include "flight/files/headers.hpp"
 #include "flight/files/invalid_cells.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "sepcal/effect_name.hpp"
@@ -65,7 +65,7 @@ bool RecordBuilder::has(Names names) const {
 
 const LoggedQuantity& RecordBuilder::logged(std::string_view name) const {
   const auto found = logged_.find(name);
-  if (found == logged_.end()) fail_missing(name);
+  if (found == logged_.end()) fail_missing({&name, 1});
   return found->second;
 }
 
@@ -92,10 +92,17 @@ std::string RecordBuilder::ask_for_near_miss(Names names) const {
   return "";
 }
 
-void RecordBuilder::fail_missing(std::string_view name) const {
-  throw Error(fmt::format("{}: {}; {}", flight_.name(),
-                          files::describe_missing(name, quantity_of(name).kind, other_headers()),
-                          flight_.list_columns()));
+void RecordBuilder::fail_missing(std::span<const std::string_view> names) const {
+  const auto inside = [this](std::string_view name) {
+    return files::accepted_headers(name, quantity_of(name).kind).front();
+  };
+  std::vector<std::string> others;
+  std::ranges::transform(names.subspan(1), std::back_inserter(others), inside);
+  throw Error(fmt::format(
+      "{}: {}{}; {}", flight_.name(),
+      files::describe_missing(names.front(), quantity_of(names.front()).kind, other_headers()),
+      others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
+      flight_.list_columns()));
 }
 
 void RecordBuilder::need(Names names) {
@@ -104,7 +111,10 @@ void RecordBuilder::need(Names names) {
 }
 
 void RecordBuilder::consult(Names names) {
-  for (const std::string_view name : names) logged(name);
+  std::vector<std::string_view> missing;
+  std::ranges::copy_if(names, std::back_inserter(missing),
+                       [this](std::string_view name) { return !logged_.contains(name); });
+  if (!missing.empty()) fail_missing(missing);
   checked_.insert(checked_.end(), names);
 }
 
@@ -205,7 +215,7 @@ std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const 
 
 void RecordBuilder::note_implausible() {
   const auto find = [this](std::string_view name) { return find_reading(name); };
-  for (const std::string& sentence : describe_implausible(find)) note(sentence);
+  for (const Implausible& implausible : find_implausible(find)) note(implausible.sentence);
 }
 
 ProbeRecord RecordBuilder::finish() {

@@ -12,27 +12,15 @@
 #include <string_view>
 #include <vector>
 
+#include "flight/files/headers.hpp"
 #include "flight/files/units.hpp"
 #include "flight/probes/plausible_readings.hpp"
+#include "flight/probes/quantities.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 
 namespace sepcal::probes {
 
-/// A quantity of a probe: the base name of its column and what kind of unit follows it.
-struct ProbeQuantity {
-  std::string_view name;
-  files::UnitKind kind;
-  bool is_driver = false;  // may drive effects too, then under its whole header
-};
-
-/// A probe's quantity as a flight has it.
-struct LoggedQuantity {
-  const Flight::Column* column = nullptr;
-  const files::Unit* unit = nullptr;
-
-  /// In the unit used inside.
-  double at(std::size_t row) const { return unit->convert(column->values[row]); }
-};
+using files::LoggedQuantity;
 
 class RecordBuilder {
  public:
@@ -52,7 +40,7 @@ class RecordBuilder {
   /// Throws Error for a quantity that was not logged.
   const LoggedQuantity& logged(std::string_view name) const;
 
-  /// Columns that the record has, or throws Error for one that was not logged.
+  /// Columns that the record has, or throws Error that names those that were not logged.
   void need(Names names);
 
   /// Columns that need() would ask for, but that only serve to compute others.
@@ -101,7 +89,7 @@ class RecordBuilder {
   void find_quantity(const ProbeQuantity& quantity);
   const ProbeQuantity& quantity_of(std::string_view name) const;
   std::vector<std::string> other_headers() const;
-  [[noreturn]] void fail_missing(std::string_view name) const;
+  [[noreturn]] void fail_missing(std::span<const std::string_view> names) const;
   bool is_quantity(const Flight::Column& column) const;
   std::optional<Reading> find_reading(std::string_view name) const;
   void note_implausible();

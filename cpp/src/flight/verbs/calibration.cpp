@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <ranges>
@@ -16,6 +17,7 @@
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/composition.hpp"
+#include "sepcal/flight/check.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/option_error.hpp"
@@ -134,7 +136,9 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   const PreparedFlight prepared = prepare(*probe, flight, options.drop_invalid);
-  return calibrate(std::move(probe), prepared, options);
+  Calibration calibration = calibrate(probe, prepared, options);
+  std::ranges::move(brief_notes(check(*probe, flight)), std::back_inserter(calibration.notes));
+  return calibration;
 }
 
 Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,

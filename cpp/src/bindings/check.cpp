@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a log is, before anything is fitted.
+#include "sepcal/flight/check.hpp"
+
+#include <utility>
+
+#include "bindings.hpp"
+#include "results.hpp"
+#include "structs.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+/// sepcal.FlightCheck
+struct Checked {
+  FlightCheck check;
+  std::string json;
+  std::string text;
+};
+
+Checked check_flight(const Model& model, const Flight& flight) {
+  const py::gil_scoped_release release;
+  FlightCheck check = sepcal::check(probe_of(model), flight);
+  std::string json = to_json(check);
+  std::string text = without_last_end(to_text(check));
+  return {std::move(check), std::move(json), std::move(text)};
+}
+
+void define_parts(py::module_& module) {
+  BoundStruct<ColumnCheck>(module, "ColumnCheck",
+                           "One column of a log, in the header's unit; NaN where there is none.")
+      .field("header", &ColumnCheck::header, "")
+      .field("quantity", &ColumnCheck::quantity,
+             R"(That the probe reads it as, "airspeed"; empty: a channel.)")
+      .field("missing", &ColumnCheck::missing, "Cells that are no finite number.")
+      .field("least", &ColumnCheck::least, "")
+      .field("median", &ColumnCheck::median, "")
+      .field("largest", &ColumnCheck::largest, "")
+      .field("step", &ColumnCheck::step, "That its values stand apart by, where they lie on steps.")
+      .field("repeated", &ColumnCheck::repeated, "Share of rows that repeat the one before.")
+      .field("rate", &ColumnCheck::rate, "New values a second [Hz].")
+      .comparable()
+      .finish();
+
+  BoundStruct<LogNote>(module, "LogNote", "Something about a log.")
+      .field("kind", &LogNote::kind, R"("held", "units", ...)")
+      .field("concern", &LogNote::concern,
+             R"("wrong": a result is, or there is none; "matters": estimates or their errors )"
+             R"(suffer; "slight": good to know.)")
+      .field("columns", &LogNote::columns, "")
+      .field("rows", &LogNote::rows, "Concerned.")
+      .field("first_s", &LogNote::first_s, "Time of the first of these rows; NaN: of all.")
+      .field("last_s", &LogNote::last_s, "And of the last.")
+      .field("found", &LogNote::found, "What it is.")
+      .field("effect", &LogNote::effect, "What it does to the result.")
+      .field("advice", &LogNote::advice, "What to do.")
+      .comparable()
+      .finish();
+}
+
+}  // namespace
+
+void define_check(py::module_& module) {
+  define_parts(module);
+  BoundStruct<Checked>(module, "FlightCheck", "What a log is, and what that does to a calibration.")
+      .field("model", &Checked::check, &FlightCheck::model, "")
+      .field("file", &Checked::check, &FlightCheck::file, "Of the flight.")
+      .field("refused", &Checked::check, &FlightCheck::refused,
+             "What a fit would refuse it with; empty: it would not.")
+      .field("duration", &Checked::check, &FlightCheck::duration, "[s]")
+      .field("rate", &Checked::check, &FlightCheck::rate, "Rows a second [Hz].")
+      .field("columns", &Checked::check, &FlightCheck::columns, "")
+      .field("notes", &Checked::check, &FlightCheck::notes, "Worst first.")
+      .field("json", &Checked::json, "")
+      .field("text", &Checked::text, "What print() shows: the app's page.")
+      .copied()
+      .finish();
+  module.def("check", &check_flight);
+}
+
+}  // namespace sepcal::bindings

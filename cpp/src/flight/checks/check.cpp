@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/checks/clock.hpp"
+#include "flight/checks/cross_checks.hpp"
+#include "flight/checks/excitation.hpp"
+#include "flight/checks/samples.hpp"
+#include "flight/checks/spikes.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace checks;  // this room's own
+
+namespace {
+
+/// A column as it was logged, whatever the probe makes of it.
+ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
+  ColumnCheck described{.header = column.header};
+  std::vector<double> values;
+  std::ranges::copy_if(column.values, std::back_inserter(values),
+                       [](double value) { return std::isfinite(value); });
+  described.missing = column.values.size() - values.size();
+  if (!values.empty()) {
+    const auto [least, largest] = std::ranges::minmax(values);
+    described.least = least;
+    described.largest = largest;
+    described.median = checks::median(std::move(values));
+  }
+  const auto read = std::ranges::find(log.columns(), column.header, &LoggedColumn::header);
+  const auto time = files::find_quantity(log.flight(), "time", files::UnitKind::time);
+  const bool is_time = time && time->column->header == column.header;
+  const Sequence sequence =
+      read != log.columns().end() ? read->sequence : find_sequence(column.values, log.stretches());
+  if (read != log.columns().end()) described.quantity = read->quantity;
+  if (is_time) described.quantity = "time";
+  described.step = sequence.step;
+  described.repeated = sequence.repeated;
+  described.rate = 1 / (log.interval() * sequence.rows_per_sample());
+  return described;
+}
+
+/// What a fit would make of the flight.
+void describe_use(const Probe& probe, const Flight& flight, FlightCheck& check) {
+  try {
+    const ProbeRecord prepared = probe.prepare(flight, false);
+    check.rows_used = prepared.rows_used();
+    check.segments = prepared.record.segments().size();
+  } catch (const Error& error) {
+    check.refused = error.what();
+  }
+}
+
+}  // namespace
+
+FlightCheck check(const Probe& probe, const Flight& flight) {
+  FlightCheck check{.model = std::string(probe.name()),
+                    .app = std::string(probe.app()),
+                    .file = flight.name(),
+                    .sha256 = flight.sha256(),
+                    .rows = flight.rows()};
+  describe_use(probe, flight, check);
+  const Log log(probe.name(), flight);
+  check.rate = 1 / log.interval();
+  if (std::isfinite(check.rate)) {
+    std::vector<double> stamps;
+    std::ranges::copy_if(log.time(), std::back_inserter(stamps),
+                         [](double time) { return std::isfinite(time); });
+    const auto [first, last] = std::ranges::minmax(stamps);
+    check.duration = last - first;
+  }
+  for (const Flight::Column& column : flight.columns()) {
+    check.columns.push_back(describe_column(column, log));
+  }
+  const Settings settings = probe.settings();
+  check_across(log, settings, check.notes);
+  check_excitation(log, settings, check.notes);
+  check_samples(log, check.notes);
+  check_clock(log, check.notes);
+  check_spikes(log, check.notes);
+  std::ranges::stable_sort(check.notes, {}, &LogNote::concern);
+  return check;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/checks/cross_checks.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "flight/checks/axes.hpp"
+#include "flight/probes/plausible_readings.hpp"
+
+namespace sepcal::checks {
+namespace {
+
+using Eigen::Matrix3Xd;
+using files::Unit;
+
+/// What two measures of one quantity may differ by: a wind of a third of the airspeed, say.
+constexpr double least_ratio = 0.6;
+constexpr double largest_ratio = 1.6;
+
+/// The unit in which the readings would be nearest to what they are held against, where one brings
+/// them within a quarter; nothing else. `ratio`: theirs, in the unit of their header.
+const Unit* guess_unit(const Unit& header, double ratio) {
+  const Unit* nearest = nullptr;
+  double least = std::log(1.25);
+  for (const Unit& unit : files::known_units(header.kind)) {
+    const double error = std::abs(std::log(ratio * unit.convert(1.0) / header.convert(1.0)));
+    if (&unit == &header || error > least) continue;
+    nearest = &unit;
+    least = error;
+  }
+  return nearest;
+}
+
+/// "vn_kt" for vn_mps.
+std::string renamed(const std::string& header, const Unit& unit) {
+  return header.substr(0, header.rfind('_') + 1) + std::string(unit.suffix);
+}
+
+void note_speeds(const Log& log, std::vector<LogNote>& notes) {
+  const std::vector<double> ground = find_ground_speed(log);
+  const auto airspeed = find_airspeed(log);
+  if (ground.empty() || !airspeed) return;
+  std::vector<double> ratios;
+  for (const std::size_t row : find_moving_rows(ground, 0.3)) {
+    const double ratio = airspeed->values[row] / ground[row];
+    if (std::isfinite(ratio)) ratios.push_back(ratio);
+  }
+  const double ratio = median(std::move(ratios));
+  if (std::isnan(ratio) || (ratio >= least_ratio && ratio <= largest_ratio)) return;
+  const LoggedColumn* read = log.find("airspeed");
+  const LoggedColumn* north = log.find("vn");
+  const Unit* reads = read == nullptr ? nullptr : guess_unit(*read->logged.unit, ratio);
+  const Unit* moves = guess_unit(*north->logged.unit, 1 / ratio);
+  std::vector<std::string> columns = airspeed->headers;
+  columns.push_back(north->header());
+  columns.push_back(log.find("ve")->header());
+  LogNote note = note_on(log, "units", Concern::wrong, std::move(columns));
+  note.found =
+      fmt::format("{} is usually {:.3g} times the speed over the ground",
+                  read != nullptr ? read->header() : "the airspeed of the pressures", ratio);
+  note.effect = fmt::format("the scale of the airspeed comes out {:.2g} times what it is", ratio);
+  std::vector<std::string> renamings;
+  std::vector<std::string> slips;
+  for (const auto& [column, unit] : {std::pair(read, reads), std::pair(north, moves)}) {
+    if (unit == nullptr) continue;
+    slips.push_back(fmt::format("{} under the header {}", unit->suffix, column->header()));
+    renamings.push_back(fmt::format("rename {} to {}{}", column->header(),
+                                    renamed(column->header(), *unit),
+                                    column == north ? " and so on" : ""));
+  }
+  if (slips.empty()) {
+    note.advice = "check the units of both; a wind alone would have to be strong";
+  } else {
+    note.found += fmt::format(": as {} would be", fmt::join(slips, ", or "));
+    note.advice = fmt::format("check the unit: {}", fmt::join(renamings, ", or "));
+  }
+  notes.push_back(std::move(note));
+}
+
+/// The readings' strength in units of the true field's, by measures of which none needs what
+/// another does: as it stands (hard iron adds to it), by their ellipsoid (which takes readings all
+/// round), by how they follow the true field (which takes an attitude).
+std::vector<double> find_strength_ratios(const FieldRows& field) {
+  const Eigen::VectorXd strengths = field.read.colwise().norm();
+  std::vector<double> ratios{median({strengths.begin(), strengths.end()}) / field.strength};
+  const Eigen::MatrixX3d columns = field.read.transpose();
+  const probes::Points points = points_of(columns);
+  if (const auto ellipsoid = probes::fit_ellipsoid(points)) {
+    const probes::Coverage coverage = probes::judge_coverage(points, *ellipsoid);
+    if (coverage.one_sided < 0.5 && coverage.thinnest > 0.05) {
+      ratios.push_back(ellipsoid->radius() / field.strength);
+    }
+  }
+  if (field.truth.cols() > 0) {
+    const Matrix3Xd m = field.read.colwise() - field.read.rowwise().mean();
+    const Matrix3Xd h = field.truth.colwise() - field.truth.rowwise().mean();
+    const double slope = m.norm() / h.norm();  // whichever way the axes point
+    if (std::isfinite(slope)) ratios.push_back(slope);
+  }
+  return ratios;
+}
+
+/// A unit that is wrong is so by every measure.
+void note_strength(const Log& log, const FieldRows& field, std::vector<LogNote>& notes) {
+  if (field.read.cols() == 0 || !(field.strength > 0)) return;
+  const std::vector<double> ratios = find_strength_ratios(field);
+  const double ratio =
+      *std::ranges::min_element(ratios, {}, [](double r) { return std::abs(std::log(r)); });
+  if (!(ratio < least_ratio || ratio > largest_ratio)) return;
+  const Unit* unit = guess_unit(*field.unit, ratio);
+  LogNote note = note_on(log, "units", Concern::wrong, field.headers);
+  note.found = fmt::format(
+      "the readings of {} are {:.3g} uT strong, {:.3g} times the true field's "
+      "{:.3g} uT",
+      list_headers(field.headers), ratio * field.strength, ratio, field.strength);
+  if (unit != nullptr) {
+    note.found +=
+        fmt::format(": as {} under the header {} would be", unit->suffix, field.headers.front());
+  }
+  note.effect = fmt::format("scale errors come out near {:.2g}, or at their bounds", ratio - 1);
+  note.advice = unit != nullptr ? fmt::format("check the unit: rename them to {} and so on",
+                                              renamed(field.headers.front(), *unit))
+                                : "check the unit of the readings; the true field is to be given "
+                                  "in uT, not in nT or gauss";
+  notes.push_back(std::move(note));
+}
+
+void note_field_axes(const Log& log, const FieldRows& field, std::vector<LogNote>& notes) {
+  const auto better = find_field_axes(field.read, field.truth);
+  if (!better) return;
+  LogNote note = note_on(log, "axes", Concern::wrong, field.headers);
+  note.found = fmt::format(
+      "{} follow the true field as ({}): correlation {:.2f} against {:.2f} as they stand",
+      list_headers(field.headers), better->axes, better->agreement, better->agreement_as_logged);
+  note.effect = "no calibration turns axes that far: misalignments end at their bounds";
+  note.advice = "swap the columns or their signs in the log so; or check the attitude's signs";
+  notes.push_back(std::move(note));
+}
+
+void note_track_axes(const Log& log, std::vector<LogNote>& notes) {
+  const auto velocity = log.find_all({"vn", "ve"});
+  const auto* yaw = log.find("yaw");
+  if (velocity.empty() || yaw == nullptr) return;
+  std::vector<std::array<double, 3>> moving;  // north, east, yaw
+  for (const std::size_t row : find_moving_rows(find_ground_speed(log), 0.3)) {
+    const std::array at{velocity[0]->values[row], velocity[1]->values[row], yaw->values[row]};
+    if (std::isfinite(at[2])) moving.push_back(at);
+  }
+  const auto better = find_track_axes(moving);
+  if (!better) return;
+  LogNote note = note_on(log, "axes", Concern::wrong,
+                         {velocity[0]->header(), velocity[1]->header(), yaw->header()});
+  note.found = fmt::format("the motion does not go where {} points (agreement {:.2f} of 1)",
+                           yaw->header(), better->agreement_as_logged);
+  note.effect = "the wind and the angles come out wrong";
+  if (better->axes.empty()) {
+    note.advice = fmt::format("check the unit and the sense of {}, and the frame of the velocity",
+                              yaw->header());
+  } else {
+    note.found += fmt::format("; with {} in the place of vn, ve it would ({:.2f})", better->axes,
+                              better->agreement);
+    note.advice = "swap the columns or their signs in the log so; or check the sense of the yaw";
+  }
+  notes.push_back(std::move(note));
+}
+
+/// Readings that no flight has, but for columns of which a note says more already.
+void note_implausible(const Log& log, std::vector<LogNote>& notes) {
+  const auto find = [&](std::string_view quantity) -> std::optional<probes::Reading> {
+    const LoggedColumn* column = log.find(quantity);
+    if (column == nullptr) return std::nullopt;
+    probes::Reading reading{column->header(), std::nullopt, {}};
+    if (column->logged.unit->is_inside()) reading.relabel = column->kind();
+    reading.values = column->logged.values();
+    const auto bad = [](double value) { return !std::isfinite(value); };
+    if (std::ranges::any_of(reading.values, bad)) return std::nullopt;
+    return reading;
+  };
+  for (const probes::Implausible& found : probes::find_implausible(find)) {
+    const bool said = std::ranges::any_of(notes, [&](const LogNote& note) {
+      return note.kind == "units" && std::ranges::any_of(found.headers, [&](const auto& header) {
+               return std::ranges::find(note.columns, header) != note.columns.end();
+             });
+    });
+    if (said) continue;
+    LogNote note = note_on(log, "implausible", Concern::wrong, found.headers);
+    const std::size_t way_out = found.sentence.find("; ");
+    note.found = found.sentence.substr(0, way_out);
+    note.effect = "a fit takes the readings as they stand, in the header's unit";
+    note.advice = found.sentence.substr(way_out + 2);
+    notes.push_back(std::move(note));
+  }
+}
+
+}  // namespace
+
+void check_across(const Log& log, const Settings& settings, std::vector<LogNote>& notes) {
+  note_speeds(log, notes);
+  note_track_axes(log, notes);
+  if (const auto field = find_field(log, settings)) {
+    note_strength(log, *field, notes);
+    note_field_axes(log, *field, notes);
+  }
+  note_implausible(log, notes);
+}
+
+}  // namespace sepcal::checks

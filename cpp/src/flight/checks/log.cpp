@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/checks/log.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/gaps.hpp"
+#include "numerics/residual_curves.hpp"
+
+namespace sepcal::checks {
+namespace {
+
+using files::UnitKind;
+
+/// Rows in which time goes on by at least one interval and no gap, under one label.
+std::vector<Segment> find_stretches(std::span<const double> time,
+                                    std::span<const std::string> labels) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (time[i] > time[i - 1]) intervals.push_back(time[i] - time[i - 1]);
+  }
+  const double gap = base::find_gap(std::move(intervals));
+  std::vector<Segment> stretches;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const bool goes_on = i > 0 && time[i] > time[i - 1] && time[i] - time[i - 1] <= gap &&
+                         (labels.empty() || labels[i] == labels[i - 1]);
+    if (!goes_on) stretches.push_back({"", i, i});
+    stretches.back().last = i + 1;
+  }
+  std::erase_if(stretches, [](const Segment& stretch) { return stretch.rows() < 2; });
+  return stretches;
+}
+
+/// Jumps of a whole turn taken out; what is no number stays where it is.
+void unwrap(std::vector<double>& angles) {
+  double before = not_a_number;
+  for (double& angle : angles) {
+    if (!std::isfinite(angle)) continue;
+    if (std::isfinite(before)) {
+      const double turns = std::round((angle - before) / (2 * std::numbers::pi));
+      angle -= turns * 2 * std::numbers::pi;  // nothing, bit for bit, where there is no jump
+    }
+    before = angle;
+  }
+}
+
+/// Whether a fit of the model takes the quantity: a tube needs no attitude, a field's strength
+/// alone none and no true field, and no magnetometer body rates.
+bool is_used(std::string_view model, const probes::ProbeQuantity& quantity) {
+  if (model == "magnetometer-norm") return quantity.name.starts_with('m');
+  if (model == "magnetometer") return quantity.kind != UnitKind::rate;
+  if (model == "pitot-static") {
+    return quantity.kind != UnitKind::rate && quantity.kind != UnitKind::angle;
+  }
+  return true;
+}
+
+}  // namespace
+
+Log::Log(std::string_view model, const Flight& flight) : flight_(flight) {
+  time_ = files::read_quantity(flight, "time", UnitKind::time);
+  stretches_ = find_stretches(time_, flight.maneuvers());
+  for (const probes::ProbeQuantity& quantity : probes::quantities_of(model)) {
+    if (quantity.kind == UnitKind::time) continue;
+    const auto logged = files::find_quantity(flight, quantity.name, quantity.kind);
+    if (!logged) continue;
+    LoggedColumn column{quantity.name, *logged, logged->values(), {}, true};
+    if (quantity.kind == UnitKind::angle) unwrap(column.values);
+    column.sequence = find_sequence(logged->column->values, stretches_);
+    column.used = is_used(model, quantity);
+    columns_.push_back(std::move(column));
+  }
+}
+
+double Log::interval() const {
+  double seconds = 0.0;
+  double steps = 0.0;
+  for (const Segment& stretch : stretches_) {
+    seconds += time_[stretch.last - 1] - time_[stretch.first];
+    steps += static_cast<double>(stretch.rows() - 1);
+  }
+  return steps == 0.0 ? not_a_number : seconds / steps;
+}
+
+const LoggedColumn* Log::find(std::string_view quantity) const {
+  const auto found = std::ranges::find(columns_, quantity, &LoggedColumn::quantity);
+  return found == columns_.end() ? nullptr : &*found;
+}
+
+std::vector<const LoggedColumn*> Log::find_all(
+    std::initializer_list<std::string_view> names) const {
+  std::vector<const LoggedColumn*> found;
+  for (const std::string_view name : names) {
+    const LoggedColumn* column = find(name);
+    if (column == nullptr) return {};
+    found.push_back(column);
+  }
+  return found;
+}
+
+LogNote note_on(const Log& log, std::string_view kind, Concern concern,
+                std::vector<std::string> columns, std::span<const std::size_t> rows) {
+  LogNote note{.kind = std::string(kind), .concern = concern, .columns = std::move(columns)};
+  note.rows = rows.empty() ? log.flight().rows() : rows.size();
+  if (rows.empty() || log.time().empty()) return note;
+  note.first_s = log.time()[rows.front()];
+  note.last_s = log.time()[rows.back()];
+  return note;
+}
+
+std::string name_row(const Log& log, std::size_t row) {
+  return log.flight().locate(row).substr(log.flight().name().size() + 1);
+}
+
+std::string list_headers(const std::vector<std::string>& headers) {
+  return fmt::format("{}", fmt::join(headers, ", "));
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return not_a_number;
+  std::ranges::sort(values);
+  return numerics::quantile(values, 0.5);
+}
+
+}  // namespace sepcal::checks

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Of a check's notes, those that a fit shows.
+#include <fmt/format.h>
+
+#include "sepcal/flight/check.hpp"
+
+namespace sepcal {
+
+std::vector<std::string> brief_notes(const FlightCheck& check) {
+  constexpr std::size_t most = 6;
+  std::vector<std::string> lines;
+  std::size_t hidden = 0;
+  for (const LogNote& note : check.notes) {
+    if (note.concern == Concern::slight || note.kind == "implausible") continue;
+    if (lines.size() == most) {
+      ++hidden;
+    } else {
+      lines.push_back(
+          fmt::format("{}: {}; {}; {}", check.file, note.found, note.effect, note.advice));
+    }
+  }
+  if (hidden > 0) {
+    const std::string command =
+        check.sha256.empty() ? "sepcal.check()" : fmt::format("{} check {}", check.app, check.file);
+    lines.push_back(fmt::format("{} more: {}", hidden, command));
+  }
+  return lines;
+}
+
+}  // namespace sepcal

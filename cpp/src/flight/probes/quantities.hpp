@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What each probe reads of a log: its quantities by the base name of their columns.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "flight/files/units.hpp"
+
+namespace sepcal::probes {
+
+/// A quantity of a probe: the base name of its column and what kind of unit follows it.
+struct ProbeQuantity {
+  std::string_view name;
+  files::UnitKind kind;
+  bool is_driver = false;  // may drive effects too, then under its whole header
+};
+
+/// Of the model by that name, needed or not. Throws Error where there is no such model.
+std::span<const ProbeQuantity> quantities_of(std::string_view model);
+
+}  // namespace sepcal::probes

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a log is, before anything is fitted, and what that does to a calibration from it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from sepcal import _core
+from sepcal.flight import Flight
+from sepcal.models import Model
+from sepcal.pages import Page, Row
+
+
+class FlightCheck(Page, _core.FlightCheck):
+    """A log, column by column, and notes. `print(check)` shows the page."""
+
+    _shown = ("concern", "found", "effect", "advice")
+
+    @property
+    def explained(self) -> str:
+        """The same page: it hides nothing."""
+        return self.text
+
+    def to_json(self) -> str:
+        """The JSON that the app's check prints."""
+        return self.json
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary; None where a number is undefined."""
+        read: dict[str, Any] = json.loads(self.json)
+        return read
+
+    def _summary(self) -> str:
+        count = f"{len(self.notes)} note{'' if len(self.notes) == 1 else 's'}"
+        refused = "a fit would refuse it, " if self.refused else ""
+        return f"{self.model} on {self.file}: {refused}{count}"
+
+    def _rows(self) -> list[Row]:
+        return [note._asdict() for note in self.notes]
+
+
+def check(model: Model, flight: Flight) -> FlightCheck:
+    """What a log is, column by column, and what that does to a calibration from it.
+
+    Nothing is fitted, and a log that a fit would refuse is described all the same.
+
+    Args:
+        model: FiveHoleProbe, PitotStatic or Magnetometer, as for the fit.
+        flight: The log.
+
+    Returns:
+        A FlightCheck: `columns`, `notes` (worst first; each with what it is, what it does to the
+        result, what to do), `refused` (what a fit would say instead of fitting; empty: nothing).
+
+    Raises:
+        Error: A model that takes no flight.
+    """
+    if not isinstance(model, Model) or not isinstance(flight, Flight):
+        raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
+    return FlightCheck(_core.check(model._core, flight._core))
