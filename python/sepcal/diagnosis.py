@@ -58,7 +58,6 @@ class EffectFinding:
             self.status, "can't be seen"
         )
 
-
     @property
     def beside_in_words(self) -> str:
         """What becomes of it beside the first found, as tables show it."""

@@ -23,7 +23,8 @@ KEYS = {
         "rmse",
         "advice",
     ),
-    *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "limits", "missing_channels"),
+    *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "limits"),
+    "missing_channels",
 }
 EFFECT_KEYS = {
     *("name", "sentence", "drivers", "estimate", "standard_error", "unit", "shapes", "p_value"),

@@ -36,9 +36,8 @@ Trials Bench::make(const std::vector<std::string>& names) {
     try {
       Trial trial{.candidate = room_.make(name)};
       trial.slow = is_slow(room_, trial.candidate);
-      const bool twice = std::ranges::any_of(trials, [&](const Trial& other) {
-        return other.candidate.name == trial.candidate.name;
-      });
+      const bool twice = std::ranges::any_of(
+          trials, [&](const Trial& other) { return other.candidate.name == trial.candidate.name; });
       if (!twice) trials.push_back(std::move(trial));
     } catch (const Error&) {
       continue;  // the record doesn't have what it takes

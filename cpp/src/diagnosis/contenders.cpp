@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::size_t most_fitted = 8;
 constexpr std::size_t most_pairs = 12;
-constexpr double worth_a_fit = 0.01;       // p, of what was not found
-constexpr double hardly_worse = 2.0;       // in the criterion
-constexpr std::size_t most_beside = 12;    // asked beside the first
-constexpr double counts_below = 0.01;      // p beside the first, over their number
+constexpr double worth_a_fit = 0.01;     // p, of what was not found
+constexpr double hardly_worse = 2.0;     // in the criterion
+constexpr std::size_t most_beside = 12;  // asked beside the first
+constexpr double counts_below = 0.01;    // p beside the first, over their number
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -201,8 +201,8 @@ void test_beside(Bench& bench, const Contender& first, Findings& findings) {
   beside.hold_out_significant(trials);
   beside.calibrate_significant(trials, threshold);
   for (const Trial& trial : trials) {
-    const bool counts =
-        trial.visible && trial.log10_p < threshold && trial.held_out.judged && trial.held_out.passed;
+    const bool counts = trial.visible && trial.log10_p < threshold && trial.held_out.judged &&
+                        trial.held_out.passed;
     finding_of(findings, trial.candidate.name).beside = counts ? Beside::counts : Beside::fades;
   }
 }

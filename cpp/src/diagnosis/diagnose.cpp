@@ -135,8 +135,7 @@ void Recipe::settle() {
   const Contest contest = fit_contenders(bench_, result_.effects);
   const Contender* first = put_first(contest, options_.preferred, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
-  result_.pairs =
-      keep_as_likely(bench_, contest, find_pair_set(bench_, trials_, contest.noise));
+  result_.pairs = keep_as_likely(bench_, contest, find_pair_set(bench_, trials_, contest.noise));
   for (const Trial& trial : trials_) {
     if (trial.candidate.name == result_.effects.front().name) {
       result_.floor = std::min(result_.floor, trial.floor);
@@ -150,7 +149,8 @@ void Recipe::advise() {
   std::size_t fitted = 0;
   for (const EffectFinding& finding : result_.effects) {
     if (finding.status != FindingStatus::found || fitted++ == most_fitted) return;
-    const std::string reason = reason_against(bench_.room(), finding, options_.least_visibility, pool_);
+    const std::string reason =
+        reason_against(bench_.room(), finding, options_.least_visibility, pool_);
     if (reason.empty()) {
       result_.advice.effect = finding.name;
       return;
@@ -181,15 +181,16 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     advise();
   } else {
     bench_.report_progress("looking for structure", 0.0);
-    result_.omnibus = test_for_structure(bench_.room(), fitted_.kit, bench_.null(), options_, pool_);
+    result_.omnibus =
+        test_for_structure(bench_.room(), fitted_.kit, bench_.null(), options_, pool_);
     if (result_.omnibus.p_value < options_.unexplained_below) {
       result_.verdict = Verdict::unexplained;
     } else if (has(FindingStatus::slow_change)) {
       result_.verdict = Verdict::slow_change;
     }
   }
-  result_.limits = find_limits(bench_.room(), fitted_.kit, bench_.null(), options_.significance,
-                               trials_.size());
+  result_.limits =
+      find_limits(bench_.room(), fitted_.kit, bench_.null(), options_.significance, trials_.size());
   return result_;
 }
 

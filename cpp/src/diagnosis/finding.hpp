@@ -11,7 +11,8 @@ namespace sepcal::diagnosis {
 /// The fit's linearisation, factorised once: what an effect left out does to the parameters.
 using Tangent = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
 
-/// All but what depends on the other trials: the adjusted probabilities, `found`, what it is beside the first.
+/// All but what depends on the other trials: the adjusted probabilities, `found`, what it is beside
+/// the first.
 EffectFinding describe(const CandidateRoom& room, const Tangent& tangent, const Trial& trial);
 
 }  // namespace sepcal::diagnosis

@@ -77,7 +77,7 @@ class Explained {
   }
 
  private:
-  std::vector<Index> first_;  // column of each cause, behind the residual
+  std::vector<Index> first_;   // column of each cause, behind the residual
   std::vector<double> scans_;  // penalty for each cause's shapes
   MatrixXd products_;
   double penalty_ = 0.0;  // of a direction

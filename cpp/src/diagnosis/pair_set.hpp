@@ -16,8 +16,8 @@ struct Pair {
   double shape = not_a_number;  // where one of the two was scanned
 };
 
-/// Pairs of the surest trials, best first, whose Schwarz criterion is within 9.2 of the least that a
-/// single trial or a pair has in this noise; by one step from the fit.
+/// Pairs of the surest trials, best first, whose Schwarz criterion is within 9.2 of the least that
+/// a single trial or a pair has in this noise; by one step from the fit.
 std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials,
                                 const NoiseMembers& noise);
 

@@ -44,7 +44,7 @@ struct Trial {
   double predicted_drop = 0.0;
   HeldOut held_out = {};
   Folds folds = {};
-  Eigen::VectorXd absorbed = {};       // shift of each column of the tangent
+  Eigen::VectorXd absorbed = {};  // shift of each column of the tangent
 };
 
 /// The trial's columns at a shape, beside the tangent.

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The study of trust: what is called found on noise that nobody fitted, what large effects do,
-whether fits end in the lowest minimum and whether standard errors hold.
+"""The study of trust: verdicts, minima and standard errors under noise that nobody fitted.
 
 Every trial is a line in a file; a run takes up where the lines end, and files of several machines
 may be joined by `cat`.
@@ -39,7 +38,12 @@ def _options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--part", choices=tuple(PARTS), nargs="*", default=list(PARTS))
     parser.add_argument("--sigmas", type=float, nargs="*", default=[5.0, 10.0, 30.0, 100.0, 300.0])
     parser.add_argument("--noise", nargs="*", default=list(NOISES), help="of the null flights")
-    parser.add_argument("--rows", type=int, nargs="*", help="of null flights (400), and of those for errors (400, 4000)")
+    parser.add_argument(
+        "--rows",
+        type=int,
+        nargs="*",
+        help="of null flights (400), and of those for errors (400, 4000)",
+    )
     parser.add_argument("-o", "--output", type=Path, default=Path("trust.jsonl"))
 
 

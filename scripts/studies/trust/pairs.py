@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two causes at once, some of them behind a channel that goes with both: does what is said hold
-the two?"""
+"""Two causes at once, some behind a channel that goes with both: are the two named?"""
 
 from __future__ import annotations
 

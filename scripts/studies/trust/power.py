@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether effects are found and come first, what the advice does to the probe's parameters, and
-whether what would do as well instead does so.
+"""Whether effects are found and come first, and what comes of adding what is advised.
 
 First is the true effect, or one that explains as much when it is added in its place.
 """
@@ -73,8 +72,7 @@ def _try(key: Key) -> Row:
 
 
 def _harm(base: Calibration, better: Calibration, truth: dict[str, float]) -> float:
-    """How much further from the truth the worst of the probe's parameters is than before, in
-    standard errors of after."""
+    """How much further from the truth the worst parameter is, in standard errors of after."""
     moves = [
         (abs(better[name].value - truth[name]) - abs(before.value - truth[name]))
         / better[name].standard_error
@@ -130,7 +128,9 @@ def _advice(rows: Sequence[Row]) -> list[Finding]:
     harmed = Counter(row["effect"] for row in given if row["harm"] > 2.0)
     names = ", ".join(f"{name} ({n})" for name, n in sorted(harmed.items()))
     wrongly = sum(
-        row["first"] and not row["advice"] and bool(row["withheld"]) for row in rows if "first" in row
+        row["first"] and not row["advice"] and bool(row["withheld"])
+        for row in rows
+        if "first" in row
     )
     return [
         Finding(
@@ -139,7 +139,7 @@ def _advice(rows: Sequence[Row]) -> list[Finding]:
             "none",
             not harmed,
         ),
-        Finding("advice withheld though the true effect came first", f"{wrongly}", "reported", True),
+        Finding(said, f"{wrongly} of {len(firsts)}", "reported", True),
     ]
 
 

@@ -98,8 +98,9 @@ std::string name_line(std::string_view what, const std::vector<std::string>& nam
   constexpr std::size_t most = 8;
   if (names.empty()) return {};
   const std::size_t shown = std::min(most, names.size());
-  std::string line = fmt::format("  {}: {}", what,
-                                 fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), between));
+  std::string line = fmt::format(
+      "  {}: {}", what,
+      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), between));
   if (names.size() > shown) line += fmt::format(" and {} more", names.size() - shown);
   return line + '\n';
 }
@@ -110,7 +111,8 @@ std::string beside_rows(const Diagnosis& diagnosis) {
   return name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent), ", ") +
          name_line("fades once it is added", list_beside(diagnosis, Beside::fades), ", ") +
          name_line("counts beside it", list_beside(diagnosis, Beside::counts), ", ") +
-         name_line(is_pair ? "pairs that explain it as well" : "or two causes at once, one of these pairs",
+         name_line(is_pair ? "pairs that explain it as well"
+                           : "or two causes at once, one of these pairs",
                    diagnosis.pairs, ", ");
 }
 

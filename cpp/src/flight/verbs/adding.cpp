@@ -75,8 +75,8 @@ Calibration refit(const Calibration& base, const PreparedFlight& prepared,
 
 /// The base as it would be of this flight: an effect must not be praised for what a new wind
 /// brings.
-Calibration refit_to(const Calibration& base, const PreparedFlight& prepared,
-                     const OwnEffects& own, const FitProgress& progress) {
+Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,
+                     const FitProgress& progress) {
   Calibration here = calibrate(base.probe, prepared, options_from(base, own, progress));
   here.history = base.history;
   here.notes = {fmt::format(
