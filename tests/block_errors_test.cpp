@@ -39,7 +39,7 @@ template <class Model>
 MatrixXd refit_without_blocks(const Model& model, Record record, const Fit& fit,
                               const VectorXd& residual, FitOptions options) {
   const auto rows = residual.size();
-  const int blocks = choose_blocks(rows, find_memory(residual, sepcal::find_runs(record)));
+  const int blocks = choose_blocks(rows, find_memory(residual));
   REQUIRE(blocks >= 8);
   const std::vector<Index> first = cut_blocks(rows, blocks);
   for (const sepcal::Parameter& parameter : fit.parameters) {
@@ -110,13 +110,12 @@ TEST_CASE("of a bent model a step is a refit to some per cent, with a robust los
 
 TEST_CASE("the memory of a residual is the textbook's for AR(1), and 1 for white noise") {
   Draws draws(13);
-  const std::vector<Segment> runs{{"", 0, 20'000}, {"", 20'000, 40'000}};
-  const double white = find_memory(draw_noise("white", 40'000, draws), runs);
-  const double slow = find_memory(draw_autoregression(0.9, 40'000, draws), runs);
+  const double white = find_memory(draw_noise("white", 40'000, draws));
+  const double slow = find_memory(draw_autoregression(0.9, 40'000, draws));
   CHECK(white < 2.0);        // the largest of several estimates of 1
   CHECK(slow > 0.7 * 19.0);  // (1 + 0.9) / (1 - 0.9)
   CHECK(slow < 1.9 * 19.0);
-  CHECK(find_memory(VectorXd::Zero(100), {{"", 0, 100}}) == 1.0);
+  CHECK(find_memory(VectorXd::Zero(100)) == 1.0);
 }
 
 TEST_CASE("blocks share the rows out, and are as many as the noise allows") {
@@ -144,6 +143,31 @@ TEST_CASE("what one block alone determines has no block error, the others keep t
   CHECK(std::isnan(fit["s"].standard_error_blocks));
   CHECK(std::isfinite(fit["s"].standard_error));
   CHECK(fit["c"].standard_error_blocks == Approx(fit["c"].standard_error).epsilon(0.5));
+}
+
+TEST_CASE("blocks are believed where gaps hide slow noise from the noise model, and it is said") {
+  // Levels of 120 rows each, in runs of 12 that a noise model takes for independent.
+  constexpr Index rows = 1200;
+  Draws draws(15);
+  const VectorXd levels = draw_noise("white", rows / 120, draws);
+  VectorXd z = 0.3 * draw_noise("white", rows, draws);
+  std::vector<double> time;
+  for (Index t = 0; t < rows; ++t) {
+    z[t] += levels[t / 120];
+    time.push_back(static_cast<double>(t) + 1000.0 * static_cast<double>(t / 12));
+  }
+  Record record;
+  record.add("u", column(VectorXd::LinSpaced(rows, -1.0, 1.0))).add("z", column(z));
+  record.add("time", time).cut(sepcal::find_segments(time, {}));
+  REQUIRE(record.segments().size() == 100);
+  const Fit fit = sepcal::fit(Line{}, record);
+  const sepcal::Parameter& level = fit["c"];
+  CHECK(level.standard_error_blocks > 2.0 * level.standard_error_noise_model);
+  CHECK(level.standard_error == Approx(level.standard_error_blocks));
+  CHECK(level.standard_error == Approx(std::sqrt(fit.covariance(1, 1))));
+  CHECK(fit.message.find("is by blocks of the record") != std::string::npos);
+  CHECK(fit.message.find("gaps cut the record into 100 pieces of about 12 rows") !=
+        std::string::npos);
 }
 
 TEST_CASE("in white noise block errors are those of white noise, on average to some per cent") {

@@ -16,23 +16,15 @@ using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-/// Sum of squares about nothing of the means of `length` rows within runs, and how many there are.
-struct Means {
-  double square = 0.0;
-  Index count = 0;
-};
-
-Means average(const Ref<const VectorXd>& e, const std::vector<Segment>& runs, Index length) {
-  Means means;
-  for (const Segment& run : runs) {
-    const Index last = static_cast<Index>(run.last) - length;
-    for (auto row = static_cast<Index>(run.first); row <= last; row += length) {
-      const double mean = e.segment(row, length).mean();
-      means.square += mean * mean;
-      ++means.count;
-    }
+/// Mean square of the means of `length` rows that follow each other.
+double mean_square(const Ref<const VectorXd>& e, Index length) {
+  const Index count = e.size() / length;
+  double sum = 0.0;
+  for (Index i = 0; i < count; ++i) {
+    const double mean = e.segment(i * length, length).mean();
+    sum += mean * mean;
   }
-  return means;
+  return sum / static_cast<double>(count);
 }
 
 /// A block in coordinates in which the information of all rows and the prior is I.
@@ -84,17 +76,14 @@ double degrees_of_freedom(const std::vector<Share>& shares, const VectorXd& l) {
 
 }  // namespace
 
-double find_memory(const MatrixXd& e, const std::vector<Segment>& runs) {
+double find_memory(const MatrixXd& e) {
   constexpr Index fewest = 16;
   double memory = 1.0;
-  for (Index j = 0; j < e.cols(); ++j) {
-    const Means single = average(e.col(j), runs, 1);
-    const double variance = single.square / static_cast<double>(single.count);
+  for (const auto& column : e.colwise()) {
+    const double variance = mean_square(column, 1);
     if (!(variance > 0.0)) continue;
-    for (Index length = 2;; length *= 2) {
-      const Means means = average(e.col(j), runs, length);
-      if (means.count < fewest) break;
-      const double ratio = means.square / static_cast<double>(means.count) / variance;
+    for (Index length = 2; e.rows() / length >= fewest; length *= 2) {
+      const double ratio = mean_square(column, length) / variance;
       memory = std::max(memory, ratio * static_cast<double>(length));
     }
   }

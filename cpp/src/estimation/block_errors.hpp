@@ -11,14 +11,13 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sepcal/record.hpp"
-
 namespace sepcal::estimation {
 
 /// Rows of a residual that count as one: the largest of the outputs' (columns of e, over their
 /// noise), each the variance of a mean of rows times their number over the variance of a row, for
-/// means of 1, 2, 4, ... rows of a run as long as there are 16 of them. At least 1.
-double find_memory(const Eigen::MatrixXd& e, const std::vector<Segment>& runs);
+/// means of 1, 2, 4, ... rows as long as there are 16 of them, across gaps: what is slow goes on
+/// behind one. At least 1.
+double find_memory(const Eigen::MatrixXd& e);
 
 /// How many blocks to cut `rows` rows into; 0 where a variance can't be told from the few there
 /// would be.

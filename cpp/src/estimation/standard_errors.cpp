@@ -62,7 +62,7 @@ MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, con
   const auto k = static_cast<Index>(covariances.inside.size());
   const std::vector<MatrixXd> tangents = weighted_tangents(problem, sweep, two, covariances);
   const MatrixXd e = residuals_of(tangents);
-  const int blocks = choose_blocks(e.rows(), find_memory(e, sweep.measurements().runs()));
+  const int blocks = choose_blocks(e.rows(), find_memory(e));
   if (blocks == 0 || !e.allFinite()) {
     return MatrixXd::Constant(k, k, std::numeric_limits<double>::quiet_NaN());
   }

@@ -142,10 +142,13 @@ def _summarise(rows: Sequence[Row]) -> list[Finding]:
             if at == 0:
                 figure += f", called a lower bound in {short} of {len(flights)}"
             asked = at == 0 and not told
+            chance = 2.0 * np.sqrt(0.05 * 0.95 / len(flights))  # a flight's intervals go together
             holds = not asked or (
-                all(0.92 <= share <= 0.97 for share in shares) and 0.7 <= halves <= 1.4
+                all(0.92 - chance <= share <= 0.97 + chance for share in shares)
+                and 0.7 - 2.0 * chance <= halves <= 1.4 + 4.0 * chance
             )
-            limits = "92 to 97 %, halves 0.7 to 1.4" if asked else "reported"
+            limits = f"92 to 97 % and {100 * chance:.0f} by chance, halves 0.7 to 1.4"
+            limits = limits if asked else "reported"
             findings.append(Finding(f"{noise}, {length} rows, {way}", figure, limits, holds))
     return findings
 

@@ -127,11 +127,9 @@ def _advice(rows: Sequence[Row]) -> list[Finding]:
     given = [row for row in rows if row.get("advice")]
     harmed = Counter(row["effect"] for row in given if row["harm"] > 2.0)
     names = ", ".join(f"{name} ({n})" for name, n in sorted(harmed.items()))
-    wrongly = sum(
-        row["first"] and not row["advice"] and bool(row["withheld"])
-        for row in rows
-        if "first" in row
-    )
+    firsts = [row for row in rows if row.get("first")]
+    wrongly = sum(not row["advice"] and bool(row["withheld"]) for row in firsts)
+    said = "advice withheld though the true effect came first"
     return [
         Finding(
             "advice that moves a parameter from the truth by over two standard errors",
