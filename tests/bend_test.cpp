@@ -45,9 +45,12 @@ std::string message(double k, sepcal::FitOptions options = {}) {
 
 }  // namespace
 
+/// Whether the message speaks of the bend; of the residual's noise it may.
+bool is_said(const std::string& message) { return message.find("don't hold") != message.npos; }
+
 TEST_CASE("a cost within a factor of two of the parabola's is not spoken of") {
-  CHECK(message(0.0).empty());
-  CHECK(message(0.09).empty());  // 0.53 and 1.61
+  CHECK(!is_said(message(0.0)));
+  CHECK(!is_said(message(0.09)));  // 0.53 and 1.61
 }
 
 TEST_CASE("one that rises by less than half of it on one side is") {
@@ -57,8 +60,8 @@ TEST_CASE("one that rises by less than half of it on one side is") {
 TEST_CASE("nothing is said across a bound, and where nobody asks for standard errors") {
   sepcal::FitOptions options;
   options.bounds["x"] = {-2.0, 2.0};
-  CHECK(message(0.1, options).empty());
+  CHECK(!is_said(message(0.1, options)));
   options = {};
   options.coloured_errors = false;
-  CHECK(message(0.1, options).empty());
+  CHECK(!is_said(message(0.1, options)));
 }
