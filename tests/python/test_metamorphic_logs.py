@@ -72,7 +72,7 @@ def test_rows_thinned_and_a_channel_twice(probe: str, hide: dict[str, list[float
         if not hide:
             continue
         name = whole.effects[0].name
-        assert name in diagnosis.effects[0].family
+        assert name in diagnosis.explanations
         for coefficient, size in whole.effects[0].estimate.items():
             found = diagnosis[name]
             error = max(
