@@ -49,7 +49,7 @@ MatrixXd refit_without_blocks(const Model& model, Record record, const Fit& fit,
   for (const sepcal::OutputValue& noise : fit.noise) options.noise[noise.name] = noise.value;
   const Index n = fit.values().size();
   MatrixXd sum = MatrixXd::Zero(n, n);
-  for (int b = 0; b < blocks; ++b) {
+  for (std::size_t b = 0; b + 1 < first.size(); ++b) {
     const auto from = static_cast<std::size_t>(first[b]);
     const auto to = static_cast<std::size_t>(first[b + 1]);
     std::vector<Segment> kept;

@@ -110,7 +110,9 @@ HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate
                            const Folds& folds, base::ThreadPool& pool) {
   const auto without = room.model();
   const auto with = room.model_with(candidate.effects);
-  const FitOptions base = options_from(room.fitted());
+  constexpr int most_iterations = 30;  // a fold's fit begins at that to all rows
+  FitOptions base = options_from(room.fitted());
+  base.iterations = most_iterations;
   FitOptions extended = with_candidate(base, with->tables(), candidate, shape);
   const auto count = static_cast<std::size_t>(folds.count);
   std::vector<VectorXd> before(count);

@@ -223,8 +223,9 @@ void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& tria
 }
 
 void confirm(const CandidateRoom& room, base::ThreadPool& pool, Trial& trial) {
-  const HeldOut confirmed =
-      hold_out_by_refits(room, trial.candidate, trial.shape, trial.folds, pool);
+  Folds folds = trial.folds;
+  deal_to_few(room.fit().layout, room.columns(trial.candidate, trial.shape), folds);
+  const HeldOut confirmed = hold_out_by_refits(room, trial.candidate, trial.shape, folds, pool);
   if (confirmed.judged) trial.held_out = confirmed;
 }
 
