@@ -69,7 +69,7 @@ TEST_CASE("a column at rest for half of the log is not held") {
 }
 
 TEST_CASE("an interpolated column is told with its true rate, whatever its rows' ratio") {
-  for (const std::size_t rows : {3, 10}) {
+  for (const std::size_t rows : {3U, 10U}) {
     Log log = tube_log();
     interpolate(log["airspeed_mps"], rows);
     const LogNote note = only(check_tube(log), "interpolated");
@@ -165,7 +165,7 @@ TEST_CASE("a few gaps are good to know, a log torn to pieces matters") {
 
 TEST_CASE("single wild readings are counted to the row, steps and bursts are none") {
   Log log = tube_log();
-  for (const std::size_t row : {400, 1300, 2222}) log["airspeed_mps"][row] += 8;
+  for (const std::size_t row : {400U, 1300U, 2222U}) log["airspeed_mps"][row] += 8;
   LogNote note = only(check_tube(log), "outliers");
   CHECK(note.rows == 3);
   CHECK(contains(note.found, "first at row 400"));

@@ -73,7 +73,8 @@ std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
     }
     const std::vector<std::string> held = newly_at_bounds(room.fitted(), fitted);
     if (!held.empty()) {
-      return fmt::format("fitted, it runs into the bounds of {}", fmt::join(held, ", "));
+      return fmt::format("fitted, it runs into the bounds of {}; wider ones may let it",
+                         fmt::join(held, ", "));
     }
     std::string differs = disagreement(finding, fitted);
     if (!differs.empty()) return differs;

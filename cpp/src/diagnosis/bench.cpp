@@ -131,6 +131,8 @@ void Bench::confirm_best(Trials& trials, double threshold) const {
   std::size_t confirmed = 0;
   for (Trial* trial : order) {
     if (trial->held_out.passed || confirmed == most_confirmed) break;
+    report_progress("fitting without some rows",
+                    static_cast<double>(confirmed) / static_cast<double>(most_confirmed));
     confirm(room_, pool_, *trial);
     ++confirmed;
     if (trial->held_out.passed) break;

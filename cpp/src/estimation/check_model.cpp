@@ -124,7 +124,8 @@ void check_same(const Tables& tables, const MatrixXd& once, const MatrixXd& agai
 std::vector<double> steps_to_try(const Variable& parameter, double value) {
   const double width = 0.5 * (parameter.upper - parameter.lower);
   const double size = std::abs(value);
-  if (std::isfinite(width)) return {difference_step * width};
+  // Near a kink, as of a speed over the ground that is the wind's, only the short one is exact.
+  if (std::isfinite(width)) return {difference_step * width, difference_step * width / 32.0};
   if (size == 0.0 || size >= 1.0) return {difference_step * std::max(1.0, size)};
   return {difference_step, difference_step * size};
 }

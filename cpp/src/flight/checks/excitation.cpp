@@ -86,7 +86,7 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
       "wind are pulled";
   note.advice = "leave them out";
   if (!log.time().empty()) {
-    note.advice += fmt::format(": --stage-one {0:.7g}:{1:.7g} --stage-two {0:.7g}:{1:.7g}",
+    note.advice += fmt::format(": --stage-one {0:.12g}:{1:.12g} --stage-two {0:.12g}:{1:.12g}",
                                log.time()[first], log.time()[last]);
   }
   notes.push_back(std::move(note));

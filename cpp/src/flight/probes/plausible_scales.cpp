@@ -42,10 +42,10 @@ void judge_scales(Fit& fit, std::span<const Scale> scales) {
                     fmt::join(lost, ", "), least_scale));
   }
   if (!far.empty()) {
-    say(
-        fmt::format("{}: a scale that is more than {:g} off is mostly a wrong unit or sign in a "
-                    "header, or another minimum",
-                    fmt::join(far, ", "), gross));
+    say(fmt::format(
+        "{} looks like a wrong unit or sign in a header (a scale is seldom more than {:g} "
+        "off), or another minimum",
+        fmt::join(far, ", "), gross));
   }
 }
 

@@ -61,7 +61,7 @@ std::string_view heading(Concern concern) {
 }
 
 std::string note_lines(const FlightCheck& check) {
-  if (check.notes.empty()) return "nothing to note\n";
+  if (check.notes.empty()) return check.refused.empty() ? "nothing to note\n" : "";
   std::string text;
   const LogNote* before = nullptr;
   for (const LogNote& note : check.notes) {
@@ -70,8 +70,8 @@ std::string note_lines(const FlightCheck& check) {
     }
     text += fmt::format("- {}\n", note.found);
     if (std::isfinite(note.first_s)) {
-      text += note.rows == 1 ? fmt::format("    when: {:.7g} s\n", note.first_s)
-                             : fmt::format("    when: {} rows, {:.7g} to {:.7g} s\n", note.rows,
+      text += note.rows == 1 ? fmt::format("    when: {:.12g} s\n", note.first_s)
+                             : fmt::format("    when: {} rows, {:.12g} to {:.12g} s\n", note.rows,
                                            note.first_s, note.last_s);
     }
     text += fmt::format("    so: {}\n    do: {}\n", note.effect, note.advice);

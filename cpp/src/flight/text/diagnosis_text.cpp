@@ -50,7 +50,11 @@ std::string estimates(const EffectFinding& effect) {
                         coefficient.estimate, coefficient.standard_error);
   }
   if (effect.coefficients.size() > most) text += ", ...";
-  return text + " " + effect.coefficients.front().unit;
+  text += " " + effect.coefficients.front().unit;
+  for (const auto& [name, value] : effect.shapes) {
+    text += fmt::format(", {} {:.10g}", name.substr(name.rfind('.') + 1), value);
+  }
+  return text;
 }
 
 std::string effect_rows(const FlightDiagnosis& result) {
@@ -111,8 +115,7 @@ std::string beside_rows(const Diagnosis& diagnosis) {
   return name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent), ", ") +
          name_line("fades once it is added", list_beside(diagnosis, Beside::fades), ", ") +
          name_line("counts beside it", list_beside(diagnosis, Beside::counts), ", ") +
-         name_line(is_pair ? "pairs that explain it as well"
-                           : "or two causes at once, one of these pairs",
+         name_line(is_pair ? "pairs that explain it as well" : "or two causes at once",
                    diagnosis.pairs, ", ");
 }
 

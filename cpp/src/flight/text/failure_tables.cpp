@@ -53,8 +53,8 @@ std::string window_table(const Comparison& comparison) {
   }
   text += '\n';
   for (const Window& window : comparison.windows) {
-    text += fmt::format("{:<24} {:>8}", fmt::format("{:.6g}:{:.6g}", window.first_s, window.last_s),
-                        window.rows);
+    text += fmt::format("{:<24} {:>8}",
+                        fmt::format("{:.12g}:{:.12g}", window.first_s, window.last_s), window.rows);
     for (const OutputValue& rmse : window.rmse) text += fmt::format(" {:>11.4g}", rmse.value);
     for (const OutputValue& mean : window.mean) text += fmt::format(" {:>11.4g}", mean.value);
     text += '\n';

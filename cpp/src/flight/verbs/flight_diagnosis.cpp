@@ -262,6 +262,13 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
         by_time ? "the maneuvers in another order" : slow.drivers.front() + " going the other way");
   }
   const EffectFinding& best = found.effects.front();
+  if (found.advice.effect != best.name && !diagnosis.injection) {
+    return fmt::format(
+        "{} ({}): {}; one step promises {:.0f} % less on rows held out, but a real fit doesn't "
+        "bear "
+        "it out: it is not to be added.",
+        best.name, diagnosis.sentences.front(), left, 100.0 * best.held_out_gain);
+  }
   return fmt::format(
       "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less on rows held out, "
       "{:.0f} % on all).",
