@@ -139,7 +139,7 @@ def test_a_wrong_unit_is_said():
     columns["airspeed_kt"] = columns.pop("airspeed_mps")
     fitted = sepcal.fit(sepcal.PitotStatic(), sepcal.Flight(columns))
     assert fitted["s_va"].value == pytest.approx(0.95 * 1852 / 3600, abs=0.05)
-    assert "mostly a wrong unit or sign in a header" in fitted.message
+    assert "looks like a wrong unit or sign in a header" in fitted.message
 
 
 def test_an_axis_that_is_turned_over_is_no_calibration():

@@ -14,4 +14,12 @@ inline std::string short_number(double value) {
   return text;
 }
 
+/// A time [s], also one since 1970, to a millisecond: "75.7333", "1718874636.100".
+inline std::string stamp(double seconds) {
+  char text[32];
+  const char* format = seconds < 1e5 && seconds > -1e5 ? "%.6g" : "%.3f";
+  std::snprintf(text, sizeof text, format, seconds);
+  return text;
+}
+
 }  // namespace sepcal::base

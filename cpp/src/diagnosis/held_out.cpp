@@ -112,12 +112,6 @@ void judge_interpolated(const RowLayout& layout, const MatrixXd& G, Folds& folds
   for (HeldOutBlock& block : folds.blocks) block.judged = interpolates(layout, G, folds, block);
 }
 
-void deal_to_few(const RowLayout& layout, const MatrixXd& G, Folds& folds) {
-  folds.count = std::min(folds.count, folds.interleaved ? 3 : 6);
-  for (HeldOutBlock& block : folds.blocks) block.fold %= folds.count;
-  judge_interpolated(layout, G, folds);
-}
-
 double correlation_rows(const RowLayout& layout, const VectorXd& residual) {
   constexpr double negligible = 0.05;
   double longest = 1.0;

@@ -36,10 +36,6 @@ Folds interleaved_blocks(const RowLayout& layout, double correlation_rows, int f
 /// by output, within what the other folds span.
 void judge_interpolated(const RowLayout& layout, const Eigen::MatrixXd& G, Folds& folds);
 
-/// Deals the same blocks to fewer folds, for a fold of real fits is dear: three where blocks are
-/// interleaved, six of whole segments.
-void deal_to_few(const RowLayout& layout, const Eigen::MatrixXd& G, Folds& folds);
-
 /// The integrated correlation time of a residual [rows], of its most correlated output.
 double correlation_rows(const RowLayout& layout, const Eigen::VectorXd& residual);
 

@@ -223,9 +223,8 @@ void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& tria
 }
 
 void confirm(const CandidateRoom& room, base::ThreadPool& pool, Trial& trial) {
-  Folds folds = trial.folds;
-  deal_to_few(room.fit().layout, room.columns(trial.candidate, trial.shape), folds);
-  const HeldOut confirmed = hold_out_by_refits(room, trial.candidate, trial.shape, folds, pool);
+  const HeldOut confirmed =
+      hold_out_by_refits(room, trial.candidate, trial.shape, trial.folds, pool);
   if (confirmed.judged) trial.held_out = confirmed;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/short_number.hpp"
 #include "numerics/residual_curves.hpp"
 
 namespace sepcal::checks {
@@ -86,8 +87,8 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
       "wind are pulled";
   note.advice = "leave them out";
   if (!log.time().empty()) {
-    note.advice += fmt::format(": --stage-one {0:.12g}:{1:.12g} --stage-two {0:.12g}:{1:.12g}",
-                               log.time()[first], log.time()[last]);
+    note.advice += fmt::format(": --stage-one {0}:{1} --stage-two {0}:{1}",
+                               base::stamp(log.time()[first]), base::stamp(log.time()[last]));
   }
   notes.push_back(std::move(note));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/short_number.hpp"
 #include "flight/text/number_text.hpp"
 #include "sepcal/flight/check.hpp"
 
@@ -70,9 +71,9 @@ std::string note_lines(const FlightCheck& check) {
     }
     text += fmt::format("- {}\n", note.found);
     if (std::isfinite(note.first_s)) {
-      text += note.rows == 1 ? fmt::format("    when: {:.12g} s\n", note.first_s)
-                             : fmt::format("    when: {} rows, {:.12g} to {:.12g} s\n", note.rows,
-                                           note.first_s, note.last_s);
+      text += note.rows == 1 ? fmt::format("    when: {} s\n", base::stamp(note.first_s))
+                             : fmt::format("    when: {} rows, {} to {} s\n", note.rows,
+                                           base::stamp(note.first_s), base::stamp(note.last_s));
     }
     text += fmt::format("    so: {}\n    do: {}\n", note.effect, note.advice);
     before = &note;

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "base/short_number.hpp"
+
 namespace sepcal::text {
 
 namespace {
@@ -53,8 +55,9 @@ std::string window_table(const Comparison& comparison) {
   }
   text += '\n';
   for (const Window& window : comparison.windows) {
-    text += fmt::format("{:<24} {:>8}",
-                        fmt::format("{:.12g}:{:.12g}", window.first_s, window.last_s), window.rows);
+    text +=
+        fmt::format("{:<24} {:>8}", base::stamp(window.first_s) + ":" + base::stamp(window.last_s),
+                    window.rows);
     for (const OutputValue& rmse : window.rmse) text += fmt::format(" {:>11.4g}", rmse.value);
     for (const OutputValue& mean : window.mean) text += fmt::format(" {:>11.4g}", mean.value);
     text += '\n';
