@@ -39,7 +39,7 @@ TEST_CASE("one that is far off is named with its value, what it mostly means bes
   Fit fit = fitted(0.0, -0.62);
   fit.message = "something";
   judge_scales(fit, magnetometer);
-  CHECK(fit.message.starts_with("something; lambda_y -0.62: "));
+  CHECK(fit.message.starts_with("something; lambda_y -0.62 looks like"));
   CHECK(fit.message.find("unit or sign") != std::string::npos);
   CHECK(fit.message.find("lambda_x") == std::string::npos);
   CHECK(fit.status == FitStatus::converged);
@@ -47,7 +47,7 @@ TEST_CASE("one that is far off is named with its value, what it mostly means bes
   Fit knots;  // m/s under a header in knots
   knots.parameters = {{.name = "s_va", .unit = "1", .value = 1852.0 / 3600.0}};
   judge_scales(knots, tube);
-  CHECK(knots.message.starts_with("s_va 0.514: "));
+  CHECK(knots.message.starts_with("s_va 0.514 looks like"));
 }
 
 TEST_CASE("one that only its bound held, or that is turned over, is not identifiable") {
