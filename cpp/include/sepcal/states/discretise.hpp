@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A linear system over a step of time, x' = F x + B u + G w: transition, noise and inputs, exact.
+// C. F. Van Loan, IEEE Trans. Automatic Control 23 (1978) 395.
+#pragma once
+
+#include <cmath>
+
+#include "sepcal/states/matrix_exponential.hpp"
+
+namespace sepcal {
+
+template <int NX>
+struct DiscreteNoise {
+  Eigen::Matrix<double, NX, NX> Phi;  // exp(F dt), S 3.9
+  Eigen::Matrix<double, NX, NX> Q_d;  // integral of exp(F s) G Q G' exp(F's) ds over dt; Gamma = I
+};
+
+/// Phi and Q_d from F (1/s), the density = G Q G' (state^2/s) and dt (s). S 3.7 and 3.11 leave
+/// Gamma Q_d Gamma' open: with Q_d = Q they are wrong by a factor of dt. Van Loan's block
+/// exp([-F density; 0 F'] dt) = [. E12; 0 E22], Phi = E22', Q_d = Phi E12, is taken over dt / 2^s
+/// only, where its exp(-F dt) is harmless, and doubled s times: Q_d <- Q_d + Phi Q_d Phi', which
+/// adds positive terms. All NaN where an argument is not finite.
+template <int NX>
+DiscreteNoise<NX> discretise(const Eigen::Matrix<double, NX, NX>& F,
+                             const Eigen::Matrix<double, NX, NX>& density, double dt) {
+  using Matrix = Eigen::Matrix<double, NX, NX>;
+  using Square = Eigen::Matrix<double, 2 * NX, 2 * NX>;
+  const Matrix whole = F * dt;
+  const int doublings = states::count_halvings(whole);
+  const double size = states::column_norm(density);  // Q_d is linear in it: units are taken out
+  const double unit = size > 0 ? 1.0 / size : 1.0;
+  const double step = std::ldexp(dt, -doublings);
+  Square block = Square::Zero();
+  block.template topLeftCorner<NX, NX>() = -F * step;
+  block.template bottomRightCorner<NX, NX>() = F.transpose() * step;
+  block.template topRightCorner<NX, NX>() = density * unit;
+  const Square E = matrix_exponential(block);
+
+  Matrix Phi = E.template bottomRightCorner<NX, NX>().transpose();
+  Matrix Q = states::product(Phi, E.template topRightCorner<NX, NX>());
+  for (int k = 0; k < doublings; ++k) {
+    Q += states::product(Phi, Q, Phi.transpose());
+    Phi = states::product(Phi, Phi);
+  }
+  return {Phi, (0.5 * step / unit) * (Q + Q.transpose())};
+}
+
+template <int NX, int NU>
+struct DiscreteInputs {
+  Eigen::Matrix<double, NX, NU> held;   // Psi of S 2.1: x(k+1) = Phi x(k) + held u(k)
+  Eigen::Matrix<double, NX, NU> begin;  // linear between samples:
+  Eigen::Matrix<double, NX, NU> end;    // x(k+1) = Phi x(k) + begin u(k) + end u(k+1)
+};
+
+/// What inputs do over dt (s), from F (1/s) and B: exp([F dt, B dt, 0; 0 0 I; 0 0 0]). Held inputs
+/// lag linear ones by half a sample.
+template <int NX, int NU>
+DiscreteInputs<NX, NU> discretise_inputs(const Eigen::Matrix<double, NX, NX>& F,
+                                         const Eigen::Matrix<double, NX, NU>& B, double dt) {
+  using Square = Eigen::Matrix<double, NX + 2 * NU, NX + 2 * NU>;
+  Square block = Square::Zero();
+  block.template topLeftCorner<NX, NX>() = F * dt;
+  block.template block<NX, NU>(0, NX) = B * dt;
+  block.template block<NU, NU>(NX, NX + NU).setIdentity();
+  const Square E = matrix_exponential(block);
+  const Eigen::Matrix<double, NX, NU> held = E.template block<NX, NU>(0, NX);
+  const Eigen::Matrix<double, NX, NU> end = E.template block<NX, NU>(0, NX + NU);
+  return {held, held - end, end};
+}
+
+}  // namespace sepcal

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The iterated extended Kalman filter's update, S 3.15 to 3.18: Gauss-Newton on J of S 2.5, so that
+// its fixed point is the state of highest probability given y.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sepcal/states/filter.hpp"
+
+namespace sepcal {
+
+struct IterationOptions {
+  int iterations = 20;      // at most
+  double tolerance = 1e-8;  // |eta_l - eta_(l-1)| <= tolerance, in standard deviations of the prior
+};
+
+/// Updates `filter` by y (n_z, NaN where missing) with `outputs(eta)`, a Linearisation<NZ, NX> at
+/// any state eta, and R. The innovation is the last iteration's; `not_converged` where the cap
+/// ended it.
+///
+/// S 3.16 divides by |eta|, which fails at zero and adds metres to radians. Here a step's length is
+/// its length in the metric of P(k+1|k), with no inverse of it: eta - x(k+1|k) = P a with
+/// a = H'S^-1 w, so the square is (a_l - a_(l-1))'(eta_l - eta_(l-1)). P(k+1|k) does not depend on
+/// eta, other than S 3.18 prints.
+template <int NX, class Form, int NZ, class Outputs>
+Innovation<NZ> iterated_update(Filter<NX, Form>& filter, const Eigen::Vector<double, NZ>& y,
+                               const Outputs& outputs, const Eigen::Matrix<double, NZ, NZ>& R,
+                               const IterationOptions& options = {}) {
+  using Vector = Eigen::Vector<double, NX>;
+  Filter<NX, Form> latest = filter;
+  Vector a = Vector::Zero(filter.x().size());
+  Innovation<NZ> innovation;
+  for (int l = 0; l < options.iterations; ++l) {
+    // S 3.15 is S 2.9 with the linearisation about eta carried to x(k+1|k).
+    const Vector eta = latest.x();
+    Linearisation<NZ, NX> carried = outputs(eta);
+    carried.value += states::product(carried.jacobian, filter.x() - eta);
+    latest = filter;
+    innovation = latest.update(y, carried, R);
+    if (innovation.status != FilterStatus::ok) return innovation;
+    const Vector next = states::product(carried.jacobian.transpose(),
+                                        states::solve_upper(innovation.S, innovation.w));
+    const double square = (next - a).dot(latest.x() - eta);
+    a = next;
+    if (std::sqrt(std::max(square, 0.0)) <= options.tolerance) {
+      filter = std::move(latest);
+      return innovation;
+    }
+  }
+  filter = std::move(latest);
+  innovation.status = FilterStatus::not_converged;
+  return innovation;
+}
+
+}  // namespace sepcal

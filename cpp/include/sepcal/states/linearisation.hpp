@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a filter is told of a system at one sample: outputs and transition, linearised about an
+// estimate. A linear system's are exact; an extended filter is the same filter with another
+// linearisation. Equation numbers (S 2.7) are the System Identification Summary's.
+#pragma once
+
+#include "sepcal/states/product.hpp"
+
+namespace sepcal {
+
+/// A function of n_x states at one of them: h(x) and dh/dx.
+template <int NZ, int NX>
+struct Linearisation {
+  Eigen::Vector<double, NZ> value;         // n_z
+  Eigen::Matrix<double, NZ, NX> jacobian;  // n_z x n_x
+};
+
+/// From sample k to k + 1: x(k+1) = f(x(k)) + Gamma w_d, about x(k|k).
+template <int NX, int NW = NX>
+struct Transition {
+  Eigen::Vector<double, NX> x;          // x(k+1|k), S 2.7 or 3.10
+  Eigen::Matrix<double, NX, NX> Phi;    // df/dx
+  Eigen::Matrix<double, NX, NW> Gamma;  // n_x x n_w
+  Eigen::Matrix<double, NW, NW> Q_d;    // covariance of w_d; a density's integral, not the density
+};
+
+/// S 2.1: x(k+1) = Phi x(k) + Psi u(k) + Gamma w_d(k). Every sample may have its own.
+template <int NX, int NW = NX>
+struct LinearDynamics {
+  Eigen::Matrix<double, NX, NX> Phi;
+  Eigen::Matrix<double, NX, NW> Gamma;
+  Eigen::Matrix<double, NW, NW> Q_d;
+
+  /// From x, with shift = Psi u (n_x). S 2.7.
+  Transition<NX, NW> from(const Eigen::Vector<double, NX>& x,
+                          const Eigen::Vector<double, NX>& shift) const {
+    return {states::product(Phi, x) + shift, Phi, Gamma, Q_d};
+  }
+};
+
+/// S 1.2 and 2.2: y = C x + D u + v (1.2 prints y-dot; a measurement has no derivative).
+template <int NZ, int NX>
+struct LinearOutputs {
+  Eigen::Matrix<double, NZ, NX> C;
+
+  /// At x, with shift = D u (n_z).
+  Linearisation<NZ, NX> at(const Eigen::Vector<double, NX>& x,
+                           const Eigen::Vector<double, NZ>& shift) const {
+    return {states::product(C, x) + shift, C};
+  }
+};
+
+}  // namespace sepcal

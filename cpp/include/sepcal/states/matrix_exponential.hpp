@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// exp(A) of a small matrix, S 3.9, by scaling, a Pade approximant and squaring. Golub & Van Loan,
+// Algorithm 11.3.1: with |A| / 2^s <= 1/2 and order six the result is that of a matrix which
+// differs from A by 4e-16 of it. Other than the sum of S 3.9, it doesn't lose what cancels in A^n /
+// n!.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "sepcal/states/product.hpp"
+
+namespace sepcal {
+namespace states {
+
+/// The largest sum of magnitudes in a column, |A|_1. Of dual numbers too.
+template <class T, int N>
+T column_norm(const Eigen::Matrix<T, N, N>& A) {
+  using std::abs;
+  T norm(0.0);
+  for (int j = 0; j < N; ++j) {
+    T sum(0.0);
+    for (int i = 0; i < N; ++i) sum += abs(A(i, j));
+    if (!(sum <= norm)) norm = sum;  // a NaN stays
+  }
+  return norm;
+}
+
+/// How often A must be halved to have a norm of at most 1/2; -1 where A is not finite or beyond
+/// 2^1000.
+template <class T, int N>
+int count_halvings(const Eigen::Matrix<T, N, N>& A) {
+  T norm = column_norm(A);
+  int count = 0;
+  while (norm > T(0.5) && count < 1000) {
+    norm *= T(0.5);
+    ++count;
+  }
+  return norm <= T(0.5) ? count : -1;
+}
+
+/// X with A X = B, by elimination with row pivots. Not finite where A is singular.
+template <class T, int N>
+Eigen::Matrix<T, N, N> eliminate(Eigen::Matrix<T, N, N> A, Eigen::Matrix<T, N, N> B) {
+  using std::abs;
+  using std::swap;
+  for (int k = 0; k < N; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < N; ++i) {
+      if (abs(A(i, k)) > abs(A(pivot, k))) pivot = i;
+    }
+    for (int j = 0; j < N; ++j) {
+      swap(A(k, j), A(pivot, j));
+      swap(B(k, j), B(pivot, j));
+    }
+    for (int i = k + 1; i < N; ++i) {
+      const T factor = A(i, k) / A(k, k);
+      for (int j = k + 1; j < N; ++j) A(i, j) -= factor * A(k, j);
+      for (int j = 0; j < N; ++j) B(i, j) -= factor * B(k, j);
+    }
+  }
+  for (int k = N - 1; k >= 0; --k) {
+    for (int j = 0; j < N; ++j) {
+      for (int i = k + 1; i < N; ++i) B(k, j) -= A(k, i) * B(i, j);
+      B(k, j) /= A(k, k);
+    }
+  }
+  return B;
+}
+
+}  // namespace states
+
+/// exp(A), N x N, of doubles or dual numbers; all NaN where A is not finite.
+template <class T, int N>
+Eigen::Matrix<T, N, N> matrix_exponential(const Eigen::Matrix<T, N, N>& A) {
+  using Matrix = Eigen::Matrix<T, N, N>;
+  const int halvings = states::count_halvings(A);
+  if (halvings < 0) return Matrix::Constant(T(std::nan("")));
+  const Matrix scaled = A * T(std::ldexp(1.0, -halvings));
+
+  constexpr int order = 6;
+  double coefficient = 1.0;
+  Matrix power = Matrix::Identity();
+  Matrix above = power;  // of the rational function, N(A) / N(-A)
+  Matrix below = power;
+  for (int k = 1; k <= order; ++k) {
+    coefficient *= static_cast<double>(order - k + 1) / (k * (2 * order - k + 1));
+    power = states::product(scaled, power);
+    above += power * T(coefficient);
+    below += power * T(k % 2 == 0 ? coefficient : -coefficient);
+  }
+  Matrix result = states::eliminate(below, above);
+  for (int k = 0; k < halvings; ++k) result = states::product(result, result);
+  return result;
+}
+
+}  // namespace sepcal

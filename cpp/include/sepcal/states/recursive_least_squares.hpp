@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recursive least squares, S 4.9 to 4.14, sample by sample from a start. Two forms of one
+// recursion; the third, InformationRoot, needs no start and keeps twice the digits.
+#pragma once
+
+#include <utility>
+
+#include "sepcal/states/measured.hpp"
+#include "sepcal/states/product.hpp"
+#include "sepcal/states/triangle.hpp"
+
+namespace sepcal {
+
+/// S 4.13 and 4.12: R(k+1) = R(k) + H'W^-1 H is kept, and a matrix of N x N is factored a sample.
+template <int N>
+class InformationRecursion {
+ public:
+  using Vector = Eigen::Vector<double, N>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  /// p(0) and R(0) = the inverse of its covariance, positive definite.
+  InformationRecursion(Vector p, Matrix R) : p_(std::move(p)), R_(std::move(R)) {}
+
+  /// y = H p + e (M rows, NaN in y where missing), W = E(ee') (M x M, positive definite). False
+  /// where a number or a matrix is unfit: nothing is changed.
+  template <int M>
+  bool absorb(const Eigen::Matrix<double, M, N>& H, const Eigen::Vector<double, M>& y,
+              const Eigen::Matrix<double, M, M>& W) {
+    const states::Measured<M, N> seen(y, states::product(H, p_), H, W);
+    const Eigen::Matrix<double, M, M> U_W = states::upper_root(seen.R);
+    const Eigen::Matrix<double, M, N> whitened = states::solve_transposed(U_W, seen.H);
+    const Matrix R = R_ + states::product(whitened.transpose(), whitened);
+    const Matrix U = states::upper_root(R);
+    const Vector gradient =
+        states::product(whitened.transpose(), states::solve_transposed(U_W, seen.e));
+    const Vector p = p_ + states::solve_upper(U, states::solve_transposed(U, gradient));
+    const bool positive = (U_W.diagonal().array() > 0).all() && (U.diagonal().array() > 0).all();
+    if (!positive || !p.allFinite()) return false;
+    p_ = p;
+    R_ = R;
+    return true;
+  }
+
+  const Vector& solution() const { return p_; }
+  /// R^-1, S 4.13.
+  Matrix covariance() const {
+    const Matrix U = states::upper_root(R_);
+    return states::solve_upper(
+        U, states::solve_transposed<N, N>(U, Matrix::Identity(p_.size(), p_.size())));
+  }
+
+ private:
+  Vector p_;
+  Matrix R_;
+};
+
+/// S 4.14 and 4.12: R^-1 itself is kept, and a matrix of M x M is factored a sample. S 4.14 prints
+/// a W^-1 too many: R^-1(k+1) = (I - R^-1 H'(H R^-1 H' + W)^-1 H) R^-1, W = W(k+1).
+template <int N>
+class CovarianceRecursion {
+ public:
+  using Vector = Eigen::Vector<double, N>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  /// p(0) and R^-1(0), its covariance, positive semidefinite.
+  CovarianceRecursion(Vector p, Matrix P) : p_(std::move(p)), P_(std::move(P)) {}
+
+  /// As InformationRecursion::absorb(); W may be singular as long as H R^-1 H' + W is not.
+  template <int M>
+  bool absorb(const Eigen::Matrix<double, M, N>& H, const Eigen::Vector<double, M>& y,
+              const Eigen::Matrix<double, M, M>& W) {
+    const states::Measured<M, N> seen(y, states::product(H, p_), H, W);
+    const Eigen::Matrix<double, M, N> HP = states::product(seen.H, P_);
+    const Eigen::Matrix<double, M, M> U =
+        states::upper_root<M>(states::product(HP, seen.H.transpose()) + seen.R);
+    const Eigen::Matrix<double, M, N> gain = states::solve_transposed(U, HP);
+    const Vector p = p_ + states::product(gain.transpose(), states::solve_transposed(U, seen.e));
+    if (!(U.diagonal().array() > 0).all() || !p.allFinite()) return false;
+    p_ = p;
+    P_ -= states::product(gain.transpose(), gain);
+    return true;
+  }
+
+  const Vector& solution() const { return p_; }
+  const Matrix& covariance() const { return P_; }
+
+ private:
+  Vector p_;
+  Matrix P_;
+};
+
+}  // namespace sepcal

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Smoothing, S 2.14 to 2.23: states and noise at k, given measurements after k as well. The pass of
+// a filter is stored by whoever runs it, one Stage a sample; nothing here asks for memory.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "sepcal/states/estimate.hpp"
+#include "sepcal/states/linearisation.hpp"
+#include "sepcal/states/measured.hpp"
+#include "sepcal/states/product.hpp"
+#include "sepcal/states/triangle.hpp"
+
+namespace sepcal {
+
+/// What smoothing needs of sample k: a filter's estimate() after its update, and what it was
+/// predicted with from there to k + 1. Of the last sample `next` may be left as it is.
+template <int NX, int NW = NX>
+struct Stage {
+  Estimate<NX> filtered;  // x(k|k), P(k|k)
+  Transition<NX, NW> next{states::zeros<Eigen::Vector<double, NX>>(),
+                          states::zeros<Eigen::Matrix<double, NX, NX>>(),
+                          states::zeros<Eigen::Matrix<double, NX, NW>>(),
+                          states::zeros<Eigen::Matrix<double, NW, NW>>()};
+};
+
+/// State and noise at sample k, given all samples: w and Q say when a model fails.
+template <int NX, int NW = NX>
+struct Smoothed {
+  Eigen::Vector<double, NX> x;      // x(k|N)
+  Eigen::Matrix<double, NX, NX> P;  // P(k|N)
+  Eigen::Vector<double, NW> w;      // w_d(k|N), between k and k + 1
+  Eigen::Matrix<double, NW, NW> Q;  // Q(k|N)
+};
+
+/// From k + 1 back to k, S 2.20 to 2.23; with x(1|1) and P(1|1) it is S 2.16 to 2.19, the second
+/// form of single-stage smoothing. Signs as in 2.20 and 2.21: 2.16 and 2.17 print a plus.
+///
+/// The array [U_P Phi' U_P 0; U_Q Gamma' 0 U_Q] = Q [U+ V; 0 W] holds all of it: U+ is the root of
+/// P(k+1|k), [C_k' B_k'] = U+^-1 V, and W'W the covariance of (x, w) given x(k+1). So P(k|N) =
+/// P(k|k) - C_k (P(k+1|k) - P(k+1|N)) C_k' is a sum of two positive terms, without an inverse; what
+/// a singular P(k+1|k) (a state without noise) does not see is not corrected, as it must be.
+template <int NX, int NW>
+Smoothed<NX, NW> smooth_stage(const Stage<NX, NW>& stage, const Eigen::Vector<double, NX>& x_next,
+                              const Eigen::Matrix<double, NX, NX>& P_next) {
+  constexpr int N = states::together(NX, NW);
+  constexpr int all = states::together(NX, N);
+  using Array = Eigen::Matrix<double, all, all>;
+  const Eigen::Index n_x = stage.next.Phi.rows();
+  const Eigen::Index n_w = stage.next.Q_d.rows();
+  const Eigen::Index n = n_x + n_w;
+  const Eigen::Matrix<double, NX, NX>& U_P = stage.filtered.root;
+  const Eigen::Matrix<double, NW, NW> U_Q = states::upper_root(stage.next.Q_d);
+  Eigen::Matrix<double, N, all> rows(n, n_x + n);
+  rows << states::product(U_P, stage.next.Phi.transpose()), U_P,
+      Eigen::Matrix<double, NX, NW>::Zero(n_x, n_w),
+      states::product(U_Q, stage.next.Gamma.transpose()),
+      Eigen::Matrix<double, NW, NX>::Zero(n_w, n_x), U_Q;
+  Array T = Array::Zero(n_x + n, n_x + n);
+  states::absorb_rows(T, rows, static_cast<double>(n) * states::rounding);
+
+  const Eigen::Matrix<double, NX, NX> root = T.template topLeftCorner<NX, NX>(n_x, n_x);
+  const Eigen::Matrix<double, NX, N> gains =
+      states::solve_upper<NX, N>(root, T.template topRightCorner<NX, N>(n_x, n));
+  const Eigen::Matrix<double, N, N> W = T.template bottomRightCorner<N, N>(n, n);
+  const Eigen::Matrix<double, N, N> covariance =
+      states::product(W.transpose(), W) + states::product(gains.transpose(), P_next, gains);
+  const Eigen::Vector<double, N> shift = states::product(gains.transpose(), x_next - stage.next.x);
+  return {stage.filtered.x + shift.template topRows<NX>(n_x),
+          covariance.template topLeftCorner<NX, NX>(n_x, n_x), shift.template bottomRows<NW>(n_w),
+          covariance.template bottomRightCorner<NW, NW>(n_w, n_w)};
+}
+
+/// All stages, S 2.20 to 2.23: smoothed[k] for k = N ... 0. Both spans have the same length. Of the
+/// last sample x(N|N), and w = 0 with Q_d: nothing later was measured.
+template <int NX, int NW>
+void smooth(std::span<const Stage<NX, NW>> pass, std::span<Smoothed<NX, NW>> smoothed) {
+  if (pass.empty()) return;
+  const Stage<NX, NW>& last = pass.back();
+  smoothed[pass.size() - 1] = {last.filtered.x, last.filtered.covariance(),
+                               Eigen::Vector<double, NW>::Zero(last.next.Q_d.rows()),
+                               last.next.Q_d};
+  for (std::size_t k = pass.size() - 1; k-- > 0;) {
+    smoothed[k] = smooth_stage(pass[k], smoothed[k + 1].x, smoothed[k + 1].P);
+  }
+}
+
+/// State and noise of single-stage smoothing in its first form.
+template <int NX, int NW>
+struct SmoothedMeans {
+  Eigen::Vector<double, NX> x;  // x(0|1)
+  Eigen::Vector<double, NW> w;  // w(0|1)
+};
+
+/// x(0|1) and w(0|1) by S 2.14 and 2.15, from y(1) (NaN where missing), what is expected of it at
+/// x(1|1), and R(1) (positive definite). Right as printed: R^-1 goes with the residual of the
+/// *filtered* state; of the predicted one, y - C x(1|0), it would be Lambda^-1. The covariances are
+/// those of smooth_stage(), S 2.18 and 2.19.
+template <int NX, int NW, int NZ>
+SmoothedMeans<NX, NW> smooth_by_residual(const Stage<NX, NW>& stage,
+                                         const Eigen::Vector<double, NZ>& y,
+                                         const Linearisation<NZ, NX>& expected,
+                                         const Eigen::Matrix<double, NZ, NZ>& R) {
+  const states::Measured<NZ, NX> seen(y, expected.value, expected.jacobian, R);
+  const Eigen::Matrix<double, NZ, NZ> U_R = states::upper_root(seen.R);
+  const Eigen::Vector<double, NZ> weighted =
+      states::solve_upper(U_R, states::solve_transposed(U_R, seen.e));
+  const Eigen::Vector<double, NX> slope = states::product(seen.H.transpose(), weighted);
+  return {stage.filtered.x +
+              states::product(stage.filtered.covariance(), stage.next.Phi.transpose(), slope),
+          states::product(stage.next.Q_d, stage.next.Gamma.transpose(), slope)};
+}
+
+}  // namespace sepcal
