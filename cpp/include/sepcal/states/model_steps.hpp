@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// StateSteps of a state model in C++: the very steps that a trajectory takes, in dual numbers.
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "sepcal/states/integration.hpp"
+#include "sepcal/states/state_model.hpp"
+#include "sepcal/states/state_steps.hpp"
+#include "sepcal/states/step_noise.hpp"
+
+namespace sepcal {
+
+/// Whether a model has start(u, z).
+template <StateModel M>
+constexpr bool has_start() {
+  return requires(const M& model, const Vec<double, StateSizes<M>::n_u>& u,
+                  const Vec<double, StateSizes<M>::n_z>& z) { model.start(u, z); };
+}
+
+/// x by the model's start(u, z) at a row of the record, z NaN for outputs that the record doesn't
+/// have; zero where the model has no start().
+template <StateModel M>
+Vec<double, StateSizes<M>::n_x> start_of_model(const M& model, const Record& record,
+                                               std::size_t row) {
+  if constexpr (has_start<M>()) {
+    const auto read = [&](const auto& table, auto& values) {
+      for (std::size_t i = 0; i < table.size(); ++i) {
+        const bool there = record.has(table[i].name);
+        values[static_cast<Eigen::Index>(i)] =
+            there ? record.column(table[i].name)[row] : table[i].absent;
+      }
+    };
+    Vec<double, StateSizes<M>::n_u> u;
+    Vec<double, StateSizes<M>::n_z> z;
+    read(M::inputs, u);
+    read(M::outputs, z);
+    return model.start(u, z);
+  } else {
+    return Vec<double, StateSizes<M>::n_x>::Zero();
+  }
+}
+
+template <StateModel M>
+class ModelSteps final : public StateSteps {
+ public:
+  /// At xi, in the order of the plan's tables. Model, plan and record must outlive this.
+  ModelSteps(const M& model, const TrajectoryPlan& plan, const Record& record,
+             const Eigen::VectorXd& xi)
+      : model_(model), plan_(plan), record_(record) {
+    ModelSteps::set_parameters(xi);
+    for (const Variable& input : plan.tables().inputs) {
+      const bool absent = !record.has(input.name) && std::isfinite(input.absent);
+      constants_.push_back(input.absent);
+      columns_.push_back(absent ? std::span<const double>() : record.column(input.name));
+    }
+  }
+
+  void set_parameters(const Eigen::VectorXd& xi) override {
+    for (int i = 0; i < n_p; ++i) {
+      const int column = plan_.column_of_parameter(i);
+      p_[i] = column < 0 ? 0.0 : xi[column];
+    }
+    for (std::size_t k = 0; k < plan_.linear().size(); ++k) {
+      xi1_[plan_.linear()[k]] = xi[static_cast<Eigen::Index>(k)];
+    }
+  }
+
+  Step advance(std::size_t row, const Eigen::VectorXd& x) const override {
+    using Number = ceres::Jet<double, n_x + n_w>;
+    const StateRow<M> from = row_at(row);
+    const StateRow<M> to = row_at(row + 1);
+    const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
+    Vec<Number, n_w> w = Vec<Number, n_w>::Zero();
+    for (int j = 0; j < n_w; ++j) w[j].v[n_x + j] = 1.0;
+    const Vec<Number, n_x> next =
+        noisy_step<M, Number>(model_, whole<Number>(from, x), p_.template cast<Number>(), w,
+                              between, plan_.options().substeps);
+    const std::vector<int>& free = plan_.integrated();
+    const auto n = static_cast<Eigen::Index>(free.size());
+    Step step{Eigen::VectorXd(n), Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n_w)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Number& state = next[free[static_cast<std::size_t>(i)]];
+      step.x[i] = state.a;
+      step.Phi.row(i) = state.v(free).transpose();
+      step.Gamma.row(i) = state.v.template tail<n_w>().transpose();
+    }
+    return step;
+  }
+
+  Reading read(std::size_t row, const Eigen::VectorXd& x) const override {
+    using Number = ceres::Jet<double, n_x>;
+    const auto expected = affine<Number>(row, x, p_.template cast<Number>());
+    const std::vector<int>& free = plan_.integrated();
+    Reading reading = empty_reading(static_cast<Eigen::Index>(free.size()));
+    for (std::size_t j = 0; j < plan_.outputs().size(); ++j) {
+      const Number z = sum(expected, j);
+      const auto at = static_cast<Eigen::Index>(j);
+      reading.z[at] = z.a;
+      reading.H.row(at) = z.v(free).transpose();
+    }
+    return reading;
+  }
+
+  JointStep advance_jointly(std::size_t row, const Eigen::VectorXd& x,
+                            const Eigen::VectorXd& density) const override {
+    const StateRow<M> from = row_at(row);
+    const StateRow<M> to = row_at(row + 1);
+    const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
+    const Vec<Joint, n_x> begin = whole<Joint>(from, x);
+    const Vec<Joint, n_x> end =
+        step<M, Joint>(model_, begin, seeded_parameters(), between, plan_.options().substeps);
+    Vec<double, n_x> half_way;
+    for (int i = 0; i < n_x; ++i) half_way[i] = 0.5 * (begin[i].a + end[i].a);
+    const Eigen::Matrix<double, n_w, n_w> Q = density.asDiagonal();
+    const Eigen::Matrix<double, n_x, n_x> Q_d = noise_of_step<M>(model_, between, half_way, p_, Q);
+    const std::vector<int>& free = plan_.integrated();
+    const auto n = static_cast<Eigen::Index>(free.size());
+    JointStep joint{Eigen::VectorXd(n), Eigen::MatrixXd(n, columns()), Q_d(free, free)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Joint& state = end[free[static_cast<std::size_t>(i)]];
+      joint.x[i] = state.a;
+      joint.Phi.row(i) = slopes_of(state);
+    }
+    return joint;
+  }
+
+  Reading read_jointly(std::size_t row, const Eigen::VectorXd& x) const override {
+    const auto expected = affine<Joint>(row, x, seeded_parameters());
+    const auto n = static_cast<Eigen::Index>(plan_.integrated().size());
+    Reading reading = empty_reading(columns());
+    for (std::size_t j = 0; j < plan_.outputs().size(); ++j) {
+      const Joint z = sum(expected, j);
+      const auto at = static_cast<Eigen::Index>(j);
+      reading.z[at] = z.a;
+      reading.H.row(at) = slopes_of(z);
+      for (const int k : plan_.acting(j)) {
+        reading.H(at, n + k) +=
+            expected.A(plan_.outputs()[j], plan_.linear()[static_cast<std::size_t>(k)]).a;
+      }
+    }
+    return reading;
+  }
+
+  Eigen::VectorXd start(std::size_t row) const override {
+    return start_of_model(model_, record_, row)(plan_.integrated());
+  }
+
+ private:
+  static constexpr int n_u = StateSizes<M>::n_u;
+  static constexpr int n_x = StateSizes<M>::n_x;
+  static constexpr int n_z = StateSizes<M>::n_z;
+  static constexpr int n_1 = StateSizes<M>::n_1;
+  static constexpr int n_p = StateSizes<M>::n_p;
+  static constexpr int n_w = StateSizes<M>::n_w;
+  using Joint = ceres::Jet<double, n_x + n_p>;
+
+  double input(int place, std::size_t row) const {
+    const std::span<const double> column = columns_[static_cast<std::size_t>(place)];
+    return column.empty() ? constants_[static_cast<std::size_t>(place)] : column[row];
+  }
+
+  StateRow<M> row_at(std::size_t row) const {
+    StateRow<M> result;
+    for (int i = 0; i < n_u; ++i) {
+      result.u[i] = plan_.input(i) < 0 ? 0.0 : input(plan_.input(i), row);
+    }
+    result.time = input(plan_.time_input(), row);
+    for (std::size_t i = 0; i < plan_.measured().size(); ++i) {
+      result.measured[plan_.measured()[i]] = input(plan_.measured_input(i), row);
+    }
+    return result;
+  }
+
+  /// All states, of which x are those that are integrated and differentiated by.
+  template <class Number>
+  Vec<Number, n_x> whole(const StateRow<M>& row, const Eigen::VectorXd& x) const {
+    Vec<Number, n_x> all;
+    for (const int i : plan_.measured()) all[i] = Number(row.measured[i]);
+    for (std::size_t i = 0; i < plan_.integrated().size(); ++i) {
+      const int state = plan_.integrated()[i];
+      all[state] = Number(x[static_cast<Eigen::Index>(i)], state);
+    }
+    return all;
+  }
+
+  /// p, differentiated by.
+  Vec<Joint, n_p> seeded_parameters() const {
+    Vec<Joint, n_p> p;
+    for (int i = 0; i < n_p; ++i) p[i] = Joint(p_[i], n_x + i);
+    return p;
+  }
+
+  template <class Number>
+  Affine<Number, n_z, n_1> affine(std::size_t row, const Eigen::VectorXd& x,
+                                  const Vec<Number, n_p>& p) const {
+    const StateRow<M> here = row_at(row);
+    return model_.at(whole<Number>(here, x), here.u, p);
+  }
+
+  /// A xi1 + b of an output that is kept.
+  template <class Number>
+  Number sum(const Affine<Number, n_z, n_1>& expected, std::size_t output) const {
+    const int j = plan_.outputs()[output];
+    Number z = expected.b[j];
+    for (const int k : plan_.acting(output)) {
+      const int column = plan_.linear()[static_cast<std::size_t>(k)];
+      z += expected.A(j, column) * xi1_[column];
+    }
+    return z;
+  }
+
+  Reading empty_reading(Eigen::Index columns) const {
+    const auto n = static_cast<Eigen::Index>(plan_.outputs().size());
+    return {Eigen::VectorXd(n), Eigen::MatrixXd(n, columns)};
+  }
+
+  /// n_x + n.
+  Eigen::Index columns() const {
+    return static_cast<Eigen::Index>(plan_.integrated().size()) + plan_.tables().n_1() +
+           plan_.tables().n_2();
+  }
+
+  /// By the states that are integrated, and by the parameters in use.
+  Eigen::RowVectorXd slopes_of(const Joint& number) const {
+    const auto n = static_cast<Eigen::Index>(plan_.integrated().size());
+    Eigen::RowVectorXd slopes = Eigen::RowVectorXd::Zero(columns());
+    slopes.head(n) = number.v(plan_.integrated()).transpose();
+    for (int i = 0; i < n_p; ++i) {
+      const int column = plan_.column_of_parameter(i);
+      if (column >= 0) slopes[n + column] = number.v[n_x + i];
+    }
+    return slopes;
+  }
+
+  const M& model_;
+  const TrajectoryPlan& plan_;
+  const Record& record_;
+  Vec<double, n_p> p_;
+  Vec<double, n_1> xi1_ = Vec<double, n_1>::Zero();
+  std::vector<std::span<const double>> columns_;
+  std::vector<double> constants_;  // of inputs that the record doesn't have
+};
+
+}  // namespace sepcal

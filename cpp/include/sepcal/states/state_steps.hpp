@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A state model along a record as a filter meets it: one row at a time, linearised about an
+// estimate. What a smoother needs of any of them, whoever wrote it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/eigen.hpp"
+#include "sepcal/record.hpp"
+#include "sepcal/states/trajectory_plan.hpp"
+
+namespace sepcal {
+
+/// States are those that are integrated, n_x of them; a measured one is known. Parameters xi are
+/// all n of the model's tables, linear, then nonlinear; initial states, among them, act on no step.
+class StateSteps {
+ public:
+  /// S 3.7 to 3.10: from a row to the next.
+  struct Step {
+    Eigen::VectorXd x;      // n_x, at the next row
+    Eigen::MatrixXd Phi;    // n_x x n_x, its derivative by x
+    Eigen::MatrixXd Gamma;  // n_x x n_w, by a process noise that is held from row to row
+  };
+  /// What is expected of the outputs, A xi1 + b.
+  struct Reading {
+    Eigen::VectorXd z;  // n_z
+    Eigen::MatrixXd H;  // n_z x n_x
+  };
+  /// A step with the parameters in doubt.
+  struct JointStep {
+    Eigen::VectorXd x;    // n_x
+    Eigen::MatrixXd Phi;  // n_x x (n_x + n), by x and xi
+    Eigen::MatrixXd Q_d;  // n_x x n_x, what the process noise adds
+  };
+
+  StateSteps() = default;
+  StateSteps(const StateSteps&) = delete;
+  StateSteps& operator=(const StateSteps&) = delete;
+  virtual ~StateSteps() = default;
+
+  /// At other parameters from now on.
+  virtual void set_parameters(const Eigen::VectorXd& xi) = 0;
+
+  /// Of rows of the record. Not finite where the model isn't.
+  virtual Step advance(std::size_t row, const Eigen::VectorXd& x) const = 0;
+  virtual Reading read(std::size_t row, const Eigen::VectorXd& x) const = 0;
+
+  /// The same by x and xi. `density`: of each noise, its table's unit squared (n_w).
+  virtual JointStep advance_jointly(std::size_t row, const Eigen::VectorXd& x,
+                                    const Eigen::VectorXd& density) const = 0;
+  virtual Reading read_jointly(std::size_t row, const Eigen::VectorXd& x) const = 0;  // n_x + n
+
+  /// n_x, what the model's start(u, z) says of a row; zero where it has none.
+  virtual Eigen::VectorXd start(std::size_t row) const = 0;
+};
+
+/// A state model laid along a record: what TrajectoryModel and its like have in common.
+class StateBlockModel : public BlockModel {
+ public:
+  using BlockModel::BlockModel;
+
+  virtual const TrajectoryPlan& plan() const = 0;
+
+  /// At xi (n); model and record must outlive it.
+  virtual std::unique_ptr<StateSteps> steps(const Record& record,
+                                            const Eigen::VectorXd& xi) const = 0;
+
+  /// The largest eigenvalue of a trajectory's transition matrix, in size; 1 where none is larger.
+  double growth(const Record& record, const Eigen::VectorXd& xi) const override;
+};
+
+}  // namespace sepcal

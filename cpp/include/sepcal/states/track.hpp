@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Estimates against time: a recursive estimator runs along a record from a calibration or from the
+// first rows, as it would in flight. Models of samples have their parameters for a state; models
+// with a state are filtered jointly, in the numbers of the JointFilter that a vehicle carries.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sepcal/choices.hpp"
+#include "sepcal/states/iterated_update.hpp"
+#include "sepcal/states/stream_start.hpp"
+#include "sepcal/states/trajectory_model.hpp"
+
+namespace sepcal {
+
+enum class TrackMethod {
+  rls,   // recursive least squares: rows linearised at the start. Linear models: the batch's digits
+  ekf,   // extended filter: every row linearised at the estimate before it
+  iekf,  // iterated extended filter: at the estimate after it
+  srif,  // the extended filter as square-root information
+};
+
+template <>
+struct ChoiceNames<TrackMethod> {
+  static constexpr std::array<std::string_view, 4> names{"rls", "ekf", "iekf", "srif"};
+};
+
+struct TrackOptions {
+  TrackMethod method = TrackMethod::ekf;
+  /// Noise standard deviation of every output; empty: the start's.
+  std::map<std::string, double> noise = {};
+  /// Of a model with a state: standard deviation by the names and in the units of its table
+  /// `noise`, per sqrt(s); those not named have none.
+  std::map<std::string, double> process_noise = {};
+  /// Standard deviation of states where a segment begins that no mini-batch has fitted, about the
+  /// model's start(u, z); of those not named ten times the largest value that the state has on the
+  /// way, as good as unknown.
+  std::map<std::string, double> initial_states = {};
+  IterationOptions iterations = {};  // of iekf
+};
+
+struct Track {
+  std::vector<std::string> names;       // n: integrated states, then parameters, linear ones first
+  std::vector<std::size_t> rows;        // of the record, one an estimate
+  std::vector<double> time;             // s; empty where the record has none
+  Eigen::MatrixXd estimates;            // rows x n
+  Eigen::MatrixXd standard_deviations;  // rows x n; 0 for what is held
+  Eigen::MatrixXd innovations;          // rows x n_z: reading less what was expected; NaN: missing
+  std::size_t refused = 0;              // rows that were not finite, left out
+  std::size_t not_converged = 0;        // rows at which iekf's cap ended it
+};
+
+/// Goes on where `start` ends, after start.rows rows. Outputs that are NaN are missing. A model
+/// with a state is one for this record; it starts by start_from_rows(), or from another flight's
+/// calibration by start_from_fit(). By rls it is linearised along the whole trajectory from the
+/// start. Throws Error where the start is of another model, for options that name what the model
+/// doesn't have, for `shoot` and `scales_about_start`, and where srif meets what is known exactly.
+Track track(const BlockModel& model, const Record& record, const StreamStart& start,
+            const TrackOptions& options = {});
+
+template <SeparableModel M>
+Track track(const M& model, const Record& record, const StreamStart& start,
+            const TrackOptions& options = {}) {
+  return track(StaticModel<M>(model), record, start, options);
+}
+
+/// The mini-batch of a model with a state: its trajectory over the first rows, x(0) among xi.
+template <StateModel M>
+StreamStart start_from_rows(const M& model, const Record& record, std::size_t rows,
+                            const FitOptions& options = {},
+                            const TrajectoryOptions& trajectory = {}) {
+  return start_from_rows(TrajectoryModel<M>(model, first_rows(record, rows), trajectory), record,
+                         rows, options);
+}
+
+template <StateModel M>
+Track track(const M& model, const Record& record, const StreamStart& start,
+            const TrackOptions& options = {}, const TrajectoryOptions& trajectory = {}) {
+  return track(TrajectoryModel<M>(model, record, trajectory), record, start, options);
+}
+
+}  // namespace sepcal

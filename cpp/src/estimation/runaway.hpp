@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/fit.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal::estimation {
+
+/// Of a fit where something is amiss already: says first where a state runs away along a
+/// trajectory, so that the end is rounding's choice, and claims no convergence then.
+void warn_of_runaway(Fit& result, const BlockModel& model, const Record& record);
+
+}  // namespace sepcal::estimation

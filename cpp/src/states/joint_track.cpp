@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "states/joint_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/name_list.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/states/filter.hpp"
+#include "sepcal/states/information_form.hpp"
+#include "sepcal/states/iterated_update.hpp"
+#include "states/information_track.hpp"
+#include "states/known_inputs.hpp"
+#include "states/start_deviations.hpp"
+
+namespace sepcal::states {
+namespace {
+
+using Eigen::Dynamic;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What the filter estimates: s = [x; xi], x the n_x states that are integrated, xi the k
+/// parameters that the start leaves free. The others are held; initial states are x itself.
+struct Layout {
+  std::vector<std::string> states;  // n_x
+  std::vector<std::string> names;   // of all parameters but initial states
+  std::vector<int> columns;         // of these, among the plan's parameters
+  std::vector<int> free;            // places in `columns` of those that are free, k
+  VectorXd start;                   // n, all parameters of the plan
+};
+
+/// What is known where the stream begins.
+struct Beginning {
+  VectorXd s;     // n_x + k
+  MatrixXd root;  // U, U'U its covariance
+  std::size_t segment = 0;
+  std::size_t row = 0;  // the first that is not in the start
+};
+
+void check_trajectory(const TrajectoryOptions& options) {
+  if (std::isfinite(options.shoot)) throw Error("a track runs on; leave shoot out");
+  if (options.scales_about_start) {
+    throw Error("a track has no start to count scales from; leave scales_about_start out");
+  }
+}
+
+/// The place of a name in the start. Throws Error where it isn't there.
+Index place_in(const StreamStart& start, const std::string& name) {
+  const auto at = std::ranges::find(start.names, name);
+  if (at != start.names.end()) return at - start.names.begin();
+  throw Error("the start has no '" + name + "'; it has " + base::list_first(start.names, 12) +
+              ": start from this model and record");
+}
+
+Layout lay_out(const TrajectoryPlan& plan, const StreamStart& start) {
+  Layout layout;
+  std::vector<int> initial;
+  for (const int i : plan.integrated()) {
+    layout.states.push_back(plan.model().states[static_cast<std::size_t>(i)].name);
+    for (int t = 0; t < plan.trajectories(); ++t) initial.push_back(plan.column_of_start(i, t));
+  }
+  const std::vector<Variable> all = plan.tables().parameters();
+  layout.start = VectorXd::Zero(static_cast<Index>(all.size()));
+  for (int column = 0; column < static_cast<int>(all.size()); ++column) {
+    if (std::ranges::find(initial, column) != initial.end()) continue;
+    const std::string& name = all[static_cast<std::size_t>(column)].name;
+    const Index place = place_in(start, name);
+    const bool is_free = std::ranges::find(start.free, static_cast<int>(place)) != start.free.end();
+    if (is_free) layout.free.push_back(static_cast<int>(layout.columns.size()));
+    layout.start[column] = start.xi[place];
+    layout.columns.push_back(column);
+    layout.names.push_back(name);
+  }
+  return layout;
+}
+
+/// The start's estimates and their root: x of the segment in which its rows end, if any, at that
+/// segment's first row; then what is free.
+Beginning begin_at(const TrajectoryPlan& plan, const Layout& layout, const Record& record,
+                   const StreamStart& start) {
+  Beginning begin;
+  std::vector<std::string> names(layout.states.size());  // empty where no batch has fitted x
+  if (start.rows > 0) {
+    const Record batch = first_rows(record, start.rows);
+    begin.segment = batch.segments().size() - 1;
+    begin.row = batch.segments().back().last;
+    const TrajectoryPlan begun(plan.model(), &batch, plan.options());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      names[i] = begun.start_name(layout.states[i], begun.trajectories() - 1);
+    }
+  }
+  for (const int k : layout.free) names.push_back(layout.names[static_cast<std::size_t>(k)]);
+  const MatrixXd U = covariance_root(start.R);
+  const auto n = static_cast<Index>(names.size());
+  MatrixXd rows = MatrixXd::Zero(U.rows(), n);
+  begin.s = VectorXd::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    if (name.empty()) continue;
+    const Index place = place_in(start, name);
+    begin.s[i] = start.xi[place];
+    const auto at = std::ranges::find(start.free, static_cast<int>(place));
+    if (at != start.free.end()) rows.col(i) = U.col(at - start.free.begin());
+  }
+  begin.root = MatrixXd::Zero(n, n);
+  absorb_rows(begin.root, rows);
+  return begin;
+}
+
+/// A joint filter on its way along a record.
+class JointStream {
+ public:
+  JointStream(const StateBlockModel& model, const Record& record, const StreamStart& start,
+              const TrackOptions& options)
+      : plan_(model.plan()),
+        record_(record),
+        options_(options),
+        layout_(lay_out(plan_, start)),
+        xi_(layout_.start),
+        density_(deviations_by_name(options.process_noise, plan_.model().noise, "process noise")
+                     .cwiseAbs2()),
+        R_(noise_of(plan_.tables().outputs, start, options).cwiseAbs2().asDiagonal()),
+        steps_(model.steps(record, xi_)) {
+    deviations_by_name(options.initial_states, plan_.model().states, "state");
+    for (const Variable& output : plan_.tables().outputs) {
+      outputs_.push_back(record.column(output.name));
+    }
+  }
+
+  Track run(const StreamStart& start) {
+    std::vector<std::string> names = layout_.states;
+    names.insert(names.end(), layout_.names.begin(), layout_.names.end());
+    track_ = empty_track(std::move(names), record_.rows() - start.rows, plan_.tables().n_z());
+    if (options_.method == TrackMethod::srif) {
+      run_in<InformationForm<Dynamic>>(start);
+    } else {
+      run_in<SquareRootForm<Dynamic>>(start);
+    }
+    return std::move(track_);
+  }
+
+ private:
+  template <class Form>
+  void run_in(const StreamStart& start) {
+    Beginning begin = begin_at(plan_, layout_, record_, start);
+    const Segment& segment = record_.segments()[begin.segment];
+    if (start.rows == 0) begin = restarted(begin.s, begin.root, segment);
+    Filter<Dynamic, Form> filter(begin.s, form_of<Form>(begin.root));
+    std::size_t row = segment.first;
+    for (; row + 1 < begin.row; ++row) predict(filter, row);  // what the start has seen
+    follow(filter, begin.segment, row, start.rows > 0);
+  }
+
+  template <class Form>
+  Form form_of(const MatrixXd& root) const {
+    if (options_.method == TrackMethod::srif && (root.diagonal().array() == 0.0).any()) {
+      throw Error(
+          "srif can't hold what is known exactly; give every state a deviation above 0 "
+          "(initial_states), or take ekf");
+    }
+    return Form::of_covariance_root(root);
+  }
+
+  Index n_x() const { return static_cast<Index>(layout_.states.size()); }
+
+  /// From `row` of a segment, which the filter has seen already or not, to the record's end.
+  template <class Form>
+  void follow(Filter<Dynamic, Form>& filter, std::size_t first, std::size_t row, bool seen) {
+    for (std::size_t i = first; i < record_.segments().size(); ++i) {
+      const Segment& segment = record_.segments()[i];
+      if (i > first) {
+        row = segment.first;
+        const Beginning begin = restarted(filter.x(), filter.form().root(), segment);
+        filter = Filter<Dynamic, Form>(begin.s, form_of<Form>(begin.root));
+      }
+      if (!seen) update(filter, row);
+      seen = false;
+      for (; row + 1 < segment.last; ++row) {
+        if (predict(filter, row) == FilterStatus::refused) ++track_.refused;
+        update(filter, row + 1);
+      }
+    }
+  }
+
+  /// A new segment: x begins anew, independent of the past; what is known of parameters, of s and
+  /// its covariance's root, stays.
+  Beginning restarted(VectorXd s, const MatrixXd& root, const Segment& segment) {
+    set_parameters(s);
+    s.head(n_x()) = steps_->start(segment.first);
+    const VectorXd deviations =
+        start_deviations(*steps_, segment, s.head(n_x()), layout_.states, options_.initial_states);
+    const Index k = s.size() - n_x();
+    MatrixXd rows = root.rightCols(k);
+    MatrixXd marginal = MatrixXd::Zero(k, k);
+    absorb_rows(marginal, rows);
+    MatrixXd U = MatrixXd::Zero(s.size(), s.size());
+    U.topLeftCorner(n_x(), n_x()) = deviations.asDiagonal();
+    U.bottomRightCorner(k, k) = marginal;
+    return {std::move(s), std::move(U)};
+  }
+
+  /// From `row` to the next.
+  template <class Form>
+  FilterStatus predict(Filter<Dynamic, Form>& filter, std::size_t row) {
+    set_parameters(filter.x());
+    StateSteps::JointStep step = steps_->advance_jointly(row, filter.x().head(n_x()), density_);
+    const Index n = filter.x().size();
+    Transition<Dynamic, Dynamic> next{filter.x(), MatrixXd::Identity(n, n),
+                                      MatrixXd::Identity(n, n_x()), std::move(step.Q_d)};
+    next.x.head(n_x()) = step.x;
+    next.Phi.topRows(n_x()) = of_estimated(step.Phi);
+    return filter.predict(next);
+  }
+
+  template <class Form>
+  void update(Filter<Dynamic, Form>& filter, std::size_t row) {
+    VectorXd z(static_cast<Index>(outputs_.size()));
+    for (Index j = 0; j < z.size(); ++j) z[j] = outputs_[static_cast<std::size_t>(j)][row];
+    const auto expected = [&](const VectorXd& s) -> Linearisation<Dynamic, Dynamic> {
+      set_parameters(s);
+      StateSteps::Reading reading = steps_->read_jointly(row, s.head(n_x()));
+      return {std::move(reading.z), of_estimated(reading.H)};
+    };
+    const Innovation<Dynamic> innovation =
+        options_.method == TrackMethod::iekf
+            ? iterated_update<Dynamic, Form, Dynamic>(filter, z, expected, R_, options_.iterations)
+            : filter.template update<Dynamic>(z, expected(filter.x()), R_);
+    track_.refused += innovation.status == FilterStatus::refused ? 1 : 0;
+    track_.not_converged += innovation.status == FilterStatus::not_converged ? 1 : 0;
+    VectorXd e = VectorXd::Constant(z.size(), not_a_number);
+    for (Index j = 0; j < innovation.e.size(); ++j) {
+      if (std::isfinite(z[j])) e[j] = innovation.e[j];
+    }
+    keep(row, filter.x(), filter.covariance().diagonal().cwiseSqrt(), e);
+  }
+
+  /// Of all parameters, held ones with no deviation.
+  void keep(std::size_t row, const VectorXd& s, const VectorXd& deviation, const VectorXd& e) {
+    const auto n = static_cast<Index>(track_.names.size());
+    VectorXd estimate(n);
+    estimate << s.head(n_x()), layout_.start(layout_.columns);
+    VectorXd all = VectorXd::Zero(n);
+    all.head(n_x()) = deviation.head(n_x());
+    for (std::size_t i = 0; i < layout_.free.size(); ++i) {
+      const Index from = n_x() + static_cast<Index>(i);
+      estimate[n_x() + layout_.free[i]] = s[from];
+      all[n_x() + layout_.free[i]] = deviation[from];
+    }
+    append(track_, row, record_, estimate, all, e);
+  }
+
+  void set_parameters(const VectorXd& s) {
+    for (std::size_t i = 0; i < layout_.free.size(); ++i) {
+      xi_[column_of(i)] = s[n_x() + static_cast<Index>(i)];
+    }
+    steps_->set_parameters(xi_);
+  }
+
+  int column_of(std::size_t free) const {
+    return layout_.columns[static_cast<std::size_t>(layout_.free[free])];
+  }
+
+  /// Of derivatives by x and all parameters those by s.
+  MatrixXd of_estimated(const MatrixXd& derivative) const {
+    MatrixXd result(derivative.rows(), n_x() + static_cast<Index>(layout_.free.size()));
+    result.leftCols(n_x()) = derivative.leftCols(n_x());
+    for (std::size_t i = 0; i < layout_.free.size(); ++i) {
+      result.col(n_x() + static_cast<Index>(i)) = derivative.col(n_x() + column_of(i));
+    }
+    return result;
+  }
+
+  const TrajectoryPlan& plan_;
+  const Record& record_;
+  const TrackOptions& options_;
+  Layout layout_;
+  VectorXd xi_;
+  VectorXd density_;
+  MatrixXd R_;
+  std::unique_ptr<StateSteps> steps_;
+  std::vector<std::span<const double>> outputs_;
+  Track track_;
+};
+
+}  // namespace
+
+Track track_jointly(const StateBlockModel& model, const Record& record, const StreamStart& start,
+                    const TrackOptions& options) {
+  check_trajectory(model.plan().options());
+  check_inputs(model.tables(), record);
+  return JointStream(model, record, start, options).run(start);
+}
+
+VectorXd deviations_by_name(const std::map<std::string, double>& values,
+                            const std::vector<Variable>& table, const std::string& what) {
+  VectorXd result = VectorXd::Zero(static_cast<Index>(table.size()));
+  for (const auto& [name, value] : values) {
+    const auto at = std::ranges::find(table, name, &Variable::name);
+    if (at == table.end()) {
+      throw Error("the model has no " + what + " '" + name + "'; it has " +
+                  base::list_names(table));
+    }
+    if (!(value >= 0.0) || !std::isfinite(value)) {
+      throw Error(what + " '" + name + "' needs a standard deviation of 0 or more");
+    }
+    result[at - table.begin()] = value;
+  }
+  return result;
+}
+
+VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
+                  const TrackOptions& options) {
+  if (options.noise.empty()) return start.noise;
+  const VectorXd noise = deviations_by_name(options.noise, outputs, "output");
+  for (Index j = 0; j < noise.size(); ++j) {
+    if (noise[j] > 0) continue;
+    throw Error("output '" + outputs[static_cast<std::size_t>(j)].name +
+                "' needs a noise above 0, as every output does");
+  }
+  return noise;
+}
+
+Track empty_track(std::vector<std::string> names, std::size_t rows, int n_z) {
+  Track track;
+  const auto count = static_cast<Index>(rows);
+  const auto n = static_cast<Index>(names.size());
+  track.names = std::move(names);
+  track.estimates.resize(count, n);
+  track.standard_deviations.resize(count, n);
+  track.innovations.resize(count, n_z);
+  return track;
+}
+
+void append(Track& track, std::size_t row, const Record& record, const VectorXd& estimate,
+            const VectorXd& deviation, const VectorXd& innovation) {
+  const auto at = static_cast<Index>(track.rows.size());
+  track.rows.push_back(row);
+  if (record.has("time")) track.time.push_back(record.column("time")[row]);
+  track.estimates.row(at) = estimate;
+  track.standard_deviations.row(at) = deviation;
+  track.innovations.row(at) = innovation;
+}
+
+}  // namespace sepcal::states

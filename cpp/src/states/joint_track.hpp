@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// States and parameters estimated together along a record: JointFilter's sibling for models of any
+// size, on a computer that has a heap; the tests hold the two beside each other.
+#pragma once
+
+#include "sepcal/states/state_steps.hpp"
+#include "sepcal/states/track.hpp"
+
+namespace sepcal::states {
+
+/// `method` is ekf, iekf or srif. Throws Error as track().
+Track track_jointly(const StateBlockModel& model, const Record& record, const StreamStart& start,
+                    const TrackOptions& options);
+
+/// Values by name over a table; `otherwise` for those not named. Throws Error for other names and
+/// for what is no standard deviation.
+Eigen::VectorXd deviations_by_name(const std::map<std::string, double>& values,
+                                   const std::vector<Variable>& table, const std::string& what);
+
+/// n_z: the options', or the start's. Throws Error where an output has none.
+Eigen::VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
+                         const TrackOptions& options);
+
+/// An empty track for `rows` rows.
+Track empty_track(std::vector<std::string> names, std::size_t rows, int n_z);
+
+/// Puts a row's estimate behind the others.
+void append(Track& track, std::size_t row, const Record& record, const Eigen::VectorXd& estimate,
+            const Eigen::VectorXd& deviation, const Eigen::VectorXd& innovation);
+
+}  // namespace sepcal::states

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/states/smooth_record.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+
+#include "base/name_list.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/states/filter.hpp"
+#include "sepcal/states/smoother.hpp"
+#include "states/known_inputs.hpp"
+#include "states/start_deviations.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Dynamic;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Stages = std::vector<Stage<Dynamic, Dynamic>>;
+
+std::vector<std::string> names_in(const std::vector<Variable>& table) {
+  std::vector<std::string> names;
+  for (const Variable& variable : table) names.push_back(variable.name);
+  return names;
+}
+
+void check_deviation(const std::string& what, double sd) {
+  if (sd > 0 && std::isfinite(sd)) return;
+  throw Error(what + " must be a positive standard deviation");
+}
+
+void check_known(const std::map<std::string, double>& given, const std::vector<std::string>& known,
+                 const std::string& what) {
+  for (const auto& [name, sd] : given) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw Error("there is no " + what + " '" + name +
+                  "'; the model has: " + base::list_names(known));
+    }
+    check_deviation("the " + what + " '" + name + "'", sd);
+  }
+}
+
+/// Squares by name, in the order of the names; zero where not given.
+VectorXd squares_of(const std::map<std::string, double>& given,
+                    const std::vector<std::string>& names) {
+  VectorXd squares = VectorXd::Zero(static_cast<Index>(names.size()));
+  for (Index i = 0; i < squares.size(); ++i) {
+    const auto at = given.find(names[static_cast<std::size_t>(i)]);
+    if (at != given.end()) squares[i] = at->second * at->second;
+  }
+  return squares;
+}
+
+void check_noise(const SmoothingNoise& noise, const SmoothedRecord& names) {
+  if (names.noises.empty()) {
+    throw Error(
+        "the model has no process noise, its table `noise` is empty; name there what "
+        "drives its states");
+  }
+  if (noise.process.empty()) {
+    throw Error(
+        "no process noise is given, without which the fit's own trajectory is the smoothed "
+        "one; give some of: " +
+        base::list_names(names.noises));
+  }
+  check_known(noise.process, names.noises, "process noise");
+  check_known(noise.outputs, names.outputs, "noise of an output");
+  check_known(noise.start, names.states, "state");
+  for (const std::string& output : names.outputs) {
+    if (noise.outputs.contains(output)) continue;
+    throw Error("the noise of output '" + output + "' is not given");
+  }
+}
+
+VectorXd point_of(const Tables& tables, const std::map<std::string, double>& parameters) {
+  const std::vector<Variable> all = tables.parameters();
+  VectorXd xi(static_cast<Index>(all.size()));
+  for (Index k = 0; k < xi.size(); ++k) {
+    const auto at = parameters.find(all[static_cast<std::size_t>(k)].name);
+    if (at == parameters.end()) {
+      throw Error("parameter '" + all[static_cast<std::size_t>(k)].name +
+                  "' has no value; smooth the record that was fitted");
+    }
+    xi[k] = at->second;
+  }
+  return xi;
+}
+
+/// One record's smoothing; a segment at a time.
+class Smoothing {
+ public:
+  Smoothing(const StateBlockModel& model, const Record& record, const VectorXd& xi,
+            const SmoothingNoise& noise, SmoothedRecord& result)
+      : plan_(model.plan()),
+        xi_(xi),
+        noise_(noise),
+        result_(result),
+        density_(squares_of(noise.process, result.noises)),
+        R_(squares_of(noise.outputs, result.outputs).asDiagonal()),
+        steps_(model.steps(record, xi)),
+        time_(record.column("time")) {
+    for (const std::string& output : result.outputs) outputs_.push_back(record.column(output));
+  }
+
+  void run(const Segment& segment) {
+    const VectorXd x = start_of(segment);
+    const VectorXd deviations =
+        states::start_deviations(*steps_, segment, x, result_.states, noise_.start);
+    const MatrixXd P = deviations.cwiseAbs2().asDiagonal();
+    const Stages pass = filter(segment, Filter<Dynamic>(x, P));
+    std::vector<Smoothed<Dynamic, Dynamic>> smoothed(pass.size());
+    sepcal::smooth(std::span<const Stage<Dynamic, Dynamic>>(pass), std::span(smoothed));
+    for (std::size_t k = 0; k < smoothed.size(); ++k) {
+      const auto row = static_cast<Index>(segment.first + k);
+      result_.x.row(row) = smoothed[k].x.transpose();
+      result_.w.row(row) = smoothed[k].w.transpose();
+      result_.P[segment.first + k] = std::move(smoothed[k].P);
+      result_.Q[segment.first + k] = std::move(smoothed[k].Q);
+    }
+  }
+
+ private:
+  [[noreturn]] static void give_up(std::size_t row) {
+    throw Error("the filter can't go on from row " + std::to_string(row) +
+                " (counted from 0): the state or what is expected there is not finite; cut the "
+                "segment, or start nearer");
+  }
+
+  VectorXd start_of(const Segment& segment) const {
+    const int trajectory = plan_.trajectory_at(segment.first, true);
+    VectorXd x(static_cast<Index>(result_.states.size()));
+    for (Index i = 0; i < x.size(); ++i) {
+      x[i] =
+          xi_[plan_.column_of_start(plan_.integrated()[static_cast<std::size_t>(i)], trajectory)];
+    }
+    return x;
+  }
+
+  Stages filter(const Segment& segment, Filter<Dynamic> filter) {
+    Stages pass;
+    for (std::size_t row = segment.first; row < segment.last; ++row) {
+      update(row, filter);
+      pass.push_back({filter.estimate()});
+      Transition<Dynamic, Dynamic>& next = pass.back().next;
+      const bool last = row + 1 == segment.last;
+      const double held = plan_.discrete() || last ? 1.0 : time_[row + 1] - time_[row];
+      next.Q_d = (density_ / held).asDiagonal();
+      if (last) break;
+      StateSteps::Step step = steps_->advance(row, filter.x());
+      next = {std::move(step.x), std::move(step.Phi), std::move(step.Gamma), std::move(next.Q_d)};
+      if (filter.predict(next) != FilterStatus::ok) give_up(row);
+    }
+    return pass;
+  }
+
+  void update(std::size_t row, Filter<Dynamic>& filter) {
+    VectorXd y(static_cast<Index>(outputs_.size()));
+    for (Index j = 0; j < y.size(); ++j) y[j] = outputs_[static_cast<std::size_t>(j)][row];
+    StateSteps::Reading expected = steps_->read(row, filter.x());
+    const auto innovation =
+        filter.update<Dynamic>(y, {std::move(expected.z), std::move(expected.H)}, R_);
+    if (innovation.status != FilterStatus::ok) give_up(row);
+    result_.cost += innovation.cost();
+    result_.readings += static_cast<std::size_t>(innovation.count);
+    const MatrixXd Lambda = innovation.covariance();
+    for (Index j = 0; j < y.size(); ++j) {
+      if (std::isnan(y[j])) continue;
+      result_.innovations(static_cast<Index>(row), j) = innovation.e[j];
+      result_.innovation_sd(static_cast<Index>(row), j) = std::sqrt(Lambda(j, j));
+    }
+  }
+
+  const TrajectoryPlan& plan_;
+  const VectorXd& xi_;
+  const SmoothingNoise& noise_;
+  SmoothedRecord& result_;
+  VectorXd density_;
+  MatrixXd R_;
+  std::unique_ptr<StateSteps> steps_;
+  std::span<const double> time_;
+  std::vector<std::span<const double>> outputs_;
+};
+
+/// Columns are the errors' axes, each as long as its standard deviation: the errors' covariance is
+/// axes axes'. Taken of the correlations, as units differ.
+MatrixXd axes_of(const MatrixXd& covariance) {
+  const VectorXd sd = covariance.diagonal().cwiseSqrt();
+  const MatrixXd correlation =
+      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(correlation);
+  const VectorXd lengths = parts.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return sd.asDiagonal() * parts.eigenvectors() * lengths.asDiagonal();
+}
+
+/// Those of the errors that act on a smoother: not an initial state's.
+ParameterErrors without_starts(const ParameterErrors& errors, const TrajectoryPlan& plan) {
+  std::set<std::string> starts;
+  for (const int i : plan.integrated()) {
+    const std::string& state = plan.model().states[static_cast<std::size_t>(i)].name;
+    for (int t = 0; t < plan.trajectories(); ++t) starts.insert(plan.start_name(state, t));
+  }
+  std::vector<Index> kept;
+  ParameterErrors result;
+  for (std::size_t k = 0; k < errors.names.size(); ++k) {
+    if (starts.contains(errors.names[k])) continue;
+    kept.push_back(static_cast<Index>(k));
+    result.names.push_back(errors.names[k]);
+  }
+  result.covariance = errors.covariance(kept, kept);
+  return result;
+}
+
+/// The outer product of each row of half a difference joins the row's covariance.
+void widen(std::vector<MatrixXd>& covariances, const MatrixXd& above, const MatrixXd& below) {
+  for (std::size_t row = 0; row < covariances.size(); ++row) {
+    const auto at = static_cast<Index>(row);
+    const VectorXd half = 0.5 * (above.row(at) - below.row(at)).transpose();
+    covariances[row] += half * half.transpose();
+  }
+}
+
+SmoothedRecord smooth_at(const StateBlockModel& model, const Record& record,
+                         const std::map<std::string, double>& parameters,
+                         const SmoothingNoise& noise) {
+  const TrajectoryPlan& plan = model.plan();
+  SmoothedRecord result;
+  for (const int i : plan.integrated()) {
+    result.states.push_back(plan.model().states[static_cast<std::size_t>(i)].name);
+  }
+  result.noises = names_in(plan.model().noise);
+  result.outputs = names_in(plan.tables().outputs);
+  check_noise(noise, result);
+  if (plan.options().scales_about_start) {
+    throw Error("smooth() takes a scale times its output as it is; fit without scales_about_start");
+  }
+  states::check_inputs(model.tables(), record);
+  const VectorXd xi = point_of(model.tables(), parameters);
+
+  const auto rows = static_cast<Index>(record.length());
+  const auto none = [rows](const std::vector<std::string>& names) {
+    return MatrixXd::Constant(rows, static_cast<Index>(names.size()), not_a_number).eval();
+  };
+  result.x = none(result.states);
+  result.w = none(result.noises);
+  result.innovations = result.innovation_sd = none(result.outputs);
+  const auto empty = [](const std::vector<std::string>& names) {
+    const auto n = static_cast<Index>(names.size());
+    return MatrixXd::Constant(n, n, not_a_number).eval();
+  };
+  result.P.assign(record.length(), empty(result.states));
+  result.Q.assign(record.length(), empty(result.noises));
+  Smoothing smoothing(model, record, xi, noise, result);
+  for (const Segment& segment : record.segments()) smoothing.run(segment);
+  return result;
+}
+
+}  // namespace
+
+ParameterErrors errors_of(const Fit& fit) {
+  std::vector<Index> places;
+  ParameterErrors errors;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const Parameter& parameter = fit.parameters[k];
+    if (parameter.fixed || !(parameter.standard_error > 0.0)) continue;
+    if (!std::isfinite(parameter.standard_error)) continue;
+    places.push_back(static_cast<Index>(k));
+    errors.names.push_back(parameter.name);
+  }
+  errors.covariance = fit.covariance(places, places);
+  return errors;
+}
+
+SmoothedRecord smooth(const StateBlockModel& model, const Record& record,
+                      const std::map<std::string, double>& parameters, const SmoothingNoise& noise,
+                      const ParameterErrors& errors) {
+  SmoothedRecord result = smooth_at(model, record, parameters, noise);
+  const ParameterErrors acting = without_starts(errors, model.plan());
+  if (acting.names.empty()) return result;
+  const MatrixXd axes = axes_of(acting.covariance);
+  const auto moved = [&](const VectorXd& by) {
+    std::map<std::string, double> values = parameters;
+    for (Index k = 0; k < by.size(); ++k) {
+      values.at(acting.names[static_cast<std::size_t>(k)]) += by[k];
+    }
+    return smooth_at(model, record, values, noise);
+  };
+  for (Index axis = 0; axis < axes.cols(); ++axis) {
+    const SmoothedRecord above = moved(axes.col(axis));
+    const SmoothedRecord below = moved(-axes.col(axis));
+    widen(result.P, above.x, below.x);
+    widen(result.Q, above.w, below.w);
+  }
+  return result;
+}
+
+}  // namespace sepcal

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How well the state is known where a segment begins, for filters that run along records.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sepcal/record.hpp"
+#include "sepcal/states/state_steps.hpp"
+
+namespace sepcal::states {
+
+/// Standard deviations (n_x) of x at a segment's start. Of states without one that is given, ten
+/// times the largest value that the state has on the way from there: as good as unknown.
+Eigen::VectorXd start_deviations(const StateSteps& steps, const Segment& segment,
+                                 const Eigen::VectorXd& x, const std::vector<std::string>& names,
+                                 const std::map<std::string, double>& given);
+
+}  // namespace sepcal::states

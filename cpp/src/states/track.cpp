@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tracks of models of samples, whose parameters are the state.
+#include "sepcal/states/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/name_list.hpp"
+#include "model/fixed_model.hpp"
+#include "model/measurements.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/states/filter.hpp"
+#include "sepcal/states/information_form.hpp"
+#include "sepcal/states/iterated_update.hpp"
+#include "sepcal/triangular_factor.hpp"
+#include "states/information_track.hpp"
+#include "states/joint_track.hpp"
+
+namespace sepcal {
+namespace {
+
+using Eigen::Dynamic;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void check_start(const Tables& tables, const StreamStart& start) {
+  const std::vector<Variable> parameters = tables.parameters();
+  for (const Variable& parameter : parameters) {
+    if (std::ranges::find(start.names, parameter.name) != start.names.end()) continue;
+    throw Error("the start has no '" + parameter.name + "'; it has " +
+                base::list_first(start.names, 12) + ": start from this model and record");
+  }
+  if (start.names.size() == parameters.size()) return;
+  throw Error("the start has parameters of another model: " + base::list_first(start.names, 12));
+}
+
+/// Throws Error where a trajectory begins that the start doesn't know.
+void check_trajectories(const TrajectoryPlan& plan, const StreamStart& start) {
+  for (const int i : plan.integrated()) {
+    const std::string& state = plan.model().states[static_cast<std::size_t>(i)].name;
+    const std::string name = plan.start_name(state, plan.trajectories() - 1);
+    if (std::ranges::find(start.names, name) != start.names.end()) continue;
+    throw Error("rls linearises at the trajectories of the start, which knows none from '" + name +
+                "' on; take ekf, iekf or srif");
+  }
+}
+
+std::map<std::string, double> held(const StreamStart& start) {
+  std::map<std::string, double> values;
+  for (std::size_t k = 0; k < start.names.size(); ++k) {
+    const auto place = static_cast<int>(k);
+    if (std::ranges::find(start.free, place) != start.free.end()) continue;
+    values[start.names[k]] = start.xi[place];
+  }
+  return values;
+}
+
+/// A model of samples along a record: [H | r] of one sample, whitened, at any point of what is
+/// free.
+class Samples {
+ public:
+  Samples(const BlockModel& model, const Record& record, const StreamStart& start, VectorXd noise)
+      : model_(model, held(start)), measurements_(model_, record), noise_(std::move(noise)) {}
+
+  const model::Measurements& measurements() const { return measurements_; }
+  std::unique_ptr<Carry> new_carry() const { return model_.new_carry(); }
+  const VectorXd& noise() const { return noise_; }
+
+  /// Of every row of a range, output by output within a row.
+  MatrixXd rows(const model::Measurements::Range& range, const VectorXd& x, Carry* carry) {
+    const Index n_1 = model_.tables().n_1();
+    const auto count = static_cast<Index>(range.rows);
+    const Index n_z = noise_.size();
+    MatrixXd out(n_z * count, x.size() + 1);
+    const VectorXd xi1 = x.head(n_1);
+    const VectorXd xi2 = x.tail(x.size() - n_1);
+    model_.evaluate(measurements_.block(range, pointers_), values_of(xi2), values_of(xi1), carry,
+                    out);
+    MatrixXd sorted(out.rows(), out.cols());
+    for (Index j = 0; j < n_z; ++j) {
+      const auto z = measurements_.output(static_cast<int>(j), range);
+      for (Index i = 0; i < count; ++i) {
+        auto row = sorted.row(i * n_z + j);
+        row = out.row(j * count + i);
+        row[x.size()] = z[static_cast<std::size_t>(i)] - row[x.size()] - row.head(n_1).dot(xi1);
+        row /= noise_[j];
+      }
+    }
+    return sorted;
+  }
+
+ private:
+  model::FixedModel model_;
+  model::Measurements measurements_;
+  VectorXd noise_;
+  std::vector<const double*> pointers_;
+};
+
+/// Estimates of what is free among all parameters, in the model's order.
+class Collected {
+ public:
+  Collected(const Record& record, const StreamStart& start, int n_z)
+      : record_(record),
+        start_(start),
+        track_(states::empty_track(start.names, record.rows() - start.rows, n_z)) {}
+
+  void append(std::size_t row, const VectorXd& x, const VectorXd& deviation, const VectorXd& e) {
+    VectorXd estimate = start_.xi;
+    VectorXd all = VectorXd::Zero(estimate.size());
+    estimate(start_.free) = x;
+    all(start_.free) = deviation;
+    states::append(track_, row, record_, estimate, all, e);
+  }
+
+  Track& track() { return track_; }
+
+ private:
+  const Record& record_;
+  const StreamStart& start_;
+  Track track_;
+};
+
+/// Rows linearised at the start, absorbed one sample after another.
+void track_linearised(Samples& samples, const StreamStart& start, Collected& collected) {
+  const VectorXd x = start.xi(start.free);
+  const Index n_z = samples.noise().size();
+  states::InformationTrack filter(start.R);
+  for (const auto& chunk : samples.measurements().chunks()) {
+    const auto carry = samples.new_carry();
+    for (const auto& range : chunk) {
+      const MatrixXd rows = samples.rows(range, x, carry.get());
+      for (std::size_t i = 0; i < range.rows; ++i) {
+        if (range.offset + i < start.rows) continue;
+        const MatrixXd sample = rows.middleRows(static_cast<Index>(i) * n_z, n_z);
+        const VectorXd before = filter.solution();
+        const VectorXd e = sample.rightCols<1>() - sample.leftCols(x.size()) * before;
+        if (!filter.absorb(sample)) ++collected.track().refused;
+        collected.append(range.first + i, x + filter.solution(), filter.deviations(),
+                         e.cwiseProduct(samples.noise()));
+      }
+    }
+  }
+}
+
+/// Every sample linearised where the filter is.
+template <class Form>
+void track_filtered(Samples& samples, const StreamStart& start, const TrackOptions& options,
+                    Collected& collected) {
+  const Index n_z = samples.noise().size();
+  const VectorXd nothing = VectorXd::Zero(n_z);  // rows are residuals, whitened
+  const MatrixXd unit = MatrixXd::Identity(n_z, n_z);
+  Filter<Dynamic, Form> filter(start.xi(start.free), Form::of_information_root(start.R));
+  for (const auto& chunk : samples.measurements().chunks()) {
+    for (const auto& range : chunk) {
+      for (std::size_t i = 0; i < range.rows; ++i) {
+        if (range.offset + i < start.rows) continue;
+        const model::Measurements::Range one{range.first + i, 1, range.offset + i,
+                                             range.starts_segment && i == 0};
+        const auto expected = [&](const VectorXd& x) -> Linearisation<Dynamic, Dynamic> {
+          const MatrixXd rows = samples.rows(one, x, nullptr);
+          return {-rows.rightCols<1>(), rows.leftCols(x.size())};
+        };
+        const Linearisation<Dynamic, Dynamic> first = expected(filter.x());
+        const FilterStatus status =
+            options.method == TrackMethod::iekf
+                ? iterated_update<Dynamic, Form, Dynamic>(filter, nothing, expected, unit,
+                                                          options.iterations)
+                      .status
+                : filter.template update<Dynamic>(nothing, first, unit).status;
+        collected.track().refused += status == FilterStatus::refused ? 1 : 0;
+        collected.track().not_converged += status == FilterStatus::not_converged ? 1 : 0;
+        collected.append(one.first, filter.x(), filter.covariance().diagonal().cwiseSqrt(),
+                         -first.value.cwiseProduct(samples.noise()));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Track track(const BlockModel& model, const Record& record, const StreamStart& start,
+            const TrackOptions& options) {
+  const auto* along = dynamic_cast<const StateBlockModel*>(&model);
+  if (along != nullptr && options.method != TrackMethod::rls) {
+    return states::track_jointly(*along, record, start, options);
+  }
+  if (along != nullptr) check_trajectories(along->plan(), start);
+  check_start(model.tables(), start);
+  if (options.method != TrackMethod::rls && model.new_carry() != nullptr) {
+    throw Error("a model that carries a state of its own is tracked by rls, not by " +
+                std::string(to_string(options.method)));
+  }
+  states::deviations_by_name(options.process_noise, {}, "process noise");
+  states::deviations_by_name(options.initial_states, {}, "state");
+  Samples samples(model, record, start, states::noise_of(model.tables().outputs, start, options));
+  Collected collected(record, start, model.tables().n_z());
+  if (options.method == TrackMethod::rls) {
+    track_linearised(samples, start, collected);
+  } else if (options.method == TrackMethod::srif) {
+    track_filtered<InformationForm<Dynamic>>(samples, start, options, collected);
+  } else {
+    track_filtered<SquareRootForm<Dynamic>>(samples, start, options, collected);
+  }
+  return std::move(collected.track());
+}
+
+}  // namespace sepcal
