@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flight path laid along a record, with what is measured, held and started from.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sepcal/models/flight_path.hpp"
+#include "sepcal/options.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal {
+
+struct PathOptions {
+  /// Outputs, where empty: those of airspeed beta alpha roll pitch yaw vn ve vd that are columns.
+  /// psi joins `measured` where there is neither yaw nor a velocity over the ground.
+  TrajectoryOptions trajectory = {};
+  double gravity = 9.80665;                        // m/s^2, at the place of the flight
+  Eigen::Vector3d vane = Eigen::Vector3d::Zero();  // from the inertial unit, body axes, m
+  /// FlightPath::held_at_zero is held unless named here or by fit.fixed.
+  std::vector<std::string> free = {};
+  /// `start` of initial states goes before the first readings.
+  FitOptions fit = {};
+};
+
+/// Ready for fit(), fit_many(), intervals.
+struct PathTrajectory {
+  std::shared_ptr<const TrajectoryModel<FlightPath>> model;
+  Record record;  // with a column for each measured state
+  FitOptions fit;
+  std::vector<std::string> initial_states;  // names of parameters
+};
+
+/// Throws Error for a record without any of the outputs, a parameter to free that isn't held, and
+/// as TrajectoryModel does.
+PathTrajectory lay_path(const Record& record, const PathOptions& options = {});
+
+}  // namespace sepcal

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Aircraft from flight logs: the flight path with the sensors' errors, aerodynamic coefficients by
+// equation error, output error and in two steps; what `sepcal-aircraft` does.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/aircraft/equations.hpp"
+#include "sepcal/aircraft/geometry.hpp"
+#include "sepcal/flight/apply.hpp"
+#include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/output_file.hpp"
+#include "sepcal/states/smooth_record.hpp"
+#include "sepcal/states/track.hpp"
+#include "sepcal/states/trajectory_options.hpp"
+
+namespace sepcal {
+
+/// path: flight path reconstruction. longitudinal, lateral, six_dof: the aircraft by output error.
+/// aero: its coefficients by equation error.
+enum class AircraftModel { path, longitudinal, lateral, six_dof, aero };
+
+/// "path", "longitudinal", "lateral", "six-dof", "aero".
+std::string_view to_string(AircraftModel model);
+
+/// The model of that name. Throws Error listing the names.
+AircraftModel find_aircraft_model(std::string_view name);
+
+/// "output-error", or "equation-error" of aero.
+std::string_view method_of(AircraftModel model);
+
+struct AircraftOptions {
+  AircraftModel model = AircraftModel::path;
+  /// Needed by all models but path, which takes of it where the vane is.
+  std::optional<AircraftGeometry> geometry = {};
+  /// Empty: the model's own, S 6.8 to 6.13. Effects join them: "Cm[alpha^2]".
+  std::vector<AeroEquation> equations = {};
+  TrajectoryOptions trajectory = {};  // of path, where `outputs` are empty: those that are logged
+  double gravity = 9.80665;           // m/s^2, at the place of the flight
+  double window = 0.0;                // of CoefficientOptions, s
+  /// Of `free`: what a path holds at zero (FlightPath::held_at_zero), or scales and biases of an
+  /// aircraft's outputs. Of `effects` the names alone.
+  CalibrationOptions calibration = {};
+};
+
+/// A regressor that was added, and the error of each output without and with it.
+struct AddedRegressor {
+  std::string effect;
+  std::vector<OutputValue> rmse_before;
+  std::vector<OutputValue> rmse_after;
+};
+
+/// What BASE.json of an aircraft holds.
+struct AircraftFit {
+  AircraftOptions options;
+  FittedFlight flight;
+  std::vector<AeroEquation> equations;  // with the effects' terms; of path none
+  Fit fit;
+  std::vector<std::string> initial_states = {};  // names of these parameters
+  std::vector<AddedRegressor> history = {};
+  std::vector<std::string> notes = {};  // one line each, for people
+  std::string warning = {};             // of the intervals; empty: none
+  std::string file = {};                // that it was read from
+};
+
+/// "Cm=1,alpha,q_hat". Throws Error, which says how to write it.
+AeroEquation parse_equation(std::string_view text);
+
+/// Columns by their headers: time, ax ay az, p q r, and as the model asks airspeed, alpha, beta,
+/// roll, pitch, yaw, vn ve vd, elevator, aileron, rudder, throttle, thrust, mass, rho (or temp and
+/// ps, or qbar), pdot qdot rdot, each with a unit. Throws Error for what is missing or makes no
+/// sense, in one line.
+AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options);
+
+/// The path and, where it was reconstructed, the aerodynamics (options.model is not looked at).
+struct TwoStepFit {
+  AircraftFit path;
+  AircraftFit aero;
+  std::vector<std::string> notes = {};
+};
+TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options);
+
+/// The page of a sensor's comparison. Of another flight than the fitted one the initial states are
+/// estimated anew, all else held; a note says so.
+Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight);
+
+/// The same fit with an effect more, from where it ended. Throws Error for a path, whose effects
+/// are none.
+AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
+                            const std::string& effect);
+
+/// Process noise: root of the spectral density by the name and in the unit of the model's table.
+using ProcessNoise = std::map<std::string, double>;
+
+/// What was flown, a column each with a value a row of the flight, NaN outside the segments: of
+/// every model the outputs as modelled (`alpha_model_rad`); of a path also the inertial unit's
+/// readings corrected (`ax_cal_mps2`), the states (`u_mps`), and, where there is a geometry, the
+/// coefficients. With process noise also what the smoother says (smooth_record.hpp): states and
+/// noises with their standard deviations (`u_smooth_mps`, `u_sd_mps`, `w_ax_mps2`,
+/// `w_ax_sd_mps2`), and the filter's innovations (`alpha_innovation_rad`). What there is to note is
+/// added to `notes`.
+std::vector<CorrectedColumn> apply_aircraft(const AircraftFit& fitted, const Flight& flight,
+                                            const ProcessNoise& process_noise,
+                                            std::vector<std::string>& notes);
+
+/// Writes the log with these columns more; `output` appears whole or not at all.
+Applied apply_aircraft_to_file(const AircraftFit& fitted, const std::string& file,
+                               const std::string& output, const ProcessNoise& process_noise = {},
+                               const Progress& progress = {});
+
+/// States and process noise of a flight, given all of it, at the fit's parameters: rows as in the
+/// flight. Throws Error as smooth() does, and for equation error, which has no state.
+SmoothedRecord smooth_aircraft(const AircraftFit& fitted, const Flight& flight,
+                               const ProcessNoise& process_noise);
+
+struct AircraftTrackOptions {
+  TrackOptions how = {};  // its noise is that of the first rows too
+  /// Stages one and two on so many first rows, and on after them; 0: from the calibration of
+  /// another flight.
+  std::size_t start_rows = 0;
+};
+
+/// Estimates against time along a flight.
+struct TrackedAircraft {
+  Track track;
+  std::vector<Variable> table;                // of track.names, with units
+  std::vector<Variable> outputs;              // n_z
+  std::vector<std::size_t> flight_rows = {};  // of track.rows
+  std::string file = {};                      // the flight's
+  std::vector<std::string> notes = {};
+};
+
+/// Throws Error as track() and fit_aircraft() do, and where the flight is the calibration's own,
+/// whose rows must not count twice.
+TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
+                               const AircraftTrackOptions& options = {});
+
+/// Writes time_s, every estimate with its standard deviation (`b_ax_mps2`, `b_ax_sd_mps2`) and the
+/// innovations (`alpha_innovation_rad`); a row an estimate.
+void write_csv(const TrackedAircraft& tracked, OutputFile& target);
+
+std::string to_text(const AircraftFit& fitted, Detail detail = Detail::brief);
+std::string to_json(const AircraftFit& fitted);
+std::string to_text(const TwoStepFit& fitted, Detail detail = Detail::brief);
+std::string to_json(const TwoStepFit& fitted);
+std::string to_text(const Applied& applied, const AircraftFit& fitted);
+std::string to_text(const TrackedAircraft& tracked, Detail detail = Detail::brief);
+std::string to_json(const TrackedAircraft& tracked);
+std::string to_json(const Applied& applied, const AircraftFit& fitted);
+
+/// Reads what to_json() wrote; of two steps the path or the aerodynamics, where `part` names it.
+/// Throws Error for anything else.
+AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source);
+AircraftFit read_aircraft_fit(const std::string& file);
+
+/// The regressors that each coefficient has by itself, and how others are written.
+std::string aircraft_effects_text();
+std::string aircraft_effects_json();
+
+}  // namespace sepcal

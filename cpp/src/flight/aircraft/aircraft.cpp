@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/aircraft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "base/thread_pool.hpp"
+#include "flight/aircraft/aircraft_columns.hpp"
+#include "flight/aircraft/laid_aircraft.hpp"
+#include "flight/files/sha256.hpp"
+#include "flight/verbs/residual_comparison.hpp"
+#include "sepcal/aircraft/two_step.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace aircraft_log;  // this room's own
+
+namespace {
+
+constexpr std::array<std::string_view, 5> model_names{"path", "longitudinal", "lateral", "six-dof",
+                                                      "aero"};
+
+/// Of the file's bytes; of arrays, which have none, of their headers and values.
+std::string digest_of(const Flight& flight) {
+  if (!flight.sha256().empty()) return flight.sha256();
+  files::Sha256 hash;
+  for (const Flight::Column& column : flight.columns()) {
+    hash.absorb(column.header.data(), column.header.size());
+    const auto bytes = std::as_bytes(column.values);
+    hash.absorb(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  return hash.finish();
+}
+
+/// Of another flight than the fitted one.
+std::vector<OutputValue> rmse_on(const Flight& flight, const AircraftFit& fitted) {
+  std::vector<OutputValue> rmse;
+  for (const Misfit& misfit : compare_aircraft(fitted, flight).overall) {
+    rmse.push_back({misfit.output, misfit.rmse});
+  }
+  return rmse;
+}
+
+/// With what the fit held among the options, so that they say all.
+AircraftFit describe(const Flight& flight, AircraftOptions options, Fit fit) {
+  for (const Parameter& parameter : fit.parameters) {
+    if (parameter.fixed) options.calibration.fit.fixed[parameter.name] = parameter.value;
+  }
+  if (options.model != AircraftModel::aero) options.calibration.fit.samples = 0;
+  return {.options = std::move(options),
+          .flight = {flight.name(), digest_of(flight), flight.rows(), fit.rows},
+          .equations = {},
+          .fit = std::move(fit)};
+}
+
+}  // namespace
+
+std::string_view to_string(AircraftModel model) {
+  return model_names[static_cast<std::size_t>(model)];
+}
+
+AircraftModel find_aircraft_model(std::string_view name) {
+  const auto found = std::ranges::find(model_names, name);
+  if (found == model_names.end()) {
+    throw Error(
+        fmt::format("there is no model '{}'; choose one of path, longitudinal, lateral, "
+                    "six-dof, aero",
+                    name));
+  }
+  return static_cast<AircraftModel>(found - model_names.begin());
+}
+
+std::string_view method_of(AircraftModel model) {
+  return model == AircraftModel::aero ? "equation-error" : "output-error";
+}
+
+AeroEquation parse_equation(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  AeroEquation equation{std::string(text.substr(0, equals)), {}};
+  if (equals == std::string_view::npos || equals + 1 == text.size()) {
+    throw Error(fmt::format("'{}' is no equation; write it as Cm=1,alpha,q_hat,elevator", text));
+  }
+  for (std::string_view rest = text.substr(equals + 1); !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    equation.regressors.emplace_back(rest.substr(0, comma));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  check_equations({equation});
+  return equation;
+}
+
+AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
+  LaidAircraft laid = lay(flight, options);
+  AircraftFit fitted = describe(flight, options, fit(*laid.model, laid.record, laid.fit));
+  fitted.equations = std::move(laid.equations);
+  fitted.initial_states = std::move(laid.initial_states);
+  fitted.notes = std::move(laid.notes);
+  fitted.warning = std::move(laid.warning);
+  return fitted;
+}
+
+TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
+  AircraftOptions second = options;
+  second.model = AircraftModel::aero;
+  second.calibration.free.clear();
+  second.calibration.fit = {.coloured_errors = options.calibration.fit.coloured_errors,
+                            .threads = options.calibration.fit.threads};
+  AircraftOptions first = options;
+  first.model = AircraftModel::path;
+  first.calibration.effects.clear();
+  ProbeRecord prepared = prepare(flight, second.model, second.calibration.drop_invalid);
+  TwoStep steps = within(flight, [&] {
+    return two_step(prepared.record, geometry_of(second),
+                    {.equations = equations_of(second),
+                     .path = options.trajectory,
+                     .gravity = options.gravity,
+                     .window = options.window,
+                     .path_fit = options.calibration.fit,
+                     .free = options.calibration.free,
+                     .aero_fit = second.calibration.fit});
+  });
+  TwoStepFit found{.path = describe(flight, std::move(first), std::move(steps.path)),
+                   .aero = describe(flight, std::move(second), std::move(steps.aero.fit)),
+                   .notes = std::move(prepared.notes)};
+  found.path.initial_states = std::move(steps.initial_states);
+  found.aero.equations = std::move(steps.aero.equations);
+  found.aero.warning = std::move(steps.aero.warning);
+  found.notes.insert(found.notes.end(), steps.aero.notes.begin(), steps.aero.notes.end());
+  return found;
+}
+
+AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
+                            const std::string& effect) {
+  AircraftOptions options = options_on(fitted, flight);
+  options.calibration.effects.push_back({.name = effect});
+  if (options.model != AircraftModel::aero) {
+    options.calibration.fit.start = fitted.fit.nonlinear_estimates();
+  }
+  const bool same = is_same_flight(fitted, flight);
+  for (const std::string& name : fitted.initial_states) {
+    if (!same) options.calibration.fit.start.erase(name);
+  }
+  AircraftFit next = fit_aircraft(flight, options);
+  next.history = fitted.history;
+  next.history.push_back({effect, same ? fitted.fit.rmse : rmse_on(flight, fitted), next.fit.rmse});
+  return next;
+}
+
+Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
+  LaidAircraft laid = lay(flight, options_on(fitted, flight));
+  base::ThreadPool pool(fitted.options.calibration.fit.threads);
+  const Fit at = fit_on(flight, fitted, laid);
+  Comparison result =
+      verbs::compare_residuals(verbs::residuals_of(*laid.model, laid.record, at, pool),
+                               laid.model->tables(), laid.record, flight, fitted.fit, pool);
+  result.model = to_string(fitted.options.model);
+  result.notes = std::move(laid.notes);
+  return result;
+}
+
+bool aircraft_log::is_same_flight(const AircraftFit& fitted, const Flight& flight) {
+  return fitted.flight.sha256 == digest_of(flight);
+}
+
+AircraftOptions aircraft_log::options_on(const AircraftFit& fitted, const Flight& flight) {
+  AircraftOptions options = fitted.options;
+  if (is_same_flight(fitted, flight)) return options;
+  for (const std::string& name : fitted.initial_states) {
+    options.calibration.fit.start.erase(name);
+    options.calibration.fit.fixed.erase(name);
+  }
+  return options;
+}
+
+Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAircraft& laid) {
+  if (is_same_flight(fitted, flight) || laid.initial_states.empty()) return fitted.fit;
+  laid.notes.push_back(fmt::format(
+      "{} is not the flight of the fit: its initial states are estimated anew, all else is held",
+      flight.name()));
+  FitOptions options = laid.fit;
+  for (const Parameter& parameter : fitted.fit.parameters) {
+    const auto& own = fitted.initial_states;
+    if (std::ranges::find(own, parameter.name) == own.end()) {
+      options.fixed[parameter.name] = parameter.value;
+    }
+  }
+  std::erase_if(options.start,
+                [&](const auto& entry) { return options.fixed.contains(entry.first); });
+  return fit(*laid.model, laid.record, options);
+}
+
+}  // namespace sepcal

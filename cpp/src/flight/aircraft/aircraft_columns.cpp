@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/aircraft/aircraft_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "flight/probes/air_columns.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::aircraft_log {
+namespace {
+
+using files::UnitKind;
+using probes::ProbeQuantity;
+using probes::RecordBuilder;
+
+constexpr std::array quantities{
+    ProbeQuantity{"time", UnitKind::time},
+    ProbeQuantity{"ax", UnitKind::acceleration},
+    ProbeQuantity{"ay", UnitKind::acceleration},
+    ProbeQuantity{"az", UnitKind::acceleration},
+    ProbeQuantity{"p", UnitKind::rate},
+    ProbeQuantity{"q", UnitKind::rate},
+    ProbeQuantity{"r", UnitKind::rate},
+    ProbeQuantity{"airspeed", UnitKind::speed},
+    ProbeQuantity{"alpha", UnitKind::angle},
+    ProbeQuantity{"beta", UnitKind::angle},
+    ProbeQuantity{"roll", UnitKind::angle},
+    ProbeQuantity{"pitch", UnitKind::angle},
+    ProbeQuantity{"yaw", UnitKind::angle},
+    ProbeQuantity{"vn", UnitKind::speed},
+    ProbeQuantity{"ve", UnitKind::speed},
+    ProbeQuantity{"vd", UnitKind::speed},
+    ProbeQuantity{"elevator", UnitKind::angle},
+    ProbeQuantity{"aileron", UnitKind::angle},
+    ProbeQuantity{"rudder", UnitKind::angle},
+    ProbeQuantity{"throttle", UnitKind::share},
+    ProbeQuantity{"thrust", UnitKind::force},
+    ProbeQuantity{"mass", UnitKind::mass},
+    ProbeQuantity{"rho", UnitKind::density},
+    ProbeQuantity{"qbar", UnitKind::pressure},
+    ProbeQuantity{"ps", UnitKind::pressure},
+    ProbeQuantity{"temp", UnitKind::temperature, true},
+    ProbeQuantity{"pdot", UnitKind::angular_acceleration},
+    ProbeQuantity{"qdot", UnitKind::angular_acceleration},
+    ProbeQuantity{"rdot", UnitKind::angular_acceleration},
+};
+
+/// A load factor has the other sign and is asked for by name, as it is what logs have.
+void refuse_load_factor(const RecordBuilder& builder, const Flight& flight) {
+  if (builder.has({"az"})) return;
+  for (const char* header : {"an_g", "nz_g", "an_mps2", "an_ftps2"}) {
+    if (flight.find(header) == nullptr) continue;
+    throw Error(fmt::format(
+        "{}: column '{}' is a load factor, positive up; az is the specific force downwards: log "
+        "az_g = -{} (level flight reads az = -9.81 m/s^2)",
+        flight.name(), header, header));
+  }
+}
+
+void need_air(RecordBuilder& builder, const Flight& flight) {
+  builder.need({"airspeed", "alpha", "beta"});
+  if (builder.has({"qbar"})) {
+    builder.need({"qbar"});
+  } else {
+    probes::need_density(builder, flight, "rho_kgpm3, or temp_k and ps_pa, or qbar_pa");
+  }
+}
+
+}  // namespace
+
+ProbeRecord prepare(const Flight& flight, AircraftModel model, bool drop_invalid) {
+  RecordBuilder builder(flight, quantities, drop_invalid);
+  refuse_load_factor(builder, flight);
+  builder.need({"time", "ax", "ay", "az", "p", "q", "r"});
+  const bool flies_by_air = model != AircraftModel::path;
+  if (flies_by_air) need_air(builder, flight);
+  builder.keep_valid();
+  if (flies_by_air && !builder.has({"qbar"})) probes::keep_positive_density(builder);
+  builder.check_time();
+  if (!flies_by_air) {
+    for (const auto name : {"airspeed", "alpha", "beta"}) builder.offer({name});
+    if (!builder.offer({"qbar"})) probes::offer_density(builder);
+  }
+  for (const auto name : {"roll", "pitch", "yaw", "elevator", "aileron", "rudder", "throttle",
+                          "thrust", "mass", "ps"}) {
+    builder.offer({name});
+  }
+  builder.offer({"vn", "ve", "vd"});
+  builder.offer({"pdot", "qdot", "rdot"});
+  probes::offer_temperature(builder);
+  return builder.finish();
+}
+
+}  // namespace sepcal::aircraft_log

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From an aircraft's log to the record that its models take.
+#pragma once
+
+#include "sepcal/flight/aircraft.hpp"
+#include "sepcal/flight/probe_columns.hpp"
+
+namespace sepcal::aircraft_log {
+
+/// time [s]; ax ay az [m/s^2]; p q r [rad/s]; of an aircraft airspeed [m/s], alpha and beta [rad],
+/// rho [kg/m^3] or qbar [Pa]; and whatever else of the models' columns is logged. Throws Error as
+/// prepare_five_hole() does, and for a load factor in place of az.
+ProbeRecord prepare(const Flight& flight, AircraftModel model, bool drop_invalid);
+
+}  // namespace sepcal::aircraft_log

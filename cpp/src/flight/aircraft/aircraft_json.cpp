@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fits of an aircraft on disc.
+#include <fmt/format.h>
+
+#include "flight/aircraft/laid_aircraft.hpp"
+#include "flight/files/text_file.hpp"
+#include "flight/json/fit_json.hpp"
+#include "flight/json/options_json.hpp"
+#include "sepcal/flight/aircraft.hpp"
+#include "sepcal/flight/aircraft_file.hpp"
+#include "sepcal/option_error.hpp"
+
+namespace sepcal {
+
+using namespace json;          // what results of sensors have in common with these
+using namespace aircraft_log;  // this room's own
+
+namespace {
+
+Json write_equations(const std::vector<AeroEquation>& equations) {
+  Json object = Json::object();
+  for (const AeroEquation& equation : equations) object[equation.coefficient] = equation.regressors;
+  return object;
+}
+
+std::vector<AeroEquation> read_equations(const Json& object) {
+  std::vector<AeroEquation> equations;
+  for (const auto& [coefficient, regressors] : entries_of(object)) {
+    equations.push_back({coefficient, regressors.get<std::vector<std::string>>()});
+  }
+  return equations;
+}
+
+Json write_model(const AircraftOptions& options) {
+  const TrajectoryOptions& along = options.trajectory;
+  Json object = {{"equations", write_equations(options.equations)},
+                 {"inputs_between_rows", to_string(along.inputs)},
+                 {"substeps", along.substeps},
+                 {"shoot", number(along.shoot)},
+                 {"measured", along.measured},
+                 {"outputs", along.outputs},
+                 {"scales_about_start", along.scales_about_start},
+                 {"gravity", options.gravity},
+                 {"window", options.window}};
+  if (options.geometry) object["geometry"] = Json::parse(to_json(*options.geometry));
+  return object;
+}
+
+void read_model(const Json& object, AircraftOptions& options) {
+  TrajectoryOptions& along = options.trajectory;
+  options.equations = read_equations(object.at("equations"));
+  along.inputs = object.at("inputs_between_rows") == "hold" ? InputsBetweenRows::hold
+                                                            : InputsBetweenRows::linear;
+  along.substeps = whole_number<int>(object.at("substeps"));
+  along.shoot = number_or(object.at("shoot"), infinity);
+  along.measured = object.at("measured").get<std::vector<std::string>>();
+  along.outputs = object.at("outputs").get<std::vector<std::string>>();
+  along.scales_about_start = object.at("scales_about_start").get<bool>();
+  options.gravity = object.at("gravity").get<double>();
+  options.window = object.at("window").get<double>();
+  if (object.contains("geometry")) {
+    options.geometry = parse_aircraft(object.at("geometry").dump(), "geometry");
+  }
+}
+
+Json write_fitted(const AircraftFit& fitted) {
+  Json root;
+  root["schema_version"] = schema_version;
+  root["model"] = to_string(fitted.options.model);
+  root["method"] = method_of(fitted.options.model);
+  if (fitted.options.geometry) {
+    root["rate_reference"] = to_string(fitted.options.geometry->rate_reference);
+  }
+  root["inputs"] = write_inputs(fitted.flight);
+  root["aircraft"] = write_model(fitted.options);
+  root["options"] = write_options(fitted.options.calibration);
+  root["equations"] = write_equations(fitted.equations);
+  root["initial_states"] = fitted.initial_states;
+  root["warning"] = fitted.warning;
+  write_estimates(fitted.fit, root);
+  write_rest(fitted.fit, fitted.options.calibration.fit, root);
+  root["history"] = Json::array();
+  for (const AddedRegressor& added : fitted.history) {
+    root["history"].push_back({{"effect", added.effect},
+                               {"rmse_before", by_name(added.rmse_before)},
+                               {"rmse_after", by_name(added.rmse_after)}});
+  }
+  return root;
+}
+
+AircraftFit read_fitted(const Json& root) {
+  AircraftFit fitted;
+  fitted.options.model = find_aircraft_model(root.at("model").get<std::string>());
+  fitted.options.calibration = read_options(root.at("options"));
+  read_model(root.at("aircraft"), fitted.options);
+  fitted.flight = read_inputs(root.at("inputs"));
+  fitted.equations = read_equations(root.at("equations"));
+  fitted.initial_states = root.at("initial_states").get<std::vector<std::string>>();
+  fitted.warning = root.at("warning").get<std::string>();
+  std::vector<std::string> outputs;
+  for (const auto& [name, rmse] : entries_of(root.at("rmse"))) outputs.push_back(name);
+  fitted.fit = read_fit(root, fitted.options.calibration, outputs);
+  fitted.fit.rows = fitted.flight.rows_used;
+  for (const Json& added : elements_of(root.at("history"))) {
+    fitted.history.push_back({added.at("effect").get<std::string>(),
+                              values_by_name(outputs, added.at("rmse_before")),
+                              values_by_name(outputs, added.at("rmse_after"))});
+  }
+  return fitted;
+}
+
+}  // namespace
+
+std::string to_json(const AircraftFit& fitted) { return text_of(write_fitted(fitted)); }
+
+std::string to_json(const TwoStepFit& fitted) {
+  return text_of({{"schema_version", schema_version},
+                  {"method", "two-step"},
+                  {"path", write_fitted(fitted.path)},
+                  {"aero", write_fitted(fitted.aero)}});
+}
+
+std::string to_json(const Applied& applied, const AircraftFit& fitted) {
+  return text_of({{"schema_version", schema_version},
+                  {"model", to_string(fitted.options.model)},
+                  {"output", applied.output},
+                  {"rows", applied.rows},
+                  {"rows_left_empty", applied.rows_left_empty},
+                  {"columns", applied.headers},
+                  {"status", to_string(fitted.fit.status)},
+                  {"message", fitted.fit.message}});
+}
+
+AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source) {
+  const Json root = Json::parse(json, nullptr, false);
+  if (root.is_discarded() || !root.is_object() || !root.contains("schema_version")) {
+    throw Error(fmt::format("{} is no fit of an aircraft; give the JSON that fit wrote with -o{}",
+                            source, json.empty() ? " (it is empty)" : ""));
+  }
+  if (root.contains("path") && root.contains("aero")) {
+    throw Error(fmt::format(
+        "{} holds two steps, a path and its aerodynamics; fit one of them alone, with --model path "
+        "or --model aero, to go on with it",
+        source));
+  }
+  if (!root.contains("aircraft")) {
+    throw Error(fmt::format(
+        "{} is a calibration of a sensor; use sepcal-pitot or sepcal-mag for it", source));
+  }
+  if (root["schema_version"] != schema_version) {
+    throw Error(
+        fmt::format("{} has schema version {}, this sepcal reads version {}; fit the flight "
+                    "again",
+                    source, describe(root["schema_version"]), schema_version));
+  }
+  try {
+    return read_fitted(root);
+  } catch (const Json::exception&) {
+    throw Error(source +
+                " is damaged: entries are missing or of another kind; fit the flight again");
+  } catch (const Error& error) {
+    throw_within(source + " is damaged: ", error, "; fit the flight again");
+  }
+}
+
+AircraftFit read_aircraft_fit(const std::string& file) {
+  const std::string text =
+      files::read_text_file(file, "as a fit; give the JSON that fit wrote with -o");
+  AircraftFit fitted = parse_aircraft_fit(text, file);
+  fitted.file = file;
+  return fitted;
+}
+
+std::string aircraft_effects_json() {
+  return text_of(
+      {{"schema_version", schema_version}, {"equations", write_equations(standard_equations())}});
+}
+
+}  // namespace sepcal

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/aircraft/laid_aircraft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "flight/aircraft/aircraft_columns.hpp"
+#include "sepcal/aircraft/aero_model.hpp"
+#include "sepcal/aircraft/output_error.hpp"
+#include "sepcal/aircraft/path.hpp"
+#include "sepcal/effect_name.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/states/stream_start.hpp"
+
+namespace sepcal::aircraft_log {
+namespace {
+
+std::vector<std::string> coefficients_of(const AircraftOptions& options) {
+  switch (options.model) {
+    case AircraftModel::longitudinal:
+      return {"CX", "CZ", "Cm"};
+    case AircraftModel::lateral:
+      return {"CY", "Cl", "Cn"};
+    default:
+      return {};
+  }
+}
+
+AircraftAxes axes_of(AircraftModel model) {
+  if (model == AircraftModel::longitudinal) return AircraftAxes::longitudinal;
+  return model == AircraftModel::lateral ? AircraftAxes::lateral : AircraftAxes::six_dof;
+}
+
+void lay_along_path(const AircraftOptions& options, LaidAircraft& laid) {
+  const Eigen::Vector3d vane = options.geometry
+                                   ? Eigen::Vector3d(options.geometry->vane - options.geometry->imu)
+                                   : Eigen::Vector3d::Zero();
+  PathTrajectory path = lay_path(laid.record, {.trajectory = options.trajectory,
+                                               .gravity = options.gravity,
+                                               .vane = vane,
+                                               .free = options.calibration.free,
+                                               .fit = options.calibration.fit});
+  laid.path = path.model;
+  laid.model = std::move(path.model);
+  laid.record = std::move(path.record);
+  laid.fit = std::move(path.fit);
+  laid.initial_states = std::move(path.initial_states);
+  laid.warning =
+      "noise of the inertial unit, which is integrated, adds up along segments and is not in these "
+      "intervals; cut long segments (shoot)";
+}
+
+void lay_coefficients(const AircraftOptions& options, LaidAircraft& laid) {
+  std::vector<std::string> names;
+  for (const AeroEquation& equation : laid.equations) names.push_back(equation.coefficient);
+  AeroCoefficients found = aero_coefficients(laid.record, geometry_of(options),
+                                             {.coefficients = names, .window = options.window});
+  laid.model = std::make_shared<AeroModel>(laid.equations);
+  laid.record = std::move(found.record);
+  laid.notes.insert(laid.notes.end(), found.notes.begin(), found.notes.end());
+  laid.warning = regressor_warning;
+}
+
+void lay_motion(const AircraftOptions& options, LaidAircraft& laid) {
+  AircraftTrajectory along = lay_aircraft(laid.record, geometry_of(options),
+                                          {.axes = axes_of(options.model),
+                                           .equations = laid.equations,
+                                           .trajectory = options.trajectory,
+                                           .free = options.calibration.free,
+                                           .gravity = options.gravity,
+                                           .window = options.window,
+                                           .fit = options.calibration.fit});
+  laid.model = std::move(along.model);
+  laid.record = std::move(along.record);
+  laid.fit = std::move(along.fit);
+  laid.notes.insert(laid.notes.end(), along.notes.begin(), along.notes.end());
+  laid.warning = std::move(along.warning);
+  laid.initial_states = std::move(along.initial_states);
+}
+
+/// Of the whole flight, or of its first rows.
+LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
+                      std::optional<std::size_t> rows) {
+  LaidAircraft laid;
+  if (options.model == AircraftModel::path && !options.calibration.effects.empty()) {
+    throw Error("a flight path takes no effects; leave them out, or fit a model of the aircraft");
+  }
+  if (options.model == AircraftModel::path && !options.equations.empty()) {
+    throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
+  }
+  laid.equations = equations_of(options);
+  ProbeRecord prepared = prepare(flight, options.model, options.calibration.drop_invalid);
+  laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
+  laid.notes = std::move(prepared.notes);
+  laid.flight_rows = std::move(prepared.flight_rows);
+  laid.fit = options.calibration.fit;
+  within(flight, [&] {
+    if (options.model == AircraftModel::path) {
+      lay_along_path(options, laid);
+    } else if (options.model == AircraftModel::aero) {
+      lay_coefficients(options, laid);
+    } else {
+      lay_motion(options, laid);
+    }
+  });
+  return laid;
+}
+
+}  // namespace
+
+const AircraftGeometry& geometry_of(const AircraftOptions& options) {
+  if (options.geometry) return *options.geometry;
+  throw Error(fmt::format(
+      "the model '{}' needs the aircraft's dimensions and mass: give --geometry AIRCRAFT.json "
+      "(area_m2, chord_m, span_m, mass_kg, inertia_kgm2 [Ix, Iy, Iz, Ixz])",
+      to_string(options.model)));
+}
+
+std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
+  if (options.model == AircraftModel::path) return {};
+  std::vector<AeroEquation> equations =
+      options.equations.empty() ? standard_equations(coefficients_of(options)) : options.equations;
+  for (const EffectSetting& effect : options.calibration.effects) {
+    const std::string& name = effect.name;
+    const std::size_t open = name.find('[');
+    const auto equation =
+        std::ranges::find(equations, name.substr(0, open), &AeroEquation::coefficient);
+    if (open == std::string::npos || !name.ends_with(']') || equation == equations.end()) {
+      std::string known;
+      for (const AeroEquation& one : equations)
+        known += (known.empty() ? "" : ", ") + one.coefficient;
+      throw Error(
+          fmt::format("effect {}: write it as COEFFICIENT[REGRESSOR], as {}[alpha^2]; the "
+                      "coefficients here are: {}",
+                      name, equations.front().coefficient, known));
+    }
+    equation->regressors.push_back(name.substr(open + 1, name.size() - open - 2));
+  }
+  check_equations(equations);
+  return equations;
+}
+
+LaidAircraft lay(const Flight& flight, const AircraftOptions& options) {
+  return lay_rows(flight, options, std::nullopt);
+}
+
+LaidAircraft lay_first_rows(const Flight& flight, const AircraftOptions& options,
+                            std::size_t rows) {
+  return lay_rows(flight, options, rows);
+}
+
+const StateBlockModel& state_model_of(const LaidAircraft& laid, const AircraftFit& fitted) {
+  const auto* model = dynamic_cast<const StateBlockModel*>(laid.model.get());
+  if (model != nullptr) return *model;
+  throw Error(
+      fmt::format("the model '{}' has no state to smooth; fit path, longitudinal, lateral "
+                  "or six-dof for that",
+                  to_string(fitted.options.model)));
+}
+
+}  // namespace sepcal::aircraft_log

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A model of AircraftOptions laid along a flight: what fit(), compare and apply have in common.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/flight/aircraft.hpp"
+#include "sepcal/models/flight_path.hpp"
+#include "sepcal/option_error.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal::aircraft_log {
+
+struct LaidAircraft {
+  std::shared_ptr<const BlockModel> model;
+  std::shared_ptr<const TrajectoryModel<FlightPath>> path;  // the same, where it is a path
+  Record record;
+  FitOptions fit;
+  std::vector<AeroEquation> equations;
+  std::vector<std::string> initial_states;  // names of parameters
+  std::vector<std::string> notes;
+  std::string warning;
+  std::vector<std::size_t> flight_rows;  // of the record's rows
+};
+
+/// Throws Error as fit_aircraft() does.
+LaidAircraft lay(const Flight& flight, const AircraftOptions& options);
+
+/// The same for the first so many rows of its segments.
+LaidAircraft lay_first_rows(const Flight& flight, const AircraftOptions& options, std::size_t rows);
+
+/// A fit's own options for a flight: of another one than it was fitted to without its initial
+/// states.
+AircraftOptions options_on(const AircraftFit& fitted, const Flight& flight);
+
+/// The model, which has a state. Throws Error where it has none.
+const StateBlockModel& state_model_of(const LaidAircraft& laid, const AircraftFit& fitted);
+
+/// States and process noise along the record at a fit of it.
+SmoothedRecord smooth_laid(const AircraftFit& fitted, const Fit& fit, const LaidAircraft& laid,
+                           const ProcessNoise& process_noise);
+
+/// The name of a column with the unit as headers have it: "ax_cal_mps2"; of a number without a
+/// dimension and of a coefficient by radians, Cm_alpha, the name alone.
+std::string header_of(const std::string& name, const std::string& unit);
+
+bool is_same_flight(const AircraftFit& fitted, const Flight& flight);
+
+/// The geometry, which every model but path needs. Throws Error where there is none.
+const AircraftGeometry& geometry_of(const AircraftOptions& options);
+
+/// What `work` gives; the flight's name opens its messages.
+template <class Work>
+auto within(const Flight& flight, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw_within(flight.name() + ": ", error, "");
+  }
+}
+
+/// The fit as it stands; of another flight than its own with the initial states estimated anew, all
+/// else held, and a note.
+Fit fit_on(const Flight& flight, const AircraftFit& fitted, LaidAircraft& laid);
+
+/// The equations of options.model, or those given, with the terms of the effects.
+std::vector<AeroEquation> equations_of(const AircraftOptions& options);
+
+}  // namespace sepcal::aircraft_log

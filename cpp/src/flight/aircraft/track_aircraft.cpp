@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Estimates of an aircraft against time: a fit's model followed by a recursive estimator.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "flight/aircraft/laid_aircraft.hpp"
+#include "flight/files/csv_cells.hpp"
+#include "flight/json/output_values.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/aircraft.hpp"
+
+namespace sepcal {
+
+using namespace aircraft_log;  // this room's own
+
+namespace {
+
+StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const LaidAircraft& laid,
+                     const AircraftTrackOptions& how) {
+  const std::size_t rows = how.start_rows;
+  if (rows == 0) {
+    if (is_same_flight(fitted, flight)) {
+      throw Error(
+          "the fit is of this flight, whose rows must not count twice; start from its first ones, "
+          "by --start-rows N (start_rows=N)");
+    }
+    return start_from_fit(fitted.fit);
+  }
+  AircraftOptions options = fitted.options;
+  if (!how.how.noise.empty()) options.calibration.fit.noise = how.how.noise;
+  if (laid.initial_states.empty()) {
+    return start_from_rows(*laid.model, laid.record, rows, options.calibration.fit);
+  }
+  for (const std::string& name : fitted.initial_states) {  // of other segments than the first rows'
+    options.calibration.fit.start.erase(name);
+  }
+  const LaidAircraft batch = lay_first_rows(flight, options, rows);
+  return start_from_rows(*batch.model, laid.record, rows, batch.fit);
+}
+
+/// Names with their units: states first, then parameters.
+std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
+  std::vector<Variable> known = model.tables().parameters();
+  if (const auto* along = dynamic_cast<const StateBlockModel*>(&model)) {
+    const auto& states = along->plan().model().states;
+    known.insert(known.begin(), states.begin(), states.end());
+  }
+  std::vector<Variable> table;
+  for (const std::string& name : track.names) {
+    table.push_back(*std::ranges::find(known, name, &Variable::name));
+  }
+  return table;
+}
+
+}  // namespace
+
+TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
+                               const AircraftTrackOptions& options) {
+  const LaidAircraft laid = lay(flight, options_on(fitted, flight));
+  return within(flight, [&] {
+    const StreamStart start = start_of(fitted, flight, laid, options);
+    TrackedAircraft tracked{.track = track(*laid.model, laid.record, start, options.how),
+                            .table = {},
+                            .outputs = laid.model->tables().outputs,
+                            .file = flight.name(),
+                            .notes = laid.notes};
+    tracked.table = table_of(tracked.track, *laid.model);
+    for (const std::size_t row : tracked.track.rows) {
+      tracked.flight_rows.push_back(laid.flight_rows[row]);
+    }
+    return tracked;
+  });
+}
+
+void write_csv(const TrackedAircraft& tracked, OutputFile& target) {
+  const Track& track = tracked.track;
+  std::string line = "time_s";
+  for (const Variable& estimate : tracked.table) {
+    line += "," + header_of(estimate.name, estimate.unit) + "," +
+            header_of(estimate.name + "_sd", estimate.unit);
+  }
+  for (const Variable& output : tracked.outputs) {
+    line += "," + header_of(output.name + "_innovation", output.unit);
+  }
+  target.write(line + "\n");
+  for (Eigen::Index row = 0; row < track.estimates.rows(); ++row) {
+    line.clear();
+    files::append_number(line, track.time[static_cast<std::size_t>(row)]);
+    const auto add = [&line](double value) {
+      line += ',';
+      files::append_number(line, value);
+    };
+    for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
+      add(track.estimates(row, k));
+      add(track.standard_deviations(row, k));
+    }
+    for (Eigen::Index j = 0; j < track.innovations.cols(); ++j) add(track.innovations(row, j));
+    target.write(line + "\n");
+  }
+}
+
+std::string to_text(const TrackedAircraft& tracked, Detail /*detail*/) {
+  const Track& track = tracked.track;
+  const Eigen::Index last = track.estimates.rows() - 1;
+  std::string text = fmt::format("{} rows of {} tracked, to {:.6g} s\n", track.rows.size(),
+                                 tracked.file, track.time.back());
+  text +=
+      fmt::format("{:<14} {:>12} {:>12} {:>12} {:>12}  unit\n", "", "first", "sd", "last", "sd");
+  for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
+    const Variable& estimate = tracked.table[static_cast<std::size_t>(k)];
+    text +=
+        fmt::format("{:<14} {:>12.5g} {:>12.3g} {:>12.5g} {:>12.3g}  {}\n", estimate.name,
+                    track.estimates(0, k), track.standard_deviations(0, k),
+                    track.estimates(last, k), track.standard_deviations(last, k), estimate.unit);
+  }
+  if (track.refused > 0) {
+    text +=
+        fmt::format("{} rows were refused: something there is no finite number\n", track.refused);
+  }
+  if (track.not_converged > 0) {
+    text += fmt::format("{} rows ended by the cap of the iterations\n", track.not_converged);
+  }
+  return text;
+}
+
+std::string to_json(const TrackedAircraft& tracked) {
+  using json::Json;
+  const Track& track = tracked.track;
+  const Eigen::Index last = track.estimates.rows() - 1;
+  Json estimates = Json::object();
+  for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
+    const Variable& estimate = tracked.table[static_cast<std::size_t>(k)];
+    estimates[estimate.name] = {
+        {"value", json::number(track.estimates(last, k))},
+        {"standard_deviation", json::number(track.standard_deviations(last, k))},
+        {"unit", estimate.unit}};
+  }
+  return json::text_of({{"schema_version", schema_version},
+                        {"flight", tracked.file},
+                        {"rows", track.rows.size()},
+                        {"refused", track.refused},
+                        {"not_converged", track.not_converged},
+                        {"last", estimates}});
+}
+
+}  // namespace sepcal
