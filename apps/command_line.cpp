@@ -1,65 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line that both apps share: verbs, options, exit codes.
-#include <fmt/format.h>
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <algorithm>
-#include <csignal>
-#include <new>
 
 #include "fit_arguments.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
+#include "running.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/flight/csv.hpp"
-#include "sepcal/option_error.hpp"
-#include "sepcal/solver_log.hpp"
 #include "simulation_arguments.hpp"
 #include "verbs.hpp"
 
 namespace sepcal::app {
 namespace {
-
-constexpr int bad_usage = 2;
-
-std::string list_verbs(const CLI::App& cli) {
-  std::string list;
-  for (const CLI::App* verb : cli.get_subcommands({})) {
-    list += (list.empty() ? "" : ", ") + verb->get_name();
-  }
-  return list;
-}
-
-/// "--field 20.1 0.9 43.5" leaves two numbers over: said where numbers alone are.
-std::string explain_extras(const CLI::App& verb, const CLI::ParseError& error) {
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return "";
-  const auto is_number = [](std::string_view word) {
-    if (word.ends_with(',')) word.remove_suffix(1);
-    return parse_number(word).has_value();
-  };
-  const bool numbers = std::ranges::all_of(verb.remaining(), is_number);
-  return numbers ? "; put commas and no blanks between an option's numbers" : "";
-}
-
-/// What is wrong with a command line; CLI11's words where a verb was given.
-std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
-  if (!cli.get_subcommands().empty()) {
-    std::string what = error.what();
-    std::ranges::replace(what, '\n', ' ');
-    return what + explain_extras(*cli.get_subcommands().front(), error);
-  }
-  const std::vector<std::string> words = cli.remaining();
-  return (words.empty() ? "a verb is missing" : fmt::format("'{}' is no verb", words.front())) +
-         "; the verbs are: " + list_verbs(cli);
-}
-
-int refuse_usage(const Instrument& instrument, const CLI::App& cli, const CLI::ParseError& error) {
-  std::string command = instrument.app();
-  for (const CLI::App* verb : cli.get_subcommands()) command += " " + verb->get_name();
-  fmt::print(stderr, "{}: {} (see {} --help)\n", instrument.app(), describe(cli, error), command);
-  return bad_usage;
-}
 
 void add_simulate_options(CLI::App& simulate, Arguments& arguments, Instrument& instrument,
                           SimulationArguments& simulation) {
@@ -107,13 +59,6 @@ void add_applying_options(CLI::App& apply, Arguments& arguments) {
   add_file(apply, "-o,--output", arguments.output, "writes the corrected log there")
       ->type_name("CORRECTED.csv")
       ->required();
-}
-
-/// An option as it is typed here: "--drop-invalid".
-std::string as_typed(const std::string& name) {
-  std::string option = "--" + name;
-  std::ranges::replace(option, '_', '-');
-  return option;
 }
 
 /// The verbs of an app with their options, and what was typed.
@@ -216,36 +161,9 @@ class CommandLine {
 }  // namespace
 
 int run(Instrument& instrument, int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, not an end
-  silence_solver_log();
   CLI::App cli(instrument.summary(), instrument.app());
-  cli.require_subcommand(1);
-  cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
-  cli.footer(
-      "Exit codes: 0 done, 2 bad input or usage, 3 an effect is missing, 4 not identifiable,\n"
-      "5 did not converge, 6 something is missing that no candidate explains.");
   CommandLine command_line(instrument, cli);
-  try {
-    cli.parse(argc, argv);
-  } catch (const CLI::Success& help) {
-    return cli.exit(help);
-  } catch (const CLI::ParseError& error) {
-    return refuse_usage(instrument, cli, error);
-  }
-
-  const auto refuse = [&](const std::string& what) {
-    fmt::print(stderr, "{}: {}\n", instrument.app(), what);
-    return bad_usage;
-  };
-  try {
-    return command_line.perform();
-  } catch (const std::bad_alloc&) {
-    return refuse("memory ran out; take fewer --samples or --rows, or a shorter log");
-  } catch (const OptionError& error) {
-    return refuse(error.spelled(as_typed));
-  } catch (const std::exception& error) {
-    return refuse(error.what());
-  }
+  return run(cli, argc, argv, [&] { return command_line.perform(); });
 }
 
 }  // namespace sepcal::app

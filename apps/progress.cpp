@@ -25,4 +25,8 @@ void ProgressLine::clear() {
   shown_ = false;
 }
 
+FitProgress shown_on(ProgressLine& line) {
+  return [&line](std::string_view task, double fraction) { line.show(task, fraction); };
+}
+
 }  // namespace sepcal::app

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "sepcal/options.hpp"
+
 namespace sepcal::app {
 
 class ProgressLine {
@@ -28,5 +30,8 @@ class ProgressLine {
   bool shown_ = false;
   Clock::time_point next_;
 };
+
+/// What a fit reports, shown on the line.
+FitProgress shown_on(ProgressLine& line);
 
 }  // namespace sepcal::app

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 
+#include "delivery.hpp"
 #include "flight/files/text_file.hpp"
 #include "progress.hpp"
 #include "sepcal/error.hpp"
@@ -21,68 +21,6 @@
 
 namespace sepcal::app {
 namespace {
-
-/// Prints a result and makes sure that it arrived: a full disc behind a redirection is an error.
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw Error("standard output can't be written; is the disc full?");
-  }
-}
-
-void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-}
-
-FitProgress shown_on(ProgressLine& line) {
-  return [&line](std::string_view task, double fraction) { line.show(task, fraction); };
-}
-
-Detail detail_of(const Arguments& arguments) {
-  return arguments.explain ? Detail::explained : Detail::brief;
-}
-
-/// The way of a result: to -o's file, which is opened before the work, so that one that can't be
-/// written is refused at once; then to standard output.
-class Delivery {
- public:
-  /// Throws Error where -o names one of `inputs` or can't be written.
-  Delivery(const Arguments& arguments, std::initializer_list<std::string> inputs)
-      : arguments_(arguments) {
-    if (arguments.output.empty()) return;
-    for (const std::string& input : inputs) check_not_input(arguments.output, input);
-    file_.emplace(arguments.output);
-  }
-
-  template <class Result>
-  void deliver(const Result& result) {
-    print_notes(result.notes);
-    deliver(to_json(result), to_text(result, detail_of(arguments_)));
-  }
-
-  void deliver(const std::string& json, const std::string& page) {
-    if (file_) {
-      file_->write(json);
-      file_->commit();
-    }
-    print(arguments_.json ? json : page);
-    if (file_ && !arguments_.json) print(fmt::format("wrote {}\n", arguments_.output));
-  }
-
- private:
-  const Arguments& arguments_;
-  std::optional<OutputFile> file_;
-};
-
-int exit_code(FitStatus status) {
-  switch (status) {
-    case FitStatus::converged:
-      return 0;
-    case FitStatus::not_identifiable:
-      return 4;
-    default:
-      return 5;
-  }
-}
 
 int exit_code(Verdict verdict) {
   switch (verdict) {
@@ -111,7 +49,7 @@ Calibration Verbs::read_base() const {
 }
 
 int Verbs::fit(CalibrationOptions options) const {
-  Delivery delivery(arguments_, {arguments_.flight});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
   const Flight flight = read_flight();
   ProgressLine line;
   options.fit.progress = shown_on(line);
@@ -122,7 +60,7 @@ int Verbs::fit(CalibrationOptions options) const {
 }
 
 int Verbs::check() const {
-  Delivery delivery(arguments_, {arguments_.flight});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
   const Flight flight = read_flight();
   const FlightCheck check = sepcal::check(*instrument_.probe(flight), flight);
   delivery.deliver(to_json(check), to_text(check));
@@ -130,14 +68,15 @@ int Verbs::check() const {
 }
 
 int Verbs::compare() const {
-  Delivery delivery(arguments_, {});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {});
   const Calibration calibration = read_base();
   delivery.deliver(sepcal::compare(calibration, read_flight()));
   return 0;
 }
 
 int Verbs::intervals() const {
-  Delivery delivery(arguments_, {arguments_.flight, arguments_.calibration});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain},
+                    {arguments_.flight, arguments_.calibration});
   const Calibration base = read_base();
   const Flight flight = read_flight();
   ProgressLine line;
@@ -150,7 +89,8 @@ int Verbs::intervals() const {
 }
 
 int Verbs::diagnose() const {
-  Delivery delivery(arguments_, {arguments_.flight, arguments_.calibration});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain},
+                    {arguments_.flight, arguments_.calibration});
   std::optional<SizedEffect> injected;
   if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
   const Calibration base = read_base();
@@ -167,7 +107,7 @@ int Verbs::diagnose() const {
 }
 
 int Verbs::add() const {
-  Delivery delivery(arguments_, {arguments_.flight});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
   const Calibration base = read_base();
   const Flight flight = read_flight();
   ProgressLine line;
@@ -187,7 +127,7 @@ int Verbs::apply() const {
   line.clear();
   print_notes(applied.notes);
   print(arguments_.json ? to_json(applied, calibration)
-                        : to_text(applied, calibration, detail_of(arguments_)));
+                        : to_text(applied, calibration, detail_of(arguments_.explain)));
   return 0;
 }
 

@@ -128,7 +128,7 @@ void check_columns(const DiagnosedFit& fitted, diagnosis::CandidateRoom& room,
   for (const double shape : {shapes.front(), shapes[shapes.size() / 2], shapes.back()}) {
     CAPTURE(shape);
     if (!candidate.shape.parameter.empty()) prediction.hold(candidate.shape.parameter, shape);
-    const MatrixXd columns = room.columns(candidate, shape);
+    const MatrixXd columns = room.columns(candidate, shape).whole.dense(room.fit().layout);
     REQUIRE(columns.cols() == static_cast<Index>(candidate.coefficients.size()));
     REQUIRE(columns.allFinite());
     for (Index k = 0; k < columns.cols(); ++k) {
@@ -211,8 +211,10 @@ TEST_CASE("what varies of a driven effect: its driver about the mean of the rows
     }
   }
   const auto& port = *std::ranges::find(fitted.kit.ports, "wind", &Port::name);
-  const MatrixXd expected = room.columns(candidate, shape) - sum / count * room.port_columns(port);
-  CHECK((room.varying_columns(candidate, shape) - expected).cwiseAbs().maxCoeff() < 1e-12);
+  const auto [whole, varying] = room.columns(candidate, shape);
+  const diagnosis::RowLayout& layout = room.fit().layout;
+  const MatrixXd expected = whole.dense(layout) - sum / count * room.port_columns(port);
+  CHECK((varying.dense(layout) - expected).cwiseAbs().maxCoeff() < 1e-12);
 }
 
 TEST_CASE("a candidate by an alias, of a pair; what can't be made is refused") {

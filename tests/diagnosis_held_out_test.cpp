@@ -72,7 +72,7 @@ struct Flight {
       make_layout({{"a", 60}, {"b", 45}, {"c", 70}, {"c", 25}, {"d", 100}}, {0.2, 3.0});
   MatrixXd tangent = draws.normal_matrix(600, 4);
   MatrixXd G = draws.normal_matrix(600, 2);
-  diagnosis::Linearisation fit = fit_to(
+  diagnosis::LinearisedFit fit = fit_to(
       layout, tangent, G* Eigen::Vector2d(0.5, -0.3) + VectorXd(draws.normal_matrix(600, 1)));
 
   MatrixXd both() const {
@@ -298,7 +298,7 @@ TEST_CASE("real fits and one step agree for a linear model on any selection of r
   folds.blocks[2].judged = false;
   const double shape = candidate.shape.values.front();
   const diagnosis::HeldOut by_steps =
-      diagnosis::hold_out(room.fit(), room.columns(candidate, shape), folds);
+      diagnosis::hold_out(room.fit(), room.columns(candidate, shape).whole, folds);
   const diagnosis::HeldOut by_fits =
       diagnosis::hold_out_by_refits(room, candidate, shape, folds, pool);
   REQUIRE(by_fits.judged);

@@ -26,13 +26,13 @@ using namespace sepcal::test;
 
 namespace {
 
-MatrixXd perpendicular(const diagnosis::Linearisation& fit, const MatrixXd& columns) {
+MatrixXd perpendicular(const diagnosis::LinearisedFit& fit, const MatrixXd& columns) {
   return diagnosis::orthonormal_basis(
       diagnosis::remove_span(diagnosis::orthonormal_basis(fit.tangent), columns));
 }
 
 /// N ln(s0^2 / s1^2) of one output, by dense least squares.
-double white_ratio(const diagnosis::Linearisation& fit, const MatrixXd& added) {
+double white_ratio(const diagnosis::LinearisedFit& fit, const MatrixXd& added) {
   MatrixXd columns(added.rows(), fit.tangent.cols() + added.cols());
   columns << fit.tangent, added;
   const VectorXd left = fit.residual - columns * least_squares(columns, fit.residual);
@@ -54,7 +54,7 @@ struct Drifting {
   static constexpr Index rows = 1250;
   diagnosis::RowLayout layout = make_layout({{"", rows}}, {1.0});
   VectorXd ramp = VectorXd::LinSpaced(rows, -0.5, 0.5);
-  diagnosis::Linearisation fit;
+  diagnosis::LinearisedFit fit;
 
   explicit Drifting(double drift, std::uint64_t seed = 5) {
     Draws draws(seed);
@@ -73,7 +73,7 @@ TEST_CASE("white noise: N ln of the variances' ratio, to the digit where no colo
     Draws draws(seed);
     const diagnosis::RowLayout layout = make_layout({{"", 500}}, {1.0});
     const MatrixXd G = draws.normal_matrix(500, 2);
-    const diagnosis::Linearisation fit =
+    const diagnosis::LinearisedFit fit =
         fit_to(layout, draws.normal_matrix(500, 3),
                G.col(0) * 0.4 + VectorXd(draws.normal_matrix(500, 1)));
     const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
@@ -96,7 +96,7 @@ TEST_CASE("two outputs: the sum over them, whatever their scales") {
   const MatrixXd G = draws.normal_matrix(1400, 1);
   VectorXd noise = draws.normal_matrix(1400, 1);
   noise.tail(700) *= 3.0;
-  const diagnosis::Linearisation fit =
+  const diagnosis::LinearisedFit fit =
       fit_to(layout, draws.normal_matrix(1400, 4), 0.5 * G + noise);
   const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
   const double ratio = null.test->compare(perpendicular(fit, G)).joint;
@@ -125,13 +125,13 @@ TEST_CASE("the estimate and its covariance are those of generalised least square
   Draws draws(8);
   const diagnosis::RowLayout layout = make_layout({{"a", 400}, {"b", 500}}, {1.0});
   const MatrixXd G = draws.normal_matrix(900, 2);
-  const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(900, 3),
+  const diagnosis::LinearisedFit fit = fit_to(layout, draws.normal_matrix(900, 3),
                                               0.3 * G.col(1) + draw_noise("AR(0.9)", 900, draws));
   const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
   const MatrixXd added = perpendicular(fit, G);
   const diagnosis::FamilyFit with = null.test->compare(added).with;
   MatrixXd columns(900, 5);
-  columns << null.basis, added;
+  columns << null.basis.columns().dense(layout), added;
   const MatrixXd identity = MatrixXd::Identity(900, 900);
   MatrixXd factor = identity;  // of the noise's covariance
   for (auto column : factor.colwise()) {
@@ -154,7 +154,7 @@ TEST_CASE("the larger hypothesis is never the worse one") {
     const diagnosis::RowLayout layout = make_layout({{"a", 150}, {"b", 250}}, {1.0, 1.0});
     VectorXd noise(800);
     noise << draw_noise(kind, 400, draws), draw_noise(kind, 400, draws);
-    const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(800, 4), noise);
+    const diagnosis::LinearisedFit fit = fit_to(layout, draws.normal_matrix(800, 4), noise);
     const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
     MatrixXd columns(800, 0);
     double last = infinity;
@@ -176,7 +176,7 @@ TEST_CASE("a slow drift that the null's noise model swallows stands out in the r
   const MatrixXd added = perpendicular(flight.fit, flight.ramp);
 
   MatrixXd white = added;
-  diagnosis::whiten(flight.fit.layout, null.best.noise, white);
+  null.whiten(white);
   white = diagnosis::remove_span(null.white_basis, white);
   const double score = std::pow(white.col(0).dot(null.white_residual), 2) / white.squaredNorm();
   const diagnosis::NoiseTest::Ratios ratios = null.test->compare(added);
@@ -221,7 +221,7 @@ TEST_CASE("in white noise draws leave a tail as it is, the same with any number 
   Draws draws(12);
   const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
   const MatrixXd G = draws.normal_matrix(390, 3);
-  const diagnosis::Linearisation fit =
+  const diagnosis::LinearisedFit fit =
       fit_to(layout, draws.normal_matrix(390, 4), 0.25 * G.col(0) + draws.normal_matrix(390, 1));
   const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
   const MatrixXd added = perpendicular(fit, G);
@@ -253,7 +253,7 @@ TEST_CASE("noise that wanders makes ramps: called found seldom, where chi-square
       drift = phi * drift + std::sqrt(1.0 - phi * phi) * draws.normal_matrix(1, 1)(0, 0);
     }
     const diagnosis::RowLayout layout = make_layout({{"", 390}}, {1.0});
-    diagnosis::Linearisation fit = fit_to(layout, waves(390), noise);
+    diagnosis::LinearisedFit fit = fit_to(layout, waves(390), noise);
     const diagnosis::NullHypothesis null = diagnosis::find_null(fit);
     const MatrixXd ramp = perpendicular(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
     const diagnosis::NoiseTest::Ratios ratios = null.test->compare(ramp);
@@ -276,7 +276,7 @@ TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the o
   const diagnosis::RowLayout layout = make_layout({{"a", 900}, {"b", 600}}, {0.5, 4.0});
   VectorXd noise(3000);
   noise << draw_noise("AR(0.9)", 1500, draws), draw_noise("white", 1500, draws);
-  const diagnosis::Linearisation fit = fit_to(layout, draws.normal_matrix(3000, 2), noise);
+  const diagnosis::LinearisedFit fit = fit_to(layout, draws.normal_matrix(3000, 2), noise);
   const std::vector<ResidualNoise> described =
       diagnosis::describe_residual(diagnosis::find_null(fit));
   REQUIRE(described.size() == 2);

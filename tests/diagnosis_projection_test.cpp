@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "linearisations.hpp"
 #include "numerics/decompositions.hpp"
 #include "simulated_records.hpp"
 
@@ -37,6 +38,24 @@ VectorXd squared_sines(const MatrixXd& J, const MatrixXd& G, const MatrixXd& who
 
 double worst(const MatrixXd& difference) { return difference.cwiseAbs().maxCoeff(); }
 
+/// Projection with its columns made.
+struct Seen {
+  MatrixXd basis;
+  MatrixXd to_effect;
+  double visibility;
+
+  Index visible() const { return basis.cols(); }
+};
+
+Seen project(const MatrixXd& J, const MatrixXd& G, const MatrixXd& whole, double least) {
+  const auto count = static_cast<std::size_t>(J.rows());
+  const diagnosis::LinearisedFit fit{
+      test::make_layout({{"", count}}, {1.0}), {}, J, VectorXd::Zero(J.rows())};
+  const diagnosis::TangentBasis tangent(fit);
+  const diagnosis::Projection found = diagnosis::project(tangent, G, whole, least);
+  return {found.basis.dense(fit.layout), found.to_effect, found.visibility};
+}
+
 /// A tangent of five columns and candidates of three, of different sizes.
 struct Problem {
   test::Draws draws{3};
@@ -45,9 +64,7 @@ struct Problem {
                Eigen::Vector3d(1e-3, 1.0, 40.0).asDiagonal();
   VectorXd e = draws.normal_matrix(rows, 1);
 
-  diagnosis::Projection projected() const {
-    return diagnosis::project(diagnosis::orthonormal_basis(J), G, G, least_visibility);
-  }
+  Seen projected() const { return project(J, G, G, least_visibility); }
 };
 
 }  // namespace
@@ -81,7 +98,7 @@ TEST_CASE("what of a span lies within rounding of another is removed as well") {
 
 TEST_CASE("a candidate that is seen whole spans what the tangent doesn't explain of it") {
   const Problem problem;
-  const diagnosis::Projection projection = problem.projected();
+  const Seen projection = problem.projected();
   REQUIRE(projection.visible() == 3);
   const MatrixXd& B = projection.basis;
   CHECK(worst(B.transpose() * B - MatrixXd::Identity(3, 3)) < 1e-13);
@@ -96,15 +113,14 @@ TEST_CASE("visibility is the smallest sine between the candidate and the tangent
   const VectorXd squares = squared_sines(problem.J, problem.G, problem.G);
   CHECK(problem.projected().visibility == Approx(std::sqrt(squares[0])).epsilon(1e-10));
   const MatrixXd centred = problem.G.rowwise() - problem.G.colwise().mean();
-  const diagnosis::Projection varying = diagnosis::project(diagnosis::orthonormal_basis(problem.J),
-                                                           problem.G, centred, least_visibility);
+  const Seen varying = project(problem.J, problem.G, centred, least_visibility);
   CHECK(varying.visibility ==
         Approx(std::min(1.0, std::sqrt(squared_sines(problem.J, problem.G, centred)[0]))));
 }
 
 TEST_CASE("the coefficients behind the basis are those of least squares with the tangent") {
   const Problem problem;
-  const diagnosis::Projection projection = problem.projected();
+  const Seen projection = problem.projected();
   MatrixXd both(rows, 8);
   both << problem.J, problem.G;
   const VectorXd expected = (both.transpose() * both).ldlt().solve(both.transpose() * problem.e);
@@ -115,9 +131,8 @@ TEST_CASE("the coefficients behind the basis are those of least squares with the
 TEST_CASE("the coefficients don't depend on what visibility is measured against") {
   const Problem problem;
   const MatrixXd centred = problem.G.rowwise() - problem.G.colwise().mean();
-  const MatrixXd Q = diagnosis::orthonormal_basis(problem.J);
-  const diagnosis::Projection plain = diagnosis::project(Q, problem.G, problem.G, 0.0);
-  const diagnosis::Projection varying = diagnosis::project(Q, problem.G, centred, 0.0);
+  const Seen plain = project(problem.J, problem.G, problem.G, 0.0);
+  const Seen varying = project(problem.J, problem.G, centred, 0.0);
   const VectorXd a = plain.to_effect * (plain.basis.transpose() * problem.e);
   const VectorXd b = varying.to_effect * (varying.basis.transpose() * problem.e);
   for (Index k = 0; k < 3; ++k) CHECK(a[k] == Approx(b[k]).epsilon(1e-9));
@@ -129,7 +144,7 @@ TEST_CASE("one direction that the tangent all but contains is left out of the ba
   const VectorXd squares = squared_sines(problem.J, problem.G, problem.G);
   REQUIRE(squares[0] < least_visibility * least_visibility);
   REQUIRE(squares[1] > least_visibility * least_visibility);
-  const diagnosis::Projection projection = problem.projected();
+  const Seen projection = problem.projected();
   CHECK(projection.visibility == Approx(std::sqrt(squares[0])).epsilon(1e-8));
   REQUIRE(projection.visible() == 2);
 
@@ -137,17 +152,15 @@ TEST_CASE("one direction that the tangent all but contains is left out of the ba
   const MatrixXd seen = problem.G * projection.to_effect;
   CHECK(worst(diagnosis::remove_span(diagnosis::orthonormal_basis(problem.J), seen) -
               projection.basis) < 1e-10);
-  const MatrixXd every =
-      diagnosis::project(diagnosis::orthonormal_basis(problem.J), problem.G, problem.G, 0.0).basis;
+  const MatrixXd every = project(problem.J, problem.G, problem.G, 0.0).basis;
   REQUIRE(every.cols() == 3);
   CHECK(worst(every.leftCols(2) - projection.basis) < 1e-10);
 }
 
 TEST_CASE("nothing is seen of a candidate within the tangent, nor of one that is deficient") {
   Problem problem;
-  const MatrixXd Q = diagnosis::orthonormal_basis(problem.J);
   const MatrixXd within = problem.J.leftCols(2);
-  const diagnosis::Projection hidden = diagnosis::project(Q, within, within, least_visibility);
+  const Seen hidden = project(problem.J, within, within, least_visibility);
   CHECK(hidden.visible() == 0);
   CHECK(hidden.visibility < 1e-12);
 
@@ -158,5 +171,5 @@ TEST_CASE("nothing is seen of a candidate within the tangent, nor of one that is
   CHECK(problem.projected().visible() == 0);
 
   const MatrixXd wide = problem.draws.normal_matrix(4, 6);
-  CHECK(diagnosis::project(MatrixXd(4, 0), wide, wide, least_visibility).visible() == 0);
+  CHECK(project(MatrixXd(4, 0), wide, wide, least_visibility).visible() == 0);
 }

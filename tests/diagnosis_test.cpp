@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "calibrated_flights.hpp"
 #include "noises.hpp"
@@ -190,8 +191,26 @@ TEST_CASE("offsets from segment to segment that no candidate follows are called 
   const Diagnosis diagnosis = bench.diagnose(offsets, {"c[decoy]"});
   CHECK(diagnosis.verdict == Verdict::unexplained);
   CHECK(diagnosis.omnibus.p_value < 0.01);
+  CHECK(diagnosis.omnibus.significant);
   CHECK(diagnosis.effects.front().status == FindingStatus::not_seen);
   REQUIRE(diagnosis.omnibus.windows.size() == 6);
+}
+
+TEST_CASE("a swing that no channel follows is a line, with its frequency") {
+  Bench bench;
+  bench.add_white("decoy");
+  const VectorXd time = VectorXd::LinSpaced(rows, 0.0, 59.9);
+  const VectorXd wave = 0.6 * (2.0 * std::numbers::pi * 1.3 * time.array()).sin();
+  const Diagnosis diagnosis = bench.diagnose(wave, {"c[decoy]"});
+  CHECK(diagnosis.verdict == Verdict::unexplained);
+  CHECK(!diagnosis.omnibus.significant);
+  REQUIRE(diagnosis.unlogged.size() == 1);
+  const UnloggedCause& cause = diagnosis.unlogged.front();
+  CHECK(cause.kind == UnloggedKind::spectral_line);
+  CHECK(cause.outputs == Texts{"z"});
+  CHECK(cause.frequency == Approx(1.3).epsilon(0.01));
+  CHECK(cause.all_along);
+  CHECK(cause.p_adjusted < 0.01);
 }
 
 TEST_CASE("pink noise alone, with slow channels about: adequate, and the limit says how blind") {

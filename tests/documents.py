@@ -14,6 +14,7 @@ import sepcal
 
 ROOT = Path(__file__).resolve().parents[1]
 APPS = Path(os.environ.get("SEPCAL_APPS", ROOT / "build" / "apps"))
+BUILT_EXAMPLES = APPS.parent / "examples"
 EXAMPLES = ROOT / "examples"
 DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
 

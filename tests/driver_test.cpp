@@ -106,6 +106,8 @@ TEST_CASE("a spline's functions are zero at the first knot and one at their own"
   CHECK(phi.values.row(0).norm() < 1e-14);
   CHECK(phi.slopes == MatrixXd::Zero(4, 3));
   CHECK_THROWS_AS(sepcal::spline_driver(channel, {0, 1}), sepcal::Error);
+  CHECK_THROWS_WITH(sepcal::spline_driver(channel, {0, 1, 3, 4}, {0.5}),
+                    "a spline of 4 knots has 3 functions, but 1 means were given");
 }
 
 TEST_CASE("a label's function is one in its own segments; the first label has none") {

@@ -22,15 +22,16 @@ std::string miss_roll(const std::string& header) {
 }  // namespace
 
 TEST_CASE("a quantity's headers, the unit used inside first") {
-  CHECK(accepted_headers("vn", UnitKind::speed) == Headers{"vn_mps", "vn_kt", "vn_kmh"});
-  CHECK(accepted_headers("rho", UnitKind::density) == Headers{"rho_kgpm3"});
+  CHECK(accepted_headers("vn", UnitKind::speed) == Headers{"vn_mps", "vn_kt", "vn_kmh", "vn_ftps"});
+  CHECK(accepted_headers("rho", UnitKind::density) == Headers{"rho_kgpm3", "rho_slugpft3"});
 }
 
 TEST_CASE("a missing column is named with the other spellings, if there are any") {
   CHECK(describe_missing("roll", UnitKind::angle, {}) == roll_missing);
   CHECK(describe_missing("time", UnitKind::time, {}) ==
         "column 'time_s' is missing (time_ms, time_us would do as well)");
-  CHECK(describe_missing("rho", UnitKind::density, {}) == "column 'rho_kgpm3' is missing");
+  CHECK(describe_missing("rho", UnitKind::density, {}) ==
+        "column 'rho_kgpm3' is missing (rho_slugpft3 would do as well)");
 }
 
 TEST_CASE("case, punctuation and a slip or two are seen through") {
@@ -105,7 +106,7 @@ TEST_CASE("a unit is never guessed") {
   };
   using enum UnitKind;
   for (const auto& [quantity, kind, header] : {Case{"airspeed", speed, "AIRSPEED_MPH"},
-                                               {"airspeed", speed, "Airspeed [ft/s]"},
+                                               {"airspeed", speed, "Airspeed [fps]"},
                                                {"airspeed", speed, "Airspeed"},
                                                {"vn", speed, "VN_FPS"},
                                                {"vn", speed, "VN_CMPS"},
@@ -113,7 +114,7 @@ TEST_CASE("a unit is never guessed") {
                                                {"temp", temperature, "TEMP_F"},
                                                {"temp", temperature, "Temp"},
                                                {"pt", pressure, "PT_MPA"},
-                                               {"pt", pressure, "PT_PSF"},
+                                               {"pt", pressure, "PT_INHG"},
                                                {"roll", angle, "roll (mrad)"},
                                                {"roll", angle, "ROLL_GRAD"},
                                                {"mx", field, "MX_T"},

@@ -35,9 +35,9 @@ inline Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen
 }
 
 /// The fit of z = tangent x + noise: what least squares leaves, output by output below each other.
-inline diagnosis::Linearisation fit_to(const diagnosis::RowLayout& layout,
+inline diagnosis::LinearisedFit fit_to(const diagnosis::RowLayout& layout,
                                        const Eigen::MatrixXd& tangent, const Eigen::VectorXd& z) {
-  diagnosis::Linearisation fit{layout, {}, tangent, z - tangent * least_squares(tangent, z)};
+  diagnosis::LinearisedFit fit{layout, {}, tangent, z - tangent * least_squares(tangent, z)};
   for (Eigen::Index k = 0; k < tangent.cols(); ++k) {
     fit.parameters.push_back("x" + std::to_string(k));
   }

@@ -119,6 +119,18 @@ TEST_CASE(
   CHECK(!with_voltage(before).setting.mean);
 }
 
+TEST_CASE("a spline of a channel that is far from zero is zero in the mean") {
+  for (const char* name : {"c[spline(time,3)]", "c[spline(altitude_m,3)]"}) {
+    CAPTURE(name);
+    CHECK(make({.name = name}).setting.means.size() == 2);
+    CHECK(rows_with(name).rightCols(2).colwise().mean().cwiseAbs().maxCoeff() < 1e-12);
+  }
+  CHECK(make({.name = "c[spline(current_a,3)]"}).setting.means.empty());
+  // A calibration of before has knots and no means: it keeps what it meant.
+  const Made before = make({.name = "c[spline(time,3)]", .knots = {1, 3, 5}, .known = true});
+  CHECK(before.setting.means.empty());
+}
+
 TEST_CASE("a centre, knots, labels, a span and a time that are known are kept") {
   const Made power = make({.name = "c[altitude_m]", .centre = 100.0, .known = true});
   CHECK(power.setting.centre == 100.0);

@@ -44,6 +44,25 @@ TEST_CASE("the JSON has the keys of the interface") {
   CHECK(magnetometer["noise"].size() == 3);
 }
 
+TEST_CASE("an aircraft's truth reads back as it was, with its geometry") {
+  AircraftTruth aircraft;
+  aircraft.parameters["CX_alpha^2"] = 1.0 / 3.0;
+  aircraft.noise["vd"] = 0.7;
+  aircraft.turbulence = 0.4;
+  aircraft.geometry.imu = {0.5, 0.0, -0.1};
+  aircraft.effects = {{"Cm[alpha^2]"}};
+  const AircraftTruth again = parse_aircraft_truth(to_json(aircraft), "truth.json");
+  CHECK(again.parameters == aircraft.parameters);
+  CHECK(again.noise == aircraft.noise);
+  CHECK(again.turbulence == 0.4);
+  CHECK(again.geometry.imu == aircraft.geometry.imu);
+  CHECK(again.effects.front().name == "Cm[alpha^2]");
+  check_refused([] { parse_aircraft_truth(R"({"noise": {"mx": 1}})", "t.json"); },
+                {"t.json", "there is no output 'mx'"});
+  check_refused([] { parse_aircraft_truth(R"({"aircraft": {"area_m2": -1}})", "t.json"); },
+                {"t.json", "aircraft: chord_m is missing"});
+}
+
 TEST_CASE("a tube's truth reads back as it was") {
   PitotStaticTruth tube;
   tube.parameters["s_va"] = 1.0 / 3.0;

@@ -37,11 +37,17 @@ TEST_CASE("each kind has its units, the inside one first") {
   CHECK(list_suffixes(UnitKind::time) == "s ms us ");
   CHECK(list_suffixes(UnitKind::angle) == "rad deg ");
   CHECK(list_suffixes(UnitKind::rate) == "radps degps ");
-  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ");
-  CHECK(list_suffixes(UnitKind::pressure) == "pa hpa kpa psi torr ");
+  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ftps ");
+  CHECK(list_suffixes(UnitKind::pressure) == "pa hpa kpa psi psf torr ");
   CHECK(list_suffixes(UnitKind::field) == "ut nt gauss mgauss ");
   CHECK(list_suffixes(UnitKind::temperature) == "k degc ");
-  CHECK(list_suffixes(UnitKind::density) == "kgpm3 ");
+  CHECK(list_suffixes(UnitKind::density) == "kgpm3 slugpft3 ");
+  CHECK(list_suffixes(UnitKind::angular_acceleration) == "radps2 degps2 ");
+  CHECK(list_suffixes(UnitKind::length) == "m ft ");
+  CHECK(list_suffixes(UnitKind::acceleration) == "mps2 g ftps2 ");
+  CHECK(list_suffixes(UnitKind::mass) == "kg lb slug ");
+  CHECK(list_suffixes(UnitKind::force) == "n lbf ");
+  CHECK(list_suffixes(UnitKind::share) == "1 pct ");
   for (const UnitKind kind : kinds) CHECK(sepcal::files::known_units(kind).front().is_inside());
 }
 
@@ -58,6 +64,19 @@ TEST_CASE("conversions") {
   // NIST SP 811, B.8: 1 psi = 6.894 757 293 168 36 E+03 Pa; 1 torr = 101325/760 Pa.
   CHECK(convert(UnitKind::pressure, "psi", 1) == exactly(6894.75729316836));
   CHECK(convert(UnitKind::pressure, "torr", 760) == 101325);
+  // The same table, to the digits that it has: the slug, lbf/ft^2 and the slug per cubic foot.
+  const auto nearly = [](double value) { return Approx(value).epsilon(5e-7); };
+  CHECK(convert(UnitKind::mass, "slug", 1) == nearly(14.59390));
+  CHECK(convert(UnitKind::pressure, "psf", 1) == nearly(47.88026));
+  CHECK(convert(UnitKind::density, "slugpft3", 1) == nearly(515.3788));
+  CHECK(convert(UnitKind::mass, "lb", 1) == exactly(0.45359237));
+  CHECK(convert(UnitKind::force, "lbf", 1) == exactly(4.4482216152605));
+  CHECK(convert(UnitKind::speed, "ftps", 10) == exactly(3.048));
+  CHECK(convert(UnitKind::acceleration, "g", 1) == exactly(9.80665));
+  CHECK(convert(UnitKind::acceleration, "ftps2", 100) == exactly(30.48));
+  CHECK(convert(UnitKind::length, "ft", 1000) == exactly(304.8));
+  CHECK(convert(UnitKind::angular_acceleration, "degps2", 180) == exactly(3.141592653589793));
+  CHECK(convert(UnitKind::share, "pct", 50) == 0.5);
   CHECK(convert(UnitKind::field, "nt", 50'000) == 50);
   CHECK(convert(UnitKind::field, "gauss", 0.5) == 50);
   CHECK(convert(UnitKind::field, "mgauss", 500) == 50);

@@ -24,6 +24,7 @@ from sepcal._core import (
     Error,
     FlightFit,
     HistoryEntry,
+    Innovation,
     LocalMinimum,
     LogNote,
     Misfit,
@@ -34,13 +35,17 @@ from sepcal._core import (
     Window,
     __version__,
 )
+from sepcal.aircraft import Aero, RigidAircraft
+from sepcal.aircraft_fits import AddedRegressor, AircraftFit, TwoSteps, two_step
 from sepcal.calibration import Calibration, load
 from sepcal.catalogue import effects
 from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
+from sepcal.filters import Filter, RecursiveLeastSquares
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
+from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
 from sepcal.many import fit_many
 from sepcal.many_results import ManyFit
@@ -56,14 +61,22 @@ from sepcal.monte_carlo_results import MonteCarlo, ParameterStudy
 from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.own_state_model import StateModel, Trajectory
 from sepcal.reporting import report
 from sepcal.results import Fit
 from sepcal.running_trials import monte_carlo, stream_trials
 from sepcal.simulated_trial import SimulatedTrial
 from sepcal.simulation import SimulatedFlight, simulate
+from sepcal.smoothing import Smoothed, smooth
+from sepcal.tracking import Track, track
+from sepcal.trajectories import FlightPath, ShortPeriod, TrajectoryModel, TrajectoryOptions
 from sepcal.trials import Estimates, Failure, TrialRecord
 
 __all__ = [
+    "AddedRegressor",
+    "Aero",
+    "Aircraft",
+    "AircraftFit",
     "Applied",
     "Calibration",
     "CataloguedEffect",
@@ -80,14 +93,17 @@ __all__ = [
     "Error",
     "Estimates",
     "Failure",
+    "Filter",
     "Fit",
     "FitOptions",
     "FiveHoleProbe",
     "Flight",
     "FlightCheck",
     "FlightFit",
+    "FlightPath",
     "HistoryEntry",
     "Injection",
+    "Innovation",
     "Intervals",
     "LocalMinimum",
     "LogNote",
@@ -102,14 +118,24 @@ __all__ = [
     "ParameterStudy",
     "PitotStatic",
     "Prediction",
+    "RecursiveLeastSquares",
+    "RigidAircraft",
     "ScalarExample1",
     "ScalarExample2",
     "ScreenResults",
     "SeparableModel",
+    "ShortPeriod",
     "SimulatedFlight",
     "SimulatedTrial",
+    "Smoothed",
     "StageOne",
+    "StateModel",
+    "Track",
+    "Trajectory",
+    "TrajectoryModel",
+    "TrajectoryOptions",
     "TrialRecord",
+    "TwoSteps",
     "Window",
     "__version__",
     "check",
@@ -120,8 +146,12 @@ __all__ = [
     "monte_carlo",
     "predict",
     "profile_intervals",
+    "read_aircraft",
     "read_csv",
     "report",
     "simulate",
+    "smooth",
     "stream_trials",
+    "track",
+    "two_step",
 ]

@@ -19,13 +19,16 @@ __all__: list[str] = [
     "Diagnosed",
     "EffectSetting",
     "Error",
+    "Filter",
     "Fit",
     "Flight",
     "FlightCheck",
     "FlightFigures",
     "FlightFit",
     "HistoryEntry",
+    "Innovation",
     "Intervals",
+    "IterationOptions",
     "LocalMinimum",
     "LogNote",
     "ManyFit",
@@ -37,9 +40,14 @@ __all__: list[str] = [
     "Prediction",
     "PreparedFlight",
     "PythonFunctions",
+    "RecursiveLeastSquares",
     "SIGNIFICANT_BELOW",
     "ScreenResults",
+    "SmoothedRecord",
     "StageOne",
+    "StateTables",
+    "Track",
+    "TrajectoryOptions",
     "VISIBLE_FROM",
     "Window",
     "attitude_independent_magnetometer",
@@ -52,6 +60,7 @@ __all__: list[str] = [
     "fit",
     "fit_many",
     "five_hole_probe",
+    "flight_path",
     "gather_figures",
     "magnetometer",
     "parse_calibration",
@@ -61,14 +70,17 @@ __all__: list[str] = [
     "prepare_flight",
     "profile_intervals",
     "python_model",
+    "python_state_model",
     "quantiles",
     "read_calibration",
     "read_csv",
     "scalar_example_1",
     "scalar_example_2",
+    "short_period",
     "simulate",
     "smooth",
     "spectrum",
+    "track",
 ]
 
 class Options:
@@ -249,7 +261,16 @@ class EffectSetting:
     An effect of a fit, with what it took from the record; None or empty where it takes none.
     """
 
-    _fields: typing.ClassVar[tuple] = ("name", "centre", "mean", "knots", "labels", "span", "t0")
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "centre",
+        "mean",
+        "knots",
+        "means",
+        "labels",
+        "span",
+        "t0",
+    )
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -278,6 +299,11 @@ class EffectSetting:
     def mean(self) -> float | None:
         """
         Of the power over the fitted rows, where it is taken away.
+        """
+    @property
+    def means(self) -> tuple[float, ...]:
+        """
+        Of its functions over the fitted rows, where they are taken away.
         """
     @property
     def name(self) -> str:
@@ -608,6 +634,7 @@ class CataloguedEffect:
         """
 
 class Model:
+    def along(self, arg0: dict, arg1: collections.abc.Sequence[str]) -> Model: ...
     def evaluate(
         self,
         arg0: dict,
@@ -1698,6 +1725,297 @@ class PreparedFlight:
         int,
     ]: ...
 
+class SmoothedRecord:
+    """
+    States and process noise, given all samples; NaN outside segments.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "states",
+        "noises",
+        "outputs",
+        "x",
+        "covariance",
+        "w",
+        "w_covariance",
+        "innovations",
+        "innovation_sd",
+        "cost",
+        "readings",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: SmoothedRecord) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Sum of (e' Lambda^-1 e + ln det Lambda) / 2.
+        """
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (N, n_x, n_x), P(k|N).
+        """
+    @property
+    def innovation_sd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), expected of them.
+        """
+    @property
+    def innovations(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), measured less predicted from the rows before; NaN where missing.
+        """
+    @property
+    def noises(self) -> tuple[str, ...]:
+        """
+        n_w.
+        """
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """
+        n_z.
+        """
+    @property
+    def readings(self) -> int:
+        """
+        Outputs that were there.
+        """
+    @property
+    def states(self) -> tuple[str, ...]:
+        """
+        That are integrated, n_x.
+        """
+    @property
+    def w(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_w), w(k|N): its mean from row k to the next.
+        """
+    @property
+    def w_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (N, n_w, n_w), Q(k|N).
+        """
+    @property
+    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_x), x(k|N).
+        """
+
+class Track:
+    """
+    Estimates against time, one a row.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "names",
+        "outputs",
+        "rows",
+        "time",
+        "estimates",
+        "standard_deviations",
+        "innovations",
+        "refused",
+        "not_converged",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Track) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (M, n).
+        """
+    @property
+    def innovations(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (M, n_z), reading less what was expected of it; NaN where missing.
+        """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """
+        Of the n states that are integrated, then of the parameters, linear ones first.
+        """
+    @property
+    def not_converged(self) -> int:
+        """
+        Rows at which the cap of iekf's iterations ended them.
+        """
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """
+        n_z.
+        """
+    @property
+    def refused(self) -> int:
+        """
+        Rows that were not finite, left out.
+        """
+    @property
+    def rows(self) -> typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"]:
+        """
+        (M,) of the data, one an estimate.
+        """
+    @property
+    def standard_deviations(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (M, n); 0 for what is held.
+        """
+    @property
+    def time(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (M,) [s]; empty where the data have none.
+        """
+
+class IterationOptions:
+    def __init__(
+        self,
+        iterations: typing.SupportsInt | typing.SupportsIndex,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
+class TrajectoryOptions:
+    def __init__(
+        self,
+        *,
+        inputs: str,
+        substeps: typing.SupportsInt | typing.SupportsIndex,
+        shoot: typing.SupportsFloat | typing.SupportsIndex,
+        measured: collections.abc.Sequence[str],
+        outputs: collections.abc.Sequence[str],
+        separable: bool,
+        scales_about_start: bool,
+    ) -> None: ...
+
+class StateTables:
+    def __init__(
+        self,
+        tables: typing.Annotated[
+            collections.abc.Sequence[
+                collections.abc.Sequence[
+                    tuple[
+                        str,
+                        str,
+                        typing.SupportsFloat | typing.SupportsIndex,
+                        typing.SupportsFloat | typing.SupportsIndex,
+                    ]
+                ]
+            ],
+            "FixedSize(6)",
+        ],
+        linear_dynamic: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        linear_in_state: bool,
+        scales: collections.abc.Sequence[bool],
+        acts_on: collections.abc.Sequence[collections.abc.Sequence[bool]],
+        discrete: bool,
+    ) -> None: ...
+
+class Innovation:
+    """
+    What a measurement brought that was not expected.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("count", "e", "w", "root")
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Innovation) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        (e' Lambda^-1 e + ln det Lambda) / 2.
+        """
+    @property
+    def count(self) -> int:
+        """
+        Outputs that were there.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n_z, n_z); the identity in rows of missing outputs.
+        """
+    @property
+    def e(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n_z,), y - expected; 0 where missing.
+        """
+    @property
+    def root(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n_z, n_z), upper triangular root of its covariance.
+        """
+    @property
+    def w(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n_z,), e in standard deviations, uncorrelated.
+        """
+
+class Filter:
+    @typing.overload
+    def __init__(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg2: str,
+    ) -> None: ...
+    @typing.overload
+    def __init__(self, arg0: Filter) -> None: ...
+    def predict(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> bool: ...
+    def update(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> Innovation | None: ...
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class RecursiveLeastSquares:
+    def __init__(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,
+        arg2: str,
+    ) -> None: ...
+    def absorb(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> bool: ...
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def determined(self) -> bool: ...
+    @property
+    def solution(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
 def attitude_independent_magnetometer(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
 ) -> Model: ...
@@ -1750,6 +2068,14 @@ def five_hole_probe(
     arg2: typing.Annotated[
         collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
     ],
+) -> Model: ...
+def flight_path(
+    arg0: bool,
+    arg1: typing.SupportsFloat | typing.SupportsIndex,
+    arg2: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    arg3: TrajectoryOptions,
 ) -> Model: ...
 def gather_figures(arg0: Calibration, arg1: Flight) -> FlightFigures: ...
 def magnetometer(
@@ -1808,6 +2134,7 @@ def python_model(
     ],
     arg2: PythonFunctions,
 ) -> Model: ...
+def python_state_model(arg0: StateTables, arg1: TrajectoryOptions, arg2: typing.Any) -> Model: ...
 def quantiles(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
@@ -1817,6 +2144,7 @@ def read_calibration(
 def read_csv(arg0: str) -> Flight: ...
 def scalar_example_1() -> Model: ...
 def scalar_example_2() -> Model: ...
+def short_period(arg0: TrajectoryOptions) -> Model: ...
 def simulate(
     arg0: str,
     arg1: str,
@@ -1830,6 +2158,7 @@ def simulate(
     arg7: typing.SupportsInt | typing.SupportsIndex,
     arg8: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[Flight, dict[str, float], list[str]]: ...
+@typing.overload
 def smooth(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -1841,6 +2170,17 @@ def smooth(
     ]
     | None
 ): ...
+@typing.overload
+def smooth(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg6: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg7: Fit | None,
+) -> SmoothedRecord: ...
 def spectrum(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg1: collections.abc.Sequence[
@@ -1852,6 +2192,18 @@ def spectrum(
     ],
     arg2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+def track(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: str,
+    arg4: typing.SupportsInt | typing.SupportsIndex | None,
+    arg5: Fit | None,
+    arg6: Options,
+    arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg9: IterationOptions,
+) -> Track: ...
 
 SIGNIFICANT_BELOW: float = 0.05
 VISIBLE_FROM: float = 0.05

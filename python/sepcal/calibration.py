@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from sepcal import _core
+from sepcal.aircraft_fits import AircraftFit, read_fit
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import Flight
+from sepcal.flight import Flight, to_flight
 from sepcal.intervals import Intervals, Prediction
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
@@ -172,7 +173,7 @@ class Calibration(Fit):
                 "a loaded calibration has no flight; give one: "
                 f"{call}sepcal.read_csv({self.core.file!r}))"
             )
-        return _to_flight(flight, call)
+        return to_flight(flight, call)
 
     def apply(self, flight: Flight) -> dict[str, Array]:
         """The corrected readings of a flight by header, each of shape (rows,).
@@ -184,7 +185,7 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
         """
-        return self.core.apply(_to_flight(flight, "apply(")._core)
+        return self.core.apply(to_flight(flight, "apply(")._core)
 
     def apply_to_file(self, file: Path, output: Path) -> _core.Applied:
         """Copies a CSV log and adds the corrected columns; `output` appears whole or not at all.
@@ -212,29 +213,35 @@ class Calibration(Fit):
         return _parse, (self.to_json(), self.own_effects)
 
 
-def _to_flight(flight: object, call: str) -> Flight:
-    """The flight. Raises Error, which shows how to call again, for a file's name or columns."""
-    if isinstance(flight, Flight):
-        return flight
-    is_file = isinstance(flight, str | os.PathLike)
-    given = f"sepcal.read_csv({str(flight)!r})" if is_file else "sepcal.Flight(columns)"
-    raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}{given})")
-
-
-def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration:
-    """Reads what Calibration.save() or an app's fit wrote.
+def load(file: Path, effects: Sequence[Effect] = ()) -> "Calibration | AircraftFit":
+    """Reads what save() or an app's fit wrote.
 
     Args:
         file: The JSON.
         effects: The effects of your own that the calibration was fitted with, which a file can't
             hold. Without them its numbers can be read and nothing be done with it.
 
+    Returns:
+        A Calibration; of a flight path or an aircraft an AircraftFit.
+
     Raises:
         Error: The file can't be read, is no calibration, or is of another schema version; an effect
             that it doesn't have.
     """
+    if _is_of_aircraft(file):
+        return read_fit(file)
     core = _core.read_calibration(os.fspath(file), to_core_effects(effects))
     return Calibration(core, own=effects)
+
+
+def _is_of_aircraft(file: Path) -> bool:
+    """Whether it says so; what can't be read is refused by who reads it in earnest."""
+    try:
+        with open(file, encoding="utf-8") as opened:
+            read = json.load(opened)
+    except (OSError, ValueError):
+        return False
+    return isinstance(read, dict) and ("aircraft" in read or {"path", "aero"} <= set(read))
 
 
 def _parse(text: str, effects: Sequence[Effect]) -> Calibration:

@@ -100,3 +100,8 @@ def take_drivers(
 def to_labels(labels: Iterable[object]) -> list[str]:
     """One text a row."""
     return [str(label) for label in labels]
+
+
+def labels_in(columns: Columns) -> list[str]:
+    """The column "maneuver"; empty where there is none."""
+    return to_labels(columns["maneuver"]) if "maneuver" in set(columns) else []  # type: ignore[arg-type]

@@ -43,6 +43,7 @@ class EffectFinding:
     held_out_before: float | None  # RMSE of rows left out
     held_out_after: float | None
     held_out_passed: bool  # the mean gain of a block exceeds its standard error
+    share_after_selection: float  # of the estimates, allowing for the effect's choice
     held_out_interleaved: bool  # blocks in between, not whole segments, were left out
     visibility: float  # below 0.05 the flight can't show at least a part of it
     absorbed_by: dict[str, float]  # how far ignoring it shifts each parameter
@@ -93,7 +94,8 @@ class Diagnosis(Page):
     effects: list[EffectFinding]  # best first
     residual: dict[str, dict[str, Any]]  # by output: rmse, lag_one, ljung_box_p, noise, floor
     where: list[dict[str, Any]]  # by segment and output
-    unexplained: dict[str, Any]  # p_value of the test for any structure, where, windows
+    unexplained: dict[str, Any]  # of offsets: p_value, p_adjusted, significant, where, windows
+    unlogged: list[dict[str, Any]]  # causes that follow no channel: kind, sentence, outputs, when
     limits: dict[str, dict[str, Any]]  # by port: the smallest slow effect that would have shown
     missing_channels: list[str]  # not logged, and could explain what is left
     injected: Injection | None

@@ -5,14 +5,23 @@ import os
 from typing import Unpack, overload
 
 from sepcal import _core
+from sepcal.aircraft import Aero, RigidAircraft
+from sepcal.aircraft_fits import AircraftFit, fit_flight
 from sepcal.calibration import Calibration
-from sepcal.columns import Columns, by_name, take_columns, take_drivers, to_labels
-from sepcal.flight import Flight
+from sepcal.columns import Columns, by_name, labels_in, take_columns, take_drivers
+from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
-from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.results import Fit
+from sepcal.trajectories import FlightPath
+
+
+@overload
+def fit(  # type: ignore[overload-overlap]  # a FlightPath is a Model
+    model: FlightPath | Aero | RigidAircraft, data: Flight, **options: Unpack[FitOptions]
+) -> AircraftFit: ...
 
 
 @overload
@@ -20,22 +29,25 @@ def fit(model: Model, data: Flight, **options: Unpack[FitOptions]) -> Calibratio
 
 
 @overload
-def fit(model: Model | SeparableModel, data: Columns, **options: Unpack[FitOptions]) -> Fit: ...
+def fit(model: AnyModel, data: Columns, **options: Unpack[FitOptions]) -> Fit: ...
 
 
 @spelled_out()
 def fit(
-    model: Model | SeparableModel, data: Flight | Columns, **options: Unpack[FitOptions]
+    model: AnyModel | Aero | RigidAircraft, data: Flight | Columns, **options: Unpack[FitOptions]
 ) -> Fit:
     """Fits a model: samples xi2 and solves xi1 linearly, then maximum likelihood within bounds.
 
     Sun & Gebre-Egziabher, Steps 2-5. It runs without the GIL, on as many threads as asked for.
 
     Args:
-        model: One of sepcal's own, FiveHoleProbe, PitotStatic, Magnetometer, ScalarExample1,
-            ScalarExample2, or one of yours in Python: any object with the tables and at() of
-            SeparableModel. Python lets one thread in at a time, so that threads=0 then means one.
-        data: A Flight (columns with units in their headers; for the probes), or the model's own
+        model: One of sepcal's own, FiveHoleProbe, PitotStatic, Magnetometer, FlightPath,
+            ShortPeriod, ScalarExample1, ScalarExample2, of flights also Aero and RigidAircraft, or
+            one of yours in Python: any object with the tables and at() of SeparableModel or, with a
+            state, of StateModel. Python lets one thread in at a time, so that threads=0 then means
+            one.
+        data: A Flight (columns with units in their headers; for the probes, FlightPath, Aero and
+            RigidAircraft), or the model's own
             inputs and outputs by name in the units of its tables, each of shape (N,): a dict or a
             DataFrame. There "time" [s] and "maneuver" (labels) are optional and cut the record at
             gaps and changes of label; other columns are ignored but by effects. C-contiguous
@@ -43,8 +55,8 @@ def fit(
         **options: FitOptions.
 
     Returns:
-        A Calibration for a Flight, else a Fit. Non-convergence and what the data do not determine
-        are its `status` and `message`.
+        Of a Flight a Calibration, or the AircraftFit of a path or an aircraft; else a Fit.
+        Non-convergence and what the data do not determine are its `status` and `message`.
 
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
@@ -53,9 +65,12 @@ def fit(
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the data: sepcal.fit(model, flight)")
-    if not isinstance(model, Model):
-        model = OwnModel(model)
-    if isinstance(model, OwnModel):
+    if isinstance(model, Aero | RigidAircraft) or (
+        isinstance(model, FlightPath) and isinstance(data, Flight)
+    ):
+        return fit_flight(model, to_flight(data, "fit(model, "), options)
+    model = as_model(model)
+    if runs_in_python(model):
         options["threads"] = options.get("threads") or 1
     effects = options.get("effects") or ()
     options["effects"] = names = name_effects(effects)
@@ -71,5 +86,6 @@ def fit(
     columns = take_columns(model._owner, data, dict.fromkeys(needed))
     if names:
         columns |= take_drivers(model._owner, data, columns, _core.channels(names))
-    labels = to_labels(data["maneuver"]) if "maneuver" in there else []  # type: ignore[arg-type]
-    return Fit(_core.fit(model._core, columns, labels, core_options, own))
+    labels = labels_in(data)
+    laid = model._core.along(columns, labels)
+    return Fit(_core.fit(laid, columns, labels, core_options, own))

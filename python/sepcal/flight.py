@@ -99,3 +99,12 @@ def read_csv(file: str | os.PathLike[str]) -> Flight:
             the message names file, line and column.
     """
     return Flight._of(_core.read_csv(os.fspath(file)))
+
+
+def to_flight(flight: object, call: str) -> Flight:
+    """A flight. Raises Error, which shows how to call again, for a file's name or columns."""
+    if isinstance(flight, Flight):
+        return flight
+    is_file = isinstance(flight, str | os.PathLike)
+    given = f"sepcal.read_csv({str(flight)!r})" if is_file else "sepcal.Flight(columns)"
+    raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}{given})")

@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from typing import Any, Unpack
 
 from sepcal import _core
-from sepcal.columns import Array, Columns, take_columns, take_drivers, to_labels
-from sepcal.models import Model
+from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
-from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.pages import Page, Row
 from sepcal.results import Fit
 
@@ -78,7 +77,7 @@ class Prediction(_core.Prediction):
 
 @spelled_out()
 def profile_intervals(
-    model: Model | SeparableModel,
+    model: AnyModel,
     data: Columns,
     fit: Fit,
     *,
@@ -104,16 +103,14 @@ def profile_intervals(
         Error: The fit is not that of the model, the data and the options; a parameter that there
             isn't or that is fixed; a level outside (0, 1).
     """
-    model, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=True)
+    laid, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=True)
     names = to_names("names", names or ())
-    return Intervals(
-        _core.profile_intervals(model._core, columns, labels, core, own, fit, level, names)
-    )
+    return Intervals(_core.profile_intervals(laid, columns, labels, core, own, fit, level, names))
 
 
 @spelled_out()
 def predict(
-    model: Model | SeparableModel,
+    model: AnyModel,
     data: Columns,
     fit: Fit,
     *,
@@ -133,24 +130,23 @@ def predict(
     Raises:
         Error: Bad input, a fit of another model, a level outside (0, 1).
     """
-    model, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=False)
-    return Prediction(_core.predict(model._core, columns, labels, core, own, fit, level))
+    laid, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=False)
+    return Prediction(_core.predict(laid, columns, labels, core, own, fit, level))
 
 
 def _as_fitted(
-    model: Model | SeparableModel,
+    model: AnyModel,
     data: Columns,
     fit: Fit,
     options: FitOptions,
     *,
     measured: bool,
-) -> tuple[Model, dict[str, Array], list[str], _core.Options, list[CoreEffect]]:
-    """The model, the columns, labels, options and own effects, as C++ takes them."""
+) -> tuple[_core.Model, dict[str, Array], list[str], _core.Options, list[CoreEffect]]:
+    """The model along the columns, these, labels, options and own effects, as C++ takes them."""
     if hasattr(fit, "core"):
         raise _core.Error("a calibration knows its model: call its own intervals() or predict()")
-    if not isinstance(model, Model):
-        model = OwnModel(model)
-    if isinstance(model, OwnModel):
+    model = as_model(model)
+    if runs_in_python(model):
         options["threads"] = options.get("threads") or 1
     own = to_core_effects(options.get("effects") or ())
     options["effects"] = name_effects(options.get("effects") or ())
@@ -162,5 +158,5 @@ def _as_fitted(
     columns = take_columns(model._owner, data, dict.fromkeys(needed))
     if names:
         columns |= take_drivers(model._owner, data, columns, _core.channels(names))
-    labels = to_labels(data["maneuver"]) if "maneuver" in there else []  # type: ignore[arg-type]
-    return model, columns, labels, to_core(options), own
+    labels = labels_in(data)
+    return model._core.along(columns, labels), columns, labels, to_core(options), own

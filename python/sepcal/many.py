@@ -15,9 +15,9 @@ from sepcal.executors import describe, stream
 from sepcal.flight import Flight
 from sepcal.many_results import ManyFit
 from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask
-from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
-from sepcal.own_model import OwnModel, SeparableModel
+from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.trajectories import TrajectoryModel
 
 Executors: TypeAlias = Executor | Callable[[], Executor] | None
 
@@ -26,7 +26,7 @@ TASKS = 64  # that one pass over all flights is cut into, at most
 
 @spelled_out(without=("effects", "loss", "loss_width"))
 def fit_many(
-    model: Model | SeparableModel,
+    model: AnyModel,
     flights: Mapping[str, Source] | Sequence[Source],
     *,
     own: Sequence[str] = (),
@@ -63,10 +63,13 @@ def fit_many(
         Exception: What at() of a model in Python raises, as it is.
     """
     sources = _name(flights)
-    if not isinstance(model, Model):
-        model = OwnModel(model)
+    model = as_model(model)
+    if isinstance(model, TrajectoryModel) and model.options["shoot"] is not None:
+        raise _core.Error(
+            "shoot cuts one record's segments; fit_many() gives every flight one start: cut flights"
+        )
     threads = options.pop("threads", None) or 0
-    if isinstance(model, OwnModel):
+    if runs_in_python(model):
         threads = 1
     own = to_names("own", own)
     here = {name: value for name, value in options.items() if value is not None}

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
-from sepcal.columns import Array, Columns, take_columns
+from sepcal.columns import Array, Columns, labels_in, take_columns
 
 Vector = Sequence[float]  # three of them
 
@@ -71,10 +71,14 @@ class Model:
             Error: An input is missing or of another length, a parameter is missing or unknown.
         """
         columns = take_columns(self._owner, record, self._columns_in(record))
-        at = _to_point("xi2", xi2, self.nonlinear)
-        along = None if xi1 is None else _to_point("xi1", xi1, self.linear)
-        rows = self._core.evaluate(columns, at, along)
-        n_z, n_1 = len(self.outputs), len(self.linear)
+        core = self._core.along(columns, labels_in(record))
+        linear, nonlinear = (
+            tuple(name for name, *_ in table) for table in (core.linear, core.nonlinear)
+        )
+        at = _to_point("xi2", xi2, nonlinear)
+        along = None if xi1 is None else _to_point("xi1", xi1, linear)
+        rows = core.evaluate(columns, at, along)
+        n_z, n_1 = len(self.outputs), len(linear)
         rows = rows.reshape((-1, n_z, rows.shape[1]), order="F")  # output after output, by columns
         if along is None:
             return rows[:, :, :n_1], rows[:, :, -1]

@@ -99,17 +99,8 @@ class OwnModel(Model):
 
     def __init__(self, definition: SeparableModel) -> None:
         self.definition = definition
-        if isinstance(definition, type):
-            raise _core.Error(
-                f"{definition.__name__} is a class; give an object of it, {definition.__name__}()"
-            )
-        missing = [part for part in (*TABLES, "at") if not hasattr(definition, part)]
-        if missing:
-            raise _core.Error(
-                f"{self._owner} is no sepcal model: it has no {', '.join(missing)}; "
-                "help(sepcal.SeparableModel) says what a model has"
-            )
-        tables = [_to_rows(f"{self._owner}.{part}", getattr(definition, part)) for part in TABLES]
+        check_parts(definition, (*TABLES, "at"), "sepcal model", SeparableModel)
+        tables = [to_rows(f"{self._owner}.{part}", getattr(definition, part)) for part in TABLES]
         _check_sizes(self._owner, *tables)
         names = [name for name, *_ in tables[0]]
         columns = namedtuple("Inputs", names, rename=True)  # type: ignore[misc]
@@ -137,6 +128,20 @@ class OwnModel(Model):
         return f"OwnModel({self.definition!r})"
 
 
+def check_parts(definition: object, parts: Sequence[str], kind: str, protocol: type) -> None:
+    """Raises Error for a class in place of an object, and for what is missing of a protocol."""
+    if isinstance(definition, type):
+        raise _core.Error(
+            f"{definition.__name__} is a class; give an object of it, {definition.__name__}()"
+        )
+    missing = [part for part in parts if not hasattr(definition, part)]
+    if missing:
+        raise _core.Error(
+            f"{type(definition).__name__} is no {kind}: it has no {', '.join(missing)}; "
+            f"help(sepcal.{protocol.__name__}) says what one has"
+        )
+
+
 def _check_sizes(
     owner: str, inputs: list[Row], outputs: list[Row], linear: list[Row], nonlinear: list[Row]
 ) -> None:
@@ -149,12 +154,17 @@ def _check_sizes(
         raise _core.Error(f"{owner} has no outputs; name what is measured")
     if not linear and not nonlinear:
         raise _core.Error(f"{owner} has no parameters; name what is estimated, linear or nonlinear")
-    for name, *_, lower, upper in (*inputs, *outputs):
+    check_bounds_of(owner, [*inputs, *outputs])
+
+
+def check_bounds_of(owner: str, rows: Sequence[Row]) -> None:
+    """Raises Error where one of these, which are no parameters, has bounds."""
+    for name, *_, lower, upper in rows:
         if (lower, upper) != OPEN:
             raise _core.Error(f"{owner}: '{name}' is no parameter and can't have bounds; drop them")
 
 
-def _to_rows(owner: str, table: Table) -> list[Row]:
+def to_rows(owner: str, table: Table) -> list[Row]:
     """The rows of a table. Raises Error naming the entry that is none."""
     entries: Any = table if isinstance(table, Sequence) else [table]
     if isinstance(table, Mapping):

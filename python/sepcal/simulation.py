@@ -10,6 +10,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.flight import Flight
+from sepcal.geometry import Aircraft, aircraft_module
 
 
 class SimulatedFlight(Flight):
@@ -34,7 +35,7 @@ class SimulatedProbe(Protocol):
 
 
 def simulate(
-    model: SimulatedProbe | str,
+    model: SimulatedProbe | Aircraft | str,
     *,
     truth: Mapping[str, Any] | None = None,
     parameters: Mapping[str, float] | None = None,
@@ -51,7 +52,7 @@ def simulate(
     Args:
         model: The probe flown, or "five-hole", "pitot-static" or "magnetometer" with the
             simulation's own settings (k_alpha and k_beta 4.5, lever arm (0.35, 0, -0.02) m; field
-            (19.7, -1.4, 49.4) uT).
+            (19.7, -1.4, 49.4) uT); or an Aircraft, or "aircraft", a light one.
         truth: What a truth file holds: {"parameters": {name: value}, "options": ..., "noise":
             {output: standard deviation}}; what it leaves out keeps the simulation's value.
         parameters: True values by name, in the parameters' units; they come before `truth`.
@@ -81,24 +82,21 @@ def simulate(
     whole = dict(truth or {})
     whole["parameters"] = {**whole.get("parameters", {}), **given}
     whole["noise"] = {**whole.get("noise", {}), **deviations}
-    if not isinstance(model, str):
+    if isinstance(model, Aircraft):
+        whole["aircraft"] = json.loads(model.to_json())
+    elif not isinstance(model, str):
         whole["options"] = {**whole.get("options", {}), **model._settings()}
     try:
         text = json.dumps(whole, allow_nan=False)
     except ValueError as error:
         raise _core.Error("simulate: a number in the truth is not finite") from error
     hidden = [(name, np.ravel(sizes).tolist()) for name, sizes in (hide or {}).items()]
-    core, parameters_flown, effects = _core.simulate(
-        model if isinstance(model, str) else model.name,
-        text,
-        hidden,
-        excitation,
-        kind,
-        decoys,
-        rate,
-        rows,
-        seed,
-    )
+    rest = (text, hidden, excitation, kind, decoys, rate, rows, seed)
+    if isinstance(model, Aircraft) or model == "aircraft":
+        core, parameters_flown, effects = aircraft_module().simulate(*rest)
+    else:
+        name = model if isinstance(model, str) else model.name
+        core, parameters_flown, effects = _core.simulate(name, *rest)
     flight = SimulatedFlight._of(core)
     flight.truth = parameters_flown
     flight.effects = tuple(effects)

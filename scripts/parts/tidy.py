@@ -69,7 +69,7 @@ def newest_first(entries: list[dict[str, str]]) -> list[dict[str, str]]:
     """
     changed = dict.fromkeys(git("diff", "--name-only", "HEAD", "--", "cpp", "apps"), -1)
     commit = 0
-    for line in git("log", "--format=commit", "--name-only", "--", "cpp", "apps"):
+    for line in git("log", "--format=tformat:commit", "--name-only", "--", "cpp", "apps"):
         commit += line == "commit"
         changed.setdefault(line, commit)
     head = "".join(git("rev-parse", "HEAD"))

@@ -82,6 +82,11 @@ STUDIES = tuple(
     Study(name, shows, partial(run, name))
     for name, shows in (
         (
+            "aircraft",
+            "how far equation error, two steps and output error are off in flights with process"
+            " noise, and how often their intervals hold",
+        ),
+        (
             "coloured-coverage",
             "whether 95 % intervals hold in white, autoregressive and pink noise",
         ),

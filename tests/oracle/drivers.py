@@ -57,6 +57,16 @@ def spline(column: str, knots: Array) -> Driver:
     return Driver(function, suffixes=tuple(f"_{k + 1}" for k in range(1, knots.size)))
 
 
+def about_mean(driver: Driver, record: Record) -> Driver:
+    """A driver without shape whose functions are zero in the mean over a record."""
+    means = driver.function(record, np.empty(0)).mean(axis=1, keepdims=True)
+
+    def function(record: Record, shape: Array) -> Array:
+        return driver.function(record, shape) - means
+
+    return Driver(function, suffixes=driver.suffixes)
+
+
 def categories(labels: Array, names: Sequence[str]) -> Driver:
     """phi_j = 1 in the rows of a label; `names` are all labels but the first that appears."""
     indicators = np.stack([labels == name for name in names]).astype(float)

@@ -108,13 +108,12 @@ def about_zero(column: str, exponent: int = 1) -> Callable[[Columns], Driver]:
 
 
 def smooth(column: str, knots: int) -> Callable[[Columns], Driver]:
-    """A spline with evenly spaced knots, those of time in multiples of 2^-22 s."""
+    """A spline in the mean zero; evenly spaced knots, those of time in multiples of 2^-22 s."""
 
     def make(record: Columns) -> Driver:
         even = np.linspace(record[column].min(), record[column].max(), knots)
-        return drivers.spline(
-            column, np.round(even * 2.0**22) / 2.0**22 if column == "time" else even
-        )
+        rounded = np.round(even * 2.0**22) / 2.0**22 if column == "time" else even
+        return drivers.about_mean(drivers.spline(column, rounded), record)
 
     return make
 

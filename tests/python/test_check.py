@@ -116,6 +116,18 @@ def test_a_fit_shows_six_notes_and_the_way_to_the_rest(magnetometer: Bench) -> N
 # --- what a fit would refuse
 
 
+def test_a_fit_that_follows_a_note_does_not_repeat_it(tube: Bench) -> None:
+    log = Log(tube.folder / "tube.csv")
+    airspeed = log.column("airspeed_mps")
+    airspeed[50::60] += 8.0
+    log.replace("airspeed_mps", airspeed, "airspeed_mps")
+    (tube.folder / "tube.csv").write_text(log.text())
+    plain = tube.run("fit", "tube.csv", "--probe", "pitot-static")
+    robust = tube.run("fit", "tube.csv", "--probe", "pitot-static", "--loss", "huber")
+    assert "airspeed_mps jumps for 10 single readings" in plain.err
+    assert (robust.code, robust.err) == (0, "")
+
+
 def test_a_log_that_a_fit_refuses_is_described(tube: Bench) -> None:
     log = Log(tube.folder / "tube.csv")
     log.drop("ve_mps")

@@ -23,12 +23,13 @@ KEYS = {
         "rmse",
         "advice",
     ),
-    *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "limits"),
-    "missing_channels",
+    *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "unlogged"),
+    *("limits", "missing_channels"),
 }
 EFFECT_KEYS = {
     *("name", "sentence", "drivers", "estimate", "standard_error", "unit", "shapes", "p_value"),
     *("log10_p", "p_adjusted", "p_listed", "predicted_drop", "held_out_gain", "held_out_before"),
+    "share_after_selection",
     *("held_out_after", "held_out_passed", "held_out_interleaved", "visibility", "absorbed_by"),
     *("status", "beside"),
 }
@@ -114,7 +115,8 @@ def test_structure_that_nothing_explains(magnetometer: Bench):
     assert (diagnosed.code, diagnosed.err) == (6, "")
     assert diagnosed.result["verdict"] == "unexplained"
     unexplained = diagnosed.result["unexplained"]
-    assert unexplained["p_value"] < 0.01
+    assert unexplained["p_adjusted"] < 0.01
+    assert unexplained["significant"] is True
     assert len(unexplained["windows"]) >= 4
     table = magnetometer.run("diagnose", "odd.csv", "odd.json")
     assert table.code == 6

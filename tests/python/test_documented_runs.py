@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from documents import BLOCKS, EXAMPLES, ROOT, marked, missing_lines, run
+from documents import BLOCKS, BUILT_EXAMPLES, EXAMPLES, ROOT, marked, missing_lines, run
 from oracle.magnetometer import Magnetometer, compose, soft_iron
 
 SHOWN = "output of examples/"
@@ -118,16 +118,23 @@ def ran(tmp_path_factory):
 
     @cache
     def run_example(name):
-        folder = tmp_path_factory.mktemp(Path(name).stem)
-        runs = "bash" if name.endswith(".sh") else sys.executable
-        return folder, run(runs, EXAMPLES / name, cwd=folder)
+        stem, kind = Path(name).stem, Path(name).suffix
+        folder = tmp_path_factory.mktemp(stem)
+        commands = {
+            ".sh": ("bash", EXAMPLES / name),
+            ".py": (sys.executable, EXAMPLES / name),
+            ".cpp": (BUILT_EXAMPLES / stem,),
+        }
+        return folder, run(*commands[kind], cwd=folder)
 
     return run_example
 
 
 @pytest.mark.parametrize("name", SHOWN_EXAMPLES)
 def test_shown_output_is_what_the_example_prints(name, ran):
-    assert missing_lines("".join(marked(SHOWN + name)), ran(name)[1]) == []
+    shown = "".join(marked(SHOWN + name))
+    assert shown.strip()
+    assert missing_lines(shown, ran(name)[1]) == []
 
 
 def test_shell_example_finds_the_truth(ran):

@@ -14,9 +14,20 @@ import pytest
 
 import sepcal
 from documents import BLOCKS, DOCUMENTS, EXAMPLES, ROOT, TYPED, run
+from studies.trust.unlogged import LINE, fly_with
 
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
 WHOLE = [b for b in BLOCKS if b["language"] == "python" and "import sepcal" in b["text"]]
+AIRCRAFT = (
+    "fit",
+    "two-step",
+    "compare",
+    "add",
+    "apply",
+    "track",
+    "simulate",
+    "effects",
+)  # its verbs
 VERBS = ("check", "fit", "compare", "intervals", "diagnose", "add", "apply", "simulate", "effects")
 
 # How many lines of an example a document promises at most.
@@ -33,7 +44,8 @@ def option_names(text):
 @pytest.fixture(scope="module")
 def options_in_help():
     """What the verbs of both apps take."""
-    texts = [run(a, v, "--help") for a in ("sepcal-pitot", "sepcal-mag") for v in VERBS]
+    verbs = dict.fromkeys(("sepcal-pitot", "sepcal-mag"), VERBS) | {"sepcal-aircraft": AIRCRAFT}
+    texts = [run(app, verb, "--help") for app in verbs for verb in verbs[app]]
     return option_names("\n".join(texts))
 
 
@@ -141,18 +153,25 @@ def test_every_option_in_the_documents_is_in_the_help(options_in_help):
 
 
 def test_every_option_is_explained(options_in_help):
-    assert options_in_help - {"--help", "--output"} <= option_names(read("commands.md"))
+    explained = option_names(read("commands.md")) | option_names(read("aircraft.md"))
+    assert options_in_help - {"--help", "--output"} <= explained
 
 
 def test_every_verb_in_the_documents_is_in_the_help():
-    help_text = {app: run(app, "--help") for app in ("sepcal-pitot", "sepcal-mag")}
-    commands = re.findall(r"^(sepcal-\w+) ([a-z]+)", "\n".join(TYPED), re.M)
+    apps = ("sepcal-pitot", "sepcal-mag", "sepcal-aircraft")
+    help_text = {app: run(app, "--help") for app in apps}
+    commands = re.findall(r"^(sepcal-\w+) ([a-z-]+)", "\n".join(TYPED), re.M)
     assert commands
     for app, verb in commands:
         assert re.search(rf"^  {verb} ", help_text[app], re.M), f"{app} {verb}"
     explained = set(re.findall(r"^\| `([a-z]+)", read("commands.md"), re.M))
     listed = re.findall(r"^  ([a-z]+)  ", help_text["sepcal-pitot"].split("Subcommands:")[1], re.M)
     assert set(listed) == set(VERBS) <= explained
+    listed = re.findall(
+        r"^  ([a-z-]+)  ", help_text["sepcal-aircraft"].split("Subcommands:")[1], re.M
+    )
+    assert set(listed) == set(AIRCRAFT)
+    assert set(AIRCRAFT) <= set(re.findall(r"^\| `([a-z-]+)", read("aircraft.md"), re.M))
 
 
 def test_scripts_and_files_in_typed_commands_exist():
@@ -185,6 +204,8 @@ def test_every_key_of_the_results_is_explained():
     objects += [compared["where"][0], compared["channels"][0], compared["windows"][0]]
     objects += [found["effects"][0], found["residual"]["vn"], found["injected"]]
     objects += [found["unexplained"], intervals["parameters"]["b_va"]]
+    swinging, _ = fly_with(LINE, "pitot-static", "white", 3, rows=300, sigmas=30.0)
+    objects += [sepcal.fit(sepcal.PitotStatic(), swinging).diagnose().unlogged[0]]
     words = set(re.findall(r"\w+", read("results.md")))
     assert {key for one in objects for key in one} - words == set()
 

@@ -5,11 +5,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "sepcal/eigen.hpp"
 #include "sepcal/quantity.hpp"
+#include "sepcal/record.hpp"
 
 namespace sepcal {
 
@@ -58,6 +62,14 @@ class BlockModel {
   virtual void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
                         Eigen::Ref<Eigen::MatrixXd> rows) const = 0;
 
+  /// What evaluate() without xi1 gives at each of several points (n_2 x S), each with a carry of
+  /// its own: `visit` sees one point's rows after the other's. Overridden where they come faster
+  /// together. `scratch` may hold the rows.
+  using VisitRows = std::function<void(Eigen::Index point, Eigen::MatrixXd& rows)>;
+  virtual void evaluate_points(const Block& block, const Eigen::MatrixXd& points,
+                               std::span<const std::unique_ptr<Carry>> carries,
+                               Eigen::MatrixXd& scratch, const VisitRows& visit) const;
+
   /// Fills `columns`, (n_z * block.rows) x inputs.size(), with d(A xi1 + b)/du_i of the chosen
   /// inputs, by their index in tables().inputs: what an effect that corrects an input needs. Unless
   /// overridden by fourth-order differences. Throws Error where the model can't be differentiated
@@ -76,6 +88,15 @@ class BlockModel {
   /// measurements, u of shape (rows, n_u) and z of shape (rows, n_z): stage one descends from them
   /// too, where a narrow basin slips between its samples. They may lie beyond the bounds.
   virtual Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const;
+
+  /// Where nonlinear parameters begin that the record itself tells, by name, as the initial states
+  /// of a trajectory; none unless overridden. A fit starts them there, unless its options say
+  /// otherwise, and stage one doesn't sample them.
+  virtual std::map<std::string, double> starting_values(const Record& record) const;
+
+  /// The factor by which a small error of a state grows along the trajectory where it grows most,
+  /// at parameters (n); 1 of a model without a state.
+  virtual double growth(const Record& record, const Eigen::VectorXd& xi) const;
 
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.

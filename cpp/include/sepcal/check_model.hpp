@@ -13,7 +13,8 @@
 namespace sepcal {
 
 /// Tries `model` on a few samples of `record` at a few points within the parameters' bounds, of
-/// which the first is `start` (by nonlinear parameter; without it the middle of the bounds). Throws
+/// which the first is `start` (by nonlinear parameter; without it what the record tells, or the
+/// middle of the bounds). Throws
 /// Error naming the entry, by output and parameter, that
 ///   is not finite wherever it was tried (entries start as NaN: one that is never set stays so),
 ///   differs between two evaluations of the same sample (bit for bit), or

@@ -72,6 +72,10 @@ struct EffectFinding {
   double p_adjusted = 1.0;  // after Holm: for the verdict
   double p_listed = 1.0;    // after Benjamini & Hochberg: for the list
 
+  /// What is left of the estimates, allowing for the choice of the effect among the candidates:
+  /// 1 unless it is barely found.
+  double share_after_selection = 1.0;
+
   double predicted_drop = 0.0;        // of the RMSE over all outputs, 1 - after / before
   double held_out_before = 0.0;       // RMSE of rows left out, over all outputs
   double held_out_after = 0.0;        // with the effect
@@ -107,9 +111,32 @@ struct DetectionLimit {
 /// Offsets of every output and every port by window of the record, all at once.
 struct Omnibus {
   double p_value = 1.0;
-  std::string where = {};  // the port or output whose offsets explain most
+  double p_adjusted = 1.0;   // after Holm, with the unlogged causes: for the verdict
+  bool significant = false;  // p_adjusted is below what the options ask
+  std::string where = {};    // the port or output whose offsets explain most
   std::vector<std::pair<std::string, double>> windows =
       {};  // and how far off each window is [sigma]
+};
+
+enum class UnloggedKind {
+  common_cause,  // outputs whose noise should be independent move together
+  spectral_line  // a swing at one frequency, narrower than a resonance
+};
+
+/// "common_cause", "spectral_line".
+std::string_view to_string(UnloggedKind kind);
+
+/// A cause that no logged channel follows. Times are rows, frequencies cycles a row, where the
+/// record has no time.
+struct UnloggedCause {
+  UnloggedKind kind = UnloggedKind::common_cause;
+  std::vector<std::string> outputs = {};  // that show it
+  double p_value = 1.0;                   // for itself, corrected for all that it was chosen among
+  double p_adjusted = 1.0;                // after Holm: for the verdict
+  bool all_along = false;                 // strongest over the whole record
+  double first_s = 0.0;                   // of the rows where it is strongest [s]
+  double last_s = 0.0;
+  double frequency = not_a_number;  // [Hz]; NaN where none stands out
 };
 
 /// What to add, once a real fit with it has shown that it can be.
@@ -127,6 +154,7 @@ struct Diagnosis {
   std::vector<std::string> pairs = {};
   std::vector<ResidualNoise> residual = {};
   Omnibus omnibus;
+  std::vector<UnloggedCause> unlogged = {};  // that are significant, the surest first
   std::vector<DetectionLimit> limits = {};
   double rmse = 0.0;   // over all outputs
   double floor = 0.0;  // innovations alone, over all outputs
@@ -140,7 +168,7 @@ inline constexpr double visible_from = 0.05;       // a sine: below, an effect c
 
 struct DiagnosisOptions {
   double significance = significant_below;  // of the verdict
-  double unexplained_below = 0.01;          // p of the omnibus test
+  double unexplained_below = 0.01;          // p of offsets and of unlogged causes, after Holm
   double least_visibility = visible_from;
   int simulations = 80;                     // of the noise, that calibrate a test
   std::vector<std::string> preferred = {};  // come first among those as likely

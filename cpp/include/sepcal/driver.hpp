@@ -63,8 +63,10 @@ DriverPointer power_driver(Variable input, double centre, int power, double mean
 /// phi = max(d, 0)^exponent, the exponent fitted within [0.3, 2].
 DriverPointer exponent_driver(Variable input);
 
-/// phi_j: the cardinal natural splines of the knots but the first.
-DriverPointer spline_driver(Variable input, std::vector<double> knots);
+/// phi_j: the cardinal natural splines of the knots but the first, each less its mean (one a
+/// function, or none to leave them zero at the first knot).
+DriverPointer spline_driver(Variable input, std::vector<double> knots,
+                            const std::vector<double>& means = {});
 
 /// phi_j = 1 where d is the code j = 1, 2, ...; `labels` are those of the codes 0, 1, 2, ...
 DriverPointer category_driver(Variable input, const std::vector<std::string>& labels);

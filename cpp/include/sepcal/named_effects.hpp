@@ -23,6 +23,7 @@ struct EffectSetting {
   std::optional<double> centre = {};                   // of a power's driver
   std::optional<double> mean = {};                     // of the power, where it is taken away
   std::vector<double> knots = {};                      // of a spline
+  std::vector<double> means = {};                      // of its functions, likewise
   std::vector<std::string> labels = {};                // of the driver `maneuver`
   std::optional<std::pair<double, double>> span = {};  // the record's first and last time [s]
   std::optional<double> t0 = {};                       // [s] of a step, once it was found
@@ -45,9 +46,9 @@ struct Port {
   std::string unit;
   std::vector<Component> components;
   double plausible = infinity;  // the most that an effect on an input may amount to
-  /// Whether the model takes a constant on the port as its own: powers of a channel that keeps away
-  /// from zero (a voltage) then go about their mean, so that the model's parameters stay those of
-  /// the flight and not of a zero that nobody saw.
+  /// Whether the model takes a constant on the port as its own: powers and splines of a channel
+  /// that keeps away from zero (a voltage) then go about their mean, so that the model's parameters
+  /// stay those of the flight and not of a zero that nobody saw.
   bool constant_is_own = true;
 };
 
@@ -58,6 +59,9 @@ struct EffectKit {
 
   std::vector<Port> ports;
   std::map<std::string, Maker> own;  // effects with a physics of their own, by name
+  /// Corrections whose size need not be constant: noise of the inputs, as an attitude's error that
+  /// its filter lets wander. diagnose() takes nothing for found that they explain.
+  std::vector<Maker> wandering = {};
   std::map<std::string, std::function<std::string(const Record&)>> aliases;  // to whole names
 };
 

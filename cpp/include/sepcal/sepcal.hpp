@@ -17,6 +17,8 @@
 #include "sepcal/check_model.hpp"        // what a concept can't check
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist
+#include "sepcal/static_concatenation.hpp" // several sensors side by side
+#include "sepcal/joined_tables.hpp"
 #include "sepcal/nested_dual.hpp"        // second derivatives
 #include "sepcal/natural_spline.hpp"     // smooth functions
 #include "sepcal/driver.hpp"             // what drives an effect
@@ -34,7 +36,26 @@
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/models/triad.hpp"       // the canonical form of a sensor of three axes
 #include "sepcal/models/scalar_examples.hpp"
+#include "sepcal/models/damped_sinusoids.hpp" // Prony's problem
+#include "sepcal/states/state_model.hpp"       // a model with a state
+#include "sepcal/states/trajectory_options.hpp"
+#include "sepcal/states/trajectory_model.hpp"  // from it to the waist, along a record
+#include "sepcal/states/smooth_record.hpp"  // states and process noise along a record
+#include "sepcal/states/integration.hpp"
+#include "sepcal/states/trajectory_plan.hpp"
+#include "sepcal/states/track.hpp"             // estimates against time
+#include "sepcal/states/stream_start.hpp"
+#include "sepcal/models/flight_path.hpp"
+#include "sepcal/models/short_period.hpp"
+#include "sepcal/aircraft/geometry.hpp"        // an aircraft as its equations of motion know it
+#include "sepcal/aircraft/equations.hpp"       // coefficients as sums of regressors
+#include "sepcal/aircraft/coefficients.hpp"    // those that a flight had
+#include "sepcal/aircraft/aero_model.hpp"      // equation error
+#include "sepcal/aircraft/two_step.hpp"
+#include "sepcal/aircraft/output_error.hpp"
+#include "sepcal/aircraft/rigid_aircraft.hpp"  // six degrees of freedom
 #include "sepcal/noise_model.hpp"        // the noise of residuals
 #include "sepcal/rotation.hpp"
 #include "sepcal/solver_log.hpp"         // Ceres and glog silenced

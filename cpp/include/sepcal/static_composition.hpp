@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "sepcal/joined_tables.hpp"
 #include "sepcal/static_effect.hpp"
 
 namespace sepcal {
@@ -31,44 +32,6 @@ concept StaticEffect = Term<T> || InputCorrection<T> || VaryingTerm<T>;
 
 namespace composing {
 
-constexpr std::size_t find(const auto& table, std::string_view name) {
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table[i].name == name) return i;
-  }
-  return table.size();
-}
-
-/// Quantities of `more` whose names `table` lacks.
-template <std::size_t N, std::size_t M>
-constexpr std::size_t count_new(const std::array<Quantity, N>& table,
-                                const std::array<Quantity, M>& more) {
-  std::size_t count = 0;
-  for (const Quantity& quantity : more) count += find(table, quantity.name) == N ? 1 : 0;
-  return count;
-}
-
-template <std::size_t N, std::size_t M>
-constexpr std::array<Quantity, N + M> join(const std::array<Quantity, N>& a,
-                                           const std::array<Quantity, M>& b) {
-  std::array<Quantity, N + M> joined{};
-  std::copy(a.begin(), a.end(), joined.begin());
-  std::copy(b.begin(), b.end(), joined.begin() + N);
-  return joined;
-}
-
-/// The inputs of both, each once.
-template <class A, class B>
-constexpr auto merge() {
-  constexpr std::size_t n = A::inputs.size();
-  std::array<Quantity, n + count_new(A::inputs, B::inputs)> merged{};
-  std::copy(A::inputs.begin(), A::inputs.end(), merged.begin());
-  std::size_t next = n;
-  for (const Quantity& input : B::inputs) {
-    if (find(A::inputs, input.name) == n) merged[next++] = input;
-  }
-  return merged;
-}
-
 /// The linear parameters of an effect; a correction has none.
 template <class E>
 constexpr auto linear_of() {
@@ -86,16 +49,6 @@ constexpr bool no_parameter_in_common() {
   const auto b = join(linear_of<B>(), B::nonlinear);
   return std::none_of(b.begin(), b.end(), [&](const Quantity& parameter) {
     return find(a, parameter.name) < a.size();
-  });
-}
-
-/// Whether inputs of one name are in one unit.
-template <class A, class B>
-constexpr bool same_units() {
-  return std::all_of(B::inputs.begin(), B::inputs.end(), [](const Quantity& input) {
-    const std::size_t at = find(A::inputs, input.name);
-    return at == A::inputs.size() || A::inputs[at].unit.empty() || input.unit.empty() ||
-           A::inputs[at].unit == input.unit;
   });
 }
 
@@ -177,18 +130,14 @@ struct Composed {
   static constexpr int n_2m = static_cast<int>(M::nonlinear.size());
   static constexpr int n_2e = static_cast<int>(E::nonlinear.size());
 
-  /// Where input i of a part stands among the merged ones.
   template <class Part>
   static constexpr int position(int i) {
-    return static_cast<int>(
-        composing::find(inputs, Part::inputs[static_cast<std::size_t>(i)].name));
+    return composing::position<Composed, Part>(i);
   }
 
   template <class Part, class T>
-  static Vec<T, static_cast<int>(Part::inputs.size())> select(const Vec<T, n_u>& u) {
-    Vec<T, static_cast<int>(Part::inputs.size())> selected;
-    for (int i = 0; i < selected.size(); ++i) selected[i] = u[position<Part>(i)];
-    return selected;
+  static auto select(const Vec<T, n_u>& u) {
+    return composing::select<Composed, Part>(u);
   }
 
   static constexpr int target(int c) {

@@ -2,7 +2,9 @@
 // Names as messages list them.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sepcal/quantity.hpp"
@@ -12,5 +14,10 @@ namespace sepcal::base {
 /// "a, b, c", or "none".
 std::string list_names(const std::vector<std::string>& names);
 std::string list_names(const std::vector<Variable>& variables);
+
+/// "a, b and 7 more", with at most `most` of them.
+std::string list_first(const std::vector<std::string>& names, std::size_t most);
+
+bool is_among(const std::vector<std::string>& names, std::string_view name);
 
 }  // namespace sepcal::base

@@ -3,6 +3,7 @@
 
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace sepcal::bindings {
 namespace {
@@ -13,6 +14,13 @@ py::capsule keep(std::shared_ptr<const void> owner) {
 }
 
 }  // namespace
+
+std::shared_ptr<const py::object> share(py::object object) {
+  return {new py::object(std::move(object)), [](const py::object* released) {
+            const py::gil_scoped_acquire gil;
+            delete released;
+          }};
+}
 
 ArrayView view_array(const Array& array) {
   if (array.ndim() != 1) throw py::type_error("a column is an array of one dimension");

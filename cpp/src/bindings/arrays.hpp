@@ -14,6 +14,9 @@ namespace sepcal::bindings {
 
 namespace py = pybind11;
 
+/// A reference that any thread may give back: it takes the GIL for it.
+std::shared_ptr<const py::object> share(py::object object);
+
 /// One column: a C-contiguous array of float64, (N,).
 using Array = py::array_t<double, py::array::c_style>;
 

@@ -5,8 +5,11 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "named_casters.hpp"
@@ -21,9 +24,14 @@ namespace sepcal::bindings {
 
 namespace py = pybind11;
 
+/// Lays a model with a state along a record, whose segments' initial states join its tables; or,
+/// without one, along any record, each of whose segments begins at one initial state.
+using Along = std::function<std::shared_ptr<const BlockModel>(const Record*)>;
+
 /// A model, and the probe that brings flights to it where there is one.
 struct Model {
   explicit Model(std::shared_ptr<const BlockModel> model) : block(std::move(model)) {}
+  explicit Model(Along lay) : block(lay(nullptr)), along(std::move(lay)) {}
   explicit Model(const std::shared_ptr<const Probe>& given)
       : block(given, &given->model()), probe(given) {}
 
@@ -31,6 +39,8 @@ struct Model {
 
   std::shared_ptr<const BlockModel> block;
   std::shared_ptr<const Probe> probe;  // may be empty
+  Along along;                         // the same
+  std::map<std::string, double> held;  // unless freed, of a model without a probe
 };
 
 /// Throws Error where the model has none.
@@ -43,9 +53,11 @@ void define_results(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
 void define_figures(py::module_& module);
+void define_filters(py::module_& module);
 void define_flight(py::module_& module);
 void define_intervals(py::module_& module);
 void define_many(py::module_& module);
 void define_simulation(py::module_& module);
+void define_states(py::module_& module);
 
 }  // namespace sepcal::bindings

@@ -11,7 +11,10 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "base/name_list.hpp"
+#include "base/sentences.hpp"
 #include "bindings.hpp"
+#include "flight/verbs/held_options.hpp"
 #include "python_effect.hpp"
 #include "python_model.hpp"
 #include "results.hpp"
@@ -50,6 +53,16 @@ Model python_model(const std::string& name, const std::array<std::vector<Row>, 4
       name,
       Tables{to_table(tables[0]), to_table(tables[1]), to_table(tables[2]), to_table(tables[3])},
       functions));
+}
+
+/// The model for a record of these columns.
+Model lay_along(const Model& model, const py::dict& columns,
+                const std::vector<std::string>& labels) {
+  if (!model.along) return model;
+  const Record record = record_of(columns, labels);
+  Model laid(model.along(&record));
+  laid.held = model.held;
+  return laid;
 }
 
 /// A record as one block; inputs that it lacks are constant.
@@ -100,6 +113,20 @@ Eigen::MatrixXd input_tangent(const Model& model, const py::dict& columns,
   return tangent;
 }
 
+/// "b_psi is held at 0; ..." of what a model holds by default.
+std::string note_held(const Model& model, const CalibrationOptions& given, const Fit& fit) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : fit.parameters) {
+    const bool by_default =
+        model.held.contains(parameter.name) && !given.fit.fixed.contains(parameter.name);
+    if (by_default && parameter.fixed) names.push_back(parameter.name);
+  }
+  if (names.empty()) return "";
+  return "held at zero, as hardly any record tells " +
+         std::string(names.size() > 1 ? "them" : "it") + ": " + base::list_names(names) +
+         " (free=[...] frees)";
+}
+
 FittedModel fit_columns(const Model& model, const py::dict& columns,
                         const std::vector<std::string>& labels, CalibrationOptions options,
                         const std::vector<PythonEffect>& own) {
@@ -112,11 +139,14 @@ FittedModel fit_columns(const Model& model, const py::dict& columns,
       options.effects = std::move(calibration.options.effects);
       return std::move(calibration.fit);
     }
-    if (!options.free.empty()) {
+    if (!options.free.empty() && model.held.empty()) {
       throw Error("free is for sepcal's own probes: this model holds no parameter by default");
     }
+    const CalibrationOptions held = verbs::hold(model.held, model.block->tables(), options);
     for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
-    return fit_with_effects(model.block, kit, options.effects, std::move(record), options.fit);
+    Fit fit = fit_with_effects(model.block, kit, options.effects, std::move(record), held.fit);
+    fit.message = base::join_sentences({fit.message, note_held(model, options, fit)});
+    return fit;
   };
   const py::gil_scoped_release release;
   Fit fit = run();
@@ -132,6 +162,7 @@ void define_engine(py::module_& module) {
       .def_property_readonly("outputs", &describe_table<&Tables::outputs>)
       .def_property_readonly("linear", &describe_table<&Tables::linear>)
       .def_property_readonly("nonlinear", &describe_table<&Tables::nonlinear>)
+      .def("along", &lay_along)
       .def("evaluate", &evaluate)
       .def("input_tangent", &input_tangent);
 

@@ -96,23 +96,13 @@ void define_flights(py::module_& module) {
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
 }
 
-/// sepcal.Comparison
-struct Compared {
-  Comparison comparison;
-  std::string json;
-  Page page;
-};
-
 /// With an effect added where one is named.
 Compared compare_flight(const Calibration& calibration, const Flight& flight,
                         const std::optional<std::string>& effect) {
   const py::gil_scoped_release release;
   need_own_effects(calibration);
-  Comparison comparison =
-      effect ? compare_with(calibration, flight, *effect) : compare(calibration, flight);
-  Page page = page_of(comparison);
-  std::string json = to_json(comparison);
-  return {std::move(comparison), std::move(json), std::move(page)};
+  return compared(effect ? compare_with(calibration, flight, *effect)
+                         : compare(calibration, flight));
 }
 
 /// What the app's diagnose prints.

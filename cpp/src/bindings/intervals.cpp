@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "flight/verbs/held_options.hpp"
 #include "model/measurements.hpp"
 #include "python_effect.hpp"
 #include "results.hpp"
@@ -29,7 +30,8 @@ struct Prepared {
 Prepared prepare(const Model& model, Record record, const CalibrationOptions& options,
                  std::vector<EffectSetting> settings, const Fit& fit) {
   for (EffectSetting& setting : settings) setting.known = true;
-  Prepared result{model.probe, model.block, std::move(record), options.fit};
+  const CalibrationOptions held = verbs::hold(model.held, model.block->tables(), options);
+  Prepared result{model.probe, model.block, std::move(record), held.fit};
   EffectKit kit = model.kit();
   for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
   if (result.probe) {

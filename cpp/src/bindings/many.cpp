@@ -73,8 +73,10 @@ ManyOptions many_options(const Model& model, const CalibrationOptions& given,
           " fit_many() does not follow; fit each flight by itself");
     }
     options = verbs::hold(*model.probe, options);
-  } else if (!options.free.empty()) {
+  } else if (!options.free.empty() && model.held.empty()) {
     throw Error("free is for sepcal's own probes: this model holds no parameter by default");
+  } else {
+    options = verbs::hold(model.held, model.block->tables(), options);
   }
   return {.own = own, .fit = options.fit, .leave_out = leave_out};
 }

@@ -19,13 +19,6 @@ namespace {
 using Columns = std::vector<std::pair<std::string, Eigen::MatrixXd>>;
 using Function = std::shared_ptr<const py::object>;  // takes the GIL to give it back
 
-Function share(py::object function) {
-  return {new py::object(std::move(function)), [](const py::object* released) {
-            const py::gil_scoped_acquire gil;
-            delete released;
-          }};
-}
-
 /// The record's columns; the arrays keep it alive. The GIL is held.
 py::dict columns_of(const Record& record) {
   const auto kept = std::make_shared<const Record>(record);

@@ -14,29 +14,6 @@
 namespace sepcal::bindings {
 namespace {
 
-/// By name, of the parameters that stage one samples: nonlinear and not fixed.
-std::vector<OutputValue> named_point(const Fit& fit, const Eigen::VectorXd& xi2) {
-  std::vector<OutputValue> point;
-  Eigen::Index k = 0;
-  for (auto at = fit.parameters.begin() + fit.n_1; at != fit.parameters.end(); ++at) {
-    if (!at->fixed && k < xi2.size()) point.push_back({at->name, xi2[k++]});
-  }
-  return point;
-}
-
-/// Takes stage one out of the fit.
-NamedStageOne take_stage_one(Fit& fit) {
-  NamedStageOne named{.samples = fit.stage_one.samples.transpose(),
-                      .best = named_point(fit, fit.stage_one.best),
-                      .minima = {},
-                      .rest = std::exchange(fit.stage_one, {})};
-  named.rest.samples.resize(0, 0);
-  for (const LocalMinimum& minimum : named.rest.minima) {
-    named.minima.push_back({named_point(fit, minimum.xi2), minimum.trace_r});
-  }
-  return named;
-}
-
 /// "at its lower bound": what a table says of a parameter that is not simply estimated.
 std::string_view remark(const Parameter& parameter) {
   if (parameter.fixed) return "fixed";
@@ -86,6 +63,8 @@ void define_parameters(py::module_& module) {
       .field("mean", &EffectSetting::mean,
              "Of the power over the fitted rows, where it is taken away.")
       .tuple("knots", &EffectSetting::knots, "Of a spline.")
+      .tuple("means", &EffectSetting::means,
+             "Of its functions over the fitted rows, where they are taken away.")
       .tuple("labels", &EffectSetting::labels,
              "Of the driver `maneuver`; the first has no coefficient.")
       .field("span", &EffectSetting::span, "The record's first and last time [s].")
@@ -133,11 +112,6 @@ void define_stage_one(py::module_& module) {
 }
 
 }  // namespace
-
-FittedModel fitted_model(Fit fit, std::vector<EffectSetting> effects, Page page) {
-  NamedStageOne stage_one = take_stage_one(fit);
-  return {std::move(fit), std::move(stage_one), std::move(effects), std::move(page)};
-}
 
 void define_results(py::module_& module) {
   define_parameters(module);

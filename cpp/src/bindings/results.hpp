@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bindings.hpp"
+#include "sepcal/flight/comparison.hpp"
+#include "sepcal/states/track.hpp"
 
 namespace sepcal::bindings {
 
@@ -62,6 +65,25 @@ struct FittedModel {
 };
 
 FittedModel fitted_model(Fit fit, std::vector<EffectSetting> effects, Page page);
+
+/// sepcal.Comparison
+struct Compared {
+  Comparison comparison;
+  std::string json;
+  Page page;
+};
+
+inline Compared compared(Comparison comparison) {
+  Page page = page_of(comparison);
+  std::string json = to_json(comparison);
+  return {std::move(comparison), std::move(json), std::move(page)};
+}
+
+/// sepcal.Track
+struct Tracked {
+  Track track;
+  std::vector<std::string> outputs;
+};
 
 /// sepcal.Intervals
 struct FoundIntervals {

@@ -13,13 +13,15 @@
 namespace sepcal::diagnosis {
 namespace {
 
-/// The parameters that the fit has at a bound and the one before had not.
+/// The parameters that the fit has at a bound and the one before had not, with their bounds.
 std::vector<std::string> newly_at_bounds(const Fit& before, const Fit& after) {
   std::vector<std::string> names;
   for (const Parameter& parameter : after.parameters) {
     if (!parameter.at_bound) continue;
     const auto old = std::ranges::find(before.parameters, parameter.name, &Parameter::name);
-    if (old == before.parameters.end() || !old->at_bound) names.push_back(parameter.name);
+    if (old != before.parameters.end() && old->at_bound) continue;
+    names.push_back(
+        fmt::format("{} [{:.4g}, {:.4g}]", parameter.name, parameter.lower, parameter.upper));
   }
   return names;
 }
@@ -29,7 +31,15 @@ std::vector<std::string> newly_at_bounds(const Fit& before, const Fit& after) {
 std::string disagreement(const EffectFinding& finding, const Fit& fitted) {
   constexpr double errors = 4.0;
   constexpr double times = 3.0;
+  constexpr double small = 0.1;  // of the largest of its unit: its sign says nothing of the effect
+  const auto size_of = [&](const Coefficient& coefficient) {
+    return std::max(std::abs(coefficient.estimate), std::abs(fitted[coefficient.name].value));
+  };
   for (const Coefficient& coefficient : finding.coefficients) {
+    const bool is_small = std::ranges::any_of(finding.coefficients, [&](const Coefficient& other) {
+      return other.unit == coefficient.unit && size_of(coefficient) < small * size_of(other);
+    });
+    if (is_small) continue;
     const Parameter& now = fitted[coefficient.name];
     const double error = std::max(coefficient.standard_error, now.standard_error);
     const double change = std::abs(now.value - coefficient.estimate);
@@ -43,8 +53,23 @@ std::string disagreement(const EffectFinding& finding, const Fit& fitted) {
   return {};
 }
 
+/// What is wrong with the fit that has the effect; empty where nothing is.
+std::string objection_to_fit(const Fit& before, const EffectFinding& finding, const Fit& fitted) {
+  if (fitted.status != FitStatus::converged) {
+    return fmt::format("a fit with it is {}", fitted.status == FitStatus::not_converged
+                                                  ? "not converged"
+                                                  : "not identifiable");
+  }
+  const std::vector<std::string> held = newly_at_bounds(before, fitted);
+  if (!held.empty()) {
+    return fmt::format("fitted, it runs into the bounds of {}; wider ones may let it",
+                       fmt::join(held, ", "));
+  }
+  return disagreement(finding, fitted);
+}
+
 /// A third of the record at a time, in blocks in between: each fold is two fits.
-Folds few_folds(const Linearisation& fit, const Eigen::MatrixXd& G) {
+Folds few_folds(const LinearisedFit& fit, const Columns& G) {
   constexpr int count = 3;
   constexpr int fewest_blocks = 12;
   Folds folds =
@@ -57,38 +82,29 @@ Folds few_folds(const Linearisation& fit, const Eigen::MatrixXd& G) {
 
 }  // namespace
 
-std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
-                           double least_visibility, base::ThreadPool& pool) {
+Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,
+                         base::ThreadPool& pool) {
   if (!(finding.visibility >= least_visibility)) {
-    return fmt::format(
-        "the flight hardly tells it from the model's own parameters (visibility "
-        "{:.2f})",
-        finding.visibility);
+    return {
+        fmt::format("the flight hardly tells it from the model's own parameters (visibility "
+                    "{:.2f})",
+                    finding.visibility)};
   }
   const Candidate candidate = room.make(finding.name);
   const double shape = shape_of(finding);
   try {
     const Fit fitted = refit_with(room, candidate, shape);
-    if (fitted.status != FitStatus::converged) {
-      return fmt::format("a fit with it is {}", fitted.status == FitStatus::not_converged
-                                                    ? "not converged"
-                                                    : "not identifiable");
-    }
-    const std::vector<std::string> held = newly_at_bounds(room.fitted(), fitted);
-    if (!held.empty()) {
-      return fmt::format("fitted, it runs into the bounds of {}; wider ones may let it",
-                         fmt::join(held, ", "));
-    }
-    std::string differs = disagreement(finding, fitted);
-    if (!differs.empty()) return differs;
-    const Folds folds = few_folds(room.fit(), room.columns(candidate, shape));
+    std::string misfit = objection_to_fit(room.fitted(), finding, fitted);
+    if (!misfit.empty()) return {std::move(misfit), true};
+    const Folds folds = few_folds(room.fit(), room.columns(candidate, shape).whole);
     const HeldOut held_out = hold_out_by_refits(room, candidate, shape, folds, pool);
     if (held_out.judged && !(held_out.gain > 0.0)) {
-      return fmt::format("real fits without some rows predict them no better ({:.1f} % more error)",
-                         -100.0 * held_out.gain);
+      return {
+          fmt::format("real fits without some rows predict them no better ({:.1f} % more error)",
+                      -100.0 * held_out.gain)};
     }
   } catch (const Error& error) {
-    return std::string("it can't be fitted here: ") + error.what();
+    return {std::string("it can't be fitted here: ") + error.what(), true};
   }
   return {};
 }

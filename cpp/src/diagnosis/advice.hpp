@@ -9,9 +9,17 @@
 
 namespace sepcal::diagnosis {
 
-/// Why the effect that was found should not be added, as the end of a sentence; empty where a fit
-/// with it converges within its bounds, agrees with the step and predicts rows left out better.
-std::string reason_against(CandidateRoom& room, const EffectFinding& finding,
-                           double least_visibility, base::ThreadPool& pool);
+/// Why an effect that was found should not be added.
+struct Objection {
+  std::string reason = {};  // as the end of a sentence; empty where there is none
+  /// Whether no fit takes the effect as it was found, large as it may be: what counts beside it
+  /// would then stand in for it.
+  bool is_to_fit = false;
+};
+
+/// None where a fit with the effect converges within its bounds, agrees with the step and predicts
+/// rows left out better.
+Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,
+                         base::ThreadPool& pool);
 
 }  // namespace sepcal::diagnosis

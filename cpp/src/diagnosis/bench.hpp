@@ -26,6 +26,7 @@ class Bench {
   Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool);
   Bench(const Bench&) = delete;  // the null hypothesis points into it
   Bench& operator=(const Bench&) = delete;
+  ~Bench() = default;
 
   const DiagnosedFit& fitted() const { return fitted_; }
   CandidateRoom& room() { return room_; }

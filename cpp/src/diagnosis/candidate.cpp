@@ -16,6 +16,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr double rounding = 1e-11;  // of an output's rms: a smaller residual is none
@@ -87,6 +88,8 @@ CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
       effects_(make_effects(fitted.kit, *fitted.model, settings_, record_)),
       values_(fitted.fit.by_name()) {
   linearise(fitted.fit, pool);
+  linearisation_.wandering = wandering_columns();
+  if (linearisation_.wandering.cols() > 0) linearisation_.times = times();
 }
 
 void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
@@ -99,43 +102,69 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
   Record rows = record_;
   rows.cut(fitted_.rows);
   const model::Measurements measurements(*model, rows);
-  const model::Sweep sweep(*model, measurements, pool);
-  const std::vector<MatrixXd> outputs = sweep.tangent_rows(fit.xi1(), fit.xi2());
-
   RowLayout& layout = linearisation_.layout;
   layout = {.segments = base::join_segments(fitted_.rows),
             .runs = measurements.runs(),
             .rows = static_cast<Index>(rows.rows())};
-  std::vector<Index> free;
+  std::vector<Index> columns;
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     if (fit.parameters[k].fixed || fit.parameters[k].at_bound) continue;
-    free.push_back(static_cast<Index>(k));
+    columns.push_back(static_cast<Index>(k));
     linearisation_.parameters.push_back(fit.parameters[k].name);
   }
+  columns.push_back(static_cast<Index>(parameters.size()));
+  MatrixXd& tangent = linearisation_.tangent;
+  tangent = model::Sweep(*model, measurements, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
   const auto count = static_cast<double>(layout.rows);
   for (int j = 0; j < tables.n_z(); ++j) {
     const auto& output = tables.outputs[static_cast<std::size_t>(j)];
     const double rmse =
-        outputs[static_cast<std::size_t>(j)].rightCols<1>().norm() / std::sqrt(count);
+        tangent.rightCols<1>().middleRows(j * layout.rows, layout.rows).norm() / std::sqrt(count);
     const double rms = std::sqrt(measurements.output_square(j) / count);
     if (!(rmse > rounding * rms) || !(rmse > 0)) continue;
     layout.outputs.push_back({j, output.name, output.unit, rmse});
   }
-  linearisation_.tangent = stack(outputs, free);
-  linearisation_.residual =
-      stack(outputs, {static_cast<Index>(parameters.size())}).reshaped(layout.count(), 1);
+  scale_outputs(tangent);
+  linearisation_.residual = tangent.rightCols<1>();
+  tangent.conservativeResize(Eigen::NoChange, tangent.cols() - 1);
 }
 
-MatrixXd CandidateRoom::stack(const std::vector<MatrixXd>& outputs,
-                              const std::vector<Index>& columns) const {
+/// Those of a correction that the fit has already are the tangent's.
+MatrixXd CandidateRoom::wandering_columns() {
+  Columns all;
+  for (const EffectKit::Maker& maker : fitted_.kit.wandering) {
+    EffectSetting setting;
+    const Effect effect = maker(*fitted_.model, setting, record_);
+    std::vector<std::string> names;
+    for (const Variable& coefficient :
+         coefficients_of(*compose(fitted_.model, {effect}, record_), *fitted_.model, {})) {
+      names.push_back(coefficient.name);
+    }
+    const std::vector<std::string>& fitted = linearisation_.parameters;
+    const auto known = std::ranges::find(fitted, names.front());
+    const std::vector<Parameter>& own = fitted_.fit.parameters;
+    const bool has = std::ranges::find(own, names.front(), &Parameter::name) != own.end();
+    if (has && known == fitted.end()) continue;  // held, as the caller has it
+    all = join(all, known == fitted.end()
+                        ? Columns(composed_columns({effect}, {}, names))
+                        : view(linearisation_.tangent.middleCols(
+                              known - fitted.begin(), static_cast<Index>(names.size()))));
+  }
+  return all.dense(linearisation_.layout);
+}
+
+void CandidateRoom::scale_outputs(MatrixXd& stacked) const {
   const RowLayout& layout = linearisation_.layout;
-  MatrixXd stacked(layout.count(), static_cast<Index>(columns.size()));
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     const UsedOutput& output = layout.outputs[j];
-    stacked.middleRows(layout.first(j), layout.rows) =
-        outputs[static_cast<std::size_t>(output.index)](Eigen::all, columns) / output.scale;
+    for (auto column : stacked.colwise()) {
+      column.segment(layout.first(j), layout.rows) =
+          column.segment(output.index * layout.rows, layout.rows) / output.scale;
+    }
   }
-  return stacked;
+  if (stacked.rows() != layout.count()) {
+    stacked.conservativeResize(layout.count(), Eigen::NoChange);
+  }
 }
 
 MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
@@ -147,15 +176,16 @@ MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
   Record rows = record_;
   rows.cut(fitted_.rows);
   const model::Measurements measurements(*model, rows);
-  base::ThreadPool alone(1);
-  const std::vector<MatrixXd> outputs =
-      model::Sweep(*model, measurements, alone)
-          .tangent_rows(values_in_order(model->tables().linear, values),
-                        values_in_order(model->tables().nonlinear, values));
   const std::vector<Variable> parameters = model->tables().parameters();
   std::vector<Index> columns;
   for (const std::string& name : names) columns.push_back(find_column(parameters, name));
-  return stack(outputs, columns);
+  base::ThreadPool alone(1);
+  MatrixXd stacked =
+      model::Sweep(*model, measurements, alone)
+          .tangent_columns(values_in_order(model->tables().linear, values),
+                           values_in_order(model->tables().nonlinear, values), columns);
+  scale_outputs(stacked);
+  return stacked;
 }
 
 std::shared_ptr<const BlockModel> CandidateRoom::model() const {
@@ -242,49 +272,52 @@ const MatrixXd& CandidateRoom::port_columns(const Port& port) {
   return ports_.emplace(port.name, composed_columns({constant}, {}, names)).first->second;
 }
 
-MatrixXd CandidateRoom::driven_columns(const Effect& effect, double shape, bool centred) const {
-  const MatrixXd& base = ports_.at(effect.port);
-  const MatrixXd whole = effects::drive(*effect.driver, shape, record_);
+CandidateColumns CandidateRoom::driven_columns(const Effect& effect, double shape) const {
   const RowLayout& layout = linearisation_.layout;
-  MatrixXd phi(layout.rows, whole.cols());
-  for (std::size_t i = 0; i < layout.segments.size(); ++i) {
+  const auto phi = std::make_shared<MatrixXd>(effects::drive(*effect.driver, shape, record_));
+  for (std::size_t i = 0; i < layout.segments.size(); ++i) {  // none lies behind its rows there
     const Segment& from = fitted_.rows[i];
     const auto length = static_cast<Index>(from.rows());
-    phi.middleRows(static_cast<Index>(layout.segments[i].first), length) =
-        whole.middleRows(static_cast<Index>(from.first), length);
-  }
-  phi = phi.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
-  if (centred) phi.rowwise() -= phi.colwise().mean().eval();
-  MatrixXd columns(base.rows(), base.cols() * phi.cols());
-  for (Index c = 0; c < base.cols(); ++c) {
-    for (Index k = 0; k < phi.cols(); ++k) {
-      for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-        columns.col(c * phi.cols() + k).segment(layout.first(j), layout.rows) =
-            base.col(c).segment(layout.first(j), layout.rows).cwiseProduct(phi.col(k));
-      }
+    for (auto column : phi->colwise()) {
+      column.segment(static_cast<Index>(layout.segments[i].first), length) =
+          column.segment(static_cast<Index>(from.first), length).unaryExpr([](double value) {
+            return std::isfinite(value) ? value : 0.0;
+          });
     }
   }
-  return columns;
+  if (phi->rows() != layout.rows) phi->conservativeResize(layout.rows, Eigen::NoChange);
+  const auto about = [&](const RowVectorXd& centre) -> Columns {
+    const MatrixXd& port = ports_.at(effect.port);
+    return {port.cols() * phi->cols(),
+            [&port, phi, centre, N = layout.rows](Index first, Eigen::Ref<MatrixXd> rows) {
+              const MatrixXd driver = phi->middleRows(first % N, rows.rows()).rowwise() - centre;
+              for (Index c = 0; c < port.cols(); ++c) {
+                rows.middleCols(c * driver.cols(), driver.cols()) =
+                    driver.array().colwise() * port.col(c).segment(first, rows.rows()).array();
+              }
+            }};
+  };
+  return {about(RowVectorXd::Zero(phi->cols())), about(phi->colwise().mean())};
 }
 
-MatrixXd CandidateRoom::fill(const Candidate& candidate, double shape, bool centred) const {
-  MatrixXd all(linearisation_.layout.count(), static_cast<Index>(candidate.coefficients.size()));
-  Index at = 0;
+CandidateColumns CandidateRoom::columns(const Candidate& candidate, double shape) const {
+  CandidateColumns all;
+  const auto append = [&all](const CandidateColumns& part) {
+    all = {join(all.whole, part.whole), join(all.varying, part.varying)};
+  };
   for (const Effect& effect : candidate.effects) {
-    MatrixXd part;
     if (is_driven(effect, fitted_.kit)) {
-      part = driven_columns(effect, effect.driver->shape() ? shape : 0.0, centred);
-    } else {
-      std::vector<std::string> names;
-      for (const Variable& coefficient : candidate.coefficients) {
-        if (coefficient.name.starts_with(effect.name + ".")) names.push_back(coefficient.name);
-      }
-      base::ParameterValues shapes;
-      if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
-      part = composed_columns({effect}, shapes, names);
+      append(driven_columns(effect, effect.driver->shape() ? shape : 0.0));
+      continue;
     }
-    all.middleCols(at, part.cols()) = part;
-    at += part.cols();
+    std::vector<std::string> names;
+    for (const Variable& coefficient : candidate.coefficients) {
+      if (coefficient.name.starts_with(effect.name + ".")) names.push_back(coefficient.name);
+    }
+    base::ParameterValues shapes;
+    if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
+    const Columns part = composed_columns({effect}, shapes, names);
+    append({part, part});
   }
   return all;
 }

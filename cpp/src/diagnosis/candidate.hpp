@@ -10,6 +10,7 @@
 
 #include "base/parameter_values.hpp"
 #include "base/thread_pool.hpp"
+#include "diagnosis/columns.hpp"
 #include "diagnosis/linearisation.hpp"
 #include "sepcal/diagnosis.hpp"
 
@@ -32,13 +33,20 @@ struct Candidate {
   std::string stepping_port = {};  // of a single effect that is a step in time
 };
 
+/// A candidate's columns, as many as coefficients.
+struct CandidateColumns {
+  Columns whole;
+  Columns varying;  // drivers about their mean: a constant share is the matter of the model's own
+                    // parameters
+};
+
 /// Makes candidates and their columns for one fit. columns() may be called from several threads.
 class CandidateRoom {
  public:
   /// Evaluates the fit. Throws Error for a fit whose parameters are not those of its model.
   CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool);
 
-  const Linearisation& fit() const { return linearisation_; }
+  const LinearisedFit& fit() const { return linearisation_; }
   const Record& record() const { return record_; }
   const std::vector<Segment>& rows() const { return fitted_.rows; }
   const Fit& fitted() const { return fitted_.fit; }
@@ -61,34 +69,26 @@ class CandidateRoom {
   /// The time of each of the N rows [s].
   std::vector<double> times() const;
 
-  /// count() x coefficients.
-  Eigen::MatrixXd columns(const Candidate& candidate, double shape) const {
-    return fill(candidate, shape, false);
-  }
-
-  /// The same with drivers about their mean: what of an effect varies. A constant share is the
-  /// matter of the model's own parameters.
-  Eigen::MatrixXd varying_columns(const Candidate& candidate, double shape) const {
-    return fill(candidate, shape, true);
-  }
+  /// The room must outlive them.
+  CandidateColumns columns(const Candidate& candidate, double shape) const;
 
  private:
   Candidate make_anew(const std::string& name);
-  Eigen::MatrixXd fill(const Candidate& candidate, double shape, bool centred) const;
-  Eigen::MatrixXd driven_columns(const Effect& effect, double shape, bool centred) const;
+  CandidateColumns driven_columns(const Effect& effect, double shape) const;
   Eigen::MatrixXd composed_columns(const std::vector<Effect>& added,
                                    const base::ParameterValues& shapes,
                                    const std::vector<std::string>& names) const;
-  Eigen::MatrixXd stack(const std::vector<Eigen::MatrixXd>& outputs,
-                        const std::vector<Eigen::Index>& columns) const;
+  /// Rows of all outputs become those of the used ones, over their RMSE.
+  void scale_outputs(Eigen::MatrixXd& stacked) const;
   void linearise(const Fit& fit, base::ThreadPool& pool);
+  Eigen::MatrixXd wandering_columns();
 
   const DiagnosedFit& fitted_;
   Record record_;  // with what effects derive from other columns
   std::vector<EffectSetting> settings_;
   std::vector<Effect> effects_;  // that the fit has
   base::ParameterValues values_;
-  Linearisation linearisation_;
+  LinearisedFit linearisation_;
   std::map<std::string, Eigen::MatrixXd> ports_;
   std::map<std::string, Candidate> made_;  // once: an effect may leave columns in the record
 };

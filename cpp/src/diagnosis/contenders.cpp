@@ -41,20 +41,43 @@ DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candida
   return next;
 }
 
+/// Of what was found: the first, what would do as well, what counts beside it, the untried, the
+/// rest. Within each as before.
+void order_by_beside(Findings& findings) {
+  const auto place = [&](const EffectFinding& finding) {
+    if (finding.status != FindingStatus::found) return 5;
+    if (&finding == &findings.front()) return 0;
+    switch (finding.beside) {
+      case Beside::equivalent:
+        return 1;
+      case Beside::counts:
+        return 2;
+      case Beside::untried:
+        return 3;
+      default:
+        return 4;
+    }
+  };
+  std::vector<std::pair<int, EffectFinding>> placed;
+  for (const EffectFinding& finding : findings) placed.emplace_back(place(finding), finding);
+  std::ranges::stable_sort(placed, {}, &std::pair<int, EffectFinding>::first);
+  findings.clear();
+  for (auto& [at, finding] : placed) findings.push_back(std::move(finding));
+}
+
 /// The noise that is left beside all of them at once, by one step: what is judged in it must not
 /// bring a noise that swallows what it leaves. Of short records that beside the first.
 NoiseMembers noise_beside(const Bench& bench, const std::vector<Asked>& asked) {
   constexpr Index fewest_rows = 10;  // a column
   const CandidateRoom& room = bench.room();
-  MatrixXd columns;
+  Columns columns;
   for (const auto& [candidate, shape] : asked) {
-    const MatrixXd G = room.columns(candidate, shape);
+    const Columns G = room.columns(candidate, shape).whole;
     const Index rows_needed = fewest_rows * (columns.cols() + G.cols());
     if (columns.cols() > 0 && rows_needed > room.fit().layout.count()) break;
-    columns = columns.cols() == 0 ? G : join(columns, G);
+    columns = join(columns, G);
   }
-  const MatrixXd added = orthonormal_basis(remove_span(bench.null().basis, columns));
-  return bench.null().test->compare(added).with.noise;
+  return bench.null().test->compare(span_beyond(bench.null().basis, columns)).with.noise;
 }
 
 /// -2 ln L of a fit in a noise that is known, but for a constant; minus infinity where it leaves
@@ -66,14 +89,18 @@ double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
   const RowLayout& layout = room.fit().layout;
   const RowLayout& known = bench.room().fit().layout;
   if (layout.outputs.size() != known.outputs.size()) return -infinity;
-  MatrixXd white = join(room.fit().tangent, room.fit().residual);
-  for (std::size_t j = 0; j < known.outputs.size(); ++j) {
-    white.middleRows(layout.first(j), layout.rows) *=
-        layout.outputs[j].scale / known.outputs[j].scale;
-  }
-  bench.null().test->whiten(noise, white);
-  const MatrixXd tangent = orthonormal_basis(white.leftCols(white.cols() - 1));
-  return remove_span(tangent, white.rightCols<1>()).squaredNorm();
+  const auto in_units_of_noise = [&](const Columns& columns) -> Columns {
+    return {columns.cols(), [&, columns](Index first, Eigen::Ref<MatrixXd> rows) {
+              const auto j = static_cast<std::size_t>(first / layout.rows);
+              columns.fill(first, rows);
+              rows *= layout.outputs[j].scale / known.outputs[j].scale;
+            }};
+  };
+  const TangentBasis tangent(room.fit());
+  const MatrixXd residual = in_units_of_noise(view(room.fit().residual)).dense(layout);
+  const MatrixXd products =
+      bench.null().test->products(noise, in_units_of_noise(tangent.columns()), residual);
+  return products_beyond(products, tangent.rank())(0, 0);
 }
 
 /// Schwarz's penalty for coefficients, and for a shape that of the number tried.
@@ -205,6 +232,7 @@ void test_beside(Bench& bench, const Contender& first, Findings& findings) {
                         trial.held_out.passed;
     finding_of(findings, trial.candidate.name).beside = counts ? Beside::counts : Beside::fades;
   }
+  order_by_beside(findings);
 }
 
 }  // namespace sepcal::diagnosis

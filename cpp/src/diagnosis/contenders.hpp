@@ -42,6 +42,7 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
                            std::vector<EffectFinding>& findings);
 
 /// What of the other effects found fades beside the first and what counts: tested anew at its fit.
+/// Puts what counts before what fades.
 void test_beside(Bench& bench, const Contender& first, std::vector<EffectFinding>& findings);
 
 }  // namespace sepcal::diagnosis

@@ -12,6 +12,8 @@
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/pair_set.hpp"
 #include "diagnosis/residual_noise.hpp"
+#include "diagnosis/unlogged.hpp"
+#include "numerics/selection.hpp"
 #include "numerics/tails.hpp"
 
 namespace sepcal {
@@ -30,6 +32,15 @@ void rank(std::vector<EffectFinding>& findings) {
     if (a.status != b.status) return a.status < b.status;
     return a.log10_p < b.log10_p;
   });
+}
+
+/// Of an effect found among `number` that could have been.
+double share_after_selection(const EffectFinding& finding, double significance, double number) {
+  constexpr double beyond_doubt = 1e-60;
+  if (finding.p_value < beyond_doubt) return 1.0;
+  return numerics::share_after_selection(
+      std::sqrt(numerics::chi_squared_point(finding.p_value, 1.0)),
+      std::sqrt(numerics::chi_squared_point(significance / number, 1.0)));
 }
 
 class Recipe {
@@ -54,7 +65,6 @@ class Recipe {
   const DiagnosisOptions& options_;
   base::ThreadPool pool_;
   Bench bench_;
-  Tangent tangent_;
   Trials trials_;
   Diagnosis result_;
 };
@@ -75,17 +85,19 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   std::vector<EffectFinding> findings;
   std::size_t v = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    EffectFinding finding = describe(bench_.room(), tangent_, trials[i]);
+    EffectFinding finding = describe(bench_.room(), trials[i]);
     if (v < visible.size() && visible[v] == i) {
       finding.p_adjusted = holm[v];
       finding.p_listed = listed[v];
       ++v;
-      const double tried = std::log10(static_cast<double>(log10_p.size()));
+      const auto number = static_cast<double>(log10_p.size());
       if (!finding.held_out_passed) {
         // whatever it is, it does not predict
       } else if (finding.p_adjusted < options_.significance) {
         finding.status = FindingStatus::found;
-      } else if (may_be_slow(trials[i], std::log10(options_.significance) - tried)) {
+        finding.share_after_selection =
+            share_after_selection(finding, options_.significance, number);
+      } else if (may_be_slow(trials[i], std::log10(options_.significance / number))) {
         finding.status = FindingStatus::slow_change;
       }
     }
@@ -147,22 +159,26 @@ void Recipe::settle() {
 void Recipe::advise() {
   constexpr std::size_t most_fitted = 3;
   std::size_t fitted = 0;
+  bool first_stands = false;  // though no fit takes it
   for (const EffectFinding& finding : result_.effects) {
-    if (finding.status != FindingStatus::found || fitted++ == most_fitted) return;
-    const std::string reason =
-        reason_against(bench_.room(), finding, options_.least_visibility, pool_);
-    if (reason.empty()) {
+    if (finding.status != FindingStatus::found || fitted == most_fitted) return;
+    if (finding.beside == Beside::fades) continue;  // what it explains is the first's
+    if (first_stands && finding.beside == Beside::counts) continue;  // alone it would stand in
+    const Objection objection =
+        find_objection(bench_.room(), finding, options_.least_visibility, pool_);
+    if (objection.reason.empty()) {
       result_.advice.effect = finding.name;
       return;
     }
-    result_.advice.withheld.push_back(finding.name + ": " + reason);
+    if (fitted == 0) first_stands = objection.is_to_fit;
+    ++fitted;
+    result_.advice.withheld.push_back(finding.name + ": " + objection.reason);
   }
 }
 
 Diagnosis Recipe::run(const std::vector<std::string>& names) {
   if (bench_.is_exact()) return result_;  // nothing is left to explain
   const CandidateRoom& room = bench_.room();
-  tangent_.compute(room.fit().tangent);
   result_.residual = describe_residual(bench_.null());
   result_.rmse = total_rmse(room.fit().layout, room.fit().residual);
   result_.floor = noise_floor(room.fit().layout, bench_.null().best.noise);
@@ -183,7 +199,9 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     bench_.report_progress("looking for structure", 0.0);
     result_.omnibus =
         test_for_structure(bench_.room(), fitted_.kit, bench_.null(), options_, pool_);
-    if (result_.omnibus.p_value < options_.unexplained_below) {
+    result_.unlogged = find_unlogged(room, bench_.null(), options_.seed);
+    correct_together(options_.unexplained_below, result_.omnibus, result_.unlogged);
+    if (result_.omnibus.significant || !result_.unlogged.empty()) {
       result_.verdict = Verdict::unexplained;
     } else if (has(FindingStatus::slow_change)) {
       result_.verdict = Verdict::slow_change;

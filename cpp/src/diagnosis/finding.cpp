@@ -35,6 +35,10 @@ std::string_view to_string(FindingStatus status) {
   }
 }
 
+std::string_view to_string(UnloggedKind kind) {
+  return kind == UnloggedKind::common_cause ? "common_cause" : "spectral_line";
+}
+
 std::string_view to_string(Beside beside) {
   switch (beside) {
     case Beside::equivalent:
@@ -56,8 +60,7 @@ std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside) 
   return names;
 }
 
-EffectFinding diagnosis::describe(const CandidateRoom& room, const Tangent& tangent,
-                                  const Trial& trial) {
+EffectFinding diagnosis::describe(const CandidateRoom& room, const Trial& trial) {
   EffectFinding finding{.name = trial.candidate.name,
                         .drivers = trial.candidate.drivers,
                         .log10_p = trial.log10_p,
@@ -89,10 +92,8 @@ EffectFinding diagnosis::describe(const CandidateRoom& room, const Tangent& tang
     finding.held_out_interleaved = trial.folds.interleaved;
   }
   if (trial.tested) {
-    const Eigen::VectorXd signal = room.columns(trial.candidate, trial.shape) * trial.estimate;
-    const Eigen::VectorXd shift = tangent.solve(signal);
-    for (Index k = 0; k < shift.size(); ++k) {
-      finding.absorbed_by[room.fit().parameters[static_cast<std::size_t>(k)]] = shift[k];
+    for (Index k = 0; k < trial.absorbed.size(); ++k) {
+      finding.absorbed_by[room.fit().parameters[static_cast<std::size_t>(k)]] = trial.absorbed[k];
     }
   }
   return finding;

@@ -3,16 +3,12 @@
 #pragma once
 
 #include "diagnosis/trial.hpp"
-#include "numerics/decompositions.hpp"
 #include "sepcal/diagnosis.hpp"
 
 namespace sepcal::diagnosis {
 
-/// The fit's linearisation, factorised once: what an effect left out does to the parameters.
-using Tangent = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
-
 /// All but what depends on the other trials: the adjusted probabilities, `found`, what it is beside
 /// the first.
-EffectFinding describe(const CandidateRoom& room, const Tangent& tangent, const Trial& trial);
+EffectFinding describe(const CandidateRoom& room, const Trial& trial);
 
 }  // namespace sepcal::diagnosis

@@ -16,13 +16,13 @@ using Eigen::VectorXd;
 constexpr int folds_of_blocks = 6;
 
 /// [J G e] of the rows of one fold, triangularised.
-std::vector<TriangularFactor> factor_by_fold(const RowLayout& layout, const MatrixXd& columns,
+std::vector<TriangularFactor> factor_by_fold(const RowLayout& layout, const Columns& columns,
                                              const Folds& folds) {
   std::vector<TriangularFactor> factors(static_cast<std::size_t>(folds.count),
                                         TriangularFactor(static_cast<int>(columns.cols())));
   for (const HeldOutBlock& block : folds.blocks) {
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      MatrixXd rows = columns.middleRows(layout.first(j) + block.first, block.last - block.first);
+      MatrixXd rows = columns.rows(layout.first(j) + block.first, block.last - block.first);
       factors[static_cast<std::size_t>(block.fold)].absorb(rows);
     }
   }
@@ -40,36 +40,49 @@ VectorXd estimate_without(const std::vector<TriangularFactor>& factors, int left
 }
 
 /// Squared error of a block in the outputs' unit.
-double square_of(const RowLayout& layout, const MatrixXd& columns, const VectorXd& estimate,
+double square_of(const RowLayout& layout, const Columns& columns, const VectorXd& estimate,
                  const HeldOutBlock& block) {
   double square = 0.0;
   const Index n = estimate.size();
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const auto rows = columns.middleRows(layout.first(j) + block.first, block.last - block.first);
+    const MatrixXd rows = columns.rows(layout.first(j) + block.first, block.last - block.first);
     const double scale = layout.outputs[j].scale;
     square += scale * scale * (rows.col(n) - rows.leftCols(n) * estimate).squaredNorm();
   }
   return square;
 }
 
-/// Whether most of a block's rows lie within what the rows of other folds span, column by column
-/// and output by output: an effect on one output is 0 in the others, which says nothing.
-bool interpolates(const RowLayout& layout, const MatrixXd& G, const Folds& folds,
+/// The least and the largest value of each column in each block (blocks x columns).
+struct Extremes {
+  MatrixXd lowest;
+  MatrixXd highest;
+};
+
+Extremes find_extremes(const MatrixXd& columns, const Folds& folds) {
+  const auto blocks = static_cast<Index>(folds.blocks.size());
+  Extremes found{MatrixXd(blocks, columns.cols()), MatrixXd(blocks, columns.cols())};
+  for (Index b = 0; b < blocks; ++b) {
+    const HeldOutBlock& block = folds.blocks[static_cast<std::size_t>(b)];
+    const auto rows = columns.middleRows(block.first, block.last - block.first);
+    found.lowest.row(b) = rows.colwise().minCoeff();
+    found.highest.row(b) = rows.colwise().maxCoeff();
+  }
+  return found;
+}
+
+/// Whether most of a block's rows lie within what the rows of other folds span, column by column.
+bool interpolates(const MatrixXd& columns, const Extremes& extremes, const Folds& folds,
                   const HeldOutBlock& block) {
-  for (Index k = 0; k < G.cols(); ++k) {
-    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      const auto column = G.col(k).segment(layout.first(j), layout.rows).array();
-      double lowest = infinity;
-      double highest = -infinity;
-      for (const HeldOutBlock& other : folds.blocks) {
-        if (other.fold == block.fold) continue;
-        const auto rows = column.segment(other.first, other.last - other.first);
-        lowest = std::min(lowest, rows.minCoeff());
-        highest = std::max(highest, rows.maxCoeff());
-      }
-      const auto rows = column.segment(block.first, block.last - block.first);
-      if (2 * (rows < lowest || rows > highest).count() > rows.size()) return false;
+  for (Index k = 0; k < columns.cols(); ++k) {
+    double lowest = infinity;
+    double highest = -infinity;
+    for (std::size_t b = 0; b < folds.blocks.size(); ++b) {
+      if (folds.blocks[b].fold == block.fold) continue;
+      lowest = std::min(lowest, extremes.lowest(static_cast<Index>(b), k));
+      highest = std::max(highest, extremes.highest(static_cast<Index>(b), k));
     }
+    const auto rows = columns.col(k).segment(block.first, block.last - block.first).array();
+    if (2 * (rows < lowest || rows > highest).count() > rows.size()) return false;
   }
   return true;
 }
@@ -108,8 +121,16 @@ Folds interleaved_blocks(const RowLayout& layout, double correlation, int fewest
   return folds;
 }
 
-void judge_interpolated(const RowLayout& layout, const MatrixXd& G, Folds& folds) {
-  for (HeldOutBlock& block : folds.blocks) block.judged = interpolates(layout, G, folds, block);
+void judge_interpolated(const RowLayout& layout, const Columns& G, Folds& folds) {
+  for (HeldOutBlock& block : folds.blocks) block.judged = true;
+  // Output by output: an effect on one output is 0 in the others, which says nothing.
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const MatrixXd columns = G.rows(layout.first(j), layout.rows);
+    const Extremes extremes = find_extremes(columns, folds);
+    for (HeldOutBlock& block : folds.blocks) {
+      block.judged = block.judged && interpolates(columns, extremes, folds, block);
+    }
+  }
 }
 
 double correlation_rows(const RowLayout& layout, const VectorXd& residual) {
@@ -165,13 +186,10 @@ HeldOut summarise(const std::vector<double>& before, const std::vector<double>& 
   return result;
 }
 
-HeldOut hold_out(const Linearisation& fit, const MatrixXd& G, const Folds& folds) {
+HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds) {
   const RowLayout& layout = fit.layout;
-  const Index n = fit.tangent.cols();
-  MatrixXd without(layout.count(), n + 1);
-  without << fit.tangent, fit.residual;
-  MatrixXd with(layout.count(), n + G.cols() + 1);
-  with << fit.tangent, G, fit.residual;
+  const Columns without = join(view(fit.tangent), view(fit.residual));
+  const Columns with = join(join(view(fit.tangent), G), view(fit.residual));
   const auto factors_without = factor_by_fold(layout, without, folds);
   const auto factors_with = factor_by_fold(layout, with, folds);
   std::vector<VectorXd> estimates_without;

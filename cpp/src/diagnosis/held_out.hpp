@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "diagnosis/linearisation.hpp"
+#include "diagnosis/columns.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -34,7 +34,7 @@ Folds interleaved_blocks(const RowLayout& layout, double correlation_rows, int f
 
 /// Judges a block only where most of its rows lie, column by column of the candidate's G and output
 /// by output, within what the other folds span.
-void judge_interpolated(const RowLayout& layout, const Eigen::MatrixXd& G, Folds& folds);
+void judge_interpolated(const RowLayout& layout, const Columns& G, Folds& folds);
 
 /// The integrated correlation time of a residual [rows], of its most correlated output.
 double correlation_rows(const RowLayout& layout, const Eigen::VectorXd& residual);
@@ -51,8 +51,8 @@ struct HeldOut {
 HeldOut summarise(const std::vector<double>& before, const std::vector<double>& after,
                   double measurements);
 
-/// `G`: the candidate's columns, count() x q.
-HeldOut hold_out(const Linearisation& fit, const Eigen::MatrixXd& G, const Folds& folds);
+/// `G`: the candidate's columns.
+HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds);
 
 /// RMSE over all outputs, in their unit, of a residual whose outputs are scaled.
 double total_rmse(const RowLayout& layout, const Eigen::VectorXd& residual);

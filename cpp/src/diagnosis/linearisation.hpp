@@ -33,11 +33,13 @@ struct RowLayout {
   Eigen::Index first(std::size_t j) const { return static_cast<Eigen::Index>(j) * rows; }
 };
 
-struct Linearisation {
+struct LinearisedFit {
   RowLayout layout;
   std::vector<std::string> parameters;  // estimated and not at a bound: the columns of `tangent`
   Eigen::MatrixXd tangent;              // count() x parameters
   Eigen::VectorXd residual;             // count(), z - model
+  Eigen::MatrixXd wandering = {};       // count() x corrections that may wander, of unit size
+  std::vector<double> times = {};       // of the N rows [s]; none where nothing wanders
 };
 
 }  // namespace sepcal::diagnosis

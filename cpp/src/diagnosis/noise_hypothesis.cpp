@@ -55,12 +55,6 @@ NoiseModels forget_colour(NoiseModels noise) {
   return noise;
 }
 
-void whiten(const RowLayout& layout, const NoiseModels& noise, MatrixXd& columns) {
-  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    Whitener(noise[j], layout.runs).apply(columns.middleRows(layout.first(j), layout.rows));
-  }
-}
-
 MatrixXd pseudo_inverse(const MatrixXd& square) {
   constexpr double undetermined = 1e-10;  // of the largest eigenvalue
   if (square.size() == 0) return square;
@@ -72,30 +66,72 @@ MatrixXd pseudo_inverse(const MatrixXd& square) {
   return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-WhitenedColumns::WhitenedColumns(const RowLayout& layout, const MatrixXd& columns,
-                                 const NoiseModels& noise)
-    : layout_(layout), noise_(noise), columns_(columns), white_(columns) {
-  whiten(layout, noise, white_);
-  covariance_ = pseudo_inverse(white_.transpose() * white_);
+MatrixXd white_products(const RowLayout& layout, const Columns& X, const VectorXd& e,
+                        const std::function<void(std::size_t, Eigen::Ref<MatrixXd>)>& whiten) {
+  constexpr Index most_at_once = 64;  // columns in memory
+  const Columns both = join(X, view(e));
+  const Index count = both.cols();
+  const Index width = count <= most_at_once ? count : most_at_once / 2;
+  const auto make = [&](std::size_t j, Index from) {
+    MatrixXd white(layout.rows, std::min(width, count - from));
+    if (white.cols() == count) {
+      both.fill(layout.first(j), white);
+    } else {
+      for (Index row = 0; row < layout.rows; row += panel_rows) {
+        const Index rows = std::min(panel_rows, layout.rows - row);
+        white.middleRows(row, rows) =
+            both.rows(layout.first(j) + row, rows).middleCols(from, white.cols());
+      }
+    }
+    whiten(j, white);
+    return white;
+  };
+  MatrixXd products = MatrixXd::Zero(count, count);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    for (Index a = 0; a < count; a += width) {
+      const MatrixXd left = make(j, a);
+      products.block(a, a, left.cols(), left.cols())
+          .selfadjointView<Eigen::Upper>()
+          .rankUpdate(left.transpose());
+      for (Index b = a + width; b < count; b += width) {
+        const MatrixXd right = make(j, b);
+        products.block(a, b, left.cols(), right.cols()).noalias() += left.transpose() * right;
+      }
+    }
+  }
+  return products.selfadjointView<Eigen::Upper>();
 }
 
-VectorXd WhitenedColumns::estimate(const VectorXd& residual) const {
-  MatrixXd white = residual;
-  whiten(layout_, noise_, white);
-  return covariance_ * (white_.transpose() * white.col(0));
+MatrixXd products_beyond(const MatrixXd& products, Index known) {
+  const Index others = products.cols() - known;
+  const MatrixXd shares = products.topRightCorner(known, others);
+  return products.bottomRightCorner(others, others) -
+         shares.transpose() * pseudo_inverse(products.topLeftCorner(known, known)) * shares;
 }
 
-Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain, bool afresh) const {
-  Hypothesis at{.noise = noise_, .coefficients = estimate(residual)};
-  const VectorXd left = residual - columns_ * at.coefficients;
-  for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
+namespace {
+
+/// Generalised least squares of a residual on columns in a noise, and the noise model of what that
+/// leaves, of the same order; with `afresh` its search begins a second time without colour.
+Hypothesis step(const RowLayout& layout, const Columns& columns, const VectorXd& residual,
+                const NoiseModels& noise, bool afresh) {
+  constexpr double precise = 1e-3;  // of the search, in -2 ln L
+  const Index k = columns.cols();
+  const MatrixXd products =
+      white_products(layout, columns, residual, [&](std::size_t j, Eigen::Ref<MatrixXd> white) {
+        Whitener(noise[j], layout.runs).apply(white);
+      });
+  Hypothesis at{.noise = noise, .covariance = pseudo_inverse(products.topLeftCorner(k, k))};
+  at.coefficients = at.covariance * products.col(k).head(k);
+  const VectorXd left = subtract(layout, residual, columns, at.coefficients);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     // A search from noise that has nearly swallowed the residual may end in a poor optimum.
-    std::vector<NoiseModel> starts{noise_[j]};
-    if (afresh && is_coloured(noise_[j])) starts.push_back(forget_colour({noise_[j]}).front());
+    std::vector<NoiseModel> starts{noise[j]};
+    if (afresh && is_coloured(noise[j])) starts.push_back(forget_colour({noise[j]}).front());
     double least = std::numeric_limits<double>::infinity();
     for (const NoiseModel& start : starts) {
-      const NoiseFit fit = fit_noise(rows_of(layout_, left, j), layout_.runs,
-                                     {.start = start, .least_gain = least_gain});
+      const NoiseFit fit =
+          fit_noise(rows_of(layout, left, j), layout.runs, {.start = start, .least_gain = precise});
       if (!(fit.minus_two_log_likelihood < least)) continue;
       least = fit.minus_two_log_likelihood;
       at.noise[j] = fit.model;
@@ -106,26 +142,23 @@ Hypothesis WhitenedColumns::step(const VectorXd& residual, double least_gain, bo
   return at;
 }
 
-Hypothesis maximise(const RowLayout& layout, const MatrixXd& columns, const VectorXd& residual,
+}  // namespace
+
+Hypothesis maximise(const RowLayout& layout, const Columns& columns, const VectorXd& residual,
                     const std::vector<NoiseModels>& starts) {
   constexpr int most_rounds = 3;
   constexpr double least_gain = 0.02;  // in -2 ln L, of a round
-  constexpr double precise = 1e-3;     // of the search for the noise model
   Hypothesis best;
   best.minus_two_log_likelihood = std::numeric_limits<double>::infinity();
   for (const NoiseModels& start : starts) {
     NoiseModels noise = start;
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < most_rounds; ++round) {
-      const WhitenedColumns whitened(layout, columns, noise);
-      Hypothesis at = whitened.step(residual, precise, round == 0);
+      Hypothesis at = step(layout, columns, residual, noise, round == 0);
       noise = at.noise;
       const double gain = last - at.minus_two_log_likelihood;
       last = at.minus_two_log_likelihood;
-      if (last < best.minus_two_log_likelihood) {
-        best = std::move(at);
-        best.covariance = whitened.covariance();
-      }
+      if (last < best.minus_two_log_likelihood) best = std::move(at);
       if (gain < least_gain) break;
     }
   }

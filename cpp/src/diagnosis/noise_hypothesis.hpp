@@ -5,9 +5,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
-#include "diagnosis/linearisation.hpp"
+#include "diagnosis/columns.hpp"
 #include "sepcal/noise_model.hpp"
 
 namespace sepcal::diagnosis {
@@ -36,39 +37,21 @@ bool is_coloured(const NoiseModel& noise);
 /// White models of the same order and freedom of the level: another start of the search.
 NoiseModels forget_colour(NoiseModels noise);
 
-/// Whitens columns of count() rows, output by output.
-void whiten(const RowLayout& layout, const NoiseModels& noise, Eigen::MatrixXd& columns);
+/// [X e]' [X e] of columns X and a residual e once `whiten` has changed each output's; of very many
+/// columns a few at a time.
+Eigen::MatrixXd white_products(
+    const RowLayout& layout, const Columns& X, const Eigen::VectorXd& e,
+    const std::function<void(std::size_t j, Eigen::Ref<Eigen::MatrixXd> columns)>& whiten);
+
+/// Of products X'X those of the columns behind the first `known`, beyond the span of these.
+Eigen::MatrixXd products_beyond(const Eigen::MatrixXd& products, Eigen::Index known);
 
 /// Of a symmetric matrix that is not negative. A free level of the noise leaves constants
 /// undetermined: such directions stay zero.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& square);
 
-/// Columns in one noise model, whitened once for many residuals.
-class WhitenedColumns {
- public:
-  /// `layout` and `columns` (about orthonormal) must outlive it.
-  WhitenedColumns(const RowLayout& layout, const Eigen::MatrixXd& columns,
-                  const NoiseModels& noise);
-
-  /// Generalised least squares of a residual on the columns, and its covariance.
-  Eigen::VectorXd estimate(const Eigen::VectorXd& residual) const;
-  const Eigen::MatrixXd& covariance() const { return covariance_; }
-
-  /// That estimate, and the noise model of what it leaves, of the same order. The search ends where
-  /// another step would gain less than `least_gain` in -2 ln L; with `afresh` it begins a second
-  /// time without colour. Without the covariance.
-  Hypothesis step(const Eigen::VectorXd& residual, double least_gain, bool afresh) const;
-
- private:
-  const RowLayout& layout_;
-  NoiseModels noise_;
-  const Eigen::MatrixXd& columns_;
-  Eigen::MatrixXd white_;
-  Eigen::MatrixXd covariance_;
-};
-
 /// Steps until they gain nothing, from the best of `starts`, whose orders are kept.
-Hypothesis maximise(const RowLayout& layout, const Eigen::MatrixXd& columns,
+Hypothesis maximise(const RowLayout& layout, const Columns& columns,
                     const Eigen::VectorXd& residual, const std::vector<NoiseModels>& starts);
 
 }  // namespace sepcal::diagnosis

@@ -8,6 +8,7 @@
 
 #include "diagnosis/noise_hypothesis.hpp"
 #include "diagnosis/projection.hpp"
+#include "diagnosis/sign_flips.hpp"
 #include "numerics/tails.hpp"
 
 namespace sepcal::diagnosis {
@@ -27,6 +28,13 @@ void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
   for (std::size_t j = 0; j < noise.size(); ++j) {
     families.whiten(noise[j], columns.middleRows(layout.first(j), layout.rows));
   }
+}
+
+MatrixXd white_products(const NoiseFamilies& families, const RowLayout& layout,
+                        const NoiseMembers& noise, const Columns& X, const VectorXd& e) {
+  return diagnosis::white_products(layout, X, e, [&](std::size_t j, Eigen::Ref<MatrixXd> white) {
+    families.whiten(noise[j], white);
+  });
 }
 
 /// The likeliest members of some families for what coefficients leave.
@@ -49,25 +57,24 @@ NoiseMembers find_members(const NoiseFamilies& families, const RowLayout& layout
 
 /// Members for coefficients and coefficients for members, in turn until that gains little.
 FamilyFit maximise(const NoiseFamilies& families, const RowLayout& layout, Kinds kinds,
-                   const MatrixXd& columns, const VectorXd& residual,
+                   const Columns& columns, const VectorXd& residual,
                    const std::vector<int>& orders) {
   constexpr int most_rounds = 5;
   constexpr double least_gain = 0.05;
   FamilyFit best;
   best.minus_two_log_likelihood = infinity;
-  VectorXd coefficients = columns.transpose() * residual;
+  VectorXd coefficients = multiply_transposed(layout, columns, residual);
   for (int round = 0; round < most_rounds; ++round) {
-    NoiseMembers members =
-        find_members(families, layout, kinds, residual - columns * coefficients, orders);
+    NoiseMembers members = find_members(families, layout, kinds,
+                                        subtract(layout, residual, columns, coefficients), orders);
     double value = 0.0;
     for (const NoiseMember& member : members) value += member.minus_two_log_likelihood;
     const double gain = best.minus_two_log_likelihood - value;
     if (!(gain > 0.0)) break;
-    MatrixXd white = join(columns, residual);
-    whiten_outputs(families, layout, members, white);
-    const auto X = white.leftCols(columns.cols());
-    best.covariance = pseudo_inverse(X.transpose() * X);
-    best.coefficients = coefficients = best.covariance * (X.transpose() * white.rightCols<1>());
+    const MatrixXd products = white_products(families, layout, members, columns, residual);
+    const Index k = columns.cols();
+    best.covariance = pseudo_inverse(products.topLeftCorner(k, k));
+    best.coefficients = coefficients = best.covariance * products.col(k).head(k);
     best.noise = std::move(members);
     best.minus_two_log_likelihood = value;
     if (gain < least_gain) break;
@@ -76,7 +83,7 @@ FamilyFit maximise(const NoiseFamilies& families, const RowLayout& layout, Kinds
 }
 
 NoiseTest::Ratios ratios_of(const std::array<FamilyFit, 2>& nulls, const NoiseFamilies& families,
-                            const RowLayout& layout, const MatrixXd& columns,
+                            const RowLayout& layout, const Columns& columns,
                             const VectorXd& residual, const std::vector<int>& orders) {
   NoiseTest::Ratios ratios;
   double null = infinity;
@@ -96,7 +103,7 @@ NoiseTest::Ratios ratios_of(const std::array<FamilyFit, 2>& nulls, const NoiseFa
 }
 
 std::array<FamilyFit, 2> fit_nulls(const NoiseFamilies& families, const RowLayout& layout,
-                                   const MatrixXd& basis, const VectorXd& residual,
+                                   const Columns& basis, const VectorXd& residual,
                                    const std::vector<int>& orders) {
   std::array<FamilyFit, 2> nulls;
   for (std::size_t k = 0; k < nulls.size(); ++k) {
@@ -121,8 +128,8 @@ struct Reduction {
     }
   }
 
-  MatrixXd apply(const RowLayout& full, const MatrixXd& columns) const {
-    if (stride == 1) return columns;
+  MatrixXd apply(const RowLayout& full, const Columns& columns) const {
+    if (stride == 1) return columns.dense(full);
     MatrixXd reduced(layout.count(), columns.cols());
     Index at = 0;
     for (std::size_t j = 0; j < full.outputs.size(); ++j) {
@@ -130,12 +137,8 @@ struct Reduction {
         for (std::size_t row = run.first; row < run.last; row += static_cast<std::size_t>(stride)) {
           const Index first = full.first(j) + static_cast<Index>(row);
           const Index count = std::min(stride, static_cast<Index>(run.last - row));
-          if (average) {
-            reduced.row(at) = columns.middleRows(first, count).colwise().mean();
-          } else {
-            reduced.row(at) = columns.row(first);
-          }
-          ++at;
+          reduced.row(at++) = average ? columns.rows(first, count).colwise().mean().eval()
+                                      : columns.rows(first, 1).row(0).eval();
         }
       }
     }
@@ -164,11 +167,7 @@ VectorXd cap_sizes(const RowLayout& layout, const MatrixXd& white) {
 VectorXd draw(const NoiseFamilies& families, const RowLayout& layout, const NoiseMembers& noise,
               const VectorXd& sizes, std::mt19937_64& generator) {
   VectorXd drawn = sizes;
-  std::uint64_t bits = 0;
-  for (Index i = 0; i < drawn.size(); ++i, bits >>= 1U) {
-    if (i % 64 == 0) bits = generator();
-    if ((bits & 1U) != 0) drawn[i] = -drawn[i];
-  }
+  flip_signs(drawn, generator);
   for (std::size_t j = 0; j < noise.size(); ++j) {
     families.colour(noise[j], drawn.segment(layout.first(j), layout.rows));
   }
@@ -178,7 +177,7 @@ VectorXd draw(const NoiseFamilies& families, const RowLayout& layout, const Nois
 /// By how much draws of a ratio are larger than chi-squared's: at the median or at the ninetieth
 /// percentile, at least 1.
 double enlargement(std::vector<double> ratios, int freedom) {
-  if (freedom == 0) return 1.0;
+  if (freedom == 0 || ratios.empty()) return 1.0;
   std::ranges::sort(ratios);
   const auto at = [&](double share) {
     const auto place = static_cast<std::size_t>(share * static_cast<double>(ratios.size()));
@@ -188,43 +187,53 @@ double enlargement(std::vector<double> ratios, int freedom) {
 }
 
 double log10_tail(double ratio, int freedom) {
+  if (ratio == infinity) return -infinity;
   return numerics::log10_chi_squared_tail(ratio, static_cast<double>(freedom));
 }
 
 }  // namespace
 
-NoiseTest::NoiseTest(const Linearisation& fit, MatrixXd basis, std::vector<int> orders)
-    : fit_(fit),
-      basis_(std::move(basis)),
+NoiseTest::NoiseTest(const TangentBasis& tangent, std::vector<int> orders)
+    : fit_(tangent.fit()),
+      basis_(tangent.columns()),
       orders_(std::move(orders)),
-      families_(fit.layout.runs),
-      nulls_(fit_nulls(families_, fit.layout, basis_, fit.residual, orders_)) {}
+      families_(fit_.layout.runs),
+      nulls_(fit_nulls(families_, fit_.layout, basis_, fit_.residual, orders_)),
+      inputs_(tangent) {}
 
-NoiseTest::Ratios NoiseTest::compare(const MatrixXd& added) const {
-  return ratios_of(nulls_, families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
+  Ratios ratios =
+      ratios_of(nulls_, families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+  if (!inputs_.is_empty()) ratios.of_inputs = inputs_.ratio(added);
+  return ratios;
 }
 
 NoiseTails NoiseTest::tails(const Ratios& ratios, int freedom) {
-  return {std::max(log10_tail(ratios.own[0], freedom), log10_tail(ratios.own[1], freedom)),
+  return {std::max({log10_tail(ratios.own[0], freedom), log10_tail(ratios.own[1], freedom),
+                    log10_tail(ratios.of_inputs, freedom)}),
           log10_tail(ratios.joint, freedom)};
 }
 
-NoiseTails NoiseTest::calibrate(const Ratios& ratios, const MatrixXd& added, bool smooth, int draws,
+NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool smooth, int draws,
                                 std::uint64_t seed, base::ThreadPool& pool) const {
   constexpr Index most_rows = 600;
   const RowLayout& layout = fit_.layout;
-  const MatrixXd columns = join(basis_, added);
+  const Columns columns = join(basis_, added);
   const Reduction reduction(layout, most_rows, smooth);
   const bool whole = reduction.stride == 1;
-  const MatrixXd basis = whole ? basis_ : orthonormal_basis(reduction.apply(layout, basis_));
-  const MatrixXd reduced_added =
-      whole ? added : orthonormal_basis(remove_span(basis, reduction.apply(layout, added)));
-  const MatrixXd reduced_columns = join(basis, reduced_added);
+  MatrixXd basis = reduction.apply(layout, basis_);
+  MatrixXd reduced_added = reduction.apply(layout, added);
+  if (!whole) {
+    basis = orthonormal_basis(std::move(basis));
+    reduced_added = orthonormal_basis(remove_span(basis, reduced_added));
+  }
+  const Columns reduced_basis = view(basis);
+  const Columns reduced_columns = join(reduced_basis, view(reduced_added));
   const NoiseFamilies reduced_families(reduction.layout.runs);
 
   // What a step leaves in its own row must not be drawn as noise.
-  MatrixXd beside = fit_.residual - columns * ratios.with.coefficients;
-  whiten(ratios.with.noise, beside);
+  MatrixXd beside = subtract(layout, fit_.residual, columns, ratios.with.coefficients);
+  whiten_outputs(families_, layout, ratios.with.noise, beside);
   const VectorXd beside_sizes = cap_sizes(layout, beside);
   VectorXd largest = beside.col(0).cwiseAbs();
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
@@ -242,14 +251,15 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const MatrixXd& added, boo
     pool.for_each(residuals.size(), [&](std::size_t i) {
       if (which < 2) {
         const Kinds kind{&noise::noise_families[which], 1};
-        drawn[i] = maximise(reduced_families, reduction.layout, kind, basis, residuals[i], orders_)
-                       .minus_two_log_likelihood -
-                   maximise(reduced_families, reduction.layout, kind, reduced_columns, residuals[i],
-                            orders_)
-                       .minus_two_log_likelihood;
+        drawn[i] =
+            maximise(reduced_families, reduction.layout, kind, reduced_basis, residuals[i], orders_)
+                .minus_two_log_likelihood -
+            maximise(reduced_families, reduction.layout, kind, reduced_columns, residuals[i],
+                     orders_)
+                .minus_two_log_likelihood;
       } else {
         const auto nulls =
-            fit_nulls(reduced_families, reduction.layout, basis, residuals[i], orders_);
+            fit_nulls(reduced_families, reduction.layout, reduced_basis, residuals[i], orders_);
         drawn[i] = ratios_of(nulls, reduced_families, reduction.layout, reduced_columns,
                              residuals[i], orders_)
                        .joint;
@@ -259,9 +269,13 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const MatrixXd& added, boo
   };
   const auto freedom = static_cast<int>(added.cols());
   NoiseTails result{-infinity, 0.0};
+  if (!inputs_.is_empty()) {
+    const double factor = enlargement(inputs_.draw_ratios(added, draws, seed), freedom);
+    result.either = log10_tail(ratios.of_inputs / factor, freedom);
+  }
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
-    MatrixXd white = fit_.residual - basis_ * nulls_[k].coefficients;
-    whiten(nulls_[k].noise, white);
+    MatrixXd white = subtract(layout, fit_.residual, basis_, nulls_[k].coefficients);
+    whiten_outputs(families_, layout, nulls_[k].noise, white);
     const double factor = enlarge(nulls_[k], cap_sizes(layout, white).cwiseMin(largest), k);
     result.either = std::max(result.either, log10_tail(ratios.own[k] / factor, freedom));
   }
@@ -269,8 +283,8 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const MatrixXd& added, boo
   return result;
 }
 
-void NoiseTest::whiten(const NoiseMembers& noise, MatrixXd& columns) const {
-  whiten_outputs(families_, fit_.layout, noise, columns);
+MatrixXd NoiseTest::products(const NoiseMembers& noise, const Columns& X, const VectorXd& e) const {
+  return white_products(families_, fit_.layout, noise, X, e);
 }
 
 double NoiseTest::floor(const NoiseMembers& noise) const {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is a candidate more than noise? A likelihood ratio in each of two families of noise, and one in
-// their union, each held against draws of the noise that it must not be mistaken for: of either
-// family as the record has it without the candidate, and with it. A wandering noise that is no
-// member of one family is one of the other; and draws of the noise beside the candidate know what
-// noise is there once the candidate's own share is taken out.
+// Is a candidate more than noise? A likelihood ratio in each of two families of noise of the
+// outputs (and in one of the inputs, where these wander), and one in the union of the two, each
+// held against draws of the noise that it must not be mistaken for: of either family as the record
+// has it without the candidate, and with it. A wandering noise that is no member of one family is
+// one of the other; and draws of the noise beside the candidate know what noise is there once the
+// candidate's own share is taken out.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,8 @@
 #include <vector>
 
 #include "base/thread_pool.hpp"
-#include "diagnosis/linearisation.hpp"
+#include "diagnosis/projection.hpp"
+#include "diagnosis/wandering_inputs.hpp"
 #include "noise/noise_families.hpp"
 
 namespace sepcal::diagnosis {
@@ -38,39 +40,42 @@ struct NoiseTails {
 
 class NoiseTest {
  public:
-  /// `fit` must outlive it. `basis`: orthonormal, of the tangent. `orders`: of each used output's
-  /// autoregression in the fractional family.
-  NoiseTest(const Linearisation& fit, Eigen::MatrixXd basis, std::vector<int> orders);
+  /// The tangent's fit must outlive it. `orders`: of each used output's autoregression in the
+  /// fractional family.
+  NoiseTest(const TangentBasis& tangent, std::vector<int> orders);
 
   /// Twice the logarithms of the ratios, not negative, for columns that are orthonormal and
   /// orthogonal to the basis.
   struct Ratios {
     std::array<double, 2> own = {};  // of noise::noise_families
+    double of_inputs = infinity;     // beside inputs that wander; infinite where none do
     double joint = 0.0;              // of their union
     FamilyFit with = {};             // of the columns [basis, added], in the union
   };
-  Ratios compare(const Eigen::MatrixXd& added) const;
+  Ratios compare(const Columns& added) const;
 
   /// The tails where every ratio has the chi-squared distribution that it has in large records.
   static NoiseTails tails(const Ratios& ratios, int freedom);
 
   /// The same with each ratio over the factor by which draws enlarge it. `smooth`: whether the
   /// columns vary slowly; long records are then averaged, else thinned out.
-  NoiseTails calibrate(const Ratios& ratios, const Eigen::MatrixXd& added, bool smooth, int draws,
+  NoiseTails calibrate(const Ratios& ratios, const Columns& added, bool smooth, int draws,
                        std::uint64_t seed, base::ThreadPool& pool) const;
 
-  /// Columns of count() rows in these noises.
-  void whiten(const NoiseMembers& noise, Eigen::MatrixXd& columns) const;
+  /// [X e]' [X e] of columns X and a residual e, white in these noises.
+  Eigen::MatrixXd products(const NoiseMembers& noise, const Columns& X,
+                           const Eigen::VectorXd& e) const;
 
   /// The innovations' standard deviation over all outputs, in their unit.
   double floor(const NoiseMembers& noise) const;
 
  private:
-  const Linearisation& fit_;
-  Eigen::MatrixXd basis_;
+  const LinearisedFit& fit_;
+  Columns basis_;
   std::vector<int> orders_;
   noise::NoiseFamilies families_;
   std::array<FamilyFit, 2> nulls_;
+  WanderingInputs inputs_;
 };
 
 }  // namespace sepcal::diagnosis

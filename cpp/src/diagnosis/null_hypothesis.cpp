@@ -9,26 +9,44 @@ namespace sepcal::diagnosis {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-NullHypothesis find_null(const Linearisation& fit) {
-  NullHypothesis null{.fit = &fit};
-  null.basis = orthonormal_basis(fit.tangent);
-  const VectorXd residual = remove_span(null.basis, fit.residual);
-  const NoiseModels noise = fit_noise_models(fit.layout, residual);
-  null.best = maximise(fit.layout, null.basis, residual, {noise, forget_colour(noise)});
-  MatrixXd white = join(null.basis, residual);
-  whiten(fit.layout, null.best.noise, white);
-  null.white_basis = orthonormal_basis(white.leftCols(null.basis.cols()));
-  null.white_residual = remove_span(null.white_basis, white.rightCols<1>());
-  std::vector<int> orders;
-  for (const NoiseModel& model : null.best.noise) orders.push_back(model.order());
-  null.test = std::make_shared<const NoiseTest>(fit, null.basis, std::move(orders));
+void NullHypothesis::whiten(MatrixXd& columns) const {
+  const RowLayout& layout = fit().layout;
+  for (std::size_t j = 0; j < whiteners.size(); ++j) {
+    whiteners[j].apply(columns.middleRows(layout.first(j), layout.rows));
+  }
+}
+
+NullHypothesis find_plain_null(const LinearisedFit& fit) {
+  NullHypothesis null{.basis = TangentBasis(fit)};
+  null.residual = null.basis.remove_from(fit.residual);
   return null;
 }
 
-double predict_drop(const NullHypothesis& null, const MatrixXd& added) {
-  const Linearisation& fit = *null.fit;
-  const VectorXd left = remove_span(added, remove_span(null.basis, fit.residual));
-  return 1.0 - total_rmse(fit.layout, left) / total_rmse(fit.layout, fit.residual);
+NullHypothesis find_null(const LinearisedFit& fit) {
+  NullHypothesis null = find_plain_null(fit);
+  const Columns basis = null.basis.columns();
+  const NoiseModels noise = fit_noise_models(fit.layout, null.residual);
+  null.best = maximise(fit.layout, basis, null.residual, {noise, forget_colour(noise)});
+  std::vector<int> orders;
+  for (const NoiseModel& model : null.best.noise) {
+    null.whiteners.emplace_back(model, fit.layout.runs);
+    orders.push_back(model.order());
+  }
+  MatrixXd white = basis.dense(fit.layout);
+  null.whiten(white);
+  null.white_basis = orthonormal_basis(std::move(white));
+  white = null.residual;
+  null.whiten(white);
+  null.white_residual = remove_span(null.white_basis, white);
+  null.test = std::make_shared<const NoiseTest>(null.basis, std::move(orders));
+  return null;
+}
+
+double predict_drop(const NullHypothesis& null, const Columns& added) {
+  const RowLayout& layout = null.fit().layout;
+  const VectorXd left =
+      subtract(layout, null.residual, added, multiply_transposed(layout, added, null.residual));
+  return 1.0 - total_rmse(layout, left) / total_rmse(layout, null.fit().residual);
 }
 
 }  // namespace sepcal::diagnosis

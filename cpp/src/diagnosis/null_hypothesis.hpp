@@ -4,27 +4,36 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 #include "diagnosis/noise_hypothesis.hpp"
 #include "diagnosis/noise_test.hpp"
+#include "diagnosis/projection.hpp"
 
 namespace sepcal::diagnosis {
 
 /// The fit without any candidate, in a noise model of its own.
 struct NullHypothesis {
-  const Linearisation* fit = nullptr;
-  Eigen::MatrixXd basis = {};           // orthonormal, of the tangent
-  Hypothesis best = {};                 // of the residual on the basis
-  Eigen::MatrixXd white_basis = {};     // orthonormal, of the whitened tangent
-  Eigen::VectorXd white_residual = {};  // whitened and orthogonal to white_basis
+  TangentBasis basis = {};
+  Eigen::VectorXd residual = {};         // beyond the tangent
+  Hypothesis best = {};                  // of the residual on the basis
+  std::vector<Whitener> whiteners = {};  // of each used output, in that noise
+  Eigen::MatrixXd white_basis = {};      // orthonormal, of the whitened tangent
+  Eigen::VectorXd white_residual = {};   // whitened and orthogonal to white_basis
   std::shared_ptr<const NoiseTest> test = {};
+
+  const LinearisedFit& fit() const { return basis.fit(); }
+  void whiten(Eigen::MatrixXd& columns) const;  // of count() rows
 };
 
+/// Without its noise. `fit` must outlive it.
+NullHypothesis find_plain_null(const LinearisedFit& fit);
+
 /// `fit` must outlive it.
-NullHypothesis find_null(const Linearisation& fit);
+NullHypothesis find_null(const LinearisedFit& fit);
 
 /// What of the fit's RMSE over all outputs goes, 1 - after / before, once columns that are
 /// orthonormal and orthogonal to the null's basis join it.
-double predict_drop(const NullHypothesis& null, const Eigen::MatrixXd& added);
+double predict_drop(const NullHypothesis& null, const Columns& added);
 
 }  // namespace sepcal::diagnosis

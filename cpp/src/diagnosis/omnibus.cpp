@@ -33,53 +33,77 @@ std::vector<base::Part> cut_windows(const CandidateRoom& room, double correlatio
                              static_cast<std::size_t>(count));
 }
 
-/// Each column restricted to each window.
-MatrixXd by_window(const RowLayout& layout, const MatrixXd& columns,
-                   const std::vector<base::Part>& windows) {
-  const auto count = static_cast<Index>(windows.size());
-  MatrixXd parts = MatrixXd::Zero(layout.count(), columns.cols() * count);
-  for (Index k = 0; k < columns.cols(); ++k) {
-    for (Index w = 0; w < count; ++w) {
-      for (const Segment& stretch : windows[static_cast<std::size_t>(w)].stretches) {
-        for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-          const Index first = layout.first(j) + static_cast<Index>(stretch.first);
-          const auto rows = static_cast<Index>(stretch.rows());
-          parts.col(k * count + w).segment(first, rows) = columns.col(k).segment(first, rows);
-        }
-      }
+/// The window of each row; -1 where there is none.
+std::vector<int> find_windows(const RowLayout& layout, const std::vector<base::Part>& windows) {
+  std::vector<int> found(static_cast<std::size_t>(layout.rows), -1);
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    for (const Segment& stretch : windows[w].stretches) {
+      std::fill(found.begin() + static_cast<std::ptrdiff_t>(stretch.first),
+                found.begin() + static_cast<std::ptrdiff_t>(stretch.last), static_cast<int>(w));
     }
   }
-  return parts;
+  return found;
+}
+
+/// Each column restricted to each of `count` windows.
+Columns by_window(const RowLayout& layout, const Columns& columns,
+                  const std::vector<int>& window_of_row, Index count) {
+  const auto windows = std::make_shared<const std::vector<int>>(window_of_row);
+  return {columns.cols() * count,
+          [columns, windows, count, N = layout.rows](Index first, Eigen::Ref<MatrixXd> rows) {
+            const MatrixXd made = columns.rows(first, rows.rows());
+            rows.setZero();
+            for (Index i = 0; i < rows.rows(); ++i) {
+              const int w = (*windows)[static_cast<std::size_t>((first + i) % N)];
+              if (w < 0) continue;
+              for (Index k = 0; k < made.cols(); ++k) rows(i, k * count + w) = made(i, k);
+            }
+          }};
 }
 
 struct Offsets {
   std::string where;
-  MatrixXd basis;  // orthonormal, beyond the tangent
-  MatrixXd parts;
+  Columns basis;  // orthonormal, beyond the tangent
+  Columns parts;
 };
+
+/// The columns that are not all but within the tangent.
+std::vector<Index> find_seen(const TangentBasis& tangent, const Columns& columns) {
+  VectorXd whole = VectorXd::Zero(columns.cols());
+  VectorXd left = VectorXd::Zero(columns.cols());
+  const Columns beyond = remove_tangent(tangent, columns);
+  for_each_panel(tangent.fit().layout, [&](Index first, Index rows) {
+    whole += columns.rows(first, rows).colwise().squaredNorm();
+    left += beyond.rows(first, rows).colwise().squaredNorm();
+  });
+  std::vector<Index> seen;
+  for (Index k = 0; k < columns.cols(); ++k) {
+    if (std::sqrt(left[k]) > 0.05 * std::sqrt(whole[k])) seen.push_back(k);
+  }
+  return seen;
+}
 
 std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
                                   const NullHypothesis& null,
                                   const std::vector<base::Part>& windows) {
   const RowLayout& layout = room.fit().layout;
+  const std::vector<int> window_of_row = find_windows(layout, windows);
   std::vector<Offsets> sets;
-  const auto add = [&](const std::string& where, const MatrixXd& columns) {
-    const MatrixXd parts = by_window(layout, columns, windows);
-    const MatrixXd beyond = remove_span(null.basis, parts);
-    std::vector<Index> seen;
-    for (Index k = 0; k < parts.cols(); ++k) {
-      if (beyond.col(k).norm() > 0.05 * parts.col(k).norm()) seen.push_back(k);
-    }
-    if (!seen.empty()) sets.push_back({where, orthonormal_basis(beyond(Eigen::all, seen)), parts});
+  const auto add = [&](const std::string& where, const Columns& columns) {
+    const Columns parts =
+        by_window(layout, columns, window_of_row, static_cast<Index>(windows.size()));
+    const std::vector<Index> seen = find_seen(null.basis, parts);
+    if (!seen.empty()) sets.push_back({where, span_beyond(null.basis, select(parts, seen)), parts});
   };
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    VectorXd ones = VectorXd::Zero(layout.count());
-    ones.segment(layout.first(j), layout.rows).setOnes();
-    add(layout.outputs[j].name, ones);
+    add(layout.outputs[j].name, Columns(1, [own = layout.first(j), N = layout.rows](
+                                               Index first, Eigen::Ref<MatrixXd> rows) {
+          rows.setConstant(first / N == own / N ? 1.0 : 0.0);
+        }));
   }
   for (const Port& port : kit.ports) {
     try {
-      add(port.name, room.port_columns(port));
+      add(port.name, view(room.port_columns(port)));
     } catch (const Error&) {
       continue;  // the record doesn't log what the port needs
     }
@@ -96,8 +120,8 @@ std::vector<std::pair<std::string, double>> describe_windows(
   for (Index w = 0; w < count; ++w) {
     double furthest = 0.0;
     for (Index k = w; k < offsets.parts.cols(); k += count) {
-      MatrixXd white = offsets.parts.col(k);
-      whiten(layout, null.best.noise, white);
+      MatrixXd white = select(offsets.parts, {k}).dense(layout);
+      null.whiten(white);
       white = remove_span(null.white_basis, white);
       const double norm = white.norm();
       if (!(norm > 0)) continue;
@@ -124,8 +148,8 @@ double upper_normal_point(double probability) {
 Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
                            const DiagnosisOptions& options, base::ThreadPool& pool) {
   const RowLayout& layout = room.fit().layout;
-  const VectorXd residual = remove_span(null.basis, room.fit().residual);
-  const std::vector<base::Part> windows = cut_windows(room, correlation_rows(layout, residual));
+  const std::vector<base::Part> windows =
+      cut_windows(room, correlation_rows(layout, null.residual));
   const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
   std::vector<NoiseTest::Ratios> ratios(sets.size());
   pool.for_each(sets.size(), [&](std::size_t i) { ratios[i] = null.test->compare(sets[i].basis); });
@@ -179,7 +203,7 @@ std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& ki
       auto part = columns.middleRows(layout.first(j), layout.rows);
       part.array().colwise() *= ramp.array();
     }
-    whiten(layout, null.best.noise, columns);
+    null.whiten(columns);
     columns = remove_span(null.white_basis, columns);
     double size = 0.0;
     for (Index k = 0; k < columns.cols(); ++k) {

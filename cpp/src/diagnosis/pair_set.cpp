@@ -25,7 +25,7 @@ struct Combination {
 /// The surest trials, each at its best shape, beyond the tangent.
 struct Causes {
   std::vector<const Trial*> trials;
-  std::vector<MatrixXd> bases;  // orthonormal, of each
+  std::vector<Columns> bases;  // orthonormal, of each
 };
 
 Causes choose_causes(const Bench& bench, const Trials& trials) {
@@ -46,21 +46,18 @@ class Explained {
  public:
   Explained(const Bench& bench, const Causes& causes, const NoiseMembers& noise) {
     const NullHypothesis& null = bench.null();
-    MatrixXd columns = null.fit->residual;
-    for (const MatrixXd& basis : causes.bases) {
-      first_.push_back(columns.cols());
+    Columns columns = null.basis.columns();
+    for (const Columns& basis : causes.bases) {
+      first_.push_back(columns.cols() - null.basis.rank());
       columns = join(columns, basis);
     }
-    first_.push_back(columns.cols());
+    first_.push_back(columns.cols() - null.basis.rank());
     for (const Trial* trial : causes.trials) {
       scans_.push_back(2.0 * std::log(trial->candidate.shape.tried));
     }
-    MatrixXd tangent = null.basis;
-    null.test->whiten(noise, tangent);
-    null.test->whiten(noise, columns);
-    const MatrixXd beyond = remove_span(orthonormal_basis(tangent), columns);
-    products_ = beyond.transpose() * beyond;
-    penalty_ = std::log(static_cast<double>(columns.rows()));
+    products_ = products_beyond(null.test->products(noise, columns, null.fit().residual),
+                                null.basis.rank());
+    penalty_ = std::log(static_cast<double>(null.fit().layout.count()));
   }
 
   Combination combine(std::vector<std::size_t> members) const {
@@ -70,17 +67,17 @@ class Explained {
       scans += scans_[member];
       for (Index k = first_[member]; k < first_[member + 1]; ++k) columns.push_back(k);
     }
-    const VectorXd shares = products_(columns, 0);
+    const VectorXd shares = products_(columns, products_.cols() - 1);
     const MatrixXd square = products_(columns, columns);
     const double explained = shares.dot(pseudo_inverse(square) * shares);
     return {std::move(members), penalty_ * static_cast<double>(columns.size()) + scans - explained};
   }
 
  private:
-  std::vector<Index> first_;   // column of each cause, behind the residual
+  std::vector<Index> first_;   // column of each cause
   std::vector<double> scans_;  // penalty for each cause's shapes
-  MatrixXd products_;
-  double penalty_ = 0.0;  // of a direction
+  MatrixXd products_;          // of the causes and, last, the residual
+  double penalty_ = 0.0;       // of a direction
 };
 
 bool is_scanned(const Trial& trial) { return !trial.candidate.shape.parameter.empty(); }

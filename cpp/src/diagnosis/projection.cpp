@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "numerics/decompositions.hpp"
+#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -23,24 +24,45 @@ VectorXd scale_to_unit(MatrixXd& columns) {
   return norms;
 }
 
-MatrixXd thin_q(const Eigen::HouseholderQR<MatrixXd>& qr, Index columns) {
-  return qr.householderQ() * MatrixXd::Identity(qr.rows(), columns);
+MatrixXd inverse_of(const MatrixXd& R) {
+  return R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(R.rows(), R.cols()));
+}
+
+MatrixXd factor_of(const MatrixXd& columns) {
+  TriangularFactor factor(static_cast<int>(columns.cols()));
+  for (Index row = 0; row < columns.rows(); row += panel_rows) {
+    MatrixXd panel = columns.middleRows(row, std::min(panel_rows, columns.rows() - row));
+    factor.absorb(panel);
+  }
+  return factor.matrix();
+}
+
+/// columns * weights in their place, of which there are no more.
+void multiply_in_place(MatrixXd& columns, const MatrixXd& weights) {
+  for (Index row = 0; row < columns.rows(); row += panel_rows) {
+    auto panel = columns.middleRows(row, std::min(panel_rows, columns.rows() - row));
+    panel.leftCols(weights.cols()) = (panel * weights).eval();
+  }
+  columns.conservativeResize(Eigen::NoChange, weights.cols());
 }
 
 }  // namespace
 
-MatrixXd orthonormal_basis(const MatrixXd& columns) {
-  MatrixXd scaled = columns;
-  scale_to_unit(scaled);
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
+MatrixXd orthonormal_weights(MatrixXd R) {
+  if (R.size() == 0) return R;  // Eigen pivots no fewer than one column
+  const VectorXd norms = scale_to_unit(R);
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(R);
   qr.setThreshold(1e-10);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
+  const Index rank = qr.rank();
+  MatrixXd weights = MatrixXd::Zero(R.cols(), rank);
+  weights.topRows(rank) = inverse_of(qr.matrixQR().topLeftCorner(rank, rank));
+  return norms.cwiseInverse().asDiagonal() * (qr.colsPermutation() * weights);
 }
 
-MatrixXd join(const MatrixXd& left, const MatrixXd& right) {
-  MatrixXd both(left.rows(), left.cols() + right.cols());
-  both << left, right;
-  return both;
+MatrixXd orthonormal_basis(MatrixXd columns) {
+  multiply_in_place(columns, orthonormal_weights(factor_of(columns)));
+  multiply_in_place(columns, inverse_of(factor_of(columns)));  // what rounding left
+  return columns;
 }
 
 MatrixXd remove_span(const MatrixXd& basis, const MatrixXd& columns) {
@@ -49,28 +71,90 @@ MatrixXd remove_span(const MatrixXd& basis, const MatrixXd& columns) {
   return left;
 }
 
-Projection project(const MatrixXd& tangent_basis, const MatrixXd& G, const MatrixXd& whole,
+TangentBasis::TangentBasis(const LinearisedFit& fit)
+    : fit_(&fit), weights_(orthonormal_weights(factor_of(fit.tangent))) {}
+
+Columns TangentBasis::columns() const {
+  return {rank(), [&J = fit_->tangent, C = weights_](Index first, Eigen::Ref<MatrixXd> rows) {
+            rows.noalias() = J.middleRows(first, rows.rows()) * C;
+          }};
+}
+
+VectorXd TangentBasis::remove_from(VectorXd column) const {
+  const MatrixXd& J = fit_->tangent;
+  for (int twice = 0; twice < 2; ++twice) {
+    column -= J * (weights_ * (weights_.transpose() * (J.transpose() * column)));
+  }
+  return column;
+}
+
+namespace {
+
+/// C of J C, what the tangent J explains of G.
+MatrixXd explained_by(const TangentBasis& tangent, const Columns& G) {
+  const LinearisedFit& fit = tangent.fit();
+  MatrixXd products = MatrixXd::Zero(fit.tangent.cols(), G.cols());
+  for_each_panel(fit.layout, [&](Index first, Index rows) {
+    products.noalias() += fit.tangent.middleRows(first, rows).transpose() * G.rows(first, rows);
+  });
+  return tangent.weights() * (tangent.weights().transpose() * products);
+}
+
+/// (G - J C) W.
+Columns subtract_tangent(const TangentBasis& tangent, const Columns& G, const MatrixXd& C,
+                         const MatrixXd& W) {
+  return {W.cols(), [&J = tangent.fit().tangent, G, W, CW = MatrixXd(C * W)](
+                        Index first, Eigen::Ref<MatrixXd> rows) {
+            rows.noalias() = G.rows(first, rows.rows()) * W;
+            rows.noalias() -= J.middleRows(first, rows.rows()) * CW;
+          }};
+}
+
+MatrixXd factor_of(const RowLayout& layout, const Columns& columns) {
+  TriangularFactor factor(static_cast<int>(columns.cols()));
+  for_each_panel(layout, [&](Index first, Index rows) {
+    MatrixXd panel = columns.rows(first, rows);
+    factor.absorb(panel);
+  });
+  return factor.matrix();
+}
+
+}  // namespace
+
+Columns remove_tangent(const TangentBasis& tangent, const Columns& G) {
+  return subtract_tangent(tangent, G, explained_by(tangent, G),
+                          MatrixXd::Identity(G.cols(), G.cols()));
+}
+
+Columns span_beyond(const TangentBasis& tangent, const Columns& G) {
+  const MatrixXd C = explained_by(tangent, G);
+  const MatrixXd whole = MatrixXd::Identity(G.cols(), G.cols());
+  const MatrixXd R = factor_of(tangent.fit().layout, subtract_tangent(tangent, G, C, whole));
+  return subtract_tangent(tangent, G, C, orthonormal_weights(R));
+}
+
+Projection project(const TangentBasis& tangent, const Columns& G, const Columns& whole,
                    double least_visibility) {
   constexpr double deficient = 1e-10;  // singular value of columns of unit length
+  const RowLayout& layout = tangent.fit().layout;
   Projection projection;
   const Index q = G.cols();
-  if (G.rows() < q) return projection;
-  MatrixXd scaled = whole;
-  const VectorXd norms = scale_to_unit(scaled);
-  const Eigen::HouseholderQR<MatrixXd> factor(scaled);
-  const MatrixXd R = factor.matrixQR().topRows(q).triangularView<Eigen::Upper>();
+  if (layout.count() < q) return projection;
+  MatrixXd R = factor_of(layout, whole);
+  const VectorXd norms = scale_to_unit(R);
   if (!(Eigen::JacobiSVD<MatrixXd>(R).singularValues()[q - 1] > deficient)) return projection;
-  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(q, q));
-  const MatrixXd to_coefficients = norms.cwiseInverse().asDiagonal() * inverse;
-  const Eigen::HouseholderQR<MatrixXd> qr(remove_span(tangent_basis, G * to_coefficients));
-  const MatrixXd relative = qr.matrixQR().topRows(q).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd> svd(relative, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const MatrixXd to_coefficients = norms.cwiseInverse().asDiagonal() * inverse_of(R);
+  projection.absorbed = explained_by(tangent, G);
+  const MatrixXd& C = projection.absorbed;
+  const Eigen::JacobiSVD<MatrixXd> svd(
+      factor_of(layout, subtract_tangent(tangent, G, C, to_coefficients)),
+      Eigen::ComputeFullU | Eigen::ComputeFullV);
   const VectorXd& sines = svd.singularValues();
   projection.visibility = std::min(1.0, sines[q - 1]);
   const Index visible = (sines.array() >= least_visibility).count();
-  projection.basis = thin_q(qr, q) * svd.matrixU().leftCols(visible);
   projection.to_effect = to_coefficients * svd.matrixV().leftCols(visible) *
                          sines.head(visible).cwiseInverse().asDiagonal();
+  projection.basis = subtract_tangent(tangent, G, C, projection.to_effect);
   return projection;
 }
 

@@ -5,32 +5,61 @@
 
 #include <Eigen/Core>
 
-#include "numerics/decompositions.hpp"
+#include "diagnosis/columns.hpp"
 
 namespace sepcal::diagnosis {
 
 /// An orthonormal basis of some columns, of their numerical rank.
-Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns);
-
-/// Columns of two matrices, side by side.
-Eigen::MatrixXd join(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right);
+Eigen::MatrixXd orthonormal_basis(Eigen::MatrixXd columns);
 
 /// What of `columns` is orthogonal to a basis.
 Eigen::MatrixXd remove_span(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& columns);
 
+/// Columns whose factor is R (TriangularFactor's) times this are orthonormal, in their numerical
+/// rank: columns x rank.
+Eigen::MatrixXd orthonormal_weights(Eigen::MatrixXd R);
+
+/// The tangent with what makes an orthonormal basis of it, Q = tangent * weights: Q is not kept.
+class TangentBasis {
+ public:
+  TangentBasis() = default;
+  /// `fit` must outlive it.
+  explicit TangentBasis(const LinearisedFit& fit);
+
+  const LinearisedFit& fit() const { return *fit_; }
+  Eigen::Index rank() const { return weights_.cols(); }
+  const Eigen::MatrixXd& weights() const { return weights_; }
+  Columns columns() const;
+
+  /// What of a column (count()) is orthogonal to the tangent.
+  Eigen::VectorXd remove_from(Eigen::VectorXd column) const;
+
+ private:
+  const LinearisedFit* fit_ = nullptr;
+  Eigen::MatrixXd weights_ = {};
+};
+
+/// What of G is orthogonal to the tangent, whose fit must outlive it.
+Columns remove_tangent(const TangentBasis& tangent, const Columns& G);
+
+/// An orthonormal basis of what of G is orthogonal to the tangent, of its numerical rank. The
+/// tangent's fit must outlive it.
+Columns span_beyond(const TangentBasis& tangent, const Columns& G);
+
 /// A candidate's columns beside a tangent, in the directions that can be seen there.
 struct Projection {
-  Eigen::MatrixXd basis;      // orthonormal, of the visible part of G_perp: count x visible
-  Eigen::MatrixXd to_effect;  // q x visible: the coefficients of G behind those of the basis
-  double visibility = 0.0;    // smallest singular value of G_perp relative to `whole`, at most 1
+  Columns basis = {};              // orthonormal, of the visible part of G_perp
+  Eigen::MatrixXd to_effect = {};  // q x visible: the coefficients of G behind those of the basis
+  Eigen::MatrixXd absorbed = {};   // tangent's columns x q: least squares of G on the tangent
+  double visibility = 0.0;  // smallest singular value of G_perp relative to `whole`, at most 1
 
   Eigen::Index visible() const { return basis.cols(); }
 };
 
-/// `tangent_basis` as orthonormal_basis() gives it. `whole`: the columns that G_perp is measured
-/// against, G itself or the part of it that varies. A direction is visible from `least_visibility`
-/// on; none is where `whole` is deficient.
-Projection project(const Eigen::MatrixXd& tangent_basis, const Eigen::MatrixXd& G,
-                   const Eigen::MatrixXd& whole, double least_visibility);
+/// `whole`: the columns that G_perp is measured against, G itself or the part of it that varies. A
+/// direction is visible from `least_visibility` on; none is where `whole` is deficient. The
+/// tangent's fit must outlive the result.
+Projection project(const TangentBasis& tangent, const Columns& G, const Columns& whole,
+                   double least_visibility);
 
 }  // namespace sepcal::diagnosis

@@ -11,20 +11,20 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads) {
   base::ThreadPool pool(threads);
   CandidateRoom room(fitted, pool);
-  const Linearisation& fit = room.fit();
+  const LinearisedFit& fit = room.fit();
   Promise promised;
   if (fit.layout.outputs.empty()) return promised;  // nothing is left to explain
   Trial trial{.candidate = room.make(effect)};
   const auto shape = shapes.find(trial.candidate.shape.parameter);
   if (shape != shapes.end()) trial.shape = shape->second;
-  const NullHypothesis null{.fit = &fit, .basis = orthonormal_basis(fit.tangent)};
+  const NullHypothesis null = find_plain_null(fit);
   const Projection added = project_trial(room, null, trial, trial.shape);
   if (added.visible() == 0) {  // whatever it explained would be chance
     promised.against = "this flight can't tell it from what the model has";
     return promised;
   }
-  estimate_plainly(added, fit.residual, trial);
-  promised.against = reason_against(room, describe(room, {}, trial), visible_from, pool);
+  estimate_plainly(fit.layout, added, fit.residual, trial);
+  promised.against = find_objection(room, describe(room, trial), visible_from, pool).reason;
   promised.predicted_drop = predict_drop(null, added.basis);
   hold_out(room, null, trial);
   confirm(room, pool, trial);

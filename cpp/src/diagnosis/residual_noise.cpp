@@ -31,12 +31,12 @@ VectorXd autocorrelation(const VectorXd& e, const std::vector<Segment>& runs, In
 
 std::vector<ResidualNoise> describe_residual(const NullHypothesis& null) {
   constexpr Index lags = 20;
-  const RowLayout& layout = null.fit->layout;
+  const RowLayout& layout = null.fit().layout;
   const auto rows = static_cast<double>(layout.rows);
   std::vector<ResidualNoise> described;
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     const UsedOutput& output = layout.outputs[j];
-    const VectorXd e = null.fit->residual.segment(layout.first(j), layout.rows);
+    const VectorXd e = null.fit().residual.segment(layout.first(j), layout.rows);
     ResidualNoise noise{.output = output.name,
                         .unit = output.unit,
                         .rmse = output.scale,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "diagnosis/refits.hpp"
 #include "numerics/tails.hpp"
@@ -17,20 +18,21 @@ using Eigen::VectorXd;
 /// What a step from each row on explains of the residual, as if that were white (N; the first row
 /// is none): with suffix sums in one pass.
 VectorXd explained_by_steps(const NullHypothesis& null, const MatrixXd& port) {
-  const RowLayout& layout = null.fit->layout;
+  const RowLayout& layout = null.fit().layout;
+  const MatrixXd& tangent = null.fit().tangent;
   const Index c = port.cols();
-  const VectorXd residual = remove_span(null.basis, null.fit->residual);
   MatrixXd squares = MatrixXd::Zero(c, c);
-  MatrixXd shares = MatrixXd::Zero(null.basis.cols(), c);
+  MatrixXd products_with_tangent = MatrixXd::Zero(tangent.cols(), c);
   VectorXd products = VectorXd::Zero(c);
   VectorXd explained = VectorXd::Zero(layout.rows);
   for (Index row = layout.rows - 1; row > 0; --row) {
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
       const Index at = layout.first(j) + row;
       squares += port.row(at).transpose() * port.row(at);
-      shares += null.basis.row(at).transpose() * port.row(at);
-      products += port.row(at).transpose() * residual[at];
+      products_with_tangent += tangent.row(at).transpose() * port.row(at);
+      products += port.row(at).transpose() * null.residual[at];
     }
+    const MatrixXd shares = null.basis.weights().transpose() * products_with_tangent;
     const MatrixXd beyond = squares - shares.transpose() * shares;
     if (!(beyond.trace() > 1e-6 * squares.trace())) continue;
     explained[row] = products.dot(pseudo_inverse(beyond) * products);
@@ -67,10 +69,35 @@ void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, Candid
   candidate.shape.tried = static_cast<double>(layout.rows);
 }
 
+Projection project_columns(const NullHypothesis& null, const Trial& trial,
+                           const CandidateColumns& columns) {
+  return project(null.basis, columns.whole, columns.varying, trial.least_visibility);
+}
+
+/// X'X and X'e of columns whitened beyond the tangent, e the null's residual.
+std::pair<MatrixXd, VectorXd> whiten_products(const NullHypothesis& null, const Columns& columns) {
+  const RowLayout& layout = null.fit().layout;
+  const Index q = columns.cols();
+  MatrixXd square = MatrixXd::Zero(q, q);
+  MatrixXd shares = MatrixXd::Zero(null.white_basis.cols(), q);
+  VectorXd product = VectorXd::Zero(q);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    MatrixXd white = columns.rows(layout.first(j), layout.rows);
+    null.whiteners[j].apply(white);
+    square.noalias() += white.transpose() * white;
+    shares.noalias() +=
+        null.white_basis.middleRows(layout.first(j), layout.rows).transpose() * white;
+    product.noalias() +=
+        white.transpose() * null.white_residual.segment(layout.first(j), layout.rows);
+  }
+  return {square - shares.transpose() * shares, product};
+}
+
 /// The estimate of the effect from that of its basis.
 void keep_estimate(const Projection& added, const VectorXd& of_basis, const MatrixXd& covariance,
                    Trial& trial) {
   trial.estimate = added.to_effect * of_basis;
+  trial.absorbed = added.absorbed * trial.estimate;
   trial.covariance = added.to_effect * covariance * added.to_effect.transpose();
   trial.freedom = static_cast<int>(added.visible());
 }
@@ -85,8 +112,7 @@ void set_tails(const NoiseTails& tails, Trial& trial) {
 
 Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, const Trial& trial,
                          double shape) {
-  return project(null.basis, room.columns(trial.candidate, shape),
-                 room.varying_columns(trial.candidate, shape), trial.least_visibility);
+  return project_columns(null, trial, room.columns(trial.candidate, shape));
 }
 
 double log10_scan(const Trial& trial) { return std::log10(trial.candidate.shape.tried); }
@@ -101,12 +127,9 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     trial.visibility = std::max(trial.visibility, added.visibility);
     if (added.visible() == 0) continue;
     ShapeScore score{.shape = shape, .freedom = static_cast<int>(added.visible())};
-    score.plain = (added.basis.transpose() * room.fit().residual).squaredNorm();
-    MatrixXd white = added.basis;
-    whiten(layout, null.best.noise, white);
-    white = remove_span(null.white_basis, white);
-    const MatrixXd covariance = pseudo_inverse(white.transpose() * white);
-    const VectorXd product = white.transpose() * null.white_residual;
+    score.plain = multiply_transposed(layout, added.basis, room.fit().residual).squaredNorm();
+    const auto [square, product] = whiten_products(null, added.basis);
+    const MatrixXd covariance = pseudo_inverse(square);
     const VectorXd step = covariance * product;
     score.white = product.dot(step);
     score.white = numerics::log10_chi_squared_tail(score.white, score.freedom);
@@ -127,11 +150,13 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
   trial.log10_p = trial.log10_white;
 }
 
-void estimate_plainly(const Projection& added, const VectorXd& residual, Trial& trial) {
+void estimate_plainly(const RowLayout& layout, const Projection& added, const VectorXd& residual,
+                      Trial& trial) {
   trial.visible = added.visible() > 0;
   trial.visibility = added.visibility;
   const Index q = added.visible();
-  keep_estimate(added, added.basis.transpose() * residual, MatrixXd::Identity(q, q), trial);
+  keep_estimate(added, multiply_transposed(layout, added.basis, residual), MatrixXd::Identity(q, q),
+                trial);
 }
 
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
@@ -158,14 +183,14 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   set_tails(least, trial);
 }
 
-bool is_smooth(const RowLayout& layout, const MatrixXd& columns) {
+bool is_smooth(const RowLayout& layout, const Columns& columns) {
   constexpr double little = 0.25;  // of what two far apart differ by, squared
   const Index lag = std::max<Index>(1, layout.rows / 100);
   double changes = 0.0;
   double spread = 0.0;
-  for (Index k = 0; k < columns.cols(); ++k) {
-    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      const auto part = columns.col(k).segment(layout.first(j), layout.rows);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const MatrixXd own = columns.rows(layout.first(j), layout.rows);
+    for (const auto part : own.colwise()) {
       const Index pairs = layout.rows - lag;
       changes += (part.tail(pairs) - part.head(pairs)).squaredNorm() / static_cast<double>(pairs);
       spread += 2.0 * (part.array() - part.mean()).square().mean();
@@ -201,16 +226,18 @@ bool is_slow(const CandidateRoom& room, const Candidate& candidate) {
 }
 
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
-  const Linearisation& fit = room.fit();
-  const MatrixXd G = room.columns(trial.candidate, trial.shape);
+  const LinearisedFit& fit = room.fit();
+  const CandidateColumns columns = room.columns(trial.candidate, trial.shape);
+  const Columns& G = columns.whole;
   if (!is_smooth(fit.layout, G)) {
     trial.folds = whole_segments(fit.layout);
     judge_interpolated(fit.layout, G, trial.folds);
     if (trial.folds.count > 0) trial.held_out = hold_out(fit, G, trial.folds);
     if (trial.held_out.judged) return;
   }
-  const VectorXd left = remove_span(project_trial(room, null, trial, trial.shape).basis,
-                                    remove_span(null.basis, fit.residual));
+  const Columns added = project_columns(null, trial, columns).basis;
+  const VectorXd left = subtract(fit.layout, null.residual, added,
+                                 multiply_transposed(fit.layout, added, null.residual));
   // A block left out must be short beside what the driver's functions vary over.
   int functions = 1;
   for (const Effect& effect : trial.candidate.effects) {

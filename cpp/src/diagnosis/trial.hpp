@@ -58,7 +58,8 @@ double log10_scan(const Trial& trial);
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
 /// The estimate of one step, as if the residual were white.
-void estimate_plainly(const Projection& added, const Eigen::VectorXd& residual, Trial& trial);
+void estimate_plainly(const RowLayout& layout, const Projection& added,
+                      const Eigen::VectorXd& residual, Trial& trial);
 
 /// The likelihood ratio at the shapes that score best, with the estimate there.
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
@@ -68,7 +69,7 @@ bool is_slow(const CandidateRoom& room, const Candidate& candidate);
 
 /// Whether the columns hardly change within a hundredth of the record: noise that is as slow
 /// imitates them.
-bool is_smooth(const RowLayout& layout, const Eigen::MatrixXd& columns);
+bool is_smooth(const RowLayout& layout, const Columns& columns);
 
 /// Corrects the test's tail for what draws of the noise do to the ratios.
 void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,

@@ -32,6 +32,11 @@ class ComposedModel final : public BlockModel {
   /// The model's own guess, the effects' parameters at zero.
   Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const override;
 
+  /// The model's own; an effect begins at zero.
+  std::map<std::string, double> starting_values(const Record& record) const override {
+    return model_->starting_values(record);
+  }
+
   std::unique_ptr<Carry> new_carry() const override { return model_->new_carry(); }
 
  private:

@@ -56,9 +56,10 @@ MatrixXd effects::drive(const Driver& driver, double shape, const Record& record
   for (const Segment& segment : record.segments()) {
     const double* d = nullptr;
     if (driver.input()) d = record.column(driver.input()->name).data() + segment.first;
-    MatrixXd part(static_cast<Index>(segment.rows()), driver.functions());
-    driver.evaluate(d, segment.first, shape, part, nullptr);
-    phi.middleRows(static_cast<Index>(segment.first), part.rows()) = part;
+    driver.evaluate(
+        d, segment.first, shape,
+        phi.middleRows(static_cast<Index>(segment.first), static_cast<Index>(segment.rows())),
+        nullptr);
     if (driver.reach() > 0) forget_beyond(record.column("time"), segment, shape, phi);
   }
   return phi;

@@ -55,21 +55,31 @@ std::vector<std::string> numbered(int functions) {
 
 class SplineDriver final : public Driver {
  public:
-  SplineDriver(Variable input, SplineBasis basis)
-      : Driver(std::move(input), numbered(basis.functions())), basis_(std::move(basis)) {}
+  SplineDriver(Variable input, SplineBasis basis, const std::vector<double>& means)
+      : Driver(std::move(input), numbered(basis.functions())), basis_(std::move(basis)) {
+    means_ = Eigen::RowVectorXd::Zero(functions());
+    if (means.empty()) return;
+    if (static_cast<int>(means.size()) != functions()) {
+      throw Error("a spline of " + std::to_string(functions() + 1) + " knots has " +
+                  std::to_string(functions()) + " functions, but " + std::to_string(means.size()) +
+                  " means were given");
+    }
+    means_ = Eigen::Map<const Eigen::RowVectorXd>(means.data(), functions());
+  }
 
   void evaluate(const double* d, std::size_t /*first*/, double /*shape*/, Ref<MatrixXd> values,
                 MatrixXd* slopes) const override {
     Eigen::RowVectorXd row(functions());
     for (Index i = 0; i < values.rows(); ++i) {
       basis_.evaluate(d[i], row);
-      values.row(i) = row;
+      values.row(i) = row - means_;
     }
     if (slopes != nullptr) slopes->setZero();
   }
 
  private:
   SplineBasis basis_;
+  Eigen::RowVectorXd means_;
 };
 
 class CategoryDriver final : public Driver {
@@ -158,8 +168,10 @@ DriverPointer exponent_driver(Variable input) {
                    });
 }
 
-DriverPointer spline_driver(Variable input, std::vector<double> knots) {
-  return std::make_shared<const SplineDriver>(std::move(input), SplineBasis(std::move(knots)));
+DriverPointer spline_driver(Variable input, std::vector<double> knots,
+                            const std::vector<double>& means) {
+  return std::make_shared<const SplineDriver>(std::move(input), SplineBasis(std::move(knots)),
+                                              means);
 }
 
 DriverPointer category_driver(Variable input, const std::vector<std::string>& labels) {

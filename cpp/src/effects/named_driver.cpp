@@ -84,8 +84,8 @@ void check_channel(const EffectName& name, const Record& record, bool known) {
               std::to_string(lowest) + "), so that this record can't show the effect");
 }
 
-/// Altitude, time and temperature are taken about their mean before they are raised to a power:
-/// their zero is far from any flight.
+/// Of altitude, time and temperature zero is far from any flight: they are taken about their mean
+/// before they are raised to a power.
 bool has_far_zero(const std::string& base) {
   return base == "time" || base.starts_with("altitude") || base.starts_with("temp");
 }
@@ -104,8 +104,33 @@ std::vector<double> resolved(std::vector<double> knots) {
   return knots;
 }
 
+std::vector<double> means_of(const SplineBasis& basis, const std::vector<double>& values) {
+  Eigen::RowVectorXd row(basis.functions());
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(basis.functions());
+  for (const double value : values) {
+    basis.evaluate(value, row);
+    sum += row;
+  }
+  sum /= static_cast<double>(values.size());
+  return {sum.begin(), sum.end()};
+}
+
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+DriverPointer make_spline(const EffectName& name, const Variable& channel,
+                          const std::vector<double>& values, bool about_mean,
+                          EffectSetting& setting) {
+  if (setting.knots.empty()) {
+    const auto [lowest, highest] = std::ranges::minmax(values);
+    setting.knots = even_knots(lowest, highest, name.number);
+    if (name.base == "time") setting.knots = resolved(std::move(setting.knots));
+    if (has_far_zero(name.base) || (about_mean && keep_from_zero(values))) {
+      setting.means = means_of(SplineBasis(setting.knots), values);
+    }
+  }
+  return spline_driver(channel, setting.knots, setting.means);
 }
 
 DriverPointer make_power(const EffectName& name, const Variable& channel,
@@ -144,14 +169,7 @@ DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectS
   }
   const Variable channel(name.base, name.base == "time" ? "s" : "");
   const std::vector<double> values = selected(record, name.base);
-  if (name.shape == Shape::spline) {
-    if (setting.knots.empty()) {
-      const auto [lowest, highest] = std::ranges::minmax(values);
-      setting.knots = even_knots(lowest, highest, name.number);
-      if (name.base == "time") setting.knots = resolved(std::move(setting.knots));
-    }
-    return spline_driver(channel, setting.knots);
-  }
+  if (name.shape == Shape::spline) return make_spline(name, channel, values, about_mean, setting);
   if (name.shape == Shape::exponent) return exponent_driver(channel);
   if (name.shape == Shape::delay) return delay_driver(channel, record, longest_delay);
   if (name.shape == Shape::power) return make_power(name, channel, values, about_mean, setting);

@@ -25,8 +25,10 @@ using Eigen::VectorXd;
 constexpr std::size_t places_tried = 4;  // spread over the record, which may begin at rest
 constexpr std::size_t samples_a_place = 4;
 constexpr int points_tried = 3;
-constexpr double derivative_tolerance = 1e-4;  // relative to the largest entry of the column's row
-constexpr double difference_step = 1e-5;       // times half the bounds' width, else size or 1
+constexpr double derivative_tolerance = 1e-4;   // relative to the largest entry of the column's row
+constexpr double linear_tolerance = 1e-6;       // relative to the largest entry of the column
+constexpr double accumulated_rounding = 1e-13;  // of values, relative: a trajectory's, step by step
+constexpr double difference_step = 1e-5;        // times half the bounds' width, else size or 1
 
 /// Points of xi2: the start or the nominal one, and draws where the bounds are finite.
 MatrixXd points_to_try(const Tables& tables, const std::map<std::string, double>& start) {
@@ -42,10 +44,15 @@ MatrixXd points_to_try(const Tables& tables, const std::map<std::string, double>
   return points;
 }
 
-/// The first samples of blocks that lie evenly over the record.
-std::vector<model::Measurements::Range> ranges_to_try(const model::Measurements& measurements) {
+/// The first samples of blocks that lie evenly over the record; of segments, for a model that
+/// carries a state from their start on.
+std::vector<model::Measurements::Range> ranges_to_try(const BlockModel& model,
+                                                      const model::Measurements& measurements) {
   std::vector<model::Measurements::Range> all;
   for (const auto& chunk : measurements.chunks()) all.insert(all.end(), chunk.begin(), chunk.end());
+  if (model.new_carry() != nullptr) {
+    std::erase_if(all, [](const auto& range) { return !range.starts_segment; });
+  }
   std::vector<model::Measurements::Range> tried;
   const std::size_t places = std::min(places_tried, all.size());
   for (std::size_t i = 0; i < places; ++i) {
@@ -90,19 +97,22 @@ class Trial {
 struct Seen {
   MatrixXd values;
   Index rows = 0;
+  Index first = 0;  // the row from which on the model has done all that it does
 };
 
-void check_entries_set(const Tables& tables, const std::vector<Seen>& seen, bool started) {
+void check_entries_set(const Tables& tables, const std::vector<Seen>& seen, bool carries,
+                       bool started) {
   for (Index column = 0; column <= tables.n_1(); ++column) {
     for (Index j = 0; j < tables.n_z(); ++j) {
       const bool ever = std::ranges::any_of(seen, [&](const Seen& at) {
-        return at.values.col(column).segment(j * at.rows, at.rows).array().isFinite().any();
+        const auto entries = at.values.col(column).segment(j * at.rows, at.rows);
+        return entries.tail(at.rows - at.first).array().isFinite().any();
       });
       if (ever) continue;
       throw Error(
           "the model's " + entry_name(tables, j, column) +
           " is not a finite number at any sample tried; set every entry of A and b in at()" +
-          (started ? ", or start elsewhere" : ""));
+          (carries ? ", and every state's rate" : "") + (started ? ", or start elsewhere" : ""));
     }
   }
 }
@@ -116,6 +126,27 @@ void check_same(const Tables& tables, const MatrixXd& once, const MatrixXd& agai
           "the model's " + entry_name(tables, row / rows, column) +
           " differs between two evaluations of the same sample; at() must be a pure function");
     }
+  }
+}
+
+/// A and b don't depend on xi1, as they do where a trajectory isn't linear in a parameter that its
+/// model calls linear.
+void check_linear(const Trial& trial, const Tables& tables, const VectorXd& xi2,
+                  const MatrixXd& values, Index rows) {
+  const Index n_1 = tables.n_1();
+  MatrixXd again = trial.tangent(xi2, VectorXd::Ones(n_1));
+  again.col(n_1) = again.rightCols<1>().eval();
+  if (!values.allFinite() || !again.allFinite()) return;
+  for (Index column = 0; column <= n_1; ++column) {
+    const VectorXd difference = (again.col(column) - values.col(column)).cwiseAbs();
+    Index row = 0;
+    const double largest = difference.maxCoeff(&row);
+    const double size =
+        column < n_1 ? values.col(column).cwiseAbs().maxCoeff() : values.cwiseAbs().maxCoeff();
+    if (largest <= linear_tolerance * size) continue;
+    throw Error("the model's " + entry_name(tables, row / rows, column) +
+                " changes with the linear parameters; what multiplies them, and what is added, "
+                "must not depend on them");
   }
 }
 
@@ -144,7 +175,8 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
   const VectorXd xi1 = VectorXd::Ones(n_1);
   const MatrixXd tangent = trial.tangent(xi2, xi1);
   if (!tangent.allFinite()) return;
-  const double smallest_scale = 1e-6 * trial.values(xi2).cwiseAbs().maxCoeff();
+  const double size = trial.values(xi2).cwiseAbs().maxCoeff();
+  const double smallest_scale = 1e-6 * size;
   for (Index k = 0; k < tables.n_2(); ++k) {
     const Variable& parameter = tables.nonlinear[static_cast<std::size_t>(k)];
     const VectorXd given = tangent.col(n_1 + k);
@@ -156,7 +188,8 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
       const double scale =
           std::max({numeric.cwiseAbs().maxCoeff(), given.cwiseAbs().maxCoeff(), smallest_scale});
       const double difference = (numeric - given).cwiseAbs().maxCoeff(&row);
-      return !numeric.allFinite() || difference <= derivative_tolerance * scale;
+      const double rounding = accumulated_rounding * size / step;
+      return !numeric.allFinite() || difference <= derivative_tolerance * scale + rounding;
     });
     if (agree) continue;
     throw Error("the model's derivative of output '" +
@@ -171,7 +204,9 @@ void check_derivatives(const Trial& trial, const Tables& tables, const VectorXd&
 
 void check_model(const BlockModel& model, const Record& record,
                  const std::map<std::string, double>& start) {
-  try_model(model, model::Measurements(model, record), start);
+  std::map<std::string, double> begun = start;
+  begun.merge(model.starting_values(record));
+  try_model(model, model::Measurements(model, record), begun);
 }
 
 void estimation::try_model(const BlockModel& model, const model::Measurements& measurements,
@@ -181,19 +216,22 @@ void estimation::try_model(const BlockModel& model, const model::Measurements& m
   }
   const Tables& tables = model.tables();
   const MatrixXd points = points_to_try(tables, start);
+  const bool carries = model.new_carry() != nullptr;
   std::vector<Seen> seen;
-  for (const model::Measurements::Range& range : ranges_to_try(measurements)) {
+  for (const model::Measurements::Range& range : ranges_to_try(model, measurements)) {
     std::vector<const double*> pointers;
     const Block block = measurements.block(range, pointers);
     const auto rows = static_cast<Index>(range.rows);
     const Trial trial(model, block);
     for (Index i = 0; i < points.cols(); ++i) {
-      seen.push_back({trial.values(points.col(i)), rows});
+      // The first row of a trajectory is no step yet.
+      seen.push_back({trial.values(points.col(i)), rows, carries && rows > 1 ? 1 : 0});
       check_same(tables, seen.back().values, trial.values(points.col(i)), rows);
+      check_linear(trial, tables, points.col(i), seen.back().values, rows);
       check_derivatives(trial, tables, points.col(i), rows);
     }
   }
-  check_entries_set(tables, seen, !start.empty());
+  check_entries_set(tables, seen, carries, !start.empty());
 }
 
 }  // namespace sepcal

@@ -40,14 +40,6 @@ std::vector<Index> find_inside(const std::vector<bool>& at_bound) {
   return indices;
 }
 
-/// The factor of a selection of columns.
-MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
-  TriangularFactor factor(static_cast<int>(columns.size()));
-  MatrixXd rows = R(Eigen::all, columns);
-  factor.absorb(rows);
-  return factor.matrix();
-}
-
 /// Rows over `noise`, those of the prior among them: n x n.
 MatrixXd whiten(const Problem& problem, const StageTwo& two, const VectorXd& noise) {
   TriangularFactor factor = combine(two.factors, noise.cwiseInverse());
@@ -200,6 +192,13 @@ class Sandwich {
 };
 
 }  // namespace
+
+MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
+  TriangularFactor factor(static_cast<int>(columns.size()));
+  MatrixXd rows = R(Eigen::all, columns);
+  factor.absorb(rows);
+  return factor.matrix();
+}
 
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
                              const StageTwo& two) {

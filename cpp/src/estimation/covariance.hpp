@@ -36,6 +36,9 @@ struct Covariances {
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
                              const StageTwo& two);
 
+/// The triangular factor of a selection of columns (k x k).
+Eigen::MatrixXd select_columns(const Eigen::MatrixXd& R, const std::vector<Eigen::Index>& columns);
+
 /// How many of the parameters of a covariance were paid for by the prior, each in part:
 /// `weights` are its 1 / standard deviation. 0 where there is no covariance.
 double prior_share(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& weights);

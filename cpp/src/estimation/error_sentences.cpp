@@ -57,8 +57,9 @@ std::string describe_memory(const Covariances& covariances, const model::Sweep& 
   Names slow;
   double fewest = enough;
   for (std::size_t j = 0; j < covariances.noise.size(); ++j) {
-    if (!covariances.noise[j]) continue;
-    const double times = rows / correlation_rows(*covariances.noise[j]);
+    const auto& noise = covariances.noise[j];
+    if (!noise) continue;
+    const double times = rows / correlation_rows(*noise);
     if (times >= enough) continue;
     slow.push_back(sweep.tables().outputs[j].name);
     fewest = std::min(fewest, times);
@@ -76,9 +77,10 @@ std::string describe_strides(const Covariances& covariances, const model::Sweep&
   Names smooth;
   Index longest = 1;
   for (std::size_t j = 0; j < covariances.noise.size(); ++j) {
-    if (!covariances.noise[j] || covariances.noise[j]->held == 1) continue;
+    const auto& noise = covariances.noise[j];
+    if (!noise || noise->held == 1) continue;
     smooth.push_back(sweep.tables().outputs[j].name);
-    longest = std::max(longest, covariances.noise[j]->held);
+    longest = std::max(longest, noise->held);
   }
   if (smooth.empty()) return "";
   return "residual of " + base::list_names(smooth) +

@@ -13,6 +13,8 @@
 #include "estimation/model_trial.hpp"
 #include "estimation/plausibility.hpp"
 #include "estimation/prior_checks.hpp"
+#include "estimation/runaway.hpp"
+#include "estimation/sampling.hpp"
 #include "estimation/stage_one.hpp"
 #include "estimation/stage_two.hpp"
 #include "estimation/standard_errors.hpp"
@@ -140,12 +142,15 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
 
 }  // namespace
 
-Fit fit(const BlockModel& model, const Record& record, const FitOptions& options) {
+Fit fit(const BlockModel& model, const Record& record, const FitOptions& given) {
+  const FitOptions options = with_starting_values(model, record, given);
   const Problem problem(model, options);
   base::ThreadPool pool(options.threads);
   const model::Measurements second(problem.model(), record.select(options.stage_two_segments));
   problem.check_measurements(second.rows());
-  try_model(problem.model(), second, options.start);
+  std::map<std::string, double> start = options.start;  // of what the bounds may say nothing
+  start.insert(options.unsampled.begin(), options.unsampled.end());
+  try_model(problem.model(), second, start);
 
   Fit result;
   if (options.stage_one_segments == options.stage_two_segments) {
@@ -156,6 +161,7 @@ Fit fit(const BlockModel& model, const Record& record, const FitOptions& options
   }
   const StageTwo two = run_stage_two(problem, second, result.stage_one, pool);
   describe(result, model, problem, second, two, pool);
+  warn_of_runaway(result, model, record.select(options.stage_two_segments));
   return result;
 }
 

@@ -24,7 +24,8 @@ using Eigen::VectorXd;
 /// no factor is built.
 class CompressedCost final : public ceres::CostFunction {
  public:
-  explicit CompressedCost(Objective& objective) : objective_(objective) {
+  explicit CompressedCost(Objective& objective)
+      : objective_(objective), tried_(VectorXd::Constant(objective.parameters(), not_a_number)) {
     set_num_residuals(objective.residuals());
     mutable_parameter_block_sizes()->push_back(objective.parameters());
   }
@@ -34,10 +35,11 @@ class CompressedCost final : public ceres::CostFunction {
     const VectorXd x = Eigen::Map<const VectorXd>(parameters[0], objective_.parameters());
     Eigen::Map<VectorXd> residual(residuals, objective_.residuals());
     if (jacobians == nullptr || jacobians[0] == nullptr) {
-      const double square = objective_.square(x);
+      if (x != tried_) square_ = objective_.square(x);
+      tried_ = x;
       residual.setZero();
-      residual[0] = std::sqrt(square);
-      return std::isfinite(square);
+      residual[0] = std::sqrt(square_);
+      return std::isfinite(square_);
     }
     VectorXd r;
     MatrixXd jacobian;
@@ -50,6 +52,8 @@ class CompressedCost final : public ceres::CostFunction {
 
  private:
   Objective& objective_;
+  mutable VectorXd tried_;  // the line search and the step after it ask for one point
+  mutable double square_ = 0.0;
 };
 
 void set_bounds(ceres::Problem& problem, double* x, const numerics::Box& box) {
@@ -88,6 +92,7 @@ Descent estimation::minimise(Objective& objective, const VectorXd& start, const 
   solver.initial_trust_region_radius = options.first_radius;
   solver.gradient_tolerance = 0.0;
   solver.parameter_tolerance = 1e-14;
+  solver.line_search_interpolation_type = ceres::QUADRATIC;  // CUBIC asks trials for a gradient
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 

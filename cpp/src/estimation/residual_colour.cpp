@@ -7,6 +7,7 @@
 
 #include "noise/noise_autocovariance.hpp"
 #include "numerics/decompositions.hpp"
+#include "sepcal/quantity.hpp"
 
 namespace sepcal::estimation {
 namespace {

@@ -126,4 +126,13 @@ VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions
   return point;
 }
 
+FitOptions with_starting_values(const BlockModel& model, const Record& record, FitOptions options) {
+  auto& known = options.start.empty() ? options.unsampled : options.start;
+  for (const auto& [name, value] : model.starting_values(record)) {
+    const bool said = options.fixed.contains(name) || options.sampling_distribution.contains(name);
+    if (!said) known.emplace(name, value);
+  }
+  return options;
+}
+
 }  // namespace sepcal::estimation

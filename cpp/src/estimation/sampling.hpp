@@ -7,7 +7,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "sepcal/block_model.hpp"
 #include "sepcal/options.hpp"
+#include "sepcal/record.hpp"
 
 namespace sepcal::estimation {
 
@@ -21,5 +23,10 @@ Eigen::MatrixXd draw_samples(const std::vector<Variable>& parameters, const FitO
 /// mean of the sampling distribution, else the middle of the bounds, or the bound or zero that is
 /// nearest where one is infinite.
 Eigen::VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions& options);
+
+/// The options with what the model itself says of where to begin (BlockModel::starting_values()):
+/// among `start` where there is one, else `unsampled`. What the options say of a parameter goes
+/// before it.
+FitOptions with_starting_values(const BlockModel& model, const Record& record, FitOptions options);
 
 }  // namespace sepcal::estimation

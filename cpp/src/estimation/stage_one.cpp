@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "estimation/global_search.hpp"
@@ -107,13 +109,20 @@ void search(const Problem& problem, Objective& objective, std::size_t rows, Stag
   });
 }
 
+/// What else a model that isn't finite may need.
+std::string_view way_out(const BlockModel& model) {
+  if (model.new_carry() == nullptr) return "";
+  return ", start nearer, or cut long segments (shoot): a state runs away along one";
+}
+
 /// Eqs. 17 and 18 where they are asked for, and Eq. 19: the best of the samples that meet them.
 /// Returns Tr[R] of those that may be used, infinity elsewhere (S).
 VectorXd choose_best(const Problem& problem, const model::Measurements& measurements,
                      base::ThreadPool& pool, StageOne& result) {
   if (!std::isfinite(result.trace_r.minCoeff())) {
     throw Error("the model is not finite at any of the " + std::to_string(result.trace_r.size()) +
-                " samples of its nonlinear parameters; check its inputs and the bounds");
+                " samples of its nonlinear parameters; check its inputs and the bounds" +
+                std::string(way_out(problem.model())));
   }
   VectorXd usable = result.trace_r;
   if (const auto& screens = problem.options().screens) {
@@ -187,7 +196,8 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
   if (!std::isfinite(objective.square(result.xi2))) {
     throw Error(
         "the model is not finite at some row of the record, whatever its linear parameters; "
-        "check its inputs, the fixed parameters and the bounds");
+        "check its inputs, the fixed parameters and the bounds" +
+        std::string(way_out(problem.model())));
   }
   result.xi1 = objective.linear_estimate(result.xi2);
   result.noise = (sweep.squared_residuals(result.xi1, result.xi2) / rows).cwiseSqrt();
@@ -201,7 +211,8 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
   return result;
 }
 
-StageOne stage_one(const BlockModel& model, const Record& record, const FitOptions& options) {
+StageOne stage_one(const BlockModel& model, const Record& record, const FitOptions& given) {
+  const FitOptions options = with_starting_values(model, record, given);
   const Problem problem(model, options);
   const model::Measurements measurements(problem.model(),
                                          record.select(options.stage_one_segments));

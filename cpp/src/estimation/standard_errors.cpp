@@ -7,7 +7,6 @@
 #include "estimation/block_errors.hpp"
 #include "estimation/error_sentences.hpp"
 #include "model/loss.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -47,14 +46,6 @@ MatrixXd residuals_of(const std::vector<MatrixXd>& tangents) {
   return residuals;
 }
 
-/// The factor of the columns inside, the prior's rows among theirs.
-MatrixXd inside_factor(const Covariances& covariances) {
-  MatrixXd rows = covariances.tangent(Eigen::all, covariances.inside);
-  TriangularFactor factor(static_cast<int>(rows.cols()));
-  factor.absorb(rows);
-  return factor.matrix();
-}
-
 /// The jackknife's covariance (k x k), with the prior's own share and, with a loss, the slopes of
 /// psi.
 MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, const StageTwo& two,
@@ -66,7 +57,7 @@ MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, con
   if (blocks == 0 || !e.allFinite()) {
     return MatrixXd::Constant(k, k, std::numeric_limits<double>::quiet_NaN());
   }
-  const MatrixXd R = inside_factor(covariances);
+  const MatrixXd R = select_columns(covariances.tangent, covariances.inside);
   MatrixXd covariance = find_block_errors(tangents, R, cut_blocks(e.rows(), blocks)).covariance;
   for (const Prior& prior : problem.prior()) {
     const MatrixXd pulled = covariances.white * prior.weight(covariances.inside).asDiagonal();

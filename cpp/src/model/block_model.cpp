@@ -17,6 +17,17 @@ using Eigen::VectorXd;
 
 BlockModel::BlockModel(Tables tables) : tables_(std::move(tables)) { tables_.check_names(); }
 
+void BlockModel::evaluate_points(const Block& block, const MatrixXd& points,
+                                 std::span<const std::unique_ptr<Carry>> carries, MatrixXd& scratch,
+                                 const VisitRows& visit) const {
+  scratch.resize(static_cast<Index>(block.rows) * tables_.n_z(), tables_.n_1() + 1);
+  for (Index s = 0; s < points.cols(); ++s) {
+    evaluate(block, points.col(s).data(), nullptr, carries[static_cast<std::size_t>(s)].get(),
+             scratch);
+    visit(s, scratch);
+  }
+}
+
 void BlockModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                std::span<const int> inputs,
                                // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
@@ -40,6 +51,12 @@ void BlockModel::input_tangent(const Block& block, const double* xi2, const doub
 MatrixXd BlockModel::guess(const MatrixXd& /*u*/, const MatrixXd& /*z*/) const {
   return MatrixXd(tables_.n_2(), 0);
 }
+
+std::map<std::string, double> BlockModel::starting_values(const Record& /*record*/) const {
+  return {};
+}
+
+double BlockModel::growth(const Record& /*record*/, const VectorXd& /*xi*/) const { return 1.0; }
 
 bool BlockModel::add_second_derivatives(
     const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,

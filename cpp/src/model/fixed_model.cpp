@@ -54,12 +54,31 @@ void FixedModel::evaluate(const Block& block, const double* xi2, const double* x
     const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);
     model_.evaluate(block, values_of(whole_2), values_of(whole_1), carry, whole);
   }
+  take_free(whole, xi1 != nullptr, rows);
+}
+
+void FixedModel::take_free(const MatrixXd& whole, bool tangent, Eigen::Ref<MatrixXd> rows) const {
+  const Index n_1 = xi1_.size();
   Index column = 0;
   for (const Index k : free_1_) rows.col(column++) = whole.col(k);
-  if (xi1 != nullptr) {
+  if (tangent) {
     for (const Index k : free_2_) rows.col(column++) = whole.col(n_1 + k);
   }
   rows.col(column).noalias() = whole.rightCols<1>() + whole.leftCols(n_1) * xi1_;
+}
+
+void FixedModel::evaluate_points(const Block& block, const MatrixXd& points,
+                                 std::span<const std::unique_ptr<Carry>> carries, MatrixXd& scratch,
+                                 const VisitRows& visit) const {
+  MatrixXd whole(xi2_.size(), points.cols());
+  for (Index s = 0; s < points.cols(); ++s) {
+    whole.col(s) = fill_in(xi2_, free_2_, points.col(s).data());
+  }
+  MatrixXd free(static_cast<Index>(block.rows) * tables().n_z(), tables().n_1() + 1);
+  model_.evaluate_points(block, whole, carries, scratch, [&](Index s, const MatrixXd& rows) {
+    take_free(rows, false, free);
+    visit(s, free);
+  });
 }
 
 void FixedModel::input_tangent(const Block& block, const double* xi2, const double* xi1,

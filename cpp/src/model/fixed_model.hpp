@@ -19,6 +19,10 @@ class FixedModel final : public BlockModel {
   void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
                 Eigen::Ref<Eigen::MatrixXd> rows) const override;
 
+  void evaluate_points(const Block& block, const Eigen::MatrixXd& points,
+                       std::span<const std::unique_ptr<Carry>> carries, Eigen::MatrixXd& scratch,
+                       const VisitRows& visit) const override;
+
   void input_tangent(const Block& block, const double* xi2, const double* xi1,
                      std::span<const int> inputs,
                      Eigen::Ref<Eigen::MatrixXd> columns) const override;
@@ -33,6 +37,10 @@ class FixedModel final : public BlockModel {
   std::unique_ptr<Carry> new_carry() const override { return model_.new_carry(); }
 
  private:
+  /// The rows [A | b] or [A | D | b] of the whole model without what is fixed.
+  void take_free(const Eigen::MatrixXd& whole, bool tangent,
+                 Eigen::Ref<Eigen::MatrixXd> rows) const;
+
   const BlockModel& model_;
   Eigen::VectorXd xi1_;  // n_1 and n_2 of the whole model: fixed values, zero where free
   Eigen::VectorXd xi2_;

@@ -5,9 +5,11 @@
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
+#include "sepcal/models/triad.hpp"
 
 namespace sepcal {
 
+template class StaticModel<Accelerometer>;
 template class StaticModel<AttitudeIndependentMagnetometer>;
 template class StaticModel<FiveHoleProbe>;
 template class StaticModel<Magnetometer>;

@@ -168,23 +168,39 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
   return products;
 }
 
-std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
-  const int columns = tables().n_1() + tables().n_2() + 1;
+template <class VisitRows>
+void Sweep::for_each_tangent(const VectorXd& xi1, const VectorXd& xi2,
+                             const VisitRows& visit) const {
   const int n_z = tables().n_z();
-  std::vector<MatrixXd> outputs(
-      static_cast<std::size_t>(n_z),
-      MatrixXd(static_cast<Index>(measurements_.rows()), static_cast<Index>(columns)));
   for_each_block(
       [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-        rows.resize(n_z * rows_of(range), columns);
+        rows.resize(n_z * rows_of(range), tables().n_1() + tables().n_2() + 1);
         fill_tangent(block, range, xi1, xi2, carry, rows);
         for (int j = 0; j < n_z; ++j) {
-          outputs[static_cast<std::size_t>(j)].middleRows(static_cast<Index>(range.offset),
-                                                          rows_of(range)) =
-              rows.middleRows(j * rows_of(range), rows_of(range));
+          visit(j, static_cast<Index>(range.offset),
+                rows.middleRows(j * rows_of(range), rows_of(range)));
         }
       });
+}
+
+std::vector<MatrixXd> Sweep::tangent_rows(const VectorXd& xi1, const VectorXd& xi2) const {
+  std::vector<MatrixXd> outputs(
+      static_cast<std::size_t>(tables().n_z()),
+      MatrixXd(static_cast<Index>(measurements_.rows()), tables().n_1() + tables().n_2() + 1));
+  for_each_tangent(xi1, xi2, [&](int j, Index offset, const auto& rows) {
+    outputs[static_cast<std::size_t>(j)].middleRows(offset, rows.rows()) = rows;
+  });
   return outputs;
+}
+
+MatrixXd Sweep::tangent_columns(const VectorXd& xi1, const VectorXd& xi2,
+                                const std::vector<Index>& columns) const {
+  const auto count = static_cast<Index>(measurements_.rows());
+  MatrixXd stacked(tables().n_z() * count, static_cast<Index>(columns.size()));
+  for_each_tangent(xi1, xi2, [&](int j, Index offset, const auto& rows) {
+    stacked.middleRows(j * count + offset, rows.rows()) = rows(Eigen::all, columns);
+  });
+  return stacked;
 }
 
 MatrixXd Sweep::block_residuals(const Block& block, const Measurements::Range& range,
@@ -238,7 +254,6 @@ std::vector<TriangularFactor> Sweep::sample_factors(
     const MatrixXd& samples, const std::function<void(double)>& on_progress) const {
   constexpr Index tile = 25;  // samples that share a block while it is in the cache
   const int columns = tables().n_1() + 1;
-  const int n_z = tables().n_z();
   Factors factors(static_cast<std::size_t>(samples.cols()), TriangularFactor(columns));
   const Index tiles = (samples.cols() + tile - 1) / tile;
   const auto& chunks = measurements_.chunks();
@@ -250,17 +265,16 @@ std::vector<TriangularFactor> Sweep::sample_factors(
     const Index count = std::min(tile, samples.cols() - first);
     std::vector<std::unique_ptr<Carry>> carries;
     for (Index s = 0; s < count; ++s) carries.push_back(model_.new_carry());
+    const MatrixXd points = samples.middleCols(first, count);
     std::vector<const double*> pointers;
-    MatrixXd rows;
+    MatrixXd scratch;
     for (const auto& chunk : chunks) {
       for (const Measurements::Range& range : chunk) {
-        rows.resize(n_z * rows_of(range), columns);
         const Block block = measurements_.block(range, pointers);
-        for (Index s = 0; s < count; ++s) {
-          fill_linear(block, range, samples.col(first + s).data(),
-                      carries[static_cast<std::size_t>(s)].get(), rows);
+        model_.evaluate_points(block, points, carries, scratch, [&](Index s, MatrixXd& rows) {
+          subtract_from_outputs(range, rows.rightCols<1>().col(0));
           factors[static_cast<std::size_t>(first + s)].absorb(rows);
-        }
+        });
       }
       if (on_progress) {
         const std::lock_guard lock(mutex);

@@ -50,6 +50,10 @@ class Sweep {
   std::vector<Eigen::MatrixXd> tangent_rows(const Eigen::VectorXd& xi1,
                                             const Eigen::VectorXd& xi2) const;
 
+  /// Some of those columns, one output below the other: n_z rows() x columns.
+  Eigen::MatrixXd tangent_columns(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                                  const std::vector<Eigen::Index>& columns) const;
+
   /// Sum of r^2 by output (n_z).
   Eigen::VectorXd squared_residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
 
@@ -72,6 +76,11 @@ class Sweep {
 
   /// Visits every block, a chunk's blocks in order; `rows` is scratch of the chunk's own.
   void for_each_block(const Visit& visit) const;
+
+  /// visit(j, offset, rows): [A | D | r] of output j in the rows of a block, `offset` rows before.
+  template <class VisitRows>
+  void for_each_tangent(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                        const VisitRows& visit) const;
 
   /// Sums over the rows by output (n_z) of what `of_block` makes of a block's r (rows x n_z).
   Eigen::VectorXd sum_residuals(

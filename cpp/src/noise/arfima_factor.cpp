@@ -31,11 +31,13 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
       summed_(delta > 0.0) {
   const Index order = phi_.size();
   const Index rows = longest(lengths);
-  gain_ = VectorXd::Ones(rows);
-  deviation_ = VectorXd::Ones(rows);
-  log_variance_ = VectorXd::Zero(rows + 1);
+  for (const Index length : lengths) log_variance_[std::max<Index>(0, length - order)] = 0.0;
   if (delta != 0.0 && rows > 0) {
+    gain_ = VectorXd::Ones(rows);
+    deviation_ = VectorXd::Ones(rows);
     double variance = fractional_variance(delta);
+    double log_variance = 0.0;
+    auto asked = log_variance_.upper_bound(0);
     for (Index s = 0; s < rows; ++s) {
       const auto at = static_cast<double>(s);
       if (s > 0) {
@@ -44,7 +46,10 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
         variance *= (1.0 - partial) * (1.0 + partial);
       }
       deviation_[s] = std::sqrt(variance);
-      log_variance_[s + 1] = log_variance_[s] + std::log(variance);
+      log_variance += std::log(variance);
+      if (asked == log_variance_.end() || asked->first != s + 1) continue;
+      asked->second = log_variance;
+      ++asked;
     }
   }
   if (order == 0) return;
@@ -79,8 +84,8 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
 }
 
 double ArfimaFactor::log_determinant(Index rows) const {
-  if (phi_.size() == 0 || rows == 0) return log_variance_[rows];
-  return heads_.at(rows).log_determinant + log_variance_[std::max<Index>(0, rows - phi_.size())];
+  const double later = log_variance_.at(std::max<Index>(0, rows - phi_.size()));
+  return phi_.size() == 0 || rows == 0 ? later : heads_.at(rows).log_determinant + later;
 }
 
 double ArfimaFactor::log_determinant(const std::vector<Index>& blocks) const {

@@ -44,9 +44,9 @@ class ArfimaFactor {
   FractionalDifference difference_;
   FractionalDifference integral_;  // its inverse, but for a running sum where summed_
   bool summed_;
-  Eigen::VectorXd gain_;                // g_s / g_0
-  Eigen::VectorXd deviation_;           // sqrt v_t
-  Eigen::VectorXd log_variance_;        // sum of ln v over the rows before t
+  Eigen::VectorXd gain_;                         // g_s / g_0; none where delta is 0
+  Eigen::VectorXd deviation_;                    // sqrt v_t
+  std::map<Eigen::Index, double> log_variance_;  // sum of ln v, by a block's rows behind its head
   Eigen::MatrixXd regression_;          // p x rows: of the first rows on the whitened later ones
   std::map<Eigen::Index, Head> heads_;  // by the rows of a block
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "noise/noise_room.hpp"
 #include "numerics/decompositions.hpp"
@@ -114,10 +115,11 @@ WanderingFit fit_wandering(const MatrixXd& columns, const std::vector<Segment>& 
     best = point;
     return true;
   };
-  for (double time = 0.0; time < longest; time += std::log(4.0)) {
-    for (const double logit : {-4.0, 0.0, 3.0}) try_point({time, logit});
+  constexpr double apart = 2.0 * std::numbers::ln2;  // times of the grid, in their logarithm
+  for (int i = 0; i * apart < longest; ++i) {
+    for (const double logit : {-4.0, 0.0, 3.0}) try_point({i * apart, logit});
   }
-  for (Point step{std::log(2.0), 1.0}; step[0] > least_step;) {
+  for (Point step{std::numbers::ln2, 1.0}; step[0] > least_step;) {
     bool found = false;
     for (const Point& way : {Point{1, 0}, Point{-1, 0}, Point{0, 1}, Point{0, -1}}) {
       const Point from = best;

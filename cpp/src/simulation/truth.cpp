@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "flight/files/json_values.hpp"
+#include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal {
@@ -21,6 +22,8 @@ using Outputs = std::span<const char* const>;
 constexpr std::array velocities{"vn", "ve", "vd"};
 constexpr std::array airspeed{"airspeed"};
 constexpr std::array axes{"mx", "my", "mz"};
+constexpr std::array readings{"ax",   "ay",   "az",    "p",   "q",  "r",  "airspeed", "alpha",
+                              "beta", "roll", "pitch", "yaw", "vn", "ve", "vd"};
 
 /// An entry of `options`: one number, or as many as `values` has in a list.
 struct Setting {
@@ -43,6 +46,17 @@ void read_noise(const files::Json& object, Outputs outputs, std::span<double> no
     }
     noise[static_cast<std::size_t>(at - outputs.begin())] = value.get<double>();
   }
+}
+
+files::Json write_noise(Outputs /*outputs*/, const std::map<std::string, double>& noise) {
+  return noise;
+}
+
+void read_noise(const files::Json& object, Outputs outputs, std::map<std::string, double>& noise) {
+  std::vector<double> values;
+  for (const char* output : outputs) values.push_back(noise.at(output));
+  read_noise(object, outputs, std::span<double>(values));
+  for (std::size_t j = 0; j < outputs.size(); ++j) noise[outputs[j]] = values[j];
 }
 
 void read_parameters(const files::Json& object, std::map<std::string, double>& parameters) {
@@ -83,6 +97,16 @@ void read_settings(const files::Json& object, const std::vector<Setting>& settin
   }
 }
 
+/// What only some truths have; false where this one doesn't.
+template <class Truth>
+bool read_more(const std::string& key, const files::Json& value, Truth& truth) {
+  if constexpr (requires { truth.geometry; }) {
+    if (key == "aircraft") truth.geometry = parse_aircraft(value.dump(), "aircraft");
+    return key == "aircraft";
+  }
+  return false;
+}
+
 /// Reads what the object names into `truth`; the rest keeps its default.
 template <class Truth>
 void read_truth(std::string_view json, std::string_view model, Outputs outputs,
@@ -94,6 +118,7 @@ void read_truth(std::string_view json, std::string_view model, Outputs outputs,
   }
   try {
     for (const auto& [key, value] : root.items()) {
+      if (read_more(key, value, truth)) continue;
       if (key == "parameters") {
         read_parameters(value, truth.parameters);
       } else if (key == "options") {
@@ -147,6 +172,17 @@ std::string to_json(const MagnetometerTruth& truth) {
   return write_truth("magnetometer", truth, {{"field", truth.field}}, axes);
 }
 
+std::string to_json(const AircraftTruth& truth) {
+  const files::Json options{{"airspeed", truth.airspeed},
+                            {"altitude", truth.altitude},
+                            {"turbulence", truth.turbulence},
+                            {"gust_length", truth.gust_length},
+                            {"process_noise", truth.process_noise}};
+  files::Json root = files::Json::parse(write_truth("aircraft", truth, options, readings));
+  root["aircraft"] = files::Json::parse(to_json(truth.geometry));
+  return files::text_of(root);
+}
+
 FiveHoleTruth parse_five_hole_truth(std::string_view json, const std::string& source) {
   FiveHoleTruth truth{.source = source};
   read_truth(json, "five-hole", velocities,
@@ -172,6 +208,18 @@ MagnetometerTruth parse_magnetometer_truth(std::string_view json, const std::str
     const double length = std::hypot(truth.field[0], truth.field[1], truth.field[2]);
     for (double& component : truth.field) component *= strength / length;
   }
+  return truth;
+}
+
+AircraftTruth parse_aircraft_truth(std::string_view json, const std::string& source) {
+  AircraftTruth truth{.source = source};
+  read_truth(json, "aircraft", readings,
+             {{"airspeed", {&truth.airspeed, 1}},
+              {"altitude", {&truth.altitude, 1}},
+              {"turbulence", {&truth.turbulence, 1}},
+              {"gust_length", {&truth.gust_length, 1}},
+              {"process_noise", {&truth.process_noise, 1}}},
+             truth);
   return truth;
 }
 

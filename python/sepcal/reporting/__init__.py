@@ -7,29 +7,33 @@ One HTML page that holds all it needs, so that it opens without a network and ca
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from sepcal import _core
+from sepcal.aircraft_fits import AircraftFit
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 from sepcal.reporting.gather import gather
 from sepcal.reporting.page import build_page, read_plotly, write_whole
 from sepcal.reporting.sections import compose
+from sepcal.reporting.trajectory import compose_flown, gather_flown
 
 Path = str | os.PathLike[str]
 
 
 def report(
-    calibrations: Calibration | Sequence[Calibration],
+    calibrations: Calibration | AircraftFit | Sequence[Calibration | AircraftFit],
     file: Path,
     flight: Flight | None = None,
     *,
     diagnosis: Diagnosis | None = None,
     files: Sequence[Path] = (),
+    process_noise: Mapping[str, float] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> None:
-    """Writes the report of a chain of calibrations to one self-contained HTML page.
+    """Writes the report of a chain of calibrations, or of fits of an aircraft, to one HTML page.
 
     The same input gives the same page to the last byte.
 
@@ -41,19 +45,32 @@ def report(
         diagnosis: The last's diagnosis of that flight, where it is at hand; else it is made here,
             which takes most of the time.
         files: The calibrations' files, for the command that makes the page again.
+        process_noise: Of a flight path or an aircraft, as of AircraftFit.smooth(): with it the page
+            has the states with their bands, the innovations and the smoothed noise.
         progress: Is told what is being done, a few words a step.
 
     Raises:
         Error: No calibration, several models, no flight, bad input as in Calibration.compare(),
             plotly is not installed, a file that can't be written.
     """
-    chain = [calibrations] if isinstance(calibrations, Calibration) else list(calibrations)
-    if not all(isinstance(one, Calibration) for one in chain):
+    chain: list[Any] = (
+        [calibrations] if isinstance(calibrations, Calibration | AircraftFit) else [*calibrations]
+    )
+    kinds = {type(each) for each in chain}
+    if not kinds <= {Calibration, AircraftFit}:
         raise _core.Error("a report is of calibrations; read their files by sepcal.load(file)")
     if not chain:
         raise _core.Error("a report needs a calibration; give one or several")
+    if len(kinds) > 1:
+        raise _core.Error("a report is of sensors or of an aircraft; give calibrations of one kind")
+    if process_noise and kinds == {Calibration}:
+        raise _core.Error("process_noise is for models with a state: a flight path, an aircraft")
     plotly = read_plotly()
-    report_progress = progress or (lambda _: None)
-    material = gather(chain, flight, diagnosis, [os.fspath(at) for at in files], report_progress)
-    report_progress("drawing")
-    write_whole(os.fspath(file), build_page(compose(material, os.fspath(file)), plotly))
+    told, target = progress or (lambda _: None), os.fspath(file)
+    names = [os.fspath(at) for at in files]
+    if kinds == {AircraftFit}:
+        page = compose_flown(gather_flown(chain, flight, names, process_noise or {}, told), target)
+    else:
+        page = compose(gather(chain, flight, diagnosis, names, told), target)
+    told("drawing")
+    write_whole(target, build_page(page, plotly))

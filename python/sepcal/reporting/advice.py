@@ -10,16 +10,19 @@ import shlex
 from html import escape
 
 from sepcal import _core
-from sepcal.calibration import Calibration
 from sepcal.reporting import tables
 from sepcal.reporting.gather import Material
 from sepcal.reporting.words import number, with_unit
+from sepcal.results import Fit
 
 TWINS = 4  # effects that would do as well, or pairs, that are named
 
 
-def warn(last: Calibration) -> list[str]:
-    """What to know of the fit before reading on, HTML lines; its whole message where it failed."""
+def warn(last: Fit, section: int) -> list[str]:
+    """What to know of the fit before reading on, HTML lines; its whole message where it failed.
+
+    `section` has the parameters.
+    """
     lines = []
     if last.status != "converged":
         lines.append(f"<b>{escape(last.status.replace('_', ' '))}:</b> {escape(last.message)}")
@@ -28,7 +31,7 @@ def warn(last: Calibration) -> list[str]:
         lines.append(
             f"{'One combination' if count == 1 else f'{count} combinations'} of the parameters "
             f"{'is' if count == 1 else 'are'} poorly determined by this flight; "
-            '<a href="#s8">section 8</a> has them.'
+            f'<a href="#s{section}">section {section}</a> has them.'
         )
     if last.at_bound:
         names = ", ".join(f"<code>{escape(name)}</code>" for name in last.at_bound)

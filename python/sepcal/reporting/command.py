@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from sepcal._core import Error
@@ -32,6 +33,14 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     parser.add_argument(
         "-o", "--output", metavar="REPORT.html", default="report.html", help="default: report.html"
     )
+    parser.add_argument(
+        "--process-noise",
+        metavar="NAME=SD",
+        action="append",
+        default=[],
+        help="of a flight path or an aircraft: root of the spectral density of a noise that drives "
+        "the states; the page then has smoothed states, innovations and noise; may be repeated",
+    )
     parser.set_defaults(run=run)
 
 
@@ -50,10 +59,29 @@ def run(arguments: argparse.Namespace) -> int:
 
     try:
         report(
-            chain, arguments.output, flight, files=arguments.calibrations, progress=report_progress
+            chain,
+            arguments.output,
+            flight,
+            files=arguments.calibrations,
+            process_noise=read_noise(arguments.process_noise),
+            progress=report_progress,
         )
     finally:
         if live:
             print("\r\033[K", end="", file=sys.stderr, flush=True)
     print(f"wrote {arguments.output}")
     return 0
+
+
+def read_noise(texts: Sequence[str]) -> dict[str, float]:
+    """{name: sd} of NAME=SD. Raises Error for another form."""
+    noise = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        try:
+            noise[name] = float(value)
+        except ValueError:
+            equals = ""
+        if not name or not equals:
+            raise Error(f"--process-noise {text}: write it as NAME=SD, az=0.01")
+    return noise

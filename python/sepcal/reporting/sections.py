@@ -19,6 +19,7 @@ from sepcal.reporting.sections_flight import show_coverage, show_noise
 from sepcal.reporting.thin import say_thinned
 
 CHANNELS = 12  # drawn; the others are named
+PARAMETERS = 8  # the section's number
 
 
 def compose(material: Material, file: str) -> Page:
@@ -70,7 +71,7 @@ def show_verdict(material: Material) -> str:
     heading = f"<b>{escape(material.title)}</b> · {escape(kind)}" + (
         f" with {escape(effects)}" if effects else ""
     )
-    warnings = advice.warn(last)
+    warnings = advice.warn(last, PARAMETERS)
     if not material.is_fitted_flight:
         fitted = material.description["inputs"]["file"]
         warnings.append(f"The calibration was fitted on another flight, {escape(fitted)}.")
@@ -185,10 +186,12 @@ def show_candidates(material: Material) -> Section:
     for effect in material.diagnosis.found[:1]:
         extra.append(tables.list_absorbed(effect, material.last))
     unexplained = material.diagnosis.unexplained
-    if material.diagnosis.verdict == "unexplained" and unexplained.get("where"):
+    for cause in material.diagnosis.unlogged:
+        extra.append(f"<p>In this flight, {escape(cause['sentence'])}.</p>")
+    if unexplained["significant"]:
         extra.append(
             f"<p>Structure that no candidate explains, p = "
-            f"{words.probability(unexplained.get('p_value'))}: {escape(unexplained['where'])}.</p>"
+            f"{words.probability(unexplained['p_adjusted'])}: {escape(unexplained['where'])}.</p>"
         )
     return Section("Ranked candidates", lead, extra)
 
@@ -259,7 +262,7 @@ def show_parameters(material: Material) -> Section:
         "would be if they were white. Neither covers a cause that the model lacks."
     )
     blocks: list[str | Figure | Grid] = [
-        tables.list_parameters(material.last),
+        tables.list_parameters(material.last, material.last.derived),
         tables.list_directions(material.last.unobservable, material.last.weak),
     ]
     return Section("Parameters", lead, blocks)

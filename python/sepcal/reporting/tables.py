@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from html import escape
 
 import numpy as np
@@ -21,6 +21,7 @@ from sepcal.reporting.words import (
     probability,
     with_unit,
 )
+from sepcal.results import Fit
 
 SHOWN = 10  # candidates; the others are folded away
 NEGLIGIBLE = 0.3  # standard errors: a shift that needs no table
@@ -65,7 +66,7 @@ def drop(before: float | None, after: float | None) -> float | None:
 
 
 def list_calibrations(
-    chain: Sequence[Calibration], files: Sequence[str], comparisons: Sequence[Comparison]
+    chain: Sequence[Fit], files: Sequence[str], comparisons: Sequence[Comparison]
 ) -> str:
     """RMSE of every calibration of the chain on this flight."""
     outputs = [misfit.output for misfit in comparisons[-1].overall]
@@ -189,10 +190,16 @@ def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5
     return title + table(head, rows)
 
 
-def list_parameters(calibration: Calibration) -> str:
+def list_parameters(
+    calibration: Fit,
+    derived: Mapping[str, _core.Derived] | None = None,
+    leave_out: Collection[str] = (),
+) -> str:
     """Estimates with both standard errors, flags, and the most correlated partner."""
     rows = []
     for i, parameter in enumerate(calibration.parameters.values()):
+        if parameter.name in leave_out:
+            continue
         partner, r = find_partner(calibration, i)
         strong = abs(r) >= 0.9
         told = f"{escape(partner)} {number(r, 3 if abs(r) > 0.95 else 2)}" if partner else "–"
@@ -207,20 +214,20 @@ def list_parameters(calibration: Calibration) -> str:
         ])  # fmt: skip
     head = [("parameter", False), ("", False), ("value", True), ("standard error", True),
             ("if white", True), ("most correlated with", True), ("", False)]  # fmt: skip
-    for derived in calibration.derived.values():
+    for follows in (derived or {}).values():
         rows.append([
-            f"<b>{escape(derived.name)}</b>",
-            f"<small>follows from the others: {MEANINGS.get(derived.name, '')}</small>",
-            with_unit(derived.value, derived.unit, 6),
-            number(derived.standard_error, 2),
-            number(derived.standard_error_white, 2),
+            f"<b>{escape(follows.name)}</b>",
+            f"<small>follows from the others: {MEANINGS.get(follows.name, '')}</small>",
+            with_unit(follows.value, follows.unit, 6),
+            number(follows.standard_error, 2),
+            number(follows.standard_error_white, 2),
             "",
             "",
         ])  # fmt: skip
     return table(head, rows)
 
 
-def meaning(parameter: Parameter, calibration: Calibration) -> str:
+def meaning(parameter: Parameter, calibration: Fit) -> str:
     """In a few words; an effect's coefficient is named after the effect."""
     for effect in calibration.effects:
         if parameter.name.startswith(f"{effect.name}."):
@@ -235,7 +242,7 @@ def _flag(parameter: Parameter) -> str:
     return f'<span class="flag">{escape(parameter.remark)}</span>{bounds}'
 
 
-def find_partner(calibration: Calibration, i: int) -> tuple[str, float]:
+def find_partner(calibration: Fit, i: int) -> tuple[str, float]:
     """The parameter that parameter i is correlated with most, and how much; else ""."""
     row = np.array(calibration.correlation[i], dtype=float)
     row[i] = np.nan

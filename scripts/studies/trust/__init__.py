@@ -20,6 +20,7 @@ from studies.trust.minima import HARD_PROBLEMS, MINIMA
 from studies.trust.pairs import PAIR_SETS
 from studies.trust.part import Key, Part, Row
 from studies.trust.power import POWER
+from studies.trust.unlogged import UNLOGGED
 from studies.trust.verdicts import ALARMS, DECOY_CHANNELS
 
 PARTS: dict[str, Part] = {
@@ -27,6 +28,7 @@ PARTS: dict[str, Part] = {
     "decoys": DECOY_CHANNELS,
     "power": POWER,
     "pairs": PAIR_SETS,
+    "unlogged": UNLOGGED,
     "errors": ERRORS,
     "minima": MINIMA,
     "hard": HARD_PROBLEMS,

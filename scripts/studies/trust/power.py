@@ -12,15 +12,20 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cache
 
+import numpy as np
+
 from sepcal import Calibration, Error
 from sepcal.diagnosis import Diagnosis
-from studies.hidden_effects.cases import CASES, Case, calibrate, factor_for
+from sepcal.simulation import SimulatedFlight, simulate
+from studies.hidden_effects.cases import CASES, OUTPUTS, Case, calibrate, factor_for
 from studies.study import Finding, seed_range
 from studies.trust.flights import fly
 from studies.trust.part import Key, Part, Row
 
 NOISES = ("white", "white + GM 60 s")
 STEPS = ("bias_step", "water_blockage")
+ADD_TO_READINGS = ("bias", "warm_up", "bias_step")  # of a magnetometer
+QUIET = dict.fromkeys(OUTPUTS["magnetometer"], 1e-9)
 AS_LIKELY = 9.2  # in -2 ln L
 MOST_ADDED = 3  # of what would do as well
 
@@ -65,19 +70,37 @@ def _try(key: Key) -> Row:
         "withheld": diagnosis.advice["withheld"],
     }
     if row["advice"]:
-        row["harm"] = _harm(base, base.add(row["advice"]), quiet.truth)
+        row["harm"] = _harm(base, base.add(row["advice"]), _truths(quiet, rows, seed))
     if noise == "white" and diagnosis.found:
         row["differences"] = _differences(base, diagnosis)
     return row
 
 
-def _harm(base: Calibration, better: Calibration, truth: dict[str, float]) -> float:
+def _truths(quiet: SimulatedFlight, rows: int, seed: int) -> dict[str, list[float]]:
+    """What each parameter of the probe may be: a hard iron with or without the effect's mean.
+
+    Which of the two it is depends on where the added effect is zero. The wind is the flight's.
+    """
+    truths = {name: [value] for name, value in quiet.truth.items() if not name.startswith("w_")}
+    if quiet.effects[0].split("[")[0] in ADD_TO_READINGS:
+        without = simulate("magnetometer", rows=rows, seed=seed, noise=QUIET)
+        for axis in "xyz":
+            header = f"m{axis}_ut"
+            mean = float(np.mean(np.subtract(quiet[header], without[header])))
+            truths[f"n_{axis}"].append(quiet.truth[f"n_{axis}"] + mean)
+    return truths
+
+
+def _harm(base: Calibration, better: Calibration, truths: dict[str, list[float]]) -> float:
     """How much further from the truth the worst parameter is, in standard errors of after."""
+
+    def error(calibration: Calibration, name: str) -> float:
+        return min(abs(calibration[name].value - truth) for truth in truths[name])
+
     moves = [
-        (abs(better[name].value - truth[name]) - abs(before.value - truth[name]))
-        / better[name].standard_error
+        (error(better, name) - error(base, name)) / better[name].standard_error
         for name, before in base.parameters.items()
-        if name in truth and not before.fixed and better[name].standard_error > 0.0
+        if name in truths and not before.fixed and better[name].standard_error > 0.0
     ]
     return max((move for move in moves if math.isfinite(move)), default=0.0)
 
@@ -125,17 +148,31 @@ def _sizes(rows: Sequence[Row]) -> list[Finding]:
 
 def _advice(rows: Sequence[Row]) -> list[Finding]:
     given = [row for row in rows if row.get("advice")]
-    harmed = Counter(row["effect"] for row in given if row["harm"] > 2.0)
-    names = ", ".join(f"{name} ({n})" for name, n in sorted(harmed.items()))
+    harmed = [row for row in given if row["harm"] > 2.0]
+    by_truth = [row for row in harmed if row["advice"] == row["effect"]]
+    by_another = [row for row in harmed if row["advice"] != row["effect"]]
+
+    def named(rows: Sequence[Row]) -> str:
+        counts = Counter(f"{row['effect']} ({row['key'][2]})" for row in rows)
+        return f"{len(rows)} of {len(given)}: " + ", ".join(
+            f"{name} x {n}" for name, n in sorted(counts.items())
+        )
+
     firsts = [row for row in rows if row.get("first")]
     wrongly = sum(not row["advice"] and bool(row["withheld"]) for row in firsts)
     said = "advice withheld though the true effect came first"
     return [
         Finding(
-            "advice that moves a parameter from the truth by over two standard errors",
-            f"{sum(harmed.values())} of {len(given)}: {names}",
+            "advice of another effect that moves a parameter from the truth by over two errors",
+            named(by_another),
             "none",
-            not harmed,
+            not by_another,
+        ),
+        Finding(
+            "advice of the true effect that does: its errors are too small",
+            named(by_truth),
+            "reported",
+            True,
         ),
         Finding(said, f"{wrongly} of {len(firsts)}", "reported", True),
     ]

@@ -27,7 +27,7 @@ struct CalibrationOptions {
 /// The flight that was fitted.
 struct FittedFlight {
   std::string file;
-  std::string sha256;  // of the file's bytes; empty for arrays
+  std::string sha256;  // of the file's bytes; of arrays empty, for an aircraft that of their values
   std::size_t rows = 0;
   std::size_t rows_used = 0;  // by stage two
 };

@@ -54,6 +54,9 @@ FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& ca
 /// The verdict in one sentence: what error is left, the noise's floor, the strongest cause.
 std::string verdict_sentence(const FlightDiagnosis& diagnosis);
 
+/// "common cause, not logged: in mx and mz together, strongest from 40 to 52 s, at 0.35 Hz".
+std::string describe(const UnloggedCause& cause);
+
 /// The JSON object of interface.md's `diagnose`.
 std::string to_json(const FlightDiagnosis& diagnosis);
 

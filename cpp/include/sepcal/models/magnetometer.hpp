@@ -9,6 +9,7 @@
 
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
+#include "sepcal/models/triad.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -45,15 +46,8 @@ struct Magnetometer {
   /// C_alpha C_eta (3 x 3).
   template <class X>
   static Eigen::Matrix<X, 3, 3> soft_iron_and_misalignment(const Vec<X, 6>& xi2) {
-    const X one(1.0);
-    Eigen::Matrix<X, 3, 3> C_eta;
-    C_eta << one, -xi2[2], xi2[1],  //
-        xi2[2], one, -xi2[0],       //
-        -xi2[1], xi2[0], one;
-    Eigen::Matrix<X, 3, 3> C_alpha;
-    C_alpha << one, xi2[3], xi2[4],  //
-        xi2[3], one, xi2[5],         //
-        xi2[4], xi2[5], one;
+    const Eigen::Matrix<X, 3, 3> C_eta = Misalignment::matrix(Vec<X, 3>(xi2.template head<3>()));
+    const Eigen::Matrix<X, 3, 3> C_alpha = CrossCoupling::matrix(Vec<X, 3>(xi2.template tail<3>()));
     return C_alpha * C_eta;
   }
 };

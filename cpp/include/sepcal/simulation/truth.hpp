@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "sepcal/simulation/aircraft.hpp"
 #include "sepcal/simulation/simulate.hpp"
 
 namespace sepcal {
@@ -15,6 +16,7 @@ namespace sepcal {
 std::string to_json(const FiveHoleTruth& truth);
 std::string to_json(const PitotStaticTruth& truth);
 std::string to_json(const MagnetometerTruth& truth);
+std::string to_json(const AircraftTruth& truth);  // and "aircraft", see flight/aircraft_file.hpp
 
 /// The truth as it was flown: every parameter of the hidden effects has its value, by name.
 template <class Truth>
@@ -32,5 +34,6 @@ Truth as_flown(Truth truth, const SimulatedFlight& flight) {
 FiveHoleTruth parse_five_hole_truth(std::string_view json, const std::string& source);
 PitotStaticTruth parse_pitot_static_truth(std::string_view json, const std::string& source);
 MagnetometerTruth parse_magnetometer_truth(std::string_view json, const std::string& source);
+AircraftTruth parse_aircraft_truth(std::string_view json, const std::string& source);
 
 }  // namespace sepcal

@@ -57,6 +57,7 @@ EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
   for (const AliasRow& row : table.aliases) {
     kit.aliases[row.name] = [&row](const Record& record) { return resolve(row, record); };
   }
+  kit.wandering = table.wandering;
   for (const auto& [name, maker] : own) kit.own[name] = maker;
   return kit;
 }

@@ -17,4 +17,11 @@ EffectKit::Maker in_time(Delay::Kind kind, double bound, const std::vector<std::
   };
 }
 
+EffectKit::Maker wandering_angle(const std::string& input) {
+  return [=](const BlockModel& model, EffectSetting& /*setting*/, Record& record) {
+    const Port port{.name = input, .unit = "rad", .components = {{.name = "s", .input = input}}};
+    return make_driven(input + " error", port, constant_driver(), port.unit, model, record);
+  };
+}
+
 }  // namespace sepcal::catalogue

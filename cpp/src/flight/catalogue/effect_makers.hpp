@@ -20,4 +20,7 @@ EffectKit::Maker renamed(const std::string& means, const Port& port);
 EffectKit::Maker in_time(Delay::Kind kind, double bound,
                          const std::vector<std::string>& inputs = {});
 
+/// The error of an angle among the model's inputs.
+EffectKit::Maker wandering_angle(const std::string& input);
+
 }  // namespace sepcal::catalogue

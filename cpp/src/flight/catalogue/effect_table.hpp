@@ -74,6 +74,7 @@ struct EffectTable {
   std::vector<EffectRow> effects;
   std::vector<AliasRow> aliases;
   std::vector<Channel> channels;
+  std::vector<EffectKit::Maker> wandering = {};  // errors of the attitude
 
   /// nullptr where there is none of that name.
   const PortRow* find_port(const std::string& name) const;

@@ -174,6 +174,7 @@ EffectTable five_hole_effects() {
        .maker = maker_of(effects::MountingError{})}};
   table.aliases = air_data_aliases("throttle");
   table.channels = air_data_channels();
+  table.wandering = {wandering_angle("roll"), wandering_angle("pitch"), wandering_angle("yaw")};
   return table;
 }
 

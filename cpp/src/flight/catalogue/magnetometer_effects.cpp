@@ -105,6 +105,7 @@ EffectTable magnetometer_effects() {
        .maker = maker_of(effects::AttitudeBias{})}};
   table.aliases = magnetic_aliases();
   table.channels = magnetic_channels();
+  table.wandering = {maker_of(effects::AttitudeBias{}), maker_of(effects::FieldDeclination{})};
   return table;
 }
 

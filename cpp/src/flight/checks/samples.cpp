@@ -71,7 +71,7 @@ void note_slow(const Log& log, const SlowColumns& group, std::vector<LogNote>& n
   } else {
     note.effect = fmt::format(
         "rows between count as measurements: the white standard errors are up to {:.2g} times too "
-        "small, and the noise is smoother than the sensor's",
+        "small, and turns between them are cut straight, which no standard error tells",
         std::sqrt(rate));
     note.advice = fmt::format("log what was measured, or keep one row in {:.0f}", rate);
   }

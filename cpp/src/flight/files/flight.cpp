@@ -110,6 +110,8 @@ Flight read_csv(const std::string& file, const Progress& progress) {
       }
     }
   }
+  labels.shrink_to_fit();
+  for (GrowingColumn& column : columns) column.values.shrink_to_fit();
   Flight flight(file, reader.sha256());
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (i == maneuver_at) continue;

@@ -20,13 +20,27 @@ constexpr std::array units{
     Unit{"deg", angle, pi, 180},
     Unit{"radps", rate},
     Unit{"degps", rate, pi, 180},
+    Unit{"radps2", angular_acceleration},
+    Unit{"degps2", angular_acceleration, pi, 180},
+    Unit{"m", length},
+    Unit{"ft", length, 0.3048, 1},
     Unit{"mps", speed},
     Unit{"kt", speed, 1852, 3600},  // the international nautical mile an hour
     Unit{"kmh", speed, 1000, 3600},
+    Unit{"ftps", speed, 0.3048, 1},
+    Unit{"mps2", acceleration},
+    Unit{"g", acceleration, 9.80665, 1},
+    Unit{"ftps2", acceleration, 0.3048, 1},
+    Unit{"kg", mass},
+    Unit{"lb", mass, 0.45359237, 1},
+    Unit{"slug", mass, 4.4482216152605, 0.3048},  // lbf s^2/ft
+    Unit{"n", force},
+    Unit{"lbf", force, 4.4482216152605, 1},
     Unit{"pa", pressure},
     Unit{"hpa", pressure, 100, 1},
     Unit{"kpa", pressure, 1000, 1},
     Unit{"psi", pressure, 4.4482216152605, 0.0254 * 0.0254},  // lbf/in^2
+    Unit{"psf", pressure, 4.4482216152605, 0.3048 * 0.3048},  // lbf/ft^2
     Unit{"torr", pressure, 101325, 760},
     Unit{"ut", field},
     Unit{"nt", field, 1, 1000},
@@ -35,6 +49,9 @@ constexpr std::array units{
     Unit{"k", temperature},
     Unit{"degc", temperature, 1, 1, 273.15},
     Unit{"kgpm3", density},
+    Unit{"slugpft3", density, 4.4482216152605, 0.3048 * 0.3048 * 0.3048 * 0.3048},  // lbf s^2/ft^4
+    Unit{"1", share},
+    Unit{"pct", share, 1, 100},
 };
 
 }  // namespace

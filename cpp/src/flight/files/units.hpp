@@ -10,7 +10,22 @@
 namespace sepcal::files {
 
 /// Kinds of physical quantity that a probe's columns have.
-enum class UnitKind { time, angle, rate, speed, pressure, field, temperature, density };
+enum class UnitKind {
+  time,
+  angle,
+  rate,
+  angular_acceleration,
+  length,
+  speed,
+  acceleration,
+  mass,
+  force,
+  pressure,
+  field,
+  temperature,
+  density,
+  share  // of one
+};
 
 /// A unit as CSV headers spell it: "kt" of "vn_kt".
 struct Unit {

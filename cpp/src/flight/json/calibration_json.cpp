@@ -2,13 +2,11 @@
 // BASE.json, written and read. Every key of interface.md's "Results" is here and nowhere else.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "flight/files/text_file.hpp"
 #include "flight/json/findings_json.hpp"
+#include "flight/json/fit_json.hpp"
 #include "flight/json/options_json.hpp"
 #include "flight/json/output_values.hpp"
 #include "flight/json/version_1.hpp"
@@ -21,177 +19,23 @@ using namespace json;  // this room's own
 
 namespace {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::string> estimated_names(const Fit& fit) {
-  std::vector<std::string> names;
-  for (const Parameter& parameter : fit.parameters) {
-    if (!parameter.fixed) names.push_back(parameter.name);
-  }
-  return names;
-}
-
-std::vector<std::string> sampled_names(const Fit& fit) {
-  std::vector<std::string> names;
-  for (auto k = static_cast<std::size_t>(fit.n_1); k < fit.parameters.size(); ++k) {
-    if (!fit.parameters[k].fixed) names.push_back(fit.parameters[k].name);
-  }
-  return names;
-}
-
-std::vector<Index> estimated_indices(const Fit& fit) {
-  std::vector<Index> indices;
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    if (!fit.parameters[k].fixed) indices.push_back(static_cast<Index>(k));
-  }
-  return indices;
-}
-
-// --- parameters
-
-Json write_parameters(const Fit& fit) {
-  Json parameters = Json::object();
-  int k = 0;
-  for (const Parameter& parameter : fit.parameters) {
-    parameters[parameter.name] = {
-        {"value", number(parameter.value)},
-        {"standard_error", number(parameter.standard_error)},
-        {"standard_error_white", number(parameter.standard_error_white)},
-        {"standard_error_noise_model", number(parameter.standard_error_noise_model)},
-        {"standard_error_blocks", number(parameter.standard_error_blocks)},
-        {"unit", parameter.unit},
-        {"lower", number(parameter.lower)},
-        {"upper", number(parameter.upper)},
-        {"at_bound", parameter.at_bound},
-        {"kind", k < fit.n_1 ? "linear" : "nonlinear"}};
-    ++k;
-  }
-  return parameters;
-}
-
-/// Whether a parameter was held: by an option, or at the time that a step was found at.
-bool is_held(const CalibrationOptions& options, const std::string& name) {
-  if (options.fit.fixed.contains(name)) return true;
-  return std::ranges::any_of(options.effects, [&](const EffectSetting& setting) {
-    return setting.t0 && name == setting.name + ".t0";
-  });
-}
-
-void read_parameters(const Json& parameters, const Calibration& calibration, Fit& fit) {
-  for (const auto& [name, entry] : entries_of(parameters)) {
-    fit.parameters.push_back(
-        {.name = name,
-         .unit = entry.at("unit").get<std::string>(),
-         .value = entry.at("value").get<double>(),
-         .standard_error = number_or(entry.at("standard_error"), undefined),
-         .standard_error_white = number_or(entry.at("standard_error_white"), undefined),
-         .standard_error_noise_model = number_at(entry, "standard_error_noise_model"),
-         .standard_error_blocks = number_at(entry, "standard_error_blocks"),
-         .lower = number_or(entry.at("lower"), -infinity),
-         .upper = number_or(entry.at("upper"), infinity),
-         .at_bound = entry.at("at_bound").get<bool>(),
-         .fixed = is_held(calibration.options, name)});
-    if (entry.at("kind") == "linear") ++fit.n_1;
-  }
-  for (const Variable& own : calibration.probe->model().tables().parameters()) fit[own.name];
-}
-
-/// Correlation holds all that the covariance does beyond the standard errors. Of the others nothing
-/// but the standard errors is kept.
-void read_correlation(const Json& correlation, Fit& fit) {
-  const auto n = static_cast<Index>(fit.parameters.size());
-  fit.correlation = Eigen::MatrixXd::Constant(n, n, undefined);
-  const std::vector<Index> indices = estimated_indices(fit);
-  fit.correlation(indices, indices) =
-      matrix_of(correlation.at("matrix"), static_cast<Index>(indices.size()));
-  VectorXd errors(n);
-  fit.covariance_white = Eigen::MatrixXd::Constant(n, n, undefined);
-  fit.covariance_noise_model = fit.covariance_blocks = fit.covariance_white;
-  for (Index k = 0; k < n; ++k) {
-    const Parameter& parameter = fit.parameters[static_cast<std::size_t>(k)];
-    errors[k] = parameter.standard_error;
-    fit.covariance_white(k, k) = std::pow(parameter.standard_error_white, 2);
-    fit.covariance_noise_model(k, k) = std::pow(parameter.standard_error_noise_model, 2);
-    fit.covariance_blocks(k, k) = std::pow(parameter.standard_error_blocks, 2);
-  }
-  fit.covariance = errors.asDiagonal() * fit.correlation * errors.asDiagonal();
-}
-
-// --- stages
-
-Json write_stage_one(const Calibration& calibration) {
-  const Fit& fit = calibration.fit;
-  const std::vector<std::string> names = sampled_names(fit);
-  Json minima = Json::array();
-  for (const LocalMinimum& minimum : fit.stage_one.minima) {
-    minima.push_back({{"xi2", point(names, minimum.xi2)}, {"trace_r", number(minimum.trace_r)}});
-  }
-  return {{"samples", calibration.options.fit.samples},
-          {"best", point(names, fit.stage_one.best)},
-          {"trace_r", number(fit.stage_one.best_trace_r)},
-          {"minima", minima},
-          {"unique_minimum", fit.stage_one.unique_minimum},
-          {"flat_directions", fit.stage_one.flat_directions}};
-}
-
-StageOne read_stage_one(const Json& object, const Fit& fit) {
-  const std::vector<std::string> names = sampled_names(fit);
-  StageOne stage_one;
-  stage_one.best = point_of(names, object.at("best"));
-  stage_one.best_trace_r = number_or(object.at("trace_r"), undefined);
-  for (const Json& minimum : elements_of(object.at("minima"))) {
-    stage_one.minima.push_back(
-        {point_of(names, minimum.at("xi2")), number_or(minimum.at("trace_r"), undefined)});
-  }
-  stage_one.unique_minimum = object.at("unique_minimum").get<bool>();
-  stage_one.flat_directions = object.at("flat_directions").get<std::vector<std::string>>();
-  return stage_one;
-}
-
 std::vector<std::string> output_names(const Probe& probe) {
   std::vector<std::string> names;
   for (const Variable& output : probe.model().tables().outputs) names.push_back(output.name);
   return names;
 }
 
-FitStatus status_of(const std::string& name) {
-  for (const FitStatus status :
-       {FitStatus::converged, FitStatus::not_converged, FitStatus::not_identifiable}) {
-    if (to_string(status) == name) return status;
-  }
-  throw Error("status '" + name + "' is unknown");
-}
-
 Calibration read(const Json& root) {
   Calibration calibration;
   calibration.options = read_options(root.at("options"));
   calibration.probe = read_probe(root.at("model").get<std::string>(), root.at("options"));
-  const Json& inputs = root.at("inputs");
-  calibration.flight = {inputs.at("file").get<std::string>(),
-                        inputs.at("sha256").get<std::string>(),
-                        whole_number<std::size_t>(inputs.at("rows")),
-                        whole_number<std::size_t>(inputs.at("rows_used"))};
-  Fit& fit = calibration.fit;
-  fit.status = status_of(root.at("status").get<std::string>());
-  fit.message = root.at("message").get<std::string>();
-  read_parameters(root.at("parameters"), calibration, fit);
+  calibration.flight = read_inputs(root.at("inputs"));
+  calibration.fit = read_fit(root, calibration.options, output_names(*calibration.probe));
+  for (const Variable& own : calibration.probe->model().tables().parameters()) {
+    calibration.fit[own.name];
+  }
+  calibration.fit.rows = calibration.flight.rows_used;
   calibration.derived = read_derived(root.at("derived"));
-  read_correlation(root.at("correlation"), fit);
-  fit.identifiability.unobservable = read_combinations(root.at("unobservable"));
-  fit.identifiability.weak = read_combinations(root.at("weak"));
-  fit.cost = number_or(root.at("cost"), undefined);
-  const std::vector<std::string> outputs = output_names(*calibration.probe);
-  fit.rmse = values_by_name(outputs, root.at("rmse"));
-  fit.noise = values_by_name(outputs, root.at("noise"));
-  fit.iterations = whole_number<int>(root.at("iterations"));
-  fit.rows = calibration.flight.rows_used;
-  fit.stage_one = read_stage_one(root.at("stage_one"), fit);
-  fit.method = choice_of<SecondStage>("stage_two.method",
-                                      root.at("stage_two").at("method").get<std::string>());
-  fit.noise_iterations = whole_number<int>(root.at("stage_two").at("r_iterations"));
   calibration.history = read_history(root.at("history"));
   return calibration;
 }
@@ -224,30 +68,14 @@ void check_version(const Json& version, const std::string& source) {
 }  // namespace
 
 std::string to_json(const Calibration& calibration) {
-  const Fit& fit = calibration.fit;
-  const std::vector<Index> estimated = estimated_indices(fit);
   Json root;
   root["schema_version"] = schema_version;
   root["model"] = calibration.probe->name();
-  root["inputs"] = {{"file", calibration.flight.file},
-                    {"sha256", calibration.flight.sha256},
-                    {"rows", calibration.flight.rows},
-                    {"rows_used", calibration.flight.rows_used}};
+  root["inputs"] = write_inputs(calibration.flight);
   root["options"] = write_options(calibration);
-  root["status"] = to_string(fit.status);
-  root["message"] = fit.message;
-  root["parameters"] = write_parameters(fit);
+  write_estimates(calibration.fit, root);
   root["derived"] = write_derived(calibration.derived);
-  root["correlation"] = {{"names", estimated_names(fit)},
-                         {"matrix", matrix(fit.correlation(estimated, estimated))}};
-  root["unobservable"] = write_combinations(fit.identifiability.unobservable);
-  root["weak"] = write_combinations(fit.identifiability.weak);
-  root["cost"] = number(fit.cost);
-  root["rmse"] = by_name(fit.rmse);
-  root["noise"] = by_name(fit.noise);
-  root["iterations"] = fit.iterations;
-  root["stage_one"] = write_stage_one(calibration);
-  root["stage_two"] = {{"method", to_string(fit.method)}, {"r_iterations", fit.noise_iterations}};
+  write_rest(calibration.fit, calibration.options.fit, root);
   root["history"] = write_history(calibration.history);
   return text_of(root);
 }
@@ -259,6 +87,9 @@ Calibration parse_calibration(std::string_view json, const std::string& source,
       !root.contains("model") || !root["model"].is_string()) {
     throw Error(fmt::format("{} is not a calibration; give the JSON that fit wrote with -o{}",
                             source, json.empty() ? " (it is empty)" : ""));
+  }
+  if (root.contains("aircraft")) {
+    throw Error(source + " is a fit of an aircraft; use sepcal-aircraft for it");
   }
   check_version(root["schema_version"], source);
   Calibration calibration = read_or_refuse(root, source);

@@ -36,6 +36,7 @@ Json write_effect(const EffectFinding& effect, const std::string& sentence) {
           {"log10_p", number(effect.log10_p)},
           {"p_adjusted", number(effect.p_adjusted)},
           {"p_listed", number(effect.p_listed)},
+          {"share_after_selection", number(effect.share_after_selection)},
           {"predicted_drop", number(effect.predicted_drop)},
           {"held_out_gain", number(effect.held_out_gain)},
           {"held_out_before", number(effect.held_out_before)},
@@ -46,6 +47,18 @@ Json write_effect(const EffectFinding& effect, const std::string& sentence) {
           {"absorbed_by", write_values(effect.absorbed_by)},
           {"status", to_string(effect.status)},
           {"beside", to_string(effect.beside)}};
+}
+
+Json write_cause(const UnloggedCause& cause) {
+  return {{"kind", to_string(cause.kind)},
+          {"sentence", describe(cause)},
+          {"outputs", cause.outputs},
+          {"p_value", number(cause.p_value)},
+          {"p_adjusted", number(cause.p_adjusted)},
+          {"all_along", cause.all_along},
+          {"first_s", number(cause.first_s)},
+          {"last_s", number(cause.last_s)},
+          {"frequency_hz", number(cause.frequency)}};
 }
 
 Json write_residual(const ResidualNoise& residual) {
@@ -108,8 +121,14 @@ std::string to_json(const FlightDiagnosis& result) {
     windows.push_back({{"window", window}, {"sigmas", number(sigmas)}});
   }
   root["unexplained"] = {{"p_value", number(diagnosis.omnibus.p_value)},
+                         {"p_adjusted", number(diagnosis.omnibus.p_adjusted)},
+                         {"significant", diagnosis.omnibus.significant},
                          {"where", diagnosis.omnibus.where},
                          {"windows", windows}};
+  root["unlogged"] = Json::array();
+  for (const UnloggedCause& cause : diagnosis.unlogged) {
+    root["unlogged"].push_back(write_cause(cause));
+  }
   root["limits"] = Json::object();
   for (const DetectionLimit& limit : diagnosis.limits) {
     root["limits"][limit.port] = {{"size", number(limit.size)}, {"unit", limit.unit}};

@@ -50,6 +50,7 @@ Json write_effect(const EffectSetting& setting) {
   if (setting.centre) effect["centre"] = *setting.centre;
   if (setting.mean) effect["mean"] = *setting.mean;
   if (!setting.knots.empty()) effect["knots"] = setting.knots;
+  if (!setting.means.empty()) effect["means"] = setting.means;
   if (!setting.labels.empty()) effect["labels"] = setting.labels;
   if (setting.span) effect["span"] = {setting.span->first, setting.span->second};
   if (setting.t0) effect["t0"] = *setting.t0;
@@ -61,6 +62,7 @@ EffectSetting read_effect(const Json& object) {
   if (object.contains("centre")) setting.centre = object.at("centre").get<double>();
   if (object.contains("mean")) setting.mean = object.at("mean").get<double>();
   if (object.contains("knots")) setting.knots = object.at("knots").get<std::vector<double>>();
+  if (object.contains("means")) setting.means = object.at("means").get<std::vector<double>>();
   if (object.contains("labels")) {
     setting.labels = object.at("labels").get<std::vector<std::string>>();
   }
@@ -75,13 +77,19 @@ EffectSetting read_effect(const Json& object) {
 }  // namespace
 
 Json write_options(const Calibration& calibration) {
-  const FitOptions& fit = calibration.options.fit;
   Json options = Json::object();
   for (const auto& [name, values] : calibration.probe->settings()) {
     options[name] = values.size() == 1 ? Json(values.front()) : Json(values);
   }
+  options.update(write_options(calibration.options));
+  return options;
+}
+
+Json write_options(const CalibrationOptions& chosen) {
+  const FitOptions& fit = chosen.fit;
+  Json options = Json::object();
   options["effects"] = Json::array();
-  for (const EffectSetting& setting : calibration.options.effects) {
+  for (const EffectSetting& setting : chosen.effects) {
     options["effects"].push_back(write_effect(setting));
   }
   options["stage_one"] = fit.stage_one_segments;
@@ -92,7 +100,7 @@ Json write_options(const Calibration& calibration) {
   }
   options["start"] = fit.start;
   options["fix"] = fit.fixed;
-  options["free"] = calibration.options.free;
+  options["free"] = chosen.free;
   options["noise"] = fit.noise;
   options["prior"] = write_normals(fit.prior);
   options["search"] = to_string(fit.search);
@@ -111,7 +119,7 @@ Json write_options(const Calibration& calibration) {
   options["iterations"] = fit.iterations;
   options["coloured_errors"] = fit.coloured_errors;
   options["threads"] = fit.threads;
-  options["drop_invalid"] = calibration.options.drop_invalid;
+  options["drop_invalid"] = chosen.drop_invalid;
   return options;
 }
 

@@ -13,6 +13,9 @@ namespace sepcal::json {
 /// The probe's settings and the fit's options, one object.
 Json write_options(const Calibration& calibration);
 
+/// The fit's options alone.
+Json write_options(const CalibrationOptions& options);
+
 /// Throw Error or Json::exception for an object that write_options() did not write.
 CalibrationOptions read_options(const Json& options);
 std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options);

@@ -43,13 +43,13 @@ void need_airspeed(RecordBuilder& builder, const Flight& flight) {
 }
 
 /// A tube in still air reads noise about zero, or the zero that its driver makes of it.
-RecordBuilder::RowTest air_moves(const RecordBuilder& builder) {
+RecordBuilder::RowTest air_meets_tube(const RecordBuilder& builder) {
   return [reading = builder.logged(has_airspeed(builder) ? "airspeed" : "dp")](std::size_t row) {
     return reading.at(row) > 0;
   };
 }
 
-const char* still_air(const RecordBuilder& builder) {
+const char* still_in_tube(const RecordBuilder& builder) {
   return has_airspeed(builder) ? "airspeed is not above zero" : "dp is not above zero";
 }
 
@@ -60,7 +60,7 @@ ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
   builder.need({"time", "vn", "ve", "vd"});
   need_airspeed(builder, flight);
   builder.check_time();
-  keep_moving_air(builder, flight, air_moves(builder), still_air(builder),
+  keep_moving_air(builder, flight, air_meets_tube(builder), still_in_tube(builder),
                   "check the column, or cut the log to the flight");
   if (has_airspeed(builder)) {
     offer_density(builder);
@@ -76,7 +76,7 @@ ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
 ProbeReadings read_pitot_static(const Flight& flight, bool drop_invalid) {
   RecordBuilder builder(flight, quantities_of("pitot-static"), drop_invalid);
   need_airspeed(builder, flight);
-  builder.keep(air_moves(builder), still_air(builder));
+  builder.keep(air_meets_tube(builder), still_in_tube(builder));
   if (has_airspeed(builder) && !offer_density(builder)) {
     builder.compute("rho", [](std::size_t) { return PitotStatic::sea_level_density; });
   }

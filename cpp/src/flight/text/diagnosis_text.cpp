@@ -51,6 +51,11 @@ std::string estimates(const EffectFinding& effect) {
   }
   if (effect.coefficients.size() > most) text += ", ...";
   text += " " + effect.coefficients.front().unit;
+  constexpr double told = 0.95;
+  if (effect.share_after_selection < told) {
+    text += fmt::format(" (chosen among many: more likely {:.2g} of that)",
+                        effect.share_after_selection);
+  }
   for (const auto& [name, value] : effect.shapes) {
     text += fmt::format(", {} {:.10g}", name.substr(name.rfind('.') + 1), value);
   }
@@ -149,15 +154,17 @@ std::string unexplained_rows(const Omnibus& omnibus) {
 std::string to_text(const FlightDiagnosis& result, Detail detail) {
   const Diagnosis& diagnosis = result.diagnosis;
   std::string page =
-      fmt::format("{}: {} of {} rows of {}\n{}\n\n", result.model, result.flight.rows_used,
+      fmt::format("{}: {} of {} rows of {}\n{}\n", result.model, result.flight.rows_used,
                   result.flight.rows, result.flight.file, verdict_sentence(result));
+  for (const UnloggedCause& cause : diagnosis.unlogged) page += describe(cause) + '\n';
+  page += '\n';
   if (result.status != FitStatus::converged) {
     page += fmt::format("of a fit whose status is {}\n{}\n", to_string(result.status),
                         text::sentence_lines(result.message, detail));
   }
   page += effect_rows(result);
   if (diagnosis.verdict == Verdict::effect_missing) page += best_effect(result);
-  if (diagnosis.verdict == Verdict::unexplained) page += unexplained_rows(diagnosis.omnibus);
+  if (diagnosis.omnibus.significant) page += unexplained_rows(diagnosis.omnibus);
   if (diagnosis.verdict != Verdict::effect_missing && !diagnosis.limits.empty()) {
     page += "\na slow change over the flight would have shown from:";
     for (const DetectionLimit& limit : diagnosis.limits) {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/flight/apply.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 
-#include <array>
-#include <charconv>
-#include <cmath>
-
+#include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/effect_readings.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/output_file.hpp"
@@ -14,18 +11,6 @@
 namespace sepcal {
 
 using namespace verbs;  // this room's own
-
-namespace {
-
-/// The shortest text that reads back as the same double; nothing for NaN.
-void append_number(std::string& line, double value) {
-  if (std::isnan(value)) return;
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  line.append(text.data(), end);
-}
-
-}  // namespace
 
 std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight& flight) {
   ProbeReadings readings = calibration.probe->read(flight, calibration.options.drop_invalid);
@@ -45,25 +30,8 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
                   .rows = flight.rows(),
                   .headers = probe.corrected_headers(),
                   .notes = readings.notes};
-  for (const std::string& header : applied.headers) {
-    if (flight.find(header) == nullptr) continue;
-    throw Error(fmt::format(
-        "{} has a column '{}' already; apply the calibration to the original log", file, header));
-  }
-  CsvReader lines(file);
-  std::string line(lines.text());
-  for (const std::string& header : applied.headers) line += "," + header;
-  target.write(line + "\n");
-  for (std::size_t row = 0; lines.next(); ++row) {
-    line = lines.text();
-    for (const CorrectedColumn& column : columns) {
-      line += ',';
-      append_number(line, column.values.at(row));
-    }
-    line += '\n';
-    target.write(line);
-    if (!readings.valid[row]) ++applied.rows_left_empty;
-  }
+  write_with_columns(flight, columns, target);
+  applied.rows_left_empty = static_cast<std::size_t>(std::ranges::count(readings.valid, false));
   target.commit();
   return applied;
 }

@@ -131,13 +131,35 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
           flight.prepared.notes};
 }
 
+/// Whether these options do what the note asks for.
+bool is_followed(const LogNote& note, const FitOptions& options) {
+  if (note.kind == "outliers") return options.loss != Loss::squares;
+  return note.kind == "at_rest" && !options.stage_two_segments.empty();
+}
+
+/// What a delay's reach takes from the segments' ends, where that is much.
+void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOptions& options,
+                std::vector<std::string>& notes) {
+  constexpr double much = 0.1;
+  const auto rows = static_cast<double>(whole.rows());
+  const std::size_t lost = whole.rows() - flight.prepared.record.rows();
+  if (!(static_cast<double>(lost) > much * rows)) return;
+  notes.push_back(fmt::format(
+      "{} of {} rows lie within {:.3g} s of the end of a segment, where a delay can't be followed "
+      "to its bounds, and are left out; narrower bounds keep more",
+      lost, whole.rows(), reach(flight.effects, options.bounds)));
+}
+
 }  // namespace
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   const PreparedFlight prepared = prepare(*probe, flight, options.drop_invalid);
-  Calibration calibration = calibrate(probe, prepared, options);
-  std::ranges::move(brief_notes(check(*probe, flight)), std::back_inserter(calibration.notes));
+  FlightCheck seen = check(*probe, flight);
+  std::erase_if(seen.notes, [&](const LogNote& note) { return is_followed(note, options.fit); });
+  auto notes = brief_notes(seen);
+  Calibration calibration = calibrate(std::move(probe), prepared, options);
+  std::ranges::move(notes, std::back_inserter(calibration.notes));
   return calibration;
 }
 
@@ -152,8 +174,11 @@ Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedF
   check_rows(
       *effective.model, held, flight,
       count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
-  return calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0},
-                      std::move(probe), std::move(held));
+  Calibration calibration =
+      calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0}, std::move(probe),
+                   std::move(held));
+  note_edges(prepared.readings.record, effective, options.fit, calibration.notes);
+  return calibration;
 }
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/parameter_values.hpp"
+#include "base/short_number.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_candidates.hpp"
 #include "flight/verbs/misfits.hpp"
@@ -234,6 +235,17 @@ FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& ca
       flight, [&] { return inject(injected, calibration, std::move(prepared), own, options); });
 }
 
+std::string describe(const UnloggedCause& cause) {
+  const bool common = cause.kind == UnloggedKind::common_cause;
+  std::string text = fmt::format("{}, not logged: in {}{}", common ? "common cause" : "line",
+                                 fmt::join(cause.outputs, " and "), common ? " together" : "");
+  text += cause.all_along ? ", all along"
+                          : fmt::format(", strongest from {} to {} s", base::stamp(cause.first_s),
+                                        base::stamp(cause.last_s));
+  if (!std::isnan(cause.frequency)) text += fmt::format(", at {:.2g} Hz", cause.frequency);
+  return text;
+}
+
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const Diagnosis& found = diagnosis.diagnosis;
   if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
@@ -243,11 +255,17 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const std::string left =
       fmt::format("{}{:.3g} {} of error are left; noise alone would leave {:.3g} {}", injected,
                   found.rmse, unit, found.floor, unit);
+  if (found.verdict == Verdict::unexplained && !found.omnibus.significant) {
+    return fmt::format(
+        "Something is missing that no candidate explains: {}; it follows no channel of the log "
+        "(p = {:.1g}).",
+        left, found.unlogged.front().p_adjusted);
+  }
   if (found.verdict == Verdict::unexplained) {
     return fmt::format(
         "Something is missing that no candidate explains: {}; it shows as offsets of {} from "
         "window to window (p = {:.1g}).",
-        left, found.omnibus.where, found.omnibus.p_value);
+        left, found.omnibus.where, found.omnibus.p_adjusted);
   }
   if (found.verdict == Verdict::adequate) {
     return fmt::format("Nothing is missing that this flight can show: {}.", left);

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <ranges>
+#include <utility>
 
 #include "sepcal/option_error.hpp"
 
 namespace sepcal::verbs {
 namespace {
 
-void check_freed(const Probe& probe, const CalibrationOptions& options) {
-  const std::vector<Variable> parameters = probe.model().tables().parameters();
+void check_freed(const std::vector<Variable>& parameters, const CalibrationOptions& options) {
   for (const std::string& name : options.free) {
     if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) {
       throw OptionError(
@@ -30,8 +30,15 @@ void check_freed(const Probe& probe, const CalibrationOptions& options) {
 }  // namespace
 
 CalibrationOptions hold(const Probe& probe, CalibrationOptions options) {
-  check_freed(probe, options);
-  for (const auto& [name, value] : probe.held()) {
+  return hold(probe.held(), probe.model().tables(), std::move(options));
+}
+
+CalibrationOptions hold(const std::map<std::string, double>& held, const Tables& tables,
+                        CalibrationOptions options) {
+  const std::vector<Variable> parameters = tables.parameters();
+  check_freed(parameters, options);
+  for (const auto& [name, value] : held) {
+    if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) continue;
     if (std::ranges::find(options.free, name) != options.free.end()) continue;
     if (options.fit.bounds.contains(name) && !options.fit.fixed.contains(name)) {
       throw OptionError({Option{"bounds"},

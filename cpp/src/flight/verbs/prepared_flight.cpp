@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "model/measurements.hpp"
-#include "model/sweep.hpp"
+#include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::verbs {
@@ -36,9 +35,7 @@ EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFl
 
 Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlight& effective,
                              base::ThreadPool& pool) {
-  const model::Measurements measurements(*effective.model, effective.prepared.record);
-  const model::Sweep sweep(*effective.model, measurements, pool);
-  return sweep.residuals(calibration.fit.xi1(), calibration.fit.xi2());
+  return residuals_of(*effective.model, effective.prepared.record, calibration.fit, pool);
 }
 
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,

@@ -76,7 +76,9 @@ std::string unit_of_slope(const Variable& output, const Tables& tables, const st
       {"be", "uT"},    {"bd", "uT"},      {"mx", "uT"},   {"my", "uT"},        {"mz", "uT"},
       {"hx", "uT"},    {"hy", "uT"},      {"hz", "uT"},   {"temperature", "K"}};
   const auto input = std::ranges::find(tables.inputs, name, &Variable::name);
-  if (input != tables.inputs.end()) return fmt::format("{} per {}", output.unit, input->unit);
+  if (input != tables.inputs.end()) {
+    return input->unit.empty() ? output.unit : fmt::format("{} per {}", output.unit, input->unit);
+  }
   const auto own = kept.find(name);
   if (own != kept.end()) return fmt::format("{} per {}", output.unit, own->second);
   return effects::coefficient_unit(

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "delivery.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "sepcal/error.hpp"
+
+namespace sepcal::app {
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw Error("standard output can't be written; is the disc full?");
+  }
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
+int exit_code(FitStatus status) {
+  switch (status) {
+    case FitStatus::converged:
+      return 0;
+    case FitStatus::not_identifiable:
+      return 4;
+    default:
+      return 5;
+  }
+}
+
+Delivery::Delivery(Wishes wishes, std::initializer_list<std::string> inputs)
+    : wishes_(std::move(wishes)) {
+  if (wishes_.output.empty()) return;
+  for (const std::string& input : inputs) check_not_input(wishes_.output, input);
+  file_.emplace(wishes_.output);
+}
+
+void Delivery::deliver(const std::string& json, const std::string& page) {
+  if (file_) {
+    file_->write(json);
+    file_->commit();
+  }
+  print(wishes_.json ? json : page);
+  if (file_ && !wishes_.json) print(fmt::format("wrote {}\n", wishes_.output));
+}
+
+}  // namespace sepcal::app

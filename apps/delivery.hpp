@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The way of a result: to its file first, then to standard output, for people or as JSON; notes to
+// standard error.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sepcal/fit.hpp"
+#include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/output_file.hpp"
+
+namespace sepcal::app {
+
+/// Prints a result and makes sure that it arrived: a full disc behind a redirection is an error.
+void print(const std::string& text);
+
+void print_notes(const std::vector<std::string>& notes);
+
+inline Detail detail_of(bool explain) { return explain ? Detail::explained : Detail::brief; }
+
+/// 0 converged, 4 not identifiable, 5 not converged.
+int exit_code(FitStatus status);
+
+class Delivery {
+ public:
+  struct Wishes {
+    std::string output;    // the file of -o, or empty
+    bool json = false;     // on standard output
+    bool explain = false;  // the whole message of the fit
+  };
+
+  /// The file is opened before the work, so that one that can't be written is refused at once.
+  /// Throws Error where -o names one of `inputs` or can't be written.
+  Delivery(Wishes wishes, std::initializer_list<std::string> inputs);
+
+  template <class Result>
+  void deliver(const Result& result) {
+    print_notes(result.notes);
+    deliver(to_json(result), to_text(result, detail_of(wishes_.explain)));
+  }
+
+  void deliver(const std::string& json, const std::string& page);
+
+ private:
+  Wishes wishes_;
+  std::optional<OutputFile> file_;
+};
+
+}  // namespace sepcal::app

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "running.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "sepcal/flight/csv.hpp"
+#include "sepcal/option_error.hpp"
+#include "sepcal/solver_log.hpp"
+
+namespace sepcal::app {
+namespace {
+
+constexpr int bad_usage = 2;
+
+std::string list_verbs(const CLI::App& cli) {
+  std::string list;
+  for (const CLI::App* verb : cli.get_subcommands({})) {
+    list += (list.empty() ? "" : ", ") + verb->get_name();
+  }
+  return list;
+}
+
+/// "--field 20.1 0.9 43.5" leaves two numbers over: said where numbers alone are.
+std::string explain_extras(const CLI::App& verb, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return "";
+  const auto is_number = [](std::string_view word) {
+    if (word.ends_with(',')) word.remove_suffix(1);
+    return parse_number(word).has_value();
+  };
+  const bool numbers = std::ranges::all_of(verb.remaining(), is_number);
+  return numbers ? "; put commas and no blanks between an option's numbers" : "";
+}
+
+/// What is wrong with a command line; CLI11's words where a verb was given.
+std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
+  if (!cli.get_subcommands().empty()) {
+    std::string what = error.what();
+    std::ranges::replace(what, '\n', ' ');
+    return what + explain_extras(*cli.get_subcommands().front(), error);
+  }
+  const std::vector<std::string> words = cli.remaining();
+  return (words.empty() ? "a verb is missing" : fmt::format("'{}' is no verb", words.front())) +
+         "; the verbs are: " + list_verbs(cli);
+}
+
+int refuse_usage(const CLI::App& cli, const CLI::ParseError& error) {
+  std::string command = cli.get_name();
+  for (const CLI::App* verb : cli.get_subcommands()) command += " " + verb->get_name();
+  fmt::print(stderr, "{}: {} (see {} --help)\n", cli.get_name(), describe(cli, error), command);
+  return bad_usage;
+}
+
+/// An option as it is typed here: "--drop-invalid".
+std::string as_typed(const std::string& name) {
+  std::string option = "--" + name;
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
+}  // namespace
+
+int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, not an end
+  silence_solver_log();
+  cli.require_subcommand(1);
+  cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
+  cli.footer(
+      "Exit codes: 0 done, 2 bad input or usage, 3 an effect is missing, 4 not identifiable,\n"
+      "5 did not converge, 6 something is missing that no candidate explains.");
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return cli.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return refuse_usage(cli, error);
+  }
+
+  const auto refuse = [&](const std::string& what) {
+    fmt::print(stderr, "{}: {}\n", cli.get_name(), what);
+    return bad_usage;
+  };
+  try {
+    return perform();
+  } catch (const std::bad_alloc&) {
+    return refuse("memory ran out; take fewer --samples or --rows, or a shorter log");
+  } catch (const OptionError& error) {
+    return refuse(error.spelled(as_typed));
+  } catch (const std::exception& error) {
+    return refuse(error.what());
+  }
+}
+
+}  // namespace sepcal::app

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How every app runs: what was typed is read, what it asks for is done, and whatever goes wrong is
+// one line on standard error.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace sepcal::app {
+
+/// Parses the command line, calls `perform`, and maps every error to one line. Returns the exit
+/// code: 0, 2, or what `perform` gives. `cli` has the app's name and its verbs.
+int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform);
+
+}  // namespace sepcal::app

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sepcal-aircraft: flight paths and aerodynamic coefficients from flight logs.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "delivery.hpp"
+#include "fit_arguments.hpp"
+#include "flight/files/text_file.hpp"
+#include "option_values.hpp"
+#include "progress.hpp"
+#include "running.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/flight/aircraft.hpp"
+#include "sepcal/flight/aircraft_file.hpp"
+#include "sepcal/simulation/aircraft.hpp"
+#include "sepcal/simulation/truth.hpp"
+#include "simulation_arguments.hpp"
+
+namespace sepcal::app {
+namespace {
+
+std::vector<std::string> split_names(const std::string& text) {
+  return text.empty() ? std::vector<std::string>{} : split(text, ',');
+}
+
+/// What is fitted and how it is laid along the flight, as text until the command line is whole.
+class ModelArguments {
+ public:
+  void add_model_to(CLI::App& verb) {
+    verb.add_option("--model", model_,
+                    "path: flight path reconstruction; longitudinal, lateral, six-dof: output "
+                    "error; aero: equation error")
+        ->type_name("MODEL")
+        ->required();
+  }
+
+  void add_to(CLI::App& verb) {
+    add_file(verb, "--geometry", geometry_,
+             "the aircraft: area_m2, chord_m, span_m, mass_kg, inertia_kgm2 ...")
+        ->type_name("AIRCRAFT.json");
+    verb.add_option("--equation", equations_,
+                    "takes the place of a coefficient's own regressors; with it only these "
+                    "coefficients are fitted; may be repeated")
+        ->type_name("C=1,X,...")
+        ->take_all()
+        ->allow_extra_args(false);
+    verb.add_option("--inputs", inputs_, "what inputs do between rows: linear or hold")
+        ->type_name("HOW")
+        ->capture_default_str();
+    verb.add_option("--measured", measured_, "states read from the log instead of integrated")
+        ->type_name("v,phi,psi");
+    verb.add_option("--outputs", outputs_, "what is compared with the log; else all that is there")
+        ->type_name("NAMES");
+    verb.add_option("--shoot", shoot_, "cuts segments every T seconds, each with its own start")
+        ->type_name("T");
+    verb.add_option("--substeps", options_.trajectory.substeps, "integration steps from row to row")
+        ->type_name("N")
+        ->capture_default_str();
+    verb.add_flag("--scale-about-start", options_.trajectory.scales_about_start,
+                  "scales multiply the change since the segment's start, as SIDPAC has them");
+    verb.add_option("--gravity", options_.gravity, "at the place of the flight [m/s^2]")
+        ->type_name("G")
+        ->capture_default_str();
+    verb.add_option("--window", options_.window,
+                    "of the local cubic that differentiates rates [s]; 0: seven rows")
+        ->type_name("T")
+        ->capture_default_str();
+  }
+
+  AircraftOptions resolve(CalibrationOptions calibration) const {
+    AircraftOptions options = options_;
+    options.model = find_aircraft_model(model_);
+    if (!geometry_.empty()) options.geometry = read_aircraft(geometry_);
+    for (const std::string& text : equations_) options.equations.push_back(parse_equation(text));
+    if (inputs_ != "linear" && inputs_ != "hold") {
+      throw Error(fmt::format("--inputs {}: choose linear or hold", inputs_));
+    }
+    options.trajectory.inputs =
+        inputs_ == "hold" ? InputsBetweenRows::hold : InputsBetweenRows::linear;
+    options.trajectory.measured = split_names(measured_);
+    options.trajectory.outputs = split_names(outputs_);
+    if (shoot_) options.trajectory.shoot = *shoot_;
+    options.calibration = std::move(calibration);
+    return options;
+  }
+
+ private:
+  std::string model_ = "aero";
+  std::string geometry_;
+  std::string inputs_ = "linear";
+  std::string measured_;
+  std::string outputs_;
+  std::vector<std::string> equations_;
+  std::optional<double> shoot_;
+  AircraftOptions options_;
+};
+
+/// How a track is run.
+class TrackArguments {
+ public:
+  void add_to(CLI::App& verb) {
+    verb.add_option("--method", method_,
+                    "rls: recursive least squares linearised at the start; ekf, iekf: the extended "
+                    "and the iterated extended filter; srif: as square-root information")
+        ->type_name("HOW")
+        ->capture_default_str();
+    add_whole_number(verb, "--start-rows", options_.start_rows,
+                     "fits so many first rows, and goes on after them; 0: starts from the fit, of "
+                     "another flight");
+  }
+
+  AircraftTrackOptions resolve() const {
+    AircraftTrackOptions options = options_;
+    options.how.method = choice_of<TrackMethod>("--method", method_);
+    return options;
+  }
+
+ private:
+  std::string method_ = std::string(to_string(TrackMethod::ekf));
+  AircraftTrackOptions options_;
+};
+
+void add_deviations(CLI::App& verb, const std::string& name, std::vector<std::string>& texts,
+                    const std::string& description) {
+  verb.add_option(name, texts, description)
+      ->type_name("NAME=SD")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+std::map<std::string, double> parse_deviations(const std::string& option,
+                                               const std::vector<std::string>& texts) {
+  std::map<std::string, double> deviations;
+  for (const std::string& text : texts) {
+    const auto [name, value] = parse_assignment(option, text, "NAME=SD");
+    if (!deviations.emplace(name, parse_value(option, value)).second) {
+      throw Error(fmt::format("{} {} is given twice", option, name));
+    }
+  }
+  return deviations;
+}
+
+class AircraftApp {
+ public:
+  explicit AircraftApp(CLI::App& cli)
+      : fit_(*cli.add_subcommand("fit", "fits a flight path or an aircraft to a flight")),
+        two_step_(*cli.add_subcommand("two-step",
+                                      "reconstructs the path, then fits the aerodynamics to it")),
+        compare_(*cli.add_subcommand("compare", "shows where the model fails")),
+        add_(*cli.add_subcommand("add", "adds a regressor and fits again")),
+        apply_(*cli.add_subcommand("apply", "adds what was flown to a log")),
+        track_(*cli.add_subcommand("track", "estimates against time, as a filter in flight")),
+        simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
+        effects_(*cli.add_subcommand("effects", "lists the regressors and how to write more")) {
+    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &add_, &apply_, &track_}) {
+      add_flight(*verb);
+    }
+    model_.add_model_to(fit_);
+    for (CLI::App* verb : {&fit_, &two_step_}) {
+      model_.add_to(*verb);
+      fit_arguments_.add_to(*verb);
+      add_output(*verb, "BASE.json", false);
+    }
+    for (CLI::App* verb : {&compare_, &add_, &apply_, &track_}) {
+      add_file(*verb, "FIT", base_, "what fit wrote with -o")->required();
+    }
+    for (CLI::App* verb : {&apply_, &track_}) {
+      add_deviations(
+          *verb, "--process-noise", process_noise_,
+          "root of the spectral density of a noise that drives the states, in the unit "
+          "of the model's table (ax of a path: m/s^2/sqrt(Hz)); apply then adds smoothed "
+          "states; may be repeated");
+    }
+    tracking_.add_to(track_);
+    add_deviations(track_, "--initial-state", initial_states_,
+                   "standard deviation of a state where a segment begins; else as good as "
+                   "unknown; may be repeated");
+    add_.add_option("E", effect_, "the regressor: Cm[alpha^2] (see effects)")->required();
+    add_output(compare_, "COMPARED.json", false);
+    add_output(add_, "NEXT.json", false);
+    add_output(apply_, "CORRECTED.csv", true);
+    add_output(track_, "TRACK.csv", true);
+    add_output(simulate_, "FLIGHT.csv", true);
+    add_file(simulate_, "--truth", truth_,
+             "the true parameters: read where the file is there, else written with the defaults")
+        ->type_name("T.json");
+    add_file(simulate_, "--geometry", geometry_, "writes the aircraft there, as fit takes it")
+        ->type_name("AIRCRAFT.json");
+    simulation_.add_to(simulate_);
+    for (CLI::App* verb :
+         {&fit_, &two_step_, &compare_, &add_, &apply_, &track_, &simulate_, &effects_}) {
+      verb->add_flag("--json", wishes_.json, "prints the result as JSON on standard output");
+    }
+    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &add_}) {
+      verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
+    }
+  }
+
+  int perform() const {
+    if (fit_.parsed()) return fit();
+    if (two_step_.parsed()) return two_step();
+    if (compare_.parsed()) return compare();
+    if (add_.parsed()) return add();
+    if (apply_.parsed()) return apply();
+    if (track_.parsed()) return track();
+    if (simulate_.parsed()) return simulate();
+    print(wishes_.json ? aircraft_effects_json() : aircraft_effects_text());
+    return 0;
+  }
+
+ private:
+  void add_flight(CLI::App& verb) {
+    add_file(verb, "FLIGHT", flight_, "the log, a CSV file")->required();
+  }
+
+  void add_output(CLI::App& verb, const char* type, bool required) {
+    add_file(verb, "-o,--output", wishes_.output, "writes the result there")
+        ->type_name(type)
+        ->required(required);
+  }
+
+  Flight read_flight() const {
+    ProgressLine line;
+    return read_csv(flight_, [&](double fraction) { line.show("reading " + flight_, fraction); });
+  }
+
+  int fit() const {
+    Delivery delivery(wishes_, {flight_});
+    AircraftOptions options = model_.resolve(fit_arguments_.resolve());
+    const Flight flight = read_flight();
+    ProgressLine line;
+    options.calibration.fit.progress = shown_on(line);
+    const AircraftFit fitted = fit_aircraft(flight, options);
+    line.clear();
+    delivery.deliver(fitted);
+    return exit_code(fitted.fit.status);
+  }
+
+  int two_step() const {
+    Delivery delivery(wishes_, {flight_});
+    const AircraftOptions options = model_.resolve(fit_arguments_.resolve());
+    const TwoStepFit fitted = fit_two_steps(read_flight(), options);
+    delivery.deliver(fitted);
+    return std::max(exit_code(fitted.path.fit.status), exit_code(fitted.aero.fit.status));
+  }
+
+  int compare() const {
+    Delivery delivery(wishes_, {flight_, base_});
+    const AircraftFit base = read_aircraft_fit(base_);
+    delivery.deliver(compare_aircraft(base, read_flight()));
+    return 0;
+  }
+
+  int add() const {
+    Delivery delivery(wishes_, {flight_});
+    const AircraftFit base = read_aircraft_fit(base_);
+    const AircraftFit next = add_to_aircraft(base, read_flight(), effect_);
+    delivery.deliver(next);
+    return exit_code(next.fit.status);
+  }
+
+  int apply() const {
+    check_not_input(wishes_.output, base_);
+    const AircraftFit base = read_aircraft_fit(base_);
+    const Applied applied = apply_aircraft_to_file(
+        base, flight_, wishes_.output, parse_deviations("--process-noise", process_noise_));
+    print_notes(applied.notes);
+    print(wishes_.json ? to_json(applied, base) : to_text(applied, base));
+    return 0;
+  }
+
+  int track() const {
+    check_not_input(wishes_.output, base_);
+    check_not_input(wishes_.output, flight_);
+    AircraftTrackOptions options = tracking_.resolve();
+    options.how.process_noise = parse_deviations("--process-noise", process_noise_);
+    options.how.initial_states = parse_deviations("--initial-state", initial_states_);
+    const AircraftFit base = read_aircraft_fit(base_);
+    OutputFile output(wishes_.output);
+    const TrackedAircraft tracked = track_aircraft(base, read_flight(), options);
+    print_notes(tracked.notes);
+    write_csv(tracked, output);
+    output.commit();
+    print(wishes_.json ? to_json(tracked)
+                       : to_text(tracked) + fmt::format("wrote {}\n", wishes_.output));
+    return 0;
+  }
+
+  int simulate() const {
+    OutputFile output(wishes_.output);
+    const bool given = !truth_.empty() && std::filesystem::exists(truth_);
+    const SimulationOrder order = simulation_.resolve();
+    AircraftTruth truth =
+        parse_aircraft_truth(given ? files::read_text_file(truth_, "as a truth file") : "{}",
+                             given ? truth_ : "simulate");
+    truth.effects.insert(truth.effects.end(), order.hidden.begin(), order.hidden.end());
+    const SimulatedFlight flight = simulate_aircraft(truth, order.options);
+    const std::string flown = to_json(as_flown(truth, flight));
+    const auto write = [](const std::string& file, const std::string& text) {
+      OutputFile target(file);
+      target.write(text);
+      target.commit();
+    };
+    if (!truth_.empty() && !given) write(truth_, flown);
+    if (!geometry_.empty()) write(geometry_, to_json(truth.geometry));
+    write_csv(flight, output.stream());
+    output.flush();
+    output.commit();
+    print(wishes_.json ? flown : fmt::format("wrote {}: {} rows\n", wishes_.output, flight.rows()));
+    return 0;
+  }
+
+  Delivery::Wishes wishes_;
+  std::string flight_;
+  std::string base_;
+  std::string effect_;
+  std::string truth_;
+  std::string geometry_;
+  std::vector<std::string> process_noise_;
+  std::vector<std::string> initial_states_;
+  ModelArguments model_;
+  TrackArguments tracking_;
+  FitArguments fit_arguments_;
+  SimulationArguments simulation_;
+  CLI::App& fit_;
+  CLI::App& two_step_;
+  CLI::App& compare_;
+  CLI::App& add_;
+  CLI::App& apply_;
+  CLI::App& track_;
+  CLI::App& simulate_;
+  CLI::App& effects_;
+};
+
+}  // namespace
+}  // namespace sepcal::app
+
+int main(int argc, char** argv) try {
+  CLI::App cli("Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.",
+               "sepcal-aircraft");
+  const sepcal::app::AircraftApp app(cli);
+  return sepcal::app::run(cli, argc, argv, [&] { return app.perform(); });
+} catch (...) {  // before the command line is there
+  std::fputs("sepcal-aircraft: memory ran out\n", stderr);
+  return 2;
+}

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sepcal._aircraft: aircraft from flights, for the Python front, which documents it. A module of
+// its own, because it is long to compile and who calibrates a sensor needs none of it; its classes
+// stand beside those of sepcal._core, whose flights, fits and comparisons it takes and gives.
+#include "sepcal/flight/aircraft.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <tuple>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "results.hpp"
+#include "sepcal/flight/aircraft_file.hpp"
+#include "sepcal/flight/output_file.hpp"
+#include "sepcal/simulation/aircraft.hpp"
+#include "sepcal/simulation/truth.hpp"
+#include "sepcal/solver_log.hpp"
+#include "simulated.hpp"
+#include "structs.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+using namespace py::literals;
+using WithoutGil = py::call_guard<py::gil_scoped_release>;
+using Equations = std::map<std::string, std::vector<std::string>>;
+
+/// `geometry` is an aircraft as JSON; equations are {coefficient: [regressors]}.
+AircraftOptions aircraft_options(const std::string& model,
+                                 const std::optional<std::string>& geometry,
+                                 const Equations& equations, const TrajectoryOptions& trajectory,
+                                 double gravity, double window, const CalibrationOptions& fit) {
+  AircraftOptions options{.model = find_aircraft_model(model),
+                          .geometry = {},
+                          .equations = {},
+                          .trajectory = trajectory,
+                          .gravity = gravity,
+                          .window = window,
+                          .calibration = fit};
+  if (geometry) options.geometry = parse_aircraft(*geometry, "the aircraft");
+  for (const auto& [coefficient, regressors] : equations) {
+    options.equations.push_back({coefficient, regressors});
+  }
+  return options;
+}
+
+/// As its app's page shows it.
+FittedModel fit_of(const AircraftFit& fitted) {
+  return fitted_model(fitted.fit, fitted.options.calibration.effects, page_of(fitted));
+}
+
+Equations equations_of(const AircraftFit& fitted) {
+  Equations equations;
+  for (const AeroEquation& equation : fitted.equations) {
+    equations[equation.coefficient] = equation.regressors;
+  }
+  return equations;
+}
+
+using Values = std::map<std::string, double>;
+
+Values by_output(const std::vector<OutputValue>& values) {
+  Values named;
+  for (const OutputValue& value : values) named[value.name] = value.value;
+  return named;
+}
+
+/// [(effect, {output: rmse before}, {output: rmse after}), ...]
+std::vector<std::tuple<std::string, Values, Values>> history_of(const AircraftFit& fitted) {
+  std::vector<std::tuple<std::string, Values, Values>> history;
+  for (const AddedRegressor& added : fitted.history) {
+    history.emplace_back(added.effect, by_output(added.rmse_before), by_output(added.rmse_after));
+  }
+  return history;
+}
+
+/// ({header: values}, notes)
+using AppliedColumns = std::pair<py::typing::Dict<py::str, Array>, std::vector<std::string>>;
+
+AppliedColumns apply_to(const AircraftFit& fitted, const Flight& flight,
+                        const ProcessNoise& process_noise) {
+  std::vector<std::string> notes;
+  const auto run = [&] {
+    const py::gil_scoped_release release;
+    return apply_aircraft(fitted, flight, process_noise, notes);
+  };
+  py::typing::Dict<py::str, Array> columns;
+  for (CorrectedColumn& column : run()) {
+    columns[py::str(column.header)] = adopt(std::move(column.values));
+  }
+  return {columns, notes};
+}
+
+/// The track, its rows those of the flight.
+std::pair<Tracked, std::vector<std::string>> track_on(
+    const AircraftFit& fitted, const Flight& flight, const std::string& method,
+    std::size_t start_rows, const Values& noise, const Values& process_noise,
+    const Values& initial_states, const IterationOptions& iterations) {
+  TrackedAircraft tracked =
+      track_aircraft(fitted, flight,
+                     {.how = {.method = choice_of<TrackMethod>("method", method),
+                              .noise = noise,
+                              .process_noise = process_noise,
+                              .initial_states = initial_states,
+                              .iterations = iterations},
+                      .start_rows = start_rows});
+  Tracked result{std::move(tracked.track), {}};
+  result.track.rows = tracked.flight_rows;
+  for (const Variable& output : tracked.outputs) result.outputs.push_back(output.name);
+  return {std::move(result), std::move(tracked.notes)};
+}
+
+void save(const AircraftFit& fitted, const std::string& file) {
+  OutputFile output(file);
+  output.write(to_json(fitted));
+  output.commit();
+}
+
+/// What the app's two-step prints.
+struct FittedSteps {
+  AircraftFit path;
+  AircraftFit aero;
+  std::vector<std::string> notes;
+  std::string json;
+  Page page;
+};
+
+FittedSteps two_steps(const Flight& flight, const AircraftOptions& options) {
+  TwoStepFit fitted = fit_two_steps(flight, options);
+  std::string json = to_json(fitted);
+  Page page = page_of(fitted);
+  return {std::move(fitted.path), std::move(fitted.aero), std::move(fitted.notes), std::move(json),
+          std::move(page)};
+}
+
+Simulated simulate(const std::string& truth, const Hidden& hidden, const std::string& excitation,
+                   const std::string& noise, std::size_t decoys, double rate, std::size_t rows,
+                   std::uint64_t seed) {
+  const py::gil_scoped_release released;
+  return simulated(
+      simulate_aircraft(with_hidden(parse_aircraft_truth(truth, "simulate"), hidden),
+                        simulation_options(excitation, noise, decoys, rate, rows, seed)));
+}
+
+void define_fits(py::module_& module) {
+  py::class_<AircraftFit>(module, "Fit")
+      .def_property_readonly("fit", &fit_of)
+      .def_property_readonly("model",
+                             [](const AircraftFit& self) { return to_string(self.options.model); })
+      .def_property_readonly("method",
+                             [](const AircraftFit& self) { return method_of(self.options.model); })
+      .def_property_readonly("equations", &equations_of)
+      .def_property_readonly("history", &history_of)
+      .def_readonly("initial_states", &AircraftFit::initial_states)
+      .def_readonly("notes", &AircraftFit::notes)
+      .def_readonly("warning", &AircraftFit::warning)
+      .def_property_readonly("file", [](const AircraftFit& self) { return self.flight.file; })
+      .def(
+          "compare",
+          [](const AircraftFit& self, const Flight& flight) {
+            return compared(compare_aircraft(self, flight));
+          },
+          WithoutGil())
+      .def("add", &add_to_aircraft, WithoutGil())
+      .def("apply", &apply_to)
+      .def("apply_to_file",
+           [](const AircraftFit& self, const std::string& file, const std::string& output,
+              const ProcessNoise& process_noise) {
+             const py::gil_scoped_release release;
+             return apply_aircraft_to_file(self, file, output, process_noise);
+           })
+      .def("smooth", &smooth_aircraft, WithoutGil())
+      .def("track", &track_on, WithoutGil())
+      .def("to_json", [](const AircraftFit& self) { return to_json(self); })
+      .def("save", &save, WithoutGil());
+  py::class_<FittedSteps>(module, "Steps")
+      .def_readonly("path", &FittedSteps::path)
+      .def_readonly("aero", &FittedSteps::aero)
+      .def_readonly("notes", &FittedSteps::notes)
+      .def_readonly("json", &FittedSteps::json)
+      .def_property_readonly("text", [](const FittedSteps& self) { return self.page.text; })
+      .def_property_readonly("explained",
+                             [](const FittedSteps& self) { return self.page.explained; });
+}
+
+}  // namespace
+}  // namespace sepcal::bindings
+
+PYBIND11_MODULE(_aircraft, module) {
+  using namespace sepcal::bindings;
+  pybind11::module_::import("sepcal._core");  // has the classes that come in and go out
+  sepcal::silence_solver_log();
+  py::class_<sepcal::AircraftOptions>(module, "Options")
+      .def(py::init(&aircraft_options), py::kw_only(), "model"_a, "geometry"_a, "equations"_a,
+           "trajectory"_a, "gravity"_a, "window"_a, "fit"_a);
+  define_fits(module);
+  module.def("fit", &sepcal::fit_aircraft, WithoutGil());
+  module.def("two_steps", &two_steps, WithoutGil());
+  module.def("parse", &sepcal::parse_aircraft_fit);
+  module.def("read", &sepcal::read_aircraft_fit);
+  module.def("read_aircraft",
+             [](const std::string& file) { return sepcal::to_json(sepcal::read_aircraft(file)); });
+  module.def("simulate", &simulate);
+  module.def("standard_regressors", [](const std::string& coefficient) {
+    return sepcal::standard_equations({coefficient}).front().regressors;
+  });
+}

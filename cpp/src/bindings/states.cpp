@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Models with a state: sepcal's own and those written in Python.
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "flight/verbs/held_options.hpp"
+#include "python_state_model.hpp"
+#include "results.hpp"
+#include "sepcal/error.hpp"
+#include "sepcal/models/flight_path.hpp"
+#include "sepcal/models/short_period.hpp"
+#include "sepcal/states/smooth_record.hpp"
+#include "sepcal/states/track.hpp"
+#include "structs.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+using namespace py::literals;
+
+/// As a user sees it along a record: shoot cuts nothing where there is none.
+TrajectoryOptions options_for(const Record* record, TrajectoryOptions options) {
+  if (record == nullptr) options.shoot = infinity;
+  return options;
+}
+
+template <StateModel M>
+Model lay(const M& model, const TrajectoryOptions& options) {
+  return Model([=](const Record* record) -> std::shared_ptr<const BlockModel> {
+    if (record == nullptr) {
+      return std::make_shared<const TrajectoryModel<M>>(model, options_for(record, options));
+    }
+    return std::make_shared<const TrajectoryModel<M>>(model, *record, options);
+  });
+}
+
+using Vector = std::array<double, 3>;
+
+template <bool Position>
+Model lay_flight_path(double gravity, const Vector& vane, const TrajectoryOptions& options) {
+  const FlightPathModel<Position> model{.gravity = gravity, .vane = {vane[0], vane[1], vane[2]}};
+  Model laid = lay(model, options);
+  for (const std::string_view name : model.held_at_zero) laid.held[std::string(name)] = 0.0;
+  return laid;
+}
+
+Model flight_path(bool position, double gravity, const Vector& vane,
+                  const TrajectoryOptions& options) {
+  return position ? lay_flight_path<true>(gravity, vane, options)
+                  : lay_flight_path<false>(gravity, vane, options);
+}
+
+InputsBetweenRows inputs_between_rows(const std::string& word) {
+  for (const auto known : {InputsBetweenRows::linear, InputsBetweenRows::hold}) {
+    if (word == to_string(known)) return known;
+  }
+  throw Error("inputs is '" + word + "'; between rows they are 'linear', or 'hold'");
+}
+
+TrajectoryOptions trajectory_options(const std::string& inputs, int substeps, double shoot,
+                                     std::vector<std::string> measured,
+                                     std::vector<std::string> outputs, bool separable,
+                                     bool scales_about_start) {
+  return {.inputs = inputs_between_rows(inputs),
+          .substeps = substeps,
+          .shoot = shoot,
+          .measured = std::move(measured),
+          .outputs = std::move(outputs),
+          .separable = separable,
+          .scales_about_start = scales_about_start};
+}
+
+using Row = std::tuple<std::string, std::string, double, double>;  // name, unit, lower, upper
+
+std::vector<Variable> to_variables(const std::vector<Row>& rows) {
+  std::vector<Variable> table;
+  for (const auto& [name, unit, lower, upper] : rows) table.emplace_back(name, unit, lower, upper);
+  return table;
+}
+
+/// inputs, states, outputs, linear, nonlinear, noise; the rest as StateTables has it.
+StateTables state_tables(const std::array<std::vector<Row>, 6>& tables,
+                         std::vector<int> linear_dynamic, bool linear_in_state,
+                         std::vector<bool> scales, std::vector<std::vector<bool>> acts_on,
+                         bool discrete) {
+  return {.inputs = to_variables(tables[0]),
+          .states = to_variables(tables[1]),
+          .outputs = to_variables(tables[2]),
+          .linear = to_variables(tables[3]),
+          .nonlinear = to_variables(tables[4]),
+          .linear_dynamic = std::move(linear_dynamic),
+          .linear_in_state = linear_in_state,
+          .scales = std::move(scales),
+          .acts_on = std::move(acts_on),
+          .noise = to_variables(tables[5]),
+          .discrete = discrete};
+}
+
+Model python_state_model(const StateTables& tables, const TrajectoryOptions& options,
+                         const py::object& walk) {
+  const std::shared_ptr<const py::object> kept = share(walk);
+  return Model([=](const Record* record) -> std::shared_ptr<const BlockModel> {
+    return std::make_shared<const PythonStateModel>(
+        TrajectoryPlan(tables, record, options_for(record, options)), kept);
+  });
+}
+
+SmoothedRecord smooth_columns(const Model& model, const py::dict& columns,
+                              const std::vector<std::string>& labels,
+                              const std::map<std::string, double>& parameters,
+                              const std::map<std::string, double>& process,
+                              const std::map<std::string, double>& outputs,
+                              const std::map<std::string, double>& start,
+                              const std::optional<FittedModel>& errors) {
+  const Record record = record_of(columns, labels);
+  const py::gil_scoped_release release;
+  const auto* along = dynamic_cast<const StateBlockModel*>(model.block.get());
+  if (along == nullptr) throw Error("the model has no state, and nothing to smooth");
+  return smooth(*along, record, parameters,
+                {.process = process, .outputs = outputs, .start = start},
+                errors ? errors_of(errors->fit) : ParameterErrors{});
+}
+
+/// The first rows' fit as stages one and two have it, with what the model holds by default.
+StreamStart start_of_rows(const Model& model, const Record& record, std::size_t rows,
+                          const CalibrationOptions& options) {
+  const Record batch = first_rows(record, rows);
+  const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&batch) : model.block;
+  const FitOptions fit = verbs::hold(model.held, laid->tables(), options).fit;
+  return start_from_rows(*laid, record, rows, fit);
+}
+
+Tracked track_columns(const Model& model, const py::dict& columns,
+                      const std::vector<std::string>& labels, const std::string& method,
+                      std::optional<std::size_t> start_rows,
+                      const std::optional<FittedModel>& start, const CalibrationOptions& options,
+                      const std::map<std::string, double>& process_noise,
+                      const std::map<std::string, double>& initial_states,
+                      const IterationOptions& iterations) {
+  TrackOptions how{.method = choice_of<TrackMethod>("method", method),
+                   .noise = options.fit.noise,
+                   .process_noise = process_noise,
+                   .initial_states = initial_states,
+                   .iterations = iterations};
+  const Record record = record_of(columns, labels);
+  const py::gil_scoped_release release;
+  const StreamStart begin = start ? start_from_fit(start->fit)
+                                  : start_of_rows(model, record, start_rows.value_or(0), options);
+  const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&record) : model.block;
+  Tracked tracked{track(*laid, record, begin, how), {}};
+  for (const Variable& output : laid->tables().outputs) tracked.outputs.push_back(output.name);
+  return tracked;
+}
+
+using Rows = Eigen::Vector<std::size_t, Eigen::Dynamic>;
+
+void define_tracking(py::module_& module) {
+  BoundStruct<Tracked>(module, "Track", "Estimates against time, one a row.")
+      .field(
+          "names",
+          [](const Tracked& self) -> py::typing::Tuple<std::string, py::ellipsis> {
+            return py::tuple(py::cast(self.track.names));
+          },
+          [](Tracked& self, const py::typing::Tuple<std::string, py::ellipsis>& names) {
+            self.track.names = py::cast<std::vector<std::string>>(names);
+          },
+          "Of the n states that are integrated, then of the parameters, linear ones first.")
+      .tuple("outputs", &Tracked::outputs, "n_z.")
+      .field(
+          "rows",
+          [](const Tracked& self) -> Rows {
+            return Eigen::Map<const Rows>(self.track.rows.data(),
+                                          static_cast<Eigen::Index>(self.track.rows.size()));
+          },
+          [](Tracked& self, const Rows& rows) { self.track.rows.assign(rows.begin(), rows.end()); },
+          "(M,) of the data, one an estimate.")
+      .array("time", &Tracked::track, &Track::time, "(M,) [s]; empty where the data have none.")
+      .field("estimates", &Tracked::track, &Track::estimates, "(M, n).")
+      .field("standard_deviations", &Tracked::track, &Track::standard_deviations,
+             "(M, n); 0 for what is held.")
+      .field("innovations", &Tracked::track, &Track::innovations,
+             "(M, n_z), reading less what was expected of it; NaN where missing.")
+      .field("refused", &Tracked::track, &Track::refused, "Rows that were not finite, left out.")
+      .field("not_converged", &Tracked::track, &Track::not_converged,
+             "Rows at which the cap of iekf's iterations ended them.")
+      .copied()
+      .finish();
+  py::class_<IterationOptions>(module, "IterationOptions")
+      .def(py::init<int, double>(), "iterations"_a, "tolerance"_a);
+  module.def("track", &track_columns);
+}
+
+/// Matrices one after another, (N, n, n).
+py::array_t<double> stack_matrices(const std::vector<Eigen::MatrixXd>& matrices) {
+  const py::ssize_t n = matrices.empty() ? 0 : matrices.front().rows();
+  py::array_t<double> stacked({static_cast<py::ssize_t>(matrices.size()), n, n});
+  auto entries = stacked.mutable_unchecked<3>();
+  for (py::ssize_t k = 0; k < stacked.shape(0); ++k) {
+    for (py::ssize_t i = 0; i < n; ++i) {
+      for (py::ssize_t j = 0; j < n; ++j) {
+        entries(k, i, j) = matrices[static_cast<std::size_t>(k)](i, j);
+      }
+    }
+  }
+  return stacked;
+}
+
+std::vector<Eigen::MatrixXd> unstack_matrices(const py::array_t<double>& stacked) {
+  return py::cast<std::vector<Eigen::MatrixXd>>(py::list(stacked));
+}
+
+void define_smoothing(py::module_& module) {
+  BoundStruct<SmoothedRecord>(module, "SmoothedRecord",
+                              "States and process noise, given all samples; NaN outside segments.")
+      .tuple("states", &SmoothedRecord::states, "That are integrated, n_x.")
+      .tuple("noises", &SmoothedRecord::noises, "n_w.")
+      .tuple("outputs", &SmoothedRecord::outputs, "n_z.")
+      .field("x", &SmoothedRecord::x, "(N, n_x), x(k|N).")
+      .field(
+          "covariance", [](const SmoothedRecord& self) { return stack_matrices(self.P); },
+          [](SmoothedRecord& self, const py::array_t<double>& P) { self.P = unstack_matrices(P); },
+          "(N, n_x, n_x), P(k|N).")
+      .field("w", &SmoothedRecord::w, "(N, n_w), w(k|N): its mean from row k to the next.")
+      .field(
+          "w_covariance", [](const SmoothedRecord& self) { return stack_matrices(self.Q); },
+          [](SmoothedRecord& self, const py::array_t<double>& Q) { self.Q = unstack_matrices(Q); },
+          "(N, n_w, n_w), Q(k|N).")
+      .field("innovations", &SmoothedRecord::innovations,
+             "(N, n_z), measured less predicted from the rows before; NaN where missing.")
+      .field("innovation_sd", &SmoothedRecord::innovation_sd, "(N, n_z), expected of them.")
+      .field("cost", &SmoothedRecord::cost, "Sum of (e' Lambda^-1 e + ln det Lambda) / 2.")
+      .field("readings", &SmoothedRecord::readings, "Outputs that were there.")
+      .copied()
+      .finish();
+  module.def("smooth", &smooth_columns);
+}
+
+}  // namespace
+
+void define_states(py::module_& module) {
+  define_smoothing(module);
+  define_tracking(module);
+  py::class_<TrajectoryOptions>(module, "TrajectoryOptions")
+      .def(py::init(&trajectory_options), py::kw_only(), "inputs"_a, "substeps"_a, "shoot"_a,
+           "measured"_a, "outputs"_a, "separable"_a, "scales_about_start"_a);
+  py::class_<StateTables>(module, "StateTables")
+      .def(py::init(&state_tables), "tables"_a, "linear_dynamic"_a, "linear_in_state"_a, "scales"_a,
+           "acts_on"_a, "discrete"_a);
+  module.def("python_state_model", &python_state_model);
+  module.def("flight_path", &flight_path);
+  module.def("short_period",
+             [](const TrajectoryOptions& options) { return lay(ShortPeriod{}, options); });
+}
+
+}  // namespace sepcal::bindings

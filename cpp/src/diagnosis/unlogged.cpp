@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/unlogged.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/common_cause.hpp"
+#include "diagnosis/spectral_line.hpp"
+#include "numerics/tails.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Where and in which outputs a cause shows.
+UnloggedCause place(UnloggedKind kind, double p_value, const std::vector<std::size_t>& outputs,
+                    const Window& strongest, const RowLayout& layout,
+                    const std::vector<double>& time) {
+  UnloggedCause cause{.kind = kind, .p_value = p_value};
+  for (const std::size_t j : outputs) cause.outputs.push_back(layout.outputs[j].name);
+  const auto first = static_cast<std::size_t>(row_of(strongest.first, layout.rows));
+  const auto last = static_cast<std::size_t>(row_of(strongest.last, layout.rows));
+  cause.all_along = strongest.is_whole();
+  cause.first_s = time[first];
+  cause.last_s = time[last - 1];
+  return cause;
+}
+
+}  // namespace
+
+std::vector<UnloggedCause> find_unlogged(const CandidateRoom& room, const NullHypothesis& null,
+                                         std::uint64_t seed) {
+  std::vector<UnloggedCause> causes;
+  const RowLayout& layout = room.fit().layout;
+  if (layout.rows < window_steps) return causes;
+  const auto outputs = static_cast<Index>(layout.outputs.size());
+  const MatrixXd white =
+      Eigen::Map<const MatrixXd>(null.white_residual.data(), layout.rows, outputs);
+  const std::vector<double> time = room.times();
+  const EvenGrid grid = place_on_grid(time);
+  const CommonCause common = find_common_cause(white, seed);
+  if (!common.outputs.empty()) {
+    causes.push_back(place(UnloggedKind::common_cause, common.p_value, common.outputs,
+                           common.strongest, layout, time));
+    const Index first = row_of(common.strongest.first, layout.rows);
+    const Index rows = row_of(common.strongest.last, layout.rows) - first;
+    causes.back().frequency =
+        strongest_frequency(common.together.segment(first, rows), grid, first) / grid.interval;
+  }
+  const SpectralLine line = find_line(white, grid);
+  if (!line.outputs.empty()) {
+    causes.push_back(place(UnloggedKind::spectral_line, line.p_value, line.outputs, line.strongest,
+                           layout, time));
+    causes.back().frequency = line.frequency / grid.interval;
+  }
+  return causes;
+}
+
+void correct_together(double significance, Omnibus& offsets, std::vector<UnloggedCause>& causes) {
+  std::vector<double> log10_p{std::log10(offsets.p_value)};
+  for (const UnloggedCause& cause : causes) log10_p.push_back(std::log10(cause.p_value));
+  const std::vector<double> adjusted = numerics::adjust_by_holm(log10_p);
+  offsets.p_adjusted = adjusted.front();
+  offsets.significant = offsets.p_adjusted < significance;
+  for (std::size_t i = 0; i < causes.size(); ++i) causes[i].p_adjusted = adjusted[i + 1];
+  std::erase_if(causes,
+                [&](const UnloggedCause& cause) { return !(cause.p_adjusted < significance); });
+  std::ranges::stable_sort(causes, {}, &UnloggedCause::p_value);
+}
+
+}  // namespace sepcal::diagnosis

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Causes that come and go and follow no channel of the log: what moves several outputs together,
+// and what swings at one frequency.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "diagnosis/candidate.hpp"
+#include "diagnosis/null_hypothesis.hpp"
+#include "sepcal/diagnosis.hpp"
+
+namespace sepcal::diagnosis {
+
+/// One of each kind that the record can show, each with its own probability, significant or not.
+std::vector<UnloggedCause> find_unlogged(const CandidateRoom& room, const NullHypothesis& null,
+                                         std::uint64_t seed);
+
+/// Corrects their probabilities and that of the offsets for their number (Holm), and keeps the
+/// causes that are significant, the surest first.
+void correct_together(double significance, Omnibus& offsets, std::vector<UnloggedCause>& causes);
+
+}  // namespace sepcal::diagnosis

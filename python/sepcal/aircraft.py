@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Models of an aircraft that are fitted to flights: equation error and output error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Protocol, Unpack
+
+from sepcal import _core
+from sepcal.geometry import Aircraft, aircraft_module
+from sepcal.trajectories import TrajectoryOptions, complete, to_core_options
+
+Equations = Mapping[str, Sequence[str]]
+
+
+class AircraftModel(Protocol):
+    """What fit() and two_step() lay along a flight: Aero, RigidAircraft, FlightPath."""
+
+    def _aircraft_options(self) -> dict[str, Any]:
+        """Of sepcal._aircraft.Options, all but those of the fit."""
+
+
+class Aero:
+    """Aerodynamic coefficients by equation error: computed row by row, one linear least squares.
+
+    A flight has columns with units in their headers: ax ay az (specific force: level flight reads
+    az = -9.81 m/s^2), p q r, airspeed, alpha, beta, surfaces, rho or qbar; thrust and mass where
+    they are logged.
+
+    Args:
+        aircraft: Its dimensions, mass and inertia.
+        *coefficients: Which of CX CY CZ Cl Cm Cn to fit, each on its standard regressors [all].
+        equations: {coefficient: [regressors]} in their place: {"Cm": ["1", "alpha", "q_hat",
+            "elevator", "alpha^2"]}.
+        window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+    """
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        *coefficients: str,
+        equations: Equations | None = None,
+        window: float = 0.0,
+    ) -> None:
+        self.aircraft, self.window = _to_aircraft(aircraft), float(window)
+        self.equations = _to_equations(equations)
+        for coefficient in coefficients:
+            self.equations.setdefault(coefficient, standard_regressors(coefficient))
+
+    def _aircraft_options(self) -> dict[str, Any]:
+        return {
+            "model": "aero",
+            "geometry": self.aircraft.to_json(),
+            "equations": self.equations,
+            "trajectory": to_core_options(complete({})),
+            "gravity": 9.80665,
+            "window": self.window,
+        }
+
+    def __repr__(self) -> str:
+        return f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r})"
+
+
+class RigidAircraft:
+    """An aircraft by output error: integrated from its initial states, it gives the readings.
+
+    Args:
+        aircraft: Its dimensions, mass and inertia.
+        axes: Which states are integrated, the others being read from the flight: "longitudinal",
+            u w q theta; "lateral", v p r phi; "six-dof", these and, where yaw is an output, psi.
+        equations: {coefficient: [regressors]} [the standard ones of the axes].
+        gravity: At the place of the flight [m/s^2].
+        window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
+        **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.
+    """
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        axes: Literal["longitudinal", "lateral", "six-dof"] | str = "six-dof",
+        *,
+        equations: Equations | None = None,
+        gravity: float = 9.80665,
+        window: float = 0.0,
+        **options: Unpack[TrajectoryOptions],
+    ) -> None:
+        if axes not in ("longitudinal", "lateral", "six-dof"):
+            raise _core.Error(f"there are no axes '{axes}'; choose longitudinal, lateral, six-dof")
+        self.aircraft, self.axes = _to_aircraft(aircraft), axes
+        self.equations = _to_equations(equations)
+        self.gravity, self.window = float(gravity), float(window)
+        self.options = complete(options)
+
+    def _aircraft_options(self) -> dict[str, Any]:
+        return {
+            "model": self.axes,
+            "geometry": self.aircraft.to_json(),
+            "equations": self.equations,
+            "trajectory": to_core_options(self.options),
+            "gravity": self.gravity,
+            "window": self.window,
+        }
+
+    def __repr__(self) -> str:
+        return f"RigidAircraft({self.aircraft!r}, {self.axes!r})"
+
+
+def standard_regressors(coefficient: str) -> list[str]:
+    """Of one of CX CY CZ Cl Cm Cn, S 6.8 to 6.13. Raises Error for another name."""
+    return list(aircraft_module().standard_regressors(coefficient))
+
+
+def _to_aircraft(aircraft: object) -> Aircraft:
+    if isinstance(aircraft, Aircraft):
+        return aircraft
+    raise _core.Error(
+        f"a {type(aircraft).__name__} is no aircraft; give sepcal.Aircraft(area=..., chord=..., "
+        "span=..., mass=..., inertia=(Ix, Iy, Iz, Ixz)) or sepcal.read_aircraft(FILE)"
+    )
+
+
+def _to_equations(equations: Equations | None) -> dict[str, list[str]]:
+    for coefficient, regressors in (equations or {}).items():
+        if isinstance(regressors, str):
+            raise _core.Error(
+                f"equations['{coefficient}'] is '{regressors}'; give a list of regressors, "
+                "['1', 'alpha', 'q_hat']"
+            )
+    return {name: list(regressors) for name, regressors in (equations or {}).items()}

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An aircraft fitted on a flight, to be compared, extended, applied, smoothed, tracked, saved."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack
+
+from sepcal import _core
+from sepcal.aircraft import Aero, AircraftModel
+from sepcal.columns import Array
+from sepcal.comparison import Comparison
+from sepcal.flight import Flight, to_flight
+from sepcal.geometry import Aircraft, aircraft_module
+from sepcal.options import FitOptions, spelled_out, to_core
+from sepcal.own_effect import name_effects
+from sepcal.pages import Page
+from sepcal.results import Fit
+from sepcal.smoothing import Smoothed
+from sepcal.tracking import Track
+from sepcal.trajectories import FlightPath
+
+if TYPE_CHECKING:
+    from sepcal import _aircraft
+
+Path = str | os.PathLike[str]
+
+
+class AddedRegressor(NamedTuple):
+    """A regressor that was added, and the error of each output without and with it."""
+
+    effect: str
+    rmse_before: dict[str, float]
+    rmse_after: dict[str, float]
+
+
+class AircraftFit(Fit):
+    """A Fit of a flight path or an aircraft, with all that later verbs need.
+
+    It pickles as its JSON, without the flight.
+    """
+
+    core: _aircraft.Fit
+    flight: Flight | None  # that was fitted; None where the fit was loaded
+
+    def __init__(self, core: _aircraft.Fit, flight: Flight | None = None) -> None:
+        super().__init__(core.fit)
+        self.core = core
+        self.flight = flight
+
+    @property
+    def model(self) -> str:
+        """One of path, longitudinal, lateral, six-dof, aero."""
+        return self.core.model
+
+    @property
+    def method(self) -> str:
+        """Either output-error or equation-error."""
+        return self.core.method
+
+    @property
+    def equations(self) -> dict[str, list[str]]:
+        """{coefficient: [regressors]}, of a path none."""
+        return self.core.equations
+
+    @property
+    def initial_states(self) -> list[str]:
+        """Names of these parameters."""
+        return self.core.initial_states
+
+    @property
+    def history(self) -> list[AddedRegressor]:
+        """An entry for every add()."""
+        return [AddedRegressor(*entry) for entry in self.core.history]
+
+    @property
+    def notes(self) -> list[str]:
+        """What was dropped or assumed, one line each, for people."""
+        return self.core.notes
+
+    @property
+    def warning(self) -> str:
+        """What is not in the intervals; empty where nothing is known."""
+        return self.core.warning
+
+    def _summary(self) -> str:
+        parameters = len(self.parameters)
+        return f"{self.model} by {self.method}: {self.status}, {parameters} parameters"
+
+    def compare(self, flight: Flight | None = None) -> Comparison:
+        """Residuals on a flight, by default the fitted one.
+
+        Of another flight the initial states are estimated anew, all else is held.
+
+        Raises:
+            Error: Bad input, as in fit(); no flight given where the fit was loaded.
+        """
+        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core))
+
+    def add(self, effect: str, flight: Flight | None = None) -> AircraftFit:
+        """The same fit with a regressor more, as "Cm[alpha^2]", from where it ended.
+
+        Raises:
+            Error: Bad input, as in fit(); a path, which takes no effects.
+        """
+        chosen = self._or_fitted(flight, "add(..., ")
+        return AircraftFit(self.core.add(chosen._core, effect), chosen)
+
+    def apply(
+        self, flight: Flight | None = None, *, process_noise: Mapping[str, float] | None = None
+    ) -> dict[str, Array]:
+        """What was flown, by header, each of shape (rows,).
+
+        Of every model the outputs as modelled, `alpha_model_rad`. Of a path also readings
+        corrected, `ax_cal_mps2`, `alpha_cal_rad`, the velocity through the air, `u_mps`, and with
+        an aircraft the six coefficients. With process noise also `u_smooth_mps`, `u_sd_mps`,
+        `w_ax_mps2`, `alpha_innovation_rad`, as smooth() has them. NaN outside segments.
+
+        Args:
+            flight: By default the fitted one.
+            process_noise: As of smooth().
+        """
+        chosen = self._or_fitted(flight, "apply(")
+        columns, _ = self.core.apply(chosen._core, dict(process_noise or {}))
+        return columns
+
+    def apply_to_file(
+        self, file: Path, output: Path, *, process_noise: Mapping[str, float] | None = None
+    ) -> _core.Applied:
+        """Copies a CSV log and adds these columns; `output` appears whole or not at all."""
+        given = dict(process_noise or {})
+        return self.core.apply_to_file(os.fspath(file), os.fspath(output), given)
+
+    def smooth(self, process_noise: Mapping[str, float], flight: Flight | None = None) -> Smoothed:
+        """States and process noise, given all of a flight, at the fit's parameters.
+
+        Args:
+            process_noise: Roots of spectral densities, {name: sd}: of a path the inertial unit's
+                ax ay az [m/s^2/sqrt(Hz)], p q r [rad/s/sqrt(Hz)]; of an aircraft those of u v w p
+                q r's derivatives.
+            flight: By default the fitted one.
+
+        Raises:
+            Error: No process noise, another name; equation error, which has no state.
+        """
+        chosen = self._or_fitted(flight, "smooth({...}, ")
+        return Smoothed(self.core.smooth(chosen._core, dict(process_noise)))
+
+    def track(
+        self,
+        flight: Flight | None = None,
+        *,
+        start_rows: int = 0,
+        method: Literal["rls", "ekf", "iekf", "srif"] | str = "ekf",
+        noise: Mapping[str, float] | None = None,
+        process_noise: Mapping[str, float] | None = None,
+        initial_states: Mapping[str, float] | None = None,
+        row_iterations: int = 20,
+        tolerance: float = 1e-8,
+    ) -> Track:
+        """States and parameters against time, as a filter in flight estimates them.
+
+        Args:
+            flight: By default the fitted one, which needs start_rows.
+            start_rows: Fits so many first rows and goes on after them; 0: from this fit, which must
+                be of another flight.
+            method: As of sepcal.track().
+            noise: Standard deviation of every output, in the first rows too [the start's].
+            process_noise: As of smooth(); those not named are none.
+            initial_states: Standard deviations of states where a segment begins [as good as
+                unknown].
+            row_iterations: Of iekf, at most so many a row.
+            tolerance: Of iekf.
+
+        Raises:
+            Error: The fit's own flight without start_rows, whose rows must not count twice; rows
+                that are too few; names that the model doesn't have.
+        """
+        chosen = self._or_fitted(flight, "track(")
+        core, _ = self.core.track(
+            chosen._core,
+            method,
+            start_rows,
+            dict(noise or {}),
+            dict(process_noise or {}),
+            dict(initial_states or {}),
+            _core.IterationOptions(row_iterations, tolerance),
+        )
+        return Track(core)
+
+    def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
+        flight = flight if flight is not None else self.flight
+        if flight is None:
+            raise _core.Error(
+                f"a loaded fit has no flight; give one: {call}sepcal.read_csv({self.core.file!r}))"
+            )
+        return to_flight(flight, call)
+
+    def save(self, file: Path) -> None:
+        """Writes to_json() to a file that appears whole or not at all."""
+        self.core.save(os.fspath(file))
+
+    def to_json(self) -> str:
+        """The JSON that the app's fit writes with -o."""
+        return self.core.to_json()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary; None where a number is undefined."""
+        read: dict[str, Any] = json.loads(self.to_json())
+        return read
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _parse, (self.to_json(),)
+
+
+class TwoSteps(Page):
+    """A flight path, then the aerodynamics of what was flown.
+
+    Attributes:
+        path: The first step.
+        aero: The second.
+        notes: One line each, for people.
+    """
+
+    _shown = ("name", "value", "standard_error", "unit")
+
+    def __init__(self, core: _aircraft.Steps, flight: Flight) -> None:
+        self.path, self.aero = AircraftFit(core.path, flight), AircraftFit(core.aero, flight)
+        self.notes, self._page, self._json = core.notes, core.text, core.json
+
+    @property
+    def text(self) -> str:
+        """What print() shows: the app's page."""
+        return self._page
+
+    def to_json(self) -> str:
+        """The JSON that the app's two-step writes with -o."""
+        return self._json
+
+    def _summary(self) -> str:
+        return f"path {self.path.status}, aerodynamics {self.aero.status}"
+
+    def _rows(self) -> list[Any]:
+        return self.aero._rows()
+
+
+def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> AircraftFit:
+    """Of a flight path or an aircraft; fit() calls it."""
+    core = aircraft_module().fit(flight._core, _core_options(model, options))
+    return AircraftFit(core, flight)
+
+
+@spelled_out()
+def two_step(
+    flight: Flight,
+    aircraft: Aircraft,
+    *,
+    equations: Mapping[str, Any] | None = None,
+    path: FlightPath | None = None,
+    window: float = 0.0,
+    **options: Unpack[FitOptions],
+) -> TwoSteps:
+    """The two-step method, S 6.3: the flight path, then equation error on what was flown.
+
+    Args:
+        flight: As for fit(FlightPath(...), flight) and fit(Aero(...), flight).
+        aircraft: Its dimensions, mass and inertia.
+        equations: {coefficient: [regressors]} of the second step [the standard ones, all six].
+        path: How the first step is laid along the flight.
+        window: Of the local cubic that differentiates rates [s]; 0: seven rows.
+        **options: FitOptions.
+
+    Returns:
+        A TwoSteps; its aero.warning says what is not in the intervals.
+
+    Raises:
+        Error: Bad input: one line that names the culprit and the way out.
+    """
+    chosen = to_flight(flight, "two_step(")
+    aero = Aero(aircraft, equations=equations, window=window)
+    first = (path or FlightPath())._aircraft_options()
+    laid = {**aero._aircraft_options(), "trajectory": first["trajectory"]}
+    laid["gravity"] = first["gravity"]
+    core = aircraft_module().two_steps(chosen._core, _with_fit(laid, options))
+    return TwoSteps(core, chosen)
+
+
+def _core_options(model: AircraftModel, options: FitOptions) -> _aircraft.Options:
+    return _with_fit(model._aircraft_options(), options)
+
+
+def _with_fit(laid: dict[str, Any], options: FitOptions) -> _aircraft.Options:
+    names = name_effects(options.get("effects") or ())
+    core: _aircraft.Options = aircraft_module().Options(
+        **laid, fit=to_core({**options, "effects": names})
+    )
+    return core
+
+
+def read_fit(file: Path) -> AircraftFit:
+    """Reads what save() or the app's fit wrote. Raises Error for anything else."""
+    return AircraftFit(aircraft_module().read(os.fspath(file)))
+
+
+def _parse(text: str) -> AircraftFit:
+    return AircraftFit(aircraft_module().parse(text, "pickle"))

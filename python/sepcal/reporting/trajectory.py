@@ -1,0 +1,408 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report of flight paths and aircraft: measured and modelled, states, innovations, noise."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import re
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from sepcal import _core
+from sepcal._core import ChannelMisfit
+from sepcal.aircraft_fits import AircraftFit
+from sepcal.columns import Array
+from sepcal.comparison import Comparison
+from sepcal.flight import Flight
+from sepcal.reporting import advice, tables, words
+from sepcal.reporting.figures_cause import draw_channel
+from sepcal.reporting.figures_error import draw_heat_strip
+from sepcal.reporting.figures_fit import Channel, Run, draw_overlay
+from sepcal.reporting.figures_states import draw_beside_zero, draw_with_band
+from sepcal.reporting.page import Figure, Grid, Page, Section
+from sepcal.reporting.thin import Rows, say_thinned
+from sepcal.smoothing import Smoothed
+
+CHANNELS = 12  # drawn
+WIDTH = 420  # [px] of a small picture, at least
+
+
+@dataclass(frozen=True)
+class Flown:
+    """The last fit of a chain on a flight; arrays of the N rows compared."""
+
+    chain: list[AircraftFit]
+    comparisons: list[Comparison]  # one a fit
+    files: list[str]
+    flight: Flight
+    rows: Rows  # (N,) of the flight
+    modelled: dict[str, Array]  # by output
+    smoothed: Smoothed | None  # with process noise
+    units: dict[str, str]  # of states, noises and outputs that are smoothed
+    process_noise: dict[str, float]
+
+    @property
+    def last(self) -> AircraftFit:
+        """The fit that the report is about."""
+        return self.chain[-1]
+
+    @property
+    def comparison(self) -> Comparison:
+        """Of the last."""
+        return self.comparisons[-1]
+
+    @property
+    def runs(self) -> list[Run]:
+        """Label, first and last time [s] of each maneuver."""
+        labels = self.flight.maneuvers
+        if not labels:
+            return []
+        found: list[Run] = []
+        for row, t in zip(self.rows.tolist(), self.comparison.time.tolist(), strict=True):
+            if found and found[-1][0] == labels[row]:
+                found[-1] = (labels[row], found[-1][1], t)
+            else:
+                found.append((labels[row], t, t))
+        return found
+
+
+def gather_flown(
+    chain: Sequence[AircraftFit],
+    flight: Flight | None,
+    files: list[str],
+    process_noise: Mapping[str, float],
+    report_progress: Callable[[str], None],
+) -> Flown:
+    """Compares, applies and smooths. Raises Error as those do."""
+    last = chain[-1]
+    models = sorted({fit.model for fit in chain})
+    if len(models) > 1:
+        raise _core.Error(f"the fits are of several models: {', '.join(models)}; give one")
+    flight = last._or_fitted(flight, "report(..., flight=")
+    report_progress("comparing")
+    comparisons = [fit.compare(flight) for fit in chain]
+    if process_noise:
+        report_progress("smoothing")
+    columns = last.apply(flight, process_noise=process_noise)
+    outputs = [misfit.output for misfit in comparisons[-1].overall]
+    modelled = {output: _column(columns, f"{output}_model") for output in outputs}
+    rows = np.flatnonzero(np.isfinite(modelled[outputs[0]]))
+    smoothed = last.smooth(process_noise, flight) if process_noise else None
+    return Flown(
+        chain=list(chain),
+        comparisons=comparisons,
+        files=files,
+        flight=flight,
+        rows=rows,
+        modelled={output: values[rows] for output, values in modelled.items()},
+        smoothed=smoothed,
+        units=_units(columns, smoothed, process_noise),
+        process_noise=dict(process_noise),
+    )
+
+
+def _column(columns: Mapping[str, Array], start: str) -> Array:
+    """The column whose header is this, or this with a unit."""
+    return columns[_header(columns, start)]
+
+
+def _header(columns: Mapping[str, Array], start: str) -> str:
+    return next(name for name in columns if name == start or name.startswith(f"{start}_"))
+
+
+def _units(
+    columns: Mapping[str, Array], smoothed: Smoothed | None, process_noise: Mapping[str, float]
+) -> dict[str, str]:
+    """Of the headers, "m/s^2" of "mps2"; "1" where there is none."""
+    if smoothed is None:
+        return {}
+
+    def unit(start: str) -> str:
+        spelled = _header(columns, start)[len(start) + 1 :] or "1"
+        return re.sub(r"ps(\d?)$", lambda at: "/s^" + at[1] if at[1] else "/s", spelled)
+
+    return (
+        {f"state {name}": unit(f"{name}_smooth") for name in smoothed.states}
+        | {f"noise {name}": unit(f"w_{name}_sd") for name in process_noise}
+        | {f"output {name}": unit(f"{name}_innovation") for name in smoothed.outputs}
+    )
+
+
+def compose_flown(flown: Flown, file: str) -> Page:
+    """The whole page but for Plotly; `file` is where it will stand."""
+    before = [
+        show_steps(flown),
+        show_overlay(flown),
+        show_where(flown),
+        show_channels(flown),
+        *show_states(flown),
+    ]
+    sections = [*before, show_parameters(flown), show_provenance(flown, file)]
+    title = os.path.basename(flown.flight.name) or flown.flight.name
+    verdict = show_verdict(flown, title, len(before) + 1)
+    return Page(f"{title}: sepcal report", verdict, sections)
+
+
+def show_verdict(flown: Flown, title: str, parameters: int) -> str:
+    """What was fitted and how, the errors left, and what the intervals lack.
+
+    `parameters` is the number of their section.
+    """
+    last = flown.last
+    status = escape(last.status.replace("_", " "))
+    flagged = status if last.status == "converged" else f'<span class="flag">{status}</span>'
+    facts = [
+        (words.with_unit(misfit.rmse, misfit.unit), f"RMSE left, {escape(misfit.output)}")
+        for misfit in flown.comparison.overall[:5]
+    ]
+    facts.append((flagged, "status of the fit"))
+    shown = "".join(f"<div><b>{value}</b><span>{name}</span></div>" for value, name in facts)
+    lagging = [m.output for m in flown.comparison.overall if not m.is_white]
+    verdict = (
+        f"Residuals of {', '.join(lagging)} follow one another: something is missing from the "
+        "model, or from the noise. Look where, and what they go with, below."
+        if lagging
+        else "The residuals are noise as far as their neighbours tell."
+    )
+    kind = "unexplained" if lagging else "adequate"
+    tag = "Not all is noise" if lagging else "Noise is left"
+    warnings = [*advice.warn(last, parameters), *([escape(last.warning)] if last.warning else [])]
+    more = "".join(f'<p class="warning">{text}</p>' for text in warnings)
+    notes = list(dict.fromkeys([*last.notes, *flown.comparison.notes]))
+    if notes:
+        listed = tables.bullets([escape(note) for note in notes])
+        more += f"<details><summary>notes on the data</summary>{listed}</details>"
+    effects = ", ".join(at.name for at in last.effects)
+    heading = f"<b>{escape(title)}</b> · {escape(last.model)} by {escape(last.method)}" + (
+        f" with {escape(effects)}" if effects else ""
+    )
+    return (
+        f'<h1>{heading}</h1><div class="verdict {kind}"><span class="tag">{tag}</span>'
+        f'<p>{escape(verdict)}</p></div><div class="facts">{shown}</div>{more}'
+    )
+
+
+def show_steps(flown: Flown) -> Section:
+    """The error of each output after every regressor that was added."""
+    rows = [
+        [
+            f"<code>{escape(entry.effect)}</code>",
+            escape(output),
+            f"{words.number(before)} → {words.number(entry.rmse_after[output])}",
+            words.percent(tables.drop(before, entry.rmse_after[output])),
+        ]
+        for entry in flown.last.history
+        for output, before in entry.rmse_before.items()
+    ]
+    head = [("added", False), ("output", False), ("RMSE", True), ("drop", True)]
+    blocks: list[str | Figure | Grid] = [tables.table(head, rows)] if rows else []
+    blocks.append(tables.list_calibrations(flown.chain, flown.files, flown.comparisons))
+    lead = "The error of every output, and what each regressor that was added took off it."
+    return Section("The error, step by step", lead, blocks)
+
+
+def show_overlay(flown: Flown) -> Section:
+    """Every output over time."""
+    comparison = flown.comparison
+    channels = [
+        Channel(
+            misfit.output,
+            misfit.unit,
+            flown.modelled[misfit.output] + comparison.residuals[:, i],
+            flown.modelled[misfit.output],
+            comparison.residuals[:, i],
+            flown.last.noise.get(misfit.output, misfit.rmse),
+        )
+        for i, misfit in enumerate(comparison.overall)
+    ]
+    gaps = (np.flatnonzero(np.diff(flown.rows) > 1) + 1).tolist()
+    blocks: list[str | Figure | Grid] = [draw_overlay(comparison.time, channels, flown.runs, gaps)]
+    if note := say_thinned(comparison.time.size):
+        blocks.append(f'<p class="note">{note}</p>')
+    lead = (
+        "Grey is what was measured, blue what the integrated model says, pale blue its 2-sigma "
+        "band. Below each, the residual between its 2-sigma lines: what leaves them for long is "
+        "not noise."
+    )
+    return Section("Measured and modelled", lead, blocks)
+
+
+def show_where(flown: Flown) -> Section:
+    """The heat strip and the worst windows."""
+    comparison, noise = flown.comparison, flown.last.noise
+    outputs = [misfit.output for misfit in comparison.overall]
+    floors = [noise.get(misfit.output, misfit.rmse) for misfit in comparison.overall]
+    lead = (
+        "RMSE by maneuver or stretch of time [s] and output, in the output's unit; the colour is "
+        "how many times the fit's noise it is."
+    )
+    strip = draw_heat_strip(comparison.where, outputs, floors)
+    return Section("Where it fails", lead, [strip, tables.list_windows(comparison)])
+
+
+def show_channels(flown: Flown) -> Section:
+    """The channels that the residual follows most."""
+    comparison = flown.comparison
+    outputs = [misfit.output for misfit in comparison.overall]
+    best: dict[str, ChannelMisfit] = {}
+    for channel in comparison.channels:
+        best.setdefault(channel.driver, channel)
+    figures: list[Figure] = []
+    for channel in list(best.values())[:CHANNELS]:
+        x = _driver(flown, channel.driver)
+        place = outputs.index(channel.output)
+        residual = comparison.residuals[:, place]
+        if x is None or (smooth := _core.smooth(x, residual)) is None:
+            continue
+        title = f"{channel.driver}: {words.share(channel.share_smooth)} of {channel.output}"
+        y_title = f"{channel.output} [{comparison.overall[place].unit}]"
+        figures.append(draw_channel(title, channel.driver, y_title, x, residual, smooth))
+    lead = (
+        "Residual against each logged channel, in the output where a smooth curve explains the "
+        "most of it. A curve that leaves its band about zero names a regressor to try: "
+        "<code>add FLIGHT.csv FIT.json 'Cm[alpha^2]'</code>."
+    )
+    blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else ["<p>None.</p>"]
+    return Section("Residual against the channels", lead, blocks)
+
+
+def _driver(flown: Flown, name: str) -> Array | None:
+    if name == "time":
+        return flown.comparison.time
+    for header in flown.flight:
+        if name in (header, header.rpartition("_")[0]):
+            return np.asarray(flown.flight[header][flown.rows])
+    return None
+
+
+def show_states(flown: Flown) -> list[Section]:
+    """What the smoother says: states with bands, innovations, process noise."""
+    smoothed = flown.smoothed
+    if smoothed is None:
+        said = (
+            "<p>Give process noise to have the states with their bands, the innovations of the "
+            "filter and the noise that drives the states, given all of the flight: "
+            "<code>--process-noise NAME=SD</code>.</p>"
+            if flown.last.method == "output-error"
+            else "<p>Equation error has no states.</p>"
+        )
+        return [Section("States", blocks=[said])]
+    time, rows, runs = flown.comparison.time, flown.rows, flown.runs
+
+    def draw(kind: str, names: Sequence[str], values: Array, sd: Array, picture: Any) -> Grid:  # noqa: ANN401
+        return Grid(
+            [
+                picture(
+                    name, flown.units[f"{kind} {name}"], time, values[rows, i], sd[rows, i], runs
+                )
+                for i, name in enumerate(names)
+                if f"{kind} {name}" in flown.units
+            ],
+            WIDTH,
+        )
+
+    given = ", ".join(f"{name} {sd:g}" for name, sd in flown.process_noise.items())
+    states = Section(
+        "States",
+        "Given all of the flight, with 2 standard deviations to either side, the errors of the "
+        "parameters among them; process noise: "
+        f"{escape(given)}.",
+        [draw("state", smoothed.states, smoothed.x, smoothed.standard_error, draw_with_band)],
+    )
+    scaled = smoothed.innovations[rows] / smoothed.innovation_sd[rows]
+    table = [
+        [
+            escape(name),
+            words.number(float(np.nanstd(scaled[:, j]))),
+            words.number(_lag_one(scaled[:, j]), 2),
+        ]
+        for j, name in enumerate(smoothed.outputs)
+    ]
+    head = [("output", False), ("standard deviation", True), ("lag-one correlation", True)]
+    innovations = Section(
+        "Innovations",
+        "What each reading brought that the rows before it had not foretold, in the band of 2 of "
+        "the filter's own standard deviations. Scaled by them they should have standard deviation "
+        "1 and no correlation with their neighbours; else the process noise is too small or too "
+        "large, or the model is wrong.",
+        [
+            tables.table(head, table),
+            draw(
+                "output", smoothed.outputs, smoothed.innovations, smoothed.innovation_sd,
+                draw_beside_zero,
+            ),
+        ],
+    )  # fmt: skip
+    noise = Section(
+        "Process noise",
+        "The noise that must have driven the states, w(k|N), with 2 standard deviations to either "
+        "side. Where its band leaves zero for long, a force or an error is missing from the model: "
+        "it says when.",
+        [draw("noise", smoothed.noises, smoothed.w, smoothed.w_standard_error, draw_with_band)],
+    )
+    return [states, innovations, noise]
+
+
+def _lag_one(values: Array) -> float:
+    there = values[np.isfinite(values)]
+    there = there - there.mean()
+    return float(np.dot(there[1:], there[:-1]) / max(np.dot(there, there), 1e-300))
+
+
+def show_parameters(flown: Flown) -> Section:
+    """Estimates and errors; initial states folded away."""
+    last, initial = flown.last, set(flown.last.initial_states)
+    lead = (
+        "The standard error allows for residuals whose neighbours correlate; beside it, what it "
+        "would be if they were white. Neither covers a cause that the model lacks."
+    )
+    blocks: list[str | Figure | Grid] = [tables.list_parameters(last, leave_out=initial)]
+    if initial:
+        others = set(last.names) - initial
+        folded = tables.list_parameters(last, leave_out=others)
+        blocks.append(
+            f"<details><summary>{len(initial)} initial states</summary>{folded}</details>"
+        )
+    blocks.append(tables.list_directions(last.unobservable, last.weak))
+    return Section("Parameters", lead, blocks)
+
+
+def show_provenance(flown: Flown, file: str) -> Section:
+    """Inputs, version, options, and what makes the page again."""
+    flight, last = flown.flight, flown.last
+    description = last.to_dict()
+    rows = [
+        ["flight", f"{escape(flight.name)}, {flight.rows:,} rows, {flown.rows.size:,} used"],
+        ["sha256 of the flight", f"<code>{flight.sha256 or 'none: arrays, not a file'}</code>"],
+    ]
+    for i, fit in enumerate(flown.chain):
+        name = flown.files[i] if i < len(flown.files) else f"fit {i + 1}"
+        digest = hashlib.sha256(fit.to_json().encode()).hexdigest()
+        rows.append([f"sha256 of {escape(name)}", f"<code>{digest}</code>"])
+    if flight.sha256 and description["inputs"]["sha256"] != flight.sha256:
+        fitted = description["inputs"]
+        rows.append(["fitted on", f"{escape(fitted['file'])}, <code>{fitted['sha256']}</code>"])
+    rows += [
+        ["model", escape(f"{last.model}, {last.method}")],
+        ["sepcal", f"{escape(_core.__version__)}, Python {platform.python_version()}"],
+    ]
+    again = f"sepcal.report(fits, {file!r}, flight)"
+    if flown.files and flight.sha256:
+        noise = [f"--process-noise={name}={sd:g}" for name, sd in flown.process_noise.items()]
+        command = ["python", "-m", "sepcal", "report", flight.name, *flown.files, *noise]
+        again = shlex.join([*command, "-o", file])
+    options = escape(json.dumps(description["options"]))
+    shown = tables.table([("", False), ("", False)], rows)
+    text = (
+        f"{shown}<p>This page again:</p><pre>{escape(again)}</pre>"
+        f"<details><summary>all options of the fit</summary><pre>{options}</pre></details>"
+    )
+    return Section("Where this comes from", blocks=[text])

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""States and process noise along a record, given all of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from sepcal import _core
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
+from sepcal.own_state_model import AnyModel, as_model
+from sepcal.results import Fit
+
+
+class Smoothed(_core.SmoothedRecord):
+    """States and process noise, given all samples. `smoothed["alpha"]` is one state, (N,)."""
+
+    @property
+    def standard_error(self) -> Array:
+        """Of x, (N, n_x)."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+
+    @property
+    def w_standard_error(self) -> Array:
+        """Of w, (N, n_w): by how much less than its density has it the record tells it."""
+        return np.sqrt(np.diagonal(self.w_covariance, axis1=1, axis2=2))
+
+    @property
+    def log_likelihood(self) -> float:
+        """Ln L of the record's outputs, S 5.5."""
+        return -self.cost - 0.5 * self.readings * math.log(2.0 * math.pi)
+
+    def __getitem__(self, state: str) -> Array:
+        """x(k|N) of one state, (N,)."""
+        if state not in self.states:
+            raise KeyError(f"there is no state '{state}'; there are: {', '.join(self.states)}")
+        return np.asarray(self.x[:, self.states.index(state)])
+
+    def __repr__(self) -> str:
+        return f"<sepcal.Smoothed {', '.join(self.states)}: {len(self.x)} rows>"
+
+
+def smooth(
+    model: AnyModel,
+    data: Columns,
+    fit: Fit,
+    process_noise: Mapping[str, float],
+    *,
+    noise: Mapping[str, float] | None = None,
+    start: Mapping[str, float] | None = None,
+    parameter_errors: bool = True,
+) -> Smoothed:
+    """States and process noise along a record, by the extended filter and its smoother.
+
+    System Identification Summary, S 2.20 to 2.23 and 3.1 to 3.14, at the parameters of a fit.
+
+    Args:
+        model: With a state, that was fitted.
+        data: As for the fit; outputs may be missing, NaN.
+        fit: The fit.
+        process_noise: Roots of the noises' spectral densities, {name: sd}, by the names and in the
+            units of the model's table of noises; those not named are none.
+        noise: Standard deviation of every output [the fit's].
+        start: Standard deviation of states at the start about the fit's [ten times the largest
+            value of the state on the way, as good as unknown].
+        parameter_errors: Whether the fit's errors are part of the states' and the noise's, to first
+            order; else they are of parameters that are known.
+
+    Returns:
+        A Smoothed: x and w with their covariances, innovations, the likelihood.
+
+    Raises:
+        Error: No process noise, or one that the model doesn't have; a model without a state; an
+            input that is missing; where the filter can't go on, the row.
+    """
+    model = as_model(model)
+    if fit.effects:
+        raise _core.Error("smooth() knows no effects; fit the model without them")
+    data = by_name(data)
+    names = [*model._columns_in(data), *model._measured_in(data)]
+    columns, labels = take_columns(model._owner, data, dict.fromkeys(names)), labels_in(data)
+    parameters = {parameter.name: parameter.value for parameter in fit.parameters.values()}
+    laid = model._core.along(columns, labels)
+    outputs = dict(fit.noise if noise is None else noise)
+    return Smoothed(
+        _core.smooth(
+            laid,
+            columns,
+            labels,
+            parameters,
+            dict(process_noise),
+            outputs,
+            dict(start or {}),
+            fit if parameter_errors else None,
+        )
+    )

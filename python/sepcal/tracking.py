@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Estimates against time: a recursive estimator along a record, as it would run in flight."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal, Unpack
+
+import numpy as np
+
+from sepcal import _core
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
+from sepcal.flight import Flight
+from sepcal.options import FitOptions, spelled_out, to_core
+from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.results import Fit
+
+REFUSED = ("effects", "drop_invalid")
+
+
+class Track(_core.Track):
+    """Estimates against time. `track["Za"]` is one of them, (M,)."""
+
+    def __getitem__(self, name: str) -> Array:
+        """One estimate against time, (M,)."""
+        return np.asarray(self.estimates[:, self._place(name)])
+
+    def standard_deviation(self, name: str) -> Array:
+        """Of one estimate against time, (M,)."""
+        return np.asarray(self.standard_deviations[:, self._place(name)])
+
+    def _place(self, name: str) -> int:
+        if name not in self.names:
+            raise KeyError(f"there is no '{name}'; there are: {', '.join(self.names)}")
+        return self.names.index(name)
+
+    def __repr__(self) -> str:
+        return f"<sepcal.Track {', '.join(self.names)}: {len(self.rows)} rows>"
+
+
+@spelled_out(without=REFUSED)
+def track(
+    model: AnyModel,
+    data: Columns,
+    *,
+    fitted: Fit | None = None,
+    start_rows: int | None = None,
+    method: Literal["rls", "ekf", "iekf", "srif"] | str = "ekf",
+    process_noise: Mapping[str, float] | None = None,
+    initial_states: Mapping[str, float] | None = None,
+    row_iterations: int = 20,
+    tolerance: float = 1e-8,
+    **options: Unpack[FitOptions],
+) -> Track:
+    """Runs a recursive estimator along a record, from a calibration or from its own first rows.
+
+    Of a model with a state, states and parameters are estimated together. The start from a
+    mini-batch is Sun & Gebre-Egziabher's, Sec. VI: stages one and two on the first rows, whose
+    triangular factor goes on as the stream's information.
+
+    Args:
+        model: As for fit().
+        data: As for fit(); outputs may be missing, NaN.
+        fitted: A fit of other data to start from.
+        start_rows: Fits so many rows first, by the options, and goes on after them.
+        method: "rls", recursive least squares linearised at the start; "ekf", the extended filter;
+            "iekf", iterated; "srif", the extended filter as square-root information.
+        process_noise: Of a model with a state: roots of the noises' spectral densities, {name: sd},
+            by the names and in the units of its table of noises; those not named are none.
+        initial_states: Of states where a segment begins that `start_rows` hasn't fitted: {name: sd}
+            [ten times the largest value of the state on the way, as good as unknown].
+        row_iterations: Of iekf, at most so many a row.
+        tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the prior.
+        **options: FitOptions.
+
+    Returns:
+        A Track.
+
+    Raises:
+        Error: No start, or two; rows that are too few; names that the model doesn't have; what
+            fit() refuses.
+        TypeError: An option that there isn't.
+    """
+    if (fitted is None) == (start_rows is None):
+        raise _core.Error(
+            "track() starts from one of two: fitted=FIT of other data, or start_rows=N of these"
+        )
+    for name in options:
+        if name not in FitOptions.__annotations__:
+            raise TypeError(f"track() has no option '{name}'; help(sepcal.track) shows what it has")
+    for name in REFUSED:
+        if options.get(name):
+            raise _core.Error(f"track() knows no {name}; leave it out")
+    if isinstance(data, Flight):
+        raise _core.Error("track() takes columns by name; of a flight: AircraftFit.track(flight)")
+    if fitted is not None and not isinstance(fitted, Fit):
+        raise _core.Error(f"fitted is {fitted!r}; give a Fit, as sepcal.fit() makes it")
+    if fitted is not None and fitted.effects:
+        raise _core.Error("track() knows no effects; fit the model without them")
+    if start_rows is not None and start_rows < 1:
+        raise _core.Error(f"start_rows is {start_rows}; give the number of rows to fit first")
+    model = as_model(model)
+    if runs_in_python(model):
+        options["threads"] = options.get("threads") or 1
+    data = by_name(data)
+    there = set(data)
+    names = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]
+    columns = take_columns(model._owner, data, dict.fromkeys(names))
+    return Track(
+        _core.track(
+            model._core,
+            columns,
+            labels_in(data),
+            method,
+            start_rows,
+            fitted,
+            to_core(options),
+            dict(process_noise or {}),
+            dict(initial_states or {}),
+            _core.IterationOptions(row_iterations, tolerance),
+        )
+    )

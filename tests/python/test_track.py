@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Estimates against time: an extended filter by hand, the same model in C++ and Python, batches."""
+
+import pickle
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import sepcal
+from own_state_models import (
+    PERIOD,
+    Pendulum,
+    RollMode,
+    ShortPeriod,
+    fly_short_period,
+    swing,
+)
+from refusals import refuse
+
+FLIGHT = fly_short_period()
+NEAR = {name: PERIOD[name] for name in ("Za", "Ma", "Mq")}
+NOISE = {"alpha_m": 0.005, "q_m": 0.01, "az_m": 0.15}
+METHODS = ("rls", "ekf", "iekf", "srif")
+QUIET = {"coloured_errors": False, "threads": 1}
+
+
+def roll(seed: int = 1, rows: int = 400) -> dict[str, np.ndarray]:
+    """A roll mode's record, by its closed form between rows over which the aileron is held."""
+    draws = np.random.default_rng(seed)
+    time = np.arange(rows) * 0.05
+    aileron = np.where(np.sin(2 * np.pi * 0.3 * time) > 0, 0.1, -0.1)
+    p, reading = 0.2, []
+    for k in range(rows):
+        reading.append(p + 0.03 + 0.01 * draws.normal())
+        decay = np.exp(-2.0 * 0.05)
+        p = decay * p + (1 - decay) / 2.0 * 20.0 * aileron[k]
+    return {"time": time, "aileron": aileron, "p_m": np.array(reading)}
+
+
+def slope(s: np.ndarray, u: float) -> np.ndarray:
+    """Of s = p, b_p, La, Lp: the state moves, the parameters stay."""
+    return np.array([s[3] * s[0] + s[2] * u, 0.0, 0.0, 0.0])
+
+
+def differences(f, s: np.ndarray) -> np.ndarray:
+    h = 1e-5
+    return np.stack([(f(s + h * e) - f(s - h * e)) / (2 * h) for e in np.eye(len(s))], axis=1)
+
+
+def test_an_extended_filter_by_hand() -> None:
+    """Of s = [p, b_p, La, Lp]: Runge and Kutta, differences, and the textbooks' filter."""
+    data = roll()
+    batch = 150
+    model = sepcal.Trajectory(RollMode(), inputs="hold")
+    noise = {"p_m": 0.01}
+    first = {name: column[:batch] for name, column in data.items()}
+    start = sepcal.fit(model, first, noise=noise, **QUIET)
+    found = sepcal.track(model, data, start_rows=batch, noise=noise, process_noise={"p": 0.02})
+    assert found.names == ("p", "b_p", "La", "Lp")
+
+    order = ["p_0", "b_p", "La", "Lp"]
+    s = np.array([start[name].value for name in order])
+    places = [start.names.index(name) for name in order]
+    sd = np.array([start[name].standard_error_white for name in order])
+    P = start.correlation[np.ix_(places, places)] * np.outer(sd, sd)
+    dt, C = 0.05, np.array([[1.0, 1.0, 0.0, 0.0]])
+
+    def advance(s: np.ndarray, u: float) -> np.ndarray:
+        k1 = slope(s, u)
+        k2 = slope(s + 0.5 * dt * k1, u)
+        k3 = slope(s + 0.5 * dt * k2, u)
+        return s + dt / 6 * (k1 + 2 * k2 + 2 * k3 + slope(s + dt * k3, u))
+
+    for k in range(1, len(data["time"])):
+        u = data["aileron"][k - 1]
+        Phi = differences(lambda at, u=u: advance(at, u), s)
+        gamma = np.zeros(4)  # of a noise that is held meanwhile
+        F = s[3] * dt
+        gamma[0] = dt * (1 + F / 2 + F**2 / 6 + F**3 / 24)
+        s = advance(s, u)
+        P = Phi @ P @ Phi.T + np.outer(gamma, gamma) * 0.02**2 / dt
+        if k < batch:
+            continue
+        e = data["p_m"][k] - C[0] @ s
+        K = P @ C.T / (C @ P @ C.T + 0.01**2)
+        s, P = s + K[:, 0] * e, (np.eye(4) - K @ C) @ P
+        row = k - batch
+        assert_allclose(found.innovations[row, 0], e, atol=1e-7)
+        deviations = np.sqrt(np.diag(P))
+        assert_allclose(found.standard_deviations[row], deviations, rtol=1e-5)
+        assert np.all(np.abs(found.estimates[row] - s) < 1e-5 * deviations)
+    assert found.time[0] == data["time"][batch]
+    assert list(found.rows) == list(range(batch, len(data["time"])))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_model_in_python_is_tracked_as_one_in_cpp(method: str) -> None:
+    """By a noise that moves the state only a little: its covariance over a step is another one."""
+    process = {} if method == "rls" else {"process_noise": {"alpha": 1e-6, "q": 1e-5}}
+    tracks = [
+        sepcal.track(
+            model, FLIGHT, start_rows=120, method=method, noise=NOISE, start=NEAR, **process
+        )
+        for model in (sepcal.ShortPeriod(), ShortPeriod())
+    ]
+    assert set(tracks[0].names) == set(tracks[1].names)
+    for name in tracks[0].names:
+        sd = tracks[0].standard_deviation(name)
+        assert np.all(np.abs(tracks[0][name] - tracks[1][name]) < 1e-3 * sd), name
+        assert_allclose(tracks[1].standard_deviation(name), sd, rtol=1e-3)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_truth_is_within_the_last_deviations(method: str) -> None:
+    found = sepcal.track(sepcal.ShortPeriod(), FLIGHT, start_rows=120, method=method, noise=NOISE)
+    for name, value in PERIOD.items():
+        if name in found.names:
+            assert abs(found[name][-1] - value) < 4.0 * found.standard_deviation(name)[-1], name
+            assert found.standard_deviation(name)[-1] < found.standard_deviation(name)[0]
+
+
+def test_from_another_flights_fit_through_readings_that_are_missing() -> None:
+    fit = sepcal.fit(sepcal.ShortPeriod(), FLIGHT, start=NEAR)
+    other = fly_short_period(seed=2)
+    other["q_m"] = np.where(np.arange(len(other["q_m"])) % 3 == 0, np.nan, other["q_m"])
+    found = sepcal.track(sepcal.ShortPeriod(), other, fitted=fit, method="iekf")
+    assert np.isnan(found.innovations[0, 1])
+    assert not np.isnan(found.innovations[1, 1])
+    assert len(found.rows) == len(other["time"])
+    assert found.standard_deviation("Mq")[-1] < fit["Mq"].standard_error
+
+
+def test_a_pendulum_that_is_not_linear() -> None:
+    data = swing()
+    near = {"w": 2.0, "d": 0.3, "g": 1.0}
+    half = len(data["time"]) // 2
+    found = sepcal.track(Pendulum(), data, start_rows=half, method="iekf", start=near)
+    whole = sepcal.fit(Pendulum(), data, start=near, **QUIET)
+    for name in ("w", "d", "g"):
+        error = whole[name].standard_error_white
+        assert abs(found[name][-1] - whole[name].value) < 0.5 * error
+        assert_allclose(found.standard_deviation(name)[-1], error, rtol=0.2)
+
+
+def test_samples_by_every_method() -> None:
+    """Of a model of samples the parameters are the state; near the batch of all rows."""
+    draws = np.random.default_rng(5)
+    eta = draws.uniform(1, 10, 200)
+    z = 2.0 * np.cos(1.05 * eta + 0.1) + 1.0 + 0.3 * draws.normal(size=200)
+    data = {"eta": eta, "z": z}
+    model = sepcal.ScalarExample2()
+    whole = sepcal.fit(model, data, noise={"z": 0.3})
+    for method in METHODS:
+        found = sepcal.track(model, data, start_rows=60, method=method, noise={"z": 0.3})
+        assert len(found.time) == 0
+        assert found.estimates.shape == (140, 4)
+        for name in found.names:
+            assert abs(found[name][-1] - whole[name].value) < 0.5 * whole[name].standard_error
+
+
+def test_bad_input_is_one_line() -> None:
+    model = sepcal.ShortPeriod()
+    refuse(
+        lambda: sepcal.track(model, FLIGHT),
+        "track() starts from one of two: fitted=FIT of other data, or start_rows=N of these",
+    )
+    refuse(
+        lambda: sepcal.track(model, FLIGHT, start_rows=120, method="ukf"),
+        "method 'ukf' is unknown; known: 'rls', 'ekf', 'iekf', 'srif'",
+    )
+    refuse(
+        lambda: sepcal.track(model, FLIGHT, start_rows=120, process_noise={"r": 1.0}),
+        "the model has no process noise 'r'; it has alpha, q",
+    )
+    refuse(
+        lambda: sepcal.track(model, FLIGHT, start_rows=10**6),
+        f"start_rows is 1000000; the record has {len(FLIGHT['time'])} rows: take fewer, so that "
+        "some are left to track",
+    )
+    refuse(
+        lambda: sepcal.track(model, FLIGHT, start_rows=0),
+        "start_rows is 0; give the number of rows to fit first",
+    )
+    refuse(
+        lambda: sepcal.track(sepcal.ShortPeriod(shoot=2.0), FLIGHT, start_rows=120),
+        "a track runs on; leave shoot out",
+    )
+    with pytest.raises(KeyError, match="there is no 'Zq'; there are: alpha, q, "):
+        sepcal.track(model, FLIGHT, start_rows=250)["Zq"]
+
+
+def test_it_pickles() -> None:
+    found = sepcal.track(sepcal.ShortPeriod(), FLIGHT, start_rows=250)
+    again = pickle.loads(pickle.dumps(found))
+    assert again.names == found.names
+    assert_allclose(again.estimates, found.estimates)
+    assert repr(again) == repr(found)
