@@ -143,3 +143,21 @@ TEST_CASE("inputs that are held or linear between samples, by quadrature") {
     CHECK((inputs.begin * u0 + inputs.end * u1 - linear).norm() < 1e-12);
   }
 }
+
+TEST_CASE("units of the states cost transition and noise no digits") {
+  Matrix2d F;
+  F << -0.4, 1.0, -9.0, -0.6;
+  Matrix2d density;
+  density << 0.2, 0.05, 0.05, 0.4;
+  const auto expected = discretise<2>(F, density, 0.1);
+  for (const double unit : {1e6, 1e12}) {
+    const Eigen::Vector2d units(unit, 1.0 / unit);
+    const Eigen::Vector2d back = units.cwiseInverse();
+    const auto found =
+        discretise<2>(Matrix2d(units.asDiagonal() * F * back.asDiagonal()),
+                      Matrix2d(units.asDiagonal() * density * units.asDiagonal()), 0.1);
+    CHECK((back.asDiagonal() * found.Phi * units.asDiagonal() - expected.Phi).norm() < 1e-13);
+    CHECK((back.asDiagonal() * found.Q_d * back.asDiagonal() - expected.Q_d).norm() <
+          1e-13 * expected.Q_d.norm());
+  }
+}

@@ -9,12 +9,14 @@
 #include <span>
 #include <vector>
 
+#include "sepcal/states/information_form.hpp"
 #include "sepcal/states/joseph_form.hpp"
 #include "sepcal/states/smoother.hpp"
 #include "stacked_system.hpp"
 
 using sepcal::Filter;
 using sepcal::FilterStatus;
+using sepcal::InformationForm;
 using sepcal::JosephForm;
 using sepcal::LinearDynamics;
 using sepcal::LinearOutputs;
@@ -158,6 +160,44 @@ TEST_CASE_TEMPLATE("what can't be used is refused and changes nothing", Form, Sq
   at.C.setZero();
   CHECK(update(filter, at).status == FilterStatus::refused);
   CHECK(unchanged(filter));
+}
+
+TEST_CASE_TEMPLATE("covariances that are none are refused", Form, SquareRootForm<2>, JosephForm<2>,
+                   InformationForm<2>) {
+  using Eigen::Matrix2d;
+  Filter<2, Form> filter(Eigen::Vector2d(1.0, 2.0), Matrix2d(Matrix2d::Identity()));
+  Matrix2d bad = Matrix2d::Identity();
+  bad(1, 1) = -0.5;  // P + bad is still positive
+  CHECK(filter.predict(sepcal::Transition<2, 2>{
+            filter.x(), Matrix2d::Identity(), Matrix2d::Identity(), bad}) == FilterStatus::refused);
+  CHECK(filter
+            .update(Eigen::Vector2d(0.0, 0.0),
+                    sepcal::Linearisation<2, 2>{filter.x(), Matrix2d::Identity()}, bad)
+            .status == FilterStatus::refused);
+  CHECK(filter.covariance() == Matrix2d::Identity());
+}
+
+TEST_CASE_TEMPLATE("units of the states are no singularity", Form, SquareRootForm<3>, JosephForm<3>,
+                   InformationForm<3>) {
+  using Eigen::Matrix3d;
+  Matrix3d Phi;
+  Phi << 0.9, 0.1, 0.0, -0.3, 0.8, 0.1, 0.05, 0.0, 0.95;
+  const Matrix3d Q = 0.01 * Matrix3d::Identity();
+  const Eigen::Vector3d units(1e9, 1.0, 1e-9);
+  const Eigen::Vector3d back = units.cwiseInverse();
+  Filter<3> expected(Eigen::Vector3d(1.0, 2.0, 3.0), Matrix3d(Matrix3d::Identity()));
+  Filter<3, Form> filter(Eigen::Vector3d(units.cwiseProduct(expected.x())),
+                         Matrix3d(units.cwiseAbs2().asDiagonal()));
+  for (int k = 0; k < 5; ++k) {
+    expected.predict(sepcal::Transition<3, 3>{Eigen::Vector3d(Phi * expected.x()), Phi,
+                                              Matrix3d::Identity(), Q});
+    CHECK(filter.predict(
+              sepcal::Transition<3, 3>{Eigen::Vector3d(units.cwiseProduct(expected.x())),
+                                       Matrix3d(units.asDiagonal() * Phi * back.asDiagonal()),
+                                       Matrix3d(units.asDiagonal()), Q}) == FilterStatus::ok);
+    const Matrix3d P = back.asDiagonal() * filter.covariance() * back.asDiagonal();
+    CHECK((P - expected.covariance()).norm() < 1e-12 * P.norm());
+  }
 }
 
 TEST_CASE("P falls while predicting where Phi damps more than Q_d brings") {

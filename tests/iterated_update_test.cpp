@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <type_traits>
 
 #include "sepcal/states/autodiff.hpp"
 #include "sepcal/states/joseph_form.hpp"
@@ -133,4 +134,37 @@ TEST_CASE("the cap is told, and a refusal changes nothing") {
   CHECK(sepcal::iterated_update(filter, Vector2d(HUGE_VAL, 0.0), radar, problem.R).status ==
         FilterStatus::refused);
   CHECK(filter.x() == problem.prior);
+}
+
+TEST_CASE_TEMPLATE("where nothing was known before, ok means the point of least J too", Form,
+                   SquareRootForm<2>, JosephForm<2>) {
+  // Ranges to three beacons that don't meet in a point.
+  const auto ranges = [](const auto& x) {
+    using T = std::decay_t<decltype(x[0])>;
+    Eigen::Vector<T, 3> r;
+    const double beacons[3][2] = {{0.0, 0.0}, {10.0, 0.0}, {0.0, 10.0}};
+    for (int k = 0; k < 3; ++k) r[k] = hypot(x[0] - beacons[k][0], x[1] - beacons[k][1]);
+    return r;
+  };
+  const Eigen::Vector3d y = ranges(Vector2d(3.0, 4.0)) + Eigen::Vector3d(0.5, -0.4, 0.3);
+  const Eigen::Matrix3d R = 1e-4 * Eigen::Matrix3d::Identity();
+  const Vector2d prior(5.0, 5.0);
+  const bool multiplied_out = std::is_same_v<Form, JosephForm<2>>;  // loses P beside R from 1e9 on
+  const double variance = multiplied_out ? 1e2 : 1e6;
+  Filter<2, Form> filter(prior, Matrix2d(variance * Matrix2d::Identity()));
+  const auto at = [&](const Vector2d& x) { return sepcal::differentiate(ranges, x); };
+  const auto innovation = sepcal::iterated_update(filter, y, at, R, {.iterations = 200});
+  CHECK(innovation.status == FilterStatus::ok);
+  // dJ/dx by differences is zero there, in standard deviations.
+  const auto J = [&](const Vector2d& x) {
+    return 0.5 * (x - prior).squaredNorm() / variance + 0.5 * (y - ranges(x)).squaredNorm() / 1e-4;
+  };
+  const Vector2d sd = filter.covariance().diagonal().cwiseSqrt();
+  for (int k = 0; k < 2; ++k) {
+    const Vector2d h = 1e-2 * Vector2d::Unit(k);
+    const double slope = (8.0 * (J(filter.x() + 0.5 * h) - J(filter.x() - 0.5 * h)) -
+                          (J(filter.x() + h) - J(filter.x() - h))) /
+                         (6.0 * h[k]);
+    CHECK(std::abs(slope) * sd[k] < 1e-3);
+  }
 }

@@ -72,3 +72,16 @@ TEST_CASE("what is not finite stays so, and huge is no loop without end") {
     CHECK_FALSE(matrix_exponential(A).allFinite());
   }
 }
+
+TEST_CASE("units of the states cost no digits") {
+  Eigen::Matrix3d A;
+  A << -0.5, 1.0, 0.2, -4.0, -0.3, 0.1, 0.3, 0.2, -1.0;
+  const Eigen::Matrix3d expected = matrix_exponential(A);
+  for (const double unit : {1e6, 1e12}) {
+    const Eigen::Vector3d units(unit, 1.0, 1.0 / unit);
+    const Eigen::Matrix3d E = matrix_exponential(
+        Eigen::Matrix3d(units.asDiagonal() * A * units.cwiseInverse().asDiagonal()));
+    const Eigen::Matrix3d back = units.cwiseInverse().asDiagonal() * E * units.asDiagonal();
+    CHECK((back - expected).norm() < 1e-13 * expected.norm());
+  }
+}

@@ -176,4 +176,17 @@ TEST_CASE("what is unfit changes nothing") {
   CHECK(root.matrix().isZero(0.0));
   CHECK(information.solution() == Parameters::Zero());
   CHECK(covariance.covariance() == Matrix::Identity());
+  bad.W(0, 0) = -0.1;  // no variance, though H H' + W is one
+  CHECK(refused(bad));
+}
+
+TEST_CASE("a covariance keeps its digits from a start a million times as wide") {
+  const std::vector<Sample> samples = draw_samples(12, 4);
+  const double wide = 1e6;
+  CovarianceRecursion<n> covariance(Parameters::Zero(), Matrix(wide * wide * Matrix::Identity()));
+  for (const Sample& sample : samples) CHECK(covariance.absorb(sample.H, sample.y, sample.W));
+  const Batch batch = solve_batch(samples);  // the start is worth 1e-12 of it
+  const Eigen::VectorXd sd = batch.covariance.diagonal().cwiseSqrt();
+  CHECK(((covariance.solution() - batch.p).array().abs() <= 1e-8 * sd.array()).all());
+  CHECK((covariance.covariance() - batch.covariance).norm() < 1e-8 * batch.covariance.norm());
 }

@@ -19,7 +19,6 @@ __all__: list[str] = [
     "Diagnosed",
     "EffectSetting",
     "Error",
-    "Filter",
     "Fit",
     "Flight",
     "FlightCheck",
@@ -40,14 +39,11 @@ __all__: list[str] = [
     "Prediction",
     "PreparedFlight",
     "PythonFunctions",
-    "RecursiveLeastSquares",
     "SIGNIFICANT_BELOW",
     "ScreenResults",
     "SmoothedRecord",
     "StageOne",
-    "StateTables",
     "Track",
-    "TrajectoryOptions",
     "VISIBLE_FROM",
     "Window",
     "attitude_independent_magnetometer",
@@ -60,7 +56,6 @@ __all__: list[str] = [
     "fit",
     "fit_many",
     "five_hole_probe",
-    "flight_path",
     "gather_figures",
     "magnetometer",
     "parse_calibration",
@@ -70,17 +65,14 @@ __all__: list[str] = [
     "prepare_flight",
     "profile_intervals",
     "python_model",
-    "python_state_model",
     "quantiles",
     "read_calibration",
     "read_csv",
     "scalar_example_1",
     "scalar_example_2",
-    "short_period",
     "simulate",
     "smooth",
     "spectrum",
-    "track",
 ]
 
 class Options:
@@ -1886,42 +1878,6 @@ class IterationOptions:
         tolerance: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
 
-class TrajectoryOptions:
-    def __init__(
-        self,
-        *,
-        inputs: str,
-        substeps: typing.SupportsInt | typing.SupportsIndex,
-        shoot: typing.SupportsFloat | typing.SupportsIndex,
-        measured: collections.abc.Sequence[str],
-        outputs: collections.abc.Sequence[str],
-        separable: bool,
-        scales_about_start: bool,
-    ) -> None: ...
-
-class StateTables:
-    def __init__(
-        self,
-        tables: typing.Annotated[
-            collections.abc.Sequence[
-                collections.abc.Sequence[
-                    tuple[
-                        str,
-                        str,
-                        typing.SupportsFloat | typing.SupportsIndex,
-                        typing.SupportsFloat | typing.SupportsIndex,
-                    ]
-                ]
-            ],
-            "FixedSize(6)",
-        ],
-        linear_dynamic: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
-        linear_in_state: bool,
-        scales: collections.abc.Sequence[bool],
-        acts_on: collections.abc.Sequence[collections.abc.Sequence[bool]],
-        discrete: bool,
-    ) -> None: ...
-
 class Innovation:
     """
     What a measurement brought that was not expected.
@@ -1966,55 +1922,6 @@ class Innovation:
         """
         (n_z,), e in standard deviations, uncorrelated.
         """
-
-class Filter:
-    @typing.overload
-    def __init__(
-        self,
-        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-        arg2: str,
-    ) -> None: ...
-    @typing.overload
-    def __init__(self, arg0: Filter) -> None: ...
-    def predict(
-        self,
-        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    ) -> bool: ...
-    def update(
-        self,
-        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    ) -> Innovation | None: ...
-    @property
-    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
-    @property
-    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
-
-class RecursiveLeastSquares:
-    def __init__(
-        self,
-        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,
-        arg2: str,
-    ) -> None: ...
-    def absorb(
-        self,
-        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    ) -> bool: ...
-    @property
-    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
-    @property
-    def determined(self) -> bool: ...
-    @property
-    def solution(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 def attitude_independent_magnetometer(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
@@ -2068,14 +1975,6 @@ def five_hole_probe(
     arg2: typing.Annotated[
         collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
     ],
-) -> Model: ...
-def flight_path(
-    arg0: bool,
-    arg1: typing.SupportsFloat | typing.SupportsIndex,
-    arg2: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
-    ],
-    arg3: TrajectoryOptions,
 ) -> Model: ...
 def gather_figures(arg0: Calibration, arg1: Flight) -> FlightFigures: ...
 def magnetometer(
@@ -2134,7 +2033,6 @@ def python_model(
     ],
     arg2: PythonFunctions,
 ) -> Model: ...
-def python_state_model(arg0: StateTables, arg1: TrajectoryOptions, arg2: typing.Any) -> Model: ...
 def quantiles(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
@@ -2144,7 +2042,6 @@ def read_calibration(
 def read_csv(arg0: str) -> Flight: ...
 def scalar_example_1() -> Model: ...
 def scalar_example_2() -> Model: ...
-def short_period(arg0: TrajectoryOptions) -> Model: ...
 def simulate(
     arg0: str,
     arg1: str,
@@ -2158,7 +2055,6 @@ def simulate(
     arg7: typing.SupportsInt | typing.SupportsIndex,
     arg8: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[Flight, dict[str, float], list[str]]: ...
-@typing.overload
 def smooth(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -2170,17 +2066,6 @@ def smooth(
     ]
     | None
 ): ...
-@typing.overload
-def smooth(
-    arg0: Model,
-    arg1: dict,
-    arg2: collections.abc.Sequence[str],
-    arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg6: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg7: Fit | None,
-) -> SmoothedRecord: ...
 def spectrum(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg1: collections.abc.Sequence[
@@ -2192,18 +2077,6 @@ def spectrum(
     ],
     arg2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
-def track(
-    arg0: Model,
-    arg1: dict,
-    arg2: collections.abc.Sequence[str],
-    arg3: str,
-    arg4: typing.SupportsInt | typing.SupportsIndex | None,
-    arg5: Fit | None,
-    arg6: Options,
-    arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg9: IterationOptions,
-) -> Track: ...
 
 SIGNIFICANT_BELOW: float = 0.05
 VISIBLE_FROM: float = 0.05

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Protocol, Unpack
 
 from sepcal import _core
-from sepcal.geometry import Aircraft, aircraft_module
+from sepcal.geometry import Aircraft
+from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryOptions, complete, to_core_options
 
 Equations = Mapping[str, Sequence[str]]
@@ -17,7 +18,7 @@ class AircraftModel(Protocol):
     """What fit() and two_step() lay along a flight: Aero, RigidAircraft, FlightPath."""
 
     def _aircraft_options(self) -> dict[str, Any]:
-        """Of sepcal._aircraft.Options, all but those of the fit."""
+        """Of sepcal._states.Options, all but those of the fit."""
 
 
 class Aero:
@@ -107,7 +108,7 @@ class RigidAircraft:
 
 def standard_regressors(coefficient: str) -> list[str]:
     """Of one of CX CY CZ Cl Cm Cn, S 6.8 to 6.13. Raises Error for another name."""
-    return list(aircraft_module().standard_regressors(coefficient))
+    return list(states_module().standard_regressors(coefficient))
 
 
 def _to_aircraft(aircraft: object) -> Aircraft:

@@ -13,17 +13,18 @@ from sepcal.aircraft import Aero, AircraftModel
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.flight import Flight, to_flight
-from sepcal.geometry import Aircraft, aircraft_module
+from sepcal.geometry import Aircraft
 from sepcal.options import FitOptions, spelled_out, to_core
 from sepcal.own_effect import name_effects
 from sepcal.pages import Page
 from sepcal.results import Fit
 from sepcal.smoothing import Smoothed
+from sepcal.states_module import states_module
 from sepcal.tracking import Track
 from sepcal.trajectories import FlightPath
 
 if TYPE_CHECKING:
-    from sepcal import _aircraft
+    from sepcal import _states
 
 Path = str | os.PathLike[str]
 
@@ -42,10 +43,10 @@ class AircraftFit(Fit):
     It pickles as its JSON, without the flight.
     """
 
-    core: _aircraft.Fit
+    core: _states.Fit
     flight: Flight | None  # that was fitted; None where the fit was loaded
 
-    def __init__(self, core: _aircraft.Fit, flight: Flight | None = None) -> None:
+    def __init__(self, core: _states.Fit, flight: Flight | None = None) -> None:
         super().__init__(core.fit)
         self.core = core
         self.flight = flight
@@ -226,7 +227,7 @@ class TwoSteps(Page):
 
     _shown = ("name", "value", "standard_error", "unit")
 
-    def __init__(self, core: _aircraft.Steps, flight: Flight) -> None:
+    def __init__(self, core: _states.Steps, flight: Flight) -> None:
         self.path, self.aero = AircraftFit(core.path, flight), AircraftFit(core.aero, flight)
         self.notes, self._page, self._json = core.notes, core.text, core.json
 
@@ -248,7 +249,7 @@ class TwoSteps(Page):
 
 def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> AircraftFit:
     """Of a flight path or an aircraft; fit() calls it."""
-    core = aircraft_module().fit(flight._core, _core_options(model, options))
+    core = states_module().fit(flight._core, _core_options(model, options))
     return AircraftFit(core, flight)
 
 
@@ -283,17 +284,17 @@ def two_step(
     first = (path or FlightPath())._aircraft_options()
     laid = {**aero._aircraft_options(), "trajectory": first["trajectory"]}
     laid["gravity"] = first["gravity"]
-    core = aircraft_module().two_steps(chosen._core, _with_fit(laid, options))
+    core = states_module().two_steps(chosen._core, _with_fit(laid, options))
     return TwoSteps(core, chosen)
 
 
-def _core_options(model: AircraftModel, options: FitOptions) -> _aircraft.Options:
+def _core_options(model: AircraftModel, options: FitOptions) -> _states.Options:
     return _with_fit(model._aircraft_options(), options)
 
 
-def _with_fit(laid: dict[str, Any], options: FitOptions) -> _aircraft.Options:
+def _with_fit(laid: dict[str, Any], options: FitOptions) -> _states.Options:
     names = name_effects(options.get("effects") or ())
-    core: _aircraft.Options = aircraft_module().Options(
+    core: _states.Options = states_module().Options(
         **laid, fit=to_core({**options, "effects": names})
     )
     return core
@@ -301,8 +302,8 @@ def _with_fit(laid: dict[str, Any], options: FitOptions) -> _aircraft.Options:
 
 def read_fit(file: Path) -> AircraftFit:
     """Reads what save() or the app's fit wrote. Raises Error for anything else."""
-    return AircraftFit(aircraft_module().read(os.fspath(file)))
+    return AircraftFit(states_module().read(os.fspath(file)))
 
 
 def _parse(text: str) -> AircraftFit:
-    return AircraftFit(aircraft_module().parse(text, "pickle"))
+    return AircraftFit(states_module().parse(text, "pickle"))

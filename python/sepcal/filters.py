@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,10 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal._core import Innovation
 from sepcal.columns import Array
+from sepcal.states_module import states_module
+
+if TYPE_CHECKING:
+    from sepcal import _states
 
 REFUSED = (
     "a number is not finite, or a covariance is not positive semidefinite; nothing was changed"
@@ -44,7 +48,9 @@ class Filter:
         P: ArrayLike,
         form: Literal["square_root", "joseph"] | str = "square_root",
     ) -> None:
-        self._core = _core.Filter(_finite("x", _vector("x", x)), _covariance("P", P), form)
+        self._core: _states.Filter = states_module().Filter(
+            _finite("x", _vector("x", x)), _covariance("P", P), form
+        )
         self.log_likelihood = 0.0
 
     @property
@@ -139,7 +145,9 @@ class RecursiveLeastSquares:
             raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
         begin = np.zeros(p) if isinstance(p, int) else _finite("p", _vector("p", p))
         known = None if covariance is None else _covariance("covariance", covariance)
-        self._core = _core.RecursiveLeastSquares(begin, known, form)
+        self._core: _states.RecursiveLeastSquares = states_module().RecursiveLeastSquares(
+            begin, known, form
+        )
 
     def absorb(self, H: ArrayLike, y: ArrayLike, W: ArrayLike | None = None) -> None:
         """One sample.

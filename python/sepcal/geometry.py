@@ -6,21 +6,10 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any, Literal
 
 from sepcal.models import Vector, _to_vector
-
-
-def aircraft_module() -> ModuleType:
-    """sepcal._aircraft, which a build for sensors alone leaves out."""
-    try:
-        from sepcal import _aircraft
-    except ImportError as error:
-        raise ImportError(
-            "this sepcal was built without its aircraft; build all of it: cmake --build build"
-        ) from error
-    return _aircraft
+from sepcal.states_module import states_module
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +65,7 @@ def read_aircraft(file: str | os.PathLike[str]) -> Aircraft:
     Raises:
         Error: The file can't be read or is no aircraft: the entry that is wrong.
     """
-    entries = json.loads(aircraft_module().read_aircraft(os.fspath(file)))
+    entries = json.loads(states_module().read_aircraft(os.fspath(file)))
     inertia = entries.get("inertia_kgm2")
     return Aircraft(
         area=entries["area_m2"],

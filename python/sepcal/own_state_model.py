@@ -14,6 +14,7 @@ from sepcal.answers import Layout
 from sepcal.columns import Array
 from sepcal.models import Model
 from sepcal.own_model import OwnModel, SeparableModel, Table, check_bounds_of, check_parts, to_rows
+from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryModel, TrajectoryOptions, complete, to_core_options
 from sepcal.walk import Walk
 
@@ -120,7 +121,7 @@ class Trajectory(TrajectoryModel):
         self.states = names["states"]
         whole = complete(options)
         facts = _Facts(self._owner, model, names)
-        tables = _core.StateTables(
+        tables = states_module().StateTables(
             [rows[table] for table in (*TABLES, "noise")],
             facts.linear_dynamic,
             facts.linear_in_state,
@@ -129,7 +130,7 @@ class Trajectory(TrajectoryModel):
             facts.discrete,
         )
         walk = Walk(self._owner, model, facts.layout(rows["nonlinear"], whole))
-        core = _core.python_state_model(tables, to_core_options(whole), walk)
+        core = states_module().python_state_model(tables, to_core_options(whole), walk)
         super().__init__(core, whole)
 
     @property

@@ -10,7 +10,8 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.flight import Flight
-from sepcal.geometry import Aircraft, aircraft_module
+from sepcal.geometry import Aircraft
+from sepcal.states_module import states_module
 
 
 class SimulatedFlight(Flight):
@@ -93,7 +94,7 @@ def simulate(
     hidden = [(name, np.ravel(sizes).tolist()) for name, sizes in (hide or {}).items()]
     rest = (text, hidden, excitation, kind, decoys, rate, rows, seed)
     if isinstance(model, Aircraft) or model == "aircraft":
-        core, parameters_flown, effects = aircraft_module().simulate(*rest)
+        core, parameters_flown, effects = states_module().simulate(*rest)
     else:
         name = model if isinstance(model, str) else model.name
         core, parameters_flown, effects = _core.simulate(name, *rest)

@@ -12,6 +12,7 @@ from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit
+from sepcal.states_module import states_module
 
 
 class Smoothed(_core.SmoothedRecord):
@@ -85,7 +86,7 @@ def smooth(
     laid = model._core.along(columns, labels)
     outputs = dict(fit.noise if noise is None else noise)
     return Smoothed(
-        _core.smooth(
+        states_module().smooth(
             laid,
             columns,
             labels,

@@ -14,6 +14,7 @@ from sepcal.flight import Flight
 from sepcal.options import FitOptions, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.results import Fit
+from sepcal.states_module import states_module
 
 REFUSED = ("effects", "drop_invalid")
 
@@ -60,7 +61,7 @@ def track(
 
     Args:
         model: As for fit().
-        data: As for fit(); outputs may be missing, NaN.
+        data: As for fit(); outputs of a model with a state may be missing, NaN, but for rls.
         fitted: A fit of other data to start from.
         start_rows: Fits so many rows first, by the options, and goes on after them.
         method: "rls", recursive least squares linearised at the start; "ekf", the extended filter;
@@ -70,7 +71,7 @@ def track(
         initial_states: Of states where a segment begins that `start_rows` hasn't fitted: {name: sd}
             [ten times the largest value of the state on the way, as good as unknown].
         row_iterations: Of iekf, at most so many a row.
-        tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the prior.
+        tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the estimate.
         **options: FitOptions.
 
     Returns:
@@ -107,7 +108,7 @@ def track(
     names = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]
     columns = take_columns(model._owner, data, dict.fromkeys(names))
     return Track(
-        _core.track(
+        states_module().track(
             model._core,
             columns,
             labels_in(data),

@@ -5,11 +5,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Literal, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
 
 from sepcal import _core
 from sepcal.geometry import Aircraft
 from sepcal.models import Model, Vector, _to_vector
+from sepcal.states_module import states_module
+
+if TYPE_CHECKING:
+    from sepcal import _states
 
 STATE_OPTIONS: dict[str, Any] = {
     "inputs": "linear",
@@ -84,10 +88,13 @@ def complete(options: TrajectoryOptions) -> dict[str, Any]:
     return whole
 
 
-def to_core_options(options: dict[str, Any]) -> _core.TrajectoryOptions:
+def to_core_options(options: dict[str, Any]) -> _states.TrajectoryOptions:
     """As C++ takes them."""
     shoot = math.inf if options["shoot"] is None else options["shoot"]
-    return _core.TrajectoryOptions(**{**options, "shoot": shoot})
+    core: _states.TrajectoryOptions = states_module().TrajectoryOptions(
+        **{**options, "shoot": shoot}
+    )
+    return core
 
 
 class ShortPeriod(TrajectoryModel):
@@ -105,7 +112,7 @@ class ShortPeriod(TrajectoryModel):
 
     def __init__(self, **options: Unpack[TrajectoryOptions]) -> None:
         whole = complete(options)
-        super().__init__(_core.short_period(to_core_options(whole)), whole)
+        super().__init__(states_module().short_period(to_core_options(whole)), whole)
 
 
 class FlightPath(TrajectoryModel):
@@ -147,11 +154,13 @@ class FlightPath(TrajectoryModel):
         self.vane = _to_vector("vane", vane)
         self.states = ("u", "v", "w", "phi", "theta", "psi", *(("x", "y", "z") if position else ()))
         whole = complete(options)
-        core = _core.flight_path(self.position, self.gravity, self.vane, to_core_options(whole))
+        core = states_module().flight_path(
+            self.position, self.gravity, self.vane, to_core_options(whole)
+        )
         super().__init__(core, whole)
 
     def _aircraft_options(self) -> dict[str, Any]:
-        """As sepcal._aircraft lays it along a Flight. Raises Error for what a Flight can't have."""
+        """As sepcal._states lays it along a Flight. Raises Error for what a Flight can't have."""
         if self.position:
             raise _core.Error("of a flight a path has no position; give its columns by name")
         if self.aircraft is None and any(self.vane):

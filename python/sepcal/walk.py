@@ -258,7 +258,7 @@ class Walk:
         delta, steps = self._deltas(middle, self._repeated(seeds, rows))
         u = np.repeat(known[:, : len(self._layout.inputs)].T, P * K, axis=1)
         p = np.broadcast_to(seeds.p[:, np.newaxis], (len(seeds.p), *shape)).reshape(
-            len(seeds.p), -1
+            len(seeds.p), rows * P * K
         )
         A, b = self._model.affine((middle[:, :, np.newaxis] + delta).reshape(n_x, -1), u, p)
         A, b = A.reshape(*A.shape[:2], *shape), b.reshape(len(b), *shape)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The types of sepcal._core and sepcal._aircraft for type checkers, made from the modules.
+"""The types of sepcal._core and sepcal._states for type checkers, made from the modules.
 
 Usage: stub.py check|write BUILD, a build folder with python/sepcal. `check` fails where a file in
-the repository, python/sepcal/_core.pyi or _aircraft.pyi, says anything else than its module does.
+the repository, python/sepcal/_core.pyi or _states.pyi, says anything else than its module does.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-STUBS = [ROOT / "python" / "sepcal" / f"{name}.pyi" for name in ("_core", "_aircraft")]
+STUBS = [ROOT / "python" / "sepcal" / f"{name}.pyi" for name in ("_core", "_states")]
 HEAD = (
     "# SPDX-License-Identifier: BSD-3-Clause\n# Made by scripts/lint --fix from cpp/src/bindings.\n"
 )

@@ -5,6 +5,7 @@
 
 import copy
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -250,3 +251,55 @@ def test_effects_predictions_and_intervals_work_on_it() -> None:
     intervals = sepcal.profile_intervals(RollMode(), ROLL, fit, names=["Lp"])
     lower, upper = intervals["Lp"].profile
     assert lower < fit["Lp"].value < upper
+
+
+class Decay:
+    """Nothing but its initial state is unknown."""
+
+    inputs = {}
+    states = {"x": "m"}
+    outputs = {"x_m": "m"}
+    linear = {}
+    nonlinear = {}
+    noise = {"x": "m/sqrt(s)"}
+
+    def rate(self, x: Any, u: Any, p: Any) -> Any:
+        """It decays."""
+        return [-0.5 * x[0]]
+
+    def at(self, x: Any, u: Any, p: Any) -> Any:
+        """The state itself."""
+        return np.empty((1, 0)), [x[0]]
+
+
+def test_a_model_of_no_parameters_has_its_initial_state() -> None:
+    time = np.arange(50) / 10
+    data = {"time": time, "x_m": 2.0 * np.exp(-0.5 * time)}
+    fit = sepcal.fit(Decay(), data, start={"x_0": 1.0})
+    assert fit["x_0"].value == pytest.approx(2.0, rel=1e-6)
+    found = sepcal.track(Decay(), data, start_rows=20, noise={"x_m": 0.01}, start={"x_0": 1.0})
+    assert found["x"][-1] == pytest.approx(data["x_m"][-1], rel=1e-5)
+
+
+def test_steps_too_long_for_the_dynamics_are_said() -> None:
+    """Of a held input RK4 with steps of 0.05 s can't tell -54.4 1/s from -2: both give 0.9048."""
+    time = 0.05 * np.arange(200)
+    aileron = 0.1 * np.sign(np.sin(1.3 * time) + 0.1)
+    decay = np.exp(-2.0 * 0.05)
+    p = np.zeros(200)
+    for k in range(199):
+        p[k + 1] = decay * p[k] + 12.0 * aileron[k] * (1 - decay) / 2.0
+    noise = 0.001 * np.random.default_rng(1).standard_normal(200)
+    data = {"time": time, "aileron": aileron, "p_m": p + noise}
+    held = sepcal.Trajectory(RollMode(), inputs="hold")
+    wrong = sepcal.fit(held, data, bounds={"Lp": (-60.0, -40.0)})
+    assert wrong["Lp"].value < -40
+    assert not wrong.success
+    assert wrong.message.startswith(
+        "steps of integration are too long for the fastest rate of the dynamics; take 6 times as "
+        "many (substeps)"
+    )
+    right = sepcal.fit(held, data)
+    assert right.success
+    assert right["Lp"].value == pytest.approx(-2.0, abs=0.01)
+    assert "substeps" not in right.message

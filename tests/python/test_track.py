@@ -186,6 +186,18 @@ def test_bad_input_is_one_line() -> None:
         lambda: sepcal.track(sepcal.ShortPeriod(shoot=2.0), FLIGHT, start_rows=120),
         "a track runs on; leave shoot out",
     )
+    refuse(
+        lambda: sepcal.track(
+            model, FLIGHT, start_rows=250, method="rls", process_noise={"alpha": 0.01}
+        ),
+        "rls integrates no noise and starts where the batch does: leave the process noise 'alpha' "
+        "out, or take ekf, iekf or srif",
+    )
+    for option in ({"row_iterations": -1}, {"tolerance": float("nan")}):
+        refuse(
+            lambda option=option: sepcal.track(model, FLIGHT, start_rows=250, **option),
+            f"{next(iter(option))} needs a number above 0",
+        )
     with pytest.raises(KeyError, match="there is no 'Zq'; there are: alpha, q, "):
         sepcal.track(model, FLIGHT, start_rows=250)["Zq"]
 
@@ -196,3 +208,18 @@ def test_it_pickles() -> None:
     assert again.names == found.names
     assert_allclose(again.estimates, found.estimates)
     assert repr(again) == repr(found)
+
+
+def test_a_magnetometer_without_attitude_starts_as_its_fit_does() -> None:
+    draws = np.random.default_rng(4)
+    field = draws.normal(size=(600, 3))
+    field *= 50.0 / np.linalg.norm(field, axis=1)[:, np.newaxis]
+    C = np.array([[1.05, 0.02, -0.01], [0.02, 0.95, 0.03], [-0.01, 0.03, 1.02]])
+    readings = field @ C.T + [3.0, -2.0, 5.0] + 0.1 * draws.normal(size=(600, 3))
+    data = {**dict(zip(("mx", "my", "mz"), readings.T, strict=True)), "field": np.zeros(600)}
+    model = sepcal.Magnetometer(field_strength=50.0)
+    found = sepcal.track(model, data, start_rows=300)
+    whole = sepcal.fit(model, data)
+    for name in ("n_x", "n_y", "n_z"):
+        error = whole[name].standard_error_white
+        assert abs(found[name][-1] - whole[name].value) < error

@@ -98,6 +98,10 @@ class BlockModel {
   /// at parameters (n); 1 of a model without a state.
   virtual double growth(const Record& record, const Eigen::VectorXd& xi) const;
 
+  /// The longest step of integration times the fastest rate of the dynamics there, at parameters
+  /// (n); 0 of a model that integrates nothing.
+  virtual double coarseness(const Record& record, const Eigen::VectorXd& xi) const;
+
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.
   virtual std::unique_ptr<Carry> new_carry() const { return nullptr; }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sepcal._aircraft: aircraft from flights, for the Python front, which documents it. A module of
-// its own, because it is long to compile and who calibrates a sensor needs none of it; its classes
-// stand beside those of sepcal._core, whose flights, fits and comparisons it takes and gives.
+// Aircraft from flights: flights, fits and comparisons of sepcal._core come in and go out.
 #include "sepcal/flight/aircraft.hpp"
 
 #include <pybind11/eigen.h>
@@ -17,7 +15,6 @@
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/simulation/aircraft.hpp"
 #include "sepcal/simulation/truth.hpp"
-#include "sepcal/solver_log.hpp"
 #include "simulated.hpp"
 #include "structs.hpp"
 
@@ -187,24 +184,21 @@ void define_fits(py::module_& module) {
 }
 
 }  // namespace
-}  // namespace sepcal::bindings
 
-PYBIND11_MODULE(_aircraft, module) {
-  using namespace sepcal::bindings;
-  pybind11::module_::import("sepcal._core");  // has the classes that come in and go out
-  sepcal::silence_solver_log();
-  py::class_<sepcal::AircraftOptions>(module, "Options")
+void define_aircraft(py::module_& module) {
+  py::class_<AircraftOptions>(module, "Options")
       .def(py::init(&aircraft_options), py::kw_only(), "model"_a, "geometry"_a, "equations"_a,
            "trajectory"_a, "gravity"_a, "window"_a, "fit"_a);
   define_fits(module);
-  module.def("fit", &sepcal::fit_aircraft, WithoutGil());
+  module.def("fit", &fit_aircraft, WithoutGil());
   module.def("two_steps", &two_steps, WithoutGil());
-  module.def("parse", &sepcal::parse_aircraft_fit);
-  module.def("read", &sepcal::read_aircraft_fit);
-  module.def("read_aircraft",
-             [](const std::string& file) { return sepcal::to_json(sepcal::read_aircraft(file)); });
+  module.def("parse", &parse_aircraft_fit);
+  module.def("read", &read_aircraft_fit);
+  module.def("read_aircraft", [](const std::string& file) { return to_json(read_aircraft(file)); });
   module.def("simulate", &simulate);
   module.def("standard_regressors", [](const std::string& coefficient) {
-    return sepcal::standard_equations({coefficient}).front().regressors;
+    return standard_equations({coefficient}).front().regressors;
   });
 }
+
+}  // namespace sepcal::bindings

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of sepcal._core, a file each, and the types that they share. Results cross over as
-// immutable classes, whose fields and documents stand where they are bound.
+// The parts of sepcal._core and sepcal._states, a file each, and the types that they share. Results
+// cross over as immutable classes, whose fields and documents stand where they are bound.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -46,18 +46,22 @@ struct Model {
 /// Throws Error where the model has none.
 const Probe& probe_of(const Model& model);
 
+// Of sepcal._core.
 void define_check(py::module_& module);
-
 void define_options(py::module_& module);
 void define_results(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
 void define_figures(py::module_& module);
-void define_filters(py::module_& module);
 void define_flight(py::module_& module);
 void define_intervals(py::module_& module);
 void define_many(py::module_& module);
 void define_simulation(py::module_& module);
+void define_state_results(py::module_& module);
+
+// Of sepcal._states.
+void define_aircraft(py::module_& module);
+void define_filters(py::module_& module);
 void define_states(py::module_& module);
 
 }  // namespace sepcal::bindings

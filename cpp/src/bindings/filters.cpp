@@ -151,17 +151,6 @@ class AnyRecursion {
 }  // namespace
 
 void define_filters(py::module_& module) {
-  using Update = Innovation<Dynamic>;
-  BoundStruct<Update>(module, "Innovation", "What a measurement brought that was not expected.")
-      .field("count", &Update::count, "Outputs that were there.")
-      .field("e", &Update::e, "(n_z,), y - expected; 0 where missing.")
-      .field("w", &Update::w, "(n_z,), e in standard deviations, uncorrelated.")
-      .field("root", &Update::S, "(n_z, n_z), upper triangular root of its covariance.")
-      .copied()
-      .finish()
-      .def_property_readonly("covariance", &Update::covariance,
-                             "(n_z, n_z); the identity in rows of missing outputs.")
-      .def_property_readonly("cost", &Update::cost, "(e' Lambda^-1 e + ln det Lambda) / 2.");
   py::class_<AnyFilter>(module, "Filter")
       .def(py::init<const VectorXd&, const MatrixXd&, const std::string&>())
       .def(py::init<const AnyFilter&>())

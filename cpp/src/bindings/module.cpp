@@ -38,6 +38,5 @@ PYBIND11_MODULE(_core, module) {
   define_figures(module);
   define_many(module);
   define_simulation(module);
-  define_states(module);
-  define_filters(module);
+  define_state_results(module);
 }

@@ -247,6 +247,19 @@ class PythonStateModel::Steps final : public StateSteps {
 
   Step advance(std::size_t row, const VectorXd& x) const override { return step(row, x, {}); }
 
+  /// From a step so short that it is linear in its duration.
+  MatrixXd rate_slopes(std::size_t row, const VectorXd& x) const override {
+    if (plan_.discrete()) return MatrixXd::Zero(n_x(), n_x());
+    constexpr double share = 0x1p-10;
+    const std::span<const double> time = record_.column("time");
+    const double moment = share * (time[row + 1] - time[row]);
+    MatrixXd known = known_at(row, 1).replicate(2, 1);
+    known(1, static_cast<Index>(plan_.model().inputs.size())) += moment;
+    const py::gil_scoped_acquire gil;
+    const py::tuple arrays = model_.walk_->attr("step")(known, x, p_, std::vector<int>{});
+    return (arrays[1].cast<MatrixXd>() - MatrixXd::Identity(n_x(), n_x())) / moment;
+  }
+
   Reading read(std::size_t row, const VectorXd& x) const override {
     const py::gil_scoped_acquire gil;
     const py::tuple arrays = ask(row, x, {});

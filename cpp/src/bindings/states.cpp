@@ -135,7 +135,9 @@ StreamStart start_of_rows(const Model& model, const Record& record, std::size_t 
                           const CalibrationOptions& options) {
   const Record batch = first_rows(record, rows);
   const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&batch) : model.block;
-  const FitOptions fit = verbs::hold(model.held, laid->tables(), options).fit;
+  FitOptions fit =
+      verbs::hold(model.probe ? model.probe->held() : model.held, laid->tables(), options).fit;
+  if (model.probe) fit = model.probe->complete(fit, batch);
   return start_from_rows(*laid, record, rows, fit);
 }
 
@@ -161,100 +163,17 @@ Tracked track_columns(const Model& model, const py::dict& columns,
   return tracked;
 }
 
-using Rows = Eigen::Vector<std::size_t, Eigen::Dynamic>;
-
-void define_tracking(py::module_& module) {
-  BoundStruct<Tracked>(module, "Track", "Estimates against time, one a row.")
-      .field(
-          "names",
-          [](const Tracked& self) -> py::typing::Tuple<std::string, py::ellipsis> {
-            return py::tuple(py::cast(self.track.names));
-          },
-          [](Tracked& self, const py::typing::Tuple<std::string, py::ellipsis>& names) {
-            self.track.names = py::cast<std::vector<std::string>>(names);
-          },
-          "Of the n states that are integrated, then of the parameters, linear ones first.")
-      .tuple("outputs", &Tracked::outputs, "n_z.")
-      .field(
-          "rows",
-          [](const Tracked& self) -> Rows {
-            return Eigen::Map<const Rows>(self.track.rows.data(),
-                                          static_cast<Eigen::Index>(self.track.rows.size()));
-          },
-          [](Tracked& self, const Rows& rows) { self.track.rows.assign(rows.begin(), rows.end()); },
-          "(M,) of the data, one an estimate.")
-      .array("time", &Tracked::track, &Track::time, "(M,) [s]; empty where the data have none.")
-      .field("estimates", &Tracked::track, &Track::estimates, "(M, n).")
-      .field("standard_deviations", &Tracked::track, &Track::standard_deviations,
-             "(M, n); 0 for what is held.")
-      .field("innovations", &Tracked::track, &Track::innovations,
-             "(M, n_z), reading less what was expected of it; NaN where missing.")
-      .field("refused", &Tracked::track, &Track::refused, "Rows that were not finite, left out.")
-      .field("not_converged", &Tracked::track, &Track::not_converged,
-             "Rows at which the cap of iekf's iterations ended them.")
-      .copied()
-      .finish();
-  py::class_<IterationOptions>(module, "IterationOptions")
-      .def(py::init<int, double>(), "iterations"_a, "tolerance"_a);
-  module.def("track", &track_columns);
-}
-
-/// Matrices one after another, (N, n, n).
-py::array_t<double> stack_matrices(const std::vector<Eigen::MatrixXd>& matrices) {
-  const py::ssize_t n = matrices.empty() ? 0 : matrices.front().rows();
-  py::array_t<double> stacked({static_cast<py::ssize_t>(matrices.size()), n, n});
-  auto entries = stacked.mutable_unchecked<3>();
-  for (py::ssize_t k = 0; k < stacked.shape(0); ++k) {
-    for (py::ssize_t i = 0; i < n; ++i) {
-      for (py::ssize_t j = 0; j < n; ++j) {
-        entries(k, i, j) = matrices[static_cast<std::size_t>(k)](i, j);
-      }
-    }
-  }
-  return stacked;
-}
-
-std::vector<Eigen::MatrixXd> unstack_matrices(const py::array_t<double>& stacked) {
-  return py::cast<std::vector<Eigen::MatrixXd>>(py::list(stacked));
-}
-
-void define_smoothing(py::module_& module) {
-  BoundStruct<SmoothedRecord>(module, "SmoothedRecord",
-                              "States and process noise, given all samples; NaN outside segments.")
-      .tuple("states", &SmoothedRecord::states, "That are integrated, n_x.")
-      .tuple("noises", &SmoothedRecord::noises, "n_w.")
-      .tuple("outputs", &SmoothedRecord::outputs, "n_z.")
-      .field("x", &SmoothedRecord::x, "(N, n_x), x(k|N).")
-      .field(
-          "covariance", [](const SmoothedRecord& self) { return stack_matrices(self.P); },
-          [](SmoothedRecord& self, const py::array_t<double>& P) { self.P = unstack_matrices(P); },
-          "(N, n_x, n_x), P(k|N).")
-      .field("w", &SmoothedRecord::w, "(N, n_w), w(k|N): its mean from row k to the next.")
-      .field(
-          "w_covariance", [](const SmoothedRecord& self) { return stack_matrices(self.Q); },
-          [](SmoothedRecord& self, const py::array_t<double>& Q) { self.Q = unstack_matrices(Q); },
-          "(N, n_w, n_w), Q(k|N).")
-      .field("innovations", &SmoothedRecord::innovations,
-             "(N, n_z), measured less predicted from the rows before; NaN where missing.")
-      .field("innovation_sd", &SmoothedRecord::innovation_sd, "(N, n_z), expected of them.")
-      .field("cost", &SmoothedRecord::cost, "Sum of (e' Lambda^-1 e + ln det Lambda) / 2.")
-      .field("readings", &SmoothedRecord::readings, "Outputs that were there.")
-      .copied()
-      .finish();
-  module.def("smooth", &smooth_columns);
-}
-
 }  // namespace
 
 void define_states(py::module_& module) {
-  define_smoothing(module);
-  define_tracking(module);
   py::class_<TrajectoryOptions>(module, "TrajectoryOptions")
       .def(py::init(&trajectory_options), py::kw_only(), "inputs"_a, "substeps"_a, "shoot"_a,
            "measured"_a, "outputs"_a, "separable"_a, "scales_about_start"_a);
   py::class_<StateTables>(module, "StateTables")
       .def(py::init(&state_tables), "tables"_a, "linear_dynamic"_a, "linear_in_state"_a, "scales"_a,
            "acts_on"_a, "discrete"_a);
+  module.def("smooth", &smooth_columns);
+  module.def("track", &track_columns);
   module.def("python_state_model", &python_state_model);
   module.def("flight_path", &flight_path);
   module.def("short_period",

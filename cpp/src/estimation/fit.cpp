@@ -161,7 +161,9 @@ Fit fit(const BlockModel& model, const Record& record, const FitOptions& given) 
   }
   const StageTwo two = run_stage_two(problem, second, result.stage_one, pool);
   describe(result, model, problem, second, two, pool);
-  warn_of_runaway(result, model, record.select(options.stage_two_segments));
+  const Record fitted = record.select(options.stage_two_segments);
+  warn_of_coarse_steps(result, model, fitted);
+  warn_of_runaway(result, model, fitted);
   return result;
 }
 

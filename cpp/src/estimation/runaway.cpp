@@ -13,6 +13,10 @@ namespace {
 
 constexpr double too_much = 1e4;            // growth of a state's error along a trajectory
 constexpr double nothing_explained = 0.98;  // of an output's spread is left
+// Steps of integration beside the fastest rate of the dynamics: of fourth order a rate is off by
+// (its share)^4 / 120, and from 2.8 on a damped one is taken for another.
+constexpr double fine_step = 0.5;
+constexpr double useless_step = 1.0;
 
 /// About its mean, over the segments; NaN of none.
 double spread_of(const Record& record, const std::string& name) {
@@ -50,7 +54,24 @@ std::string describe(const Fit& result, const BlockModel& model, const Record& r
          " no better than its mean would: where a state may run away, cut long segments (shoot)";
 }
 
+void put_first(Fit& result, const std::string& sentence) {
+  result.message = base::join_sentences({sentence, result.message});
+}
+
 }  // namespace
+
+void estimation::warn_of_coarse_steps(Fit& result, const BlockModel& model, const Record& record) {
+  if (model.new_carry() == nullptr) return;
+  const double coarse = model.coarseness(record, result.values());
+  if (!(coarse > fine_step)) return;
+  if (coarse > useless_step && result.status == FitStatus::converged) {
+    result.status = FitStatus::not_converged;
+  }
+  const int factor = static_cast<int>(std::ceil(std::min(coarse / fine_step, 1e6)));
+  put_first(result,
+            "steps of integration are too long for the fastest rate of the dynamics; take " +
+                std::to_string(factor) + " times as many (substeps)");
+}
 
 void estimation::warn_of_runaway(Fit& result, const BlockModel& model, const Record& record) {
   const bool amiss = result.status != FitStatus::converged ||
@@ -59,7 +80,7 @@ void estimation::warn_of_runaway(Fit& result, const BlockModel& model, const Rec
   const std::string sentence = describe(result, model, record);
   if (sentence.empty()) return;
   if (result.status == FitStatus::converged) result.status = FitStatus::not_converged;
-  result.message = base::join_sentences({sentence, result.message});
+  put_first(result, sentence);
 }
 
 }  // namespace sepcal

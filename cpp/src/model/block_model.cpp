@@ -58,6 +58,10 @@ std::map<std::string, double> BlockModel::starting_values(const Record& /*record
 
 double BlockModel::growth(const Record& /*record*/, const VectorXd& /*xi*/) const { return 1.0; }
 
+double BlockModel::coarseness(const Record& /*record*/, const VectorXd& /*xi*/) const {
+  return 0.0;
+}
+
 bool BlockModel::add_second_derivatives(
     const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,
     // NOLINTNEXTLINE(performance-unnecessary-value-param): an output

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast errors of a state grow along trajectories, which says where they can't be integrated.
+// How fast errors of a state grow along trajectories, and how long steps of integration are beside
+// the fastest rate: where trajectories can't be integrated, and where they aren't integrated well.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
@@ -27,28 +28,58 @@ double largest_eigenvalue(const MatrixXd& A) {
   return A.eigenvalues().cwiseAbs().maxCoeff();
 }
 
+/// Takes every step of all trajectories: visit(row, begins, x, step).
+template <class Visit>
+void follow(const TrajectoryPlan& plan, const StateSteps& along, const Record& record,
+            const VectorXd& xi, const Visit& visit) {
+  VectorXd x = VectorXd::Zero(static_cast<Index>(plan.integrated().size()));
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t row = segment.first; row + 1 < segment.last; ++row) {
+      const int trajectory = plan.trajectory_at(row, row == segment.first);
+      if (trajectory >= 0) x = start_of(plan, trajectory, xi);
+      const StateSteps::Step step = along.advance(row, x);
+      visit(row, trajectory >= 0, x, step);
+      x = step.x;
+    }
+  }
+}
+
 }  // namespace
 
 double StateBlockModel::growth(const Record& record, const VectorXd& xi) const {
   const std::unique_ptr<StateSteps> along = steps(record, xi);
   const auto n_x = static_cast<Index>(plan().integrated().size());
   double most = 1.0;
-  for (const Segment& segment : record.segments()) {
-    VectorXd x = VectorXd::Zero(n_x);
-    MatrixXd grown = MatrixXd::Identity(n_x, n_x);
-    for (std::size_t row = segment.first; row + 1 < segment.last; ++row) {
-      const int trajectory = plan().trajectory_at(row, row == segment.first);
-      if (trajectory >= 0) {
-        most = std::max(most, largest_eigenvalue(grown));
-        x = start_of(plan(), trajectory, xi);
-        grown.setIdentity();
-      }
-      const StateSteps::Step step = along->advance(row, x);
-      x = step.x;
-      grown = step.Phi * grown;
-    }
-    most = std::max(most, largest_eigenvalue(grown));
-  }
+  MatrixXd grown = MatrixXd::Identity(n_x, n_x);
+  follow(
+      plan(), *along, record, xi,
+      [&](std::size_t /*row*/, bool begins, const VectorXd& /*x*/, const StateSteps::Step& step) {
+        if (begins) {
+          most = std::max(most, largest_eigenvalue(grown));
+          grown.setIdentity();
+        }
+        grown = step.Phi * grown;
+      });
+  return std::max(most, largest_eigenvalue(grown));
+}
+
+double StateBlockModel::coarseness(const Record& record, const VectorXd& xi) const {
+  if (plan().discrete() || plan().integrated().empty()) return 0.0;
+  constexpr std::size_t rows_to_try = 200;
+  const std::size_t stride = std::max<std::size_t>(1, record.rows() / rows_to_try);
+  const std::unique_ptr<StateSteps> along = steps(record, xi);
+  const std::span<const double> time = record.column("time");
+  double most = 0.0;
+  std::size_t taken = 0;
+  follow(
+      plan(), *along, record, xi,
+      [&](std::size_t row, bool /*begins*/, const VectorXd& x, const StateSteps::Step& /*step*/) {
+        if (taken++ % stride != 0 || !x.allFinite()) return;
+        const MatrixXd F = along->rate_slopes(row, x);
+        if (!F.allFinite()) return;
+        const double dt = (time[row + 1] - time[row]) / plan().options().substeps;
+        most = std::max(most, dt * largest_eigenvalue(F));
+      });
   return most;
 }
 

@@ -48,7 +48,7 @@ std::string open_in(const Fit& fit) {
       names.push_back(parameter.name);
     }
   }
-  return base::list_first(names, 6);
+  return names.empty() ? "parameters" : base::list_first(names, 6);
 }
 
 void check_rows(const Record& record, std::size_t rows) {
@@ -103,7 +103,8 @@ StreamStart start_from_rows(const BlockModel& model, const Record& record, std::
   const Fit fit = sepcal::fit(model, batch, options);
   if (fit.status == FitStatus::not_identifiable) {
     throw Error("the first " + std::to_string(rows) + " rows leave " + open_in(fit) +
-                " open: take more of them, hold parameters or give a prior");
+                " open: take more of them, hold parameters or give a prior" +
+                (fit.message.empty() ? "" : " (" + fit.message + ")"));
   }
   StreamStart start = begin(fit);
   start.free = places_of(fit, [](const Parameter& parameter) { return !parameter.fixed; });

@@ -47,6 +47,16 @@ void check_trajectories(const TrajectoryPlan& plan, const StreamStart& start) {
   }
 }
 
+/// Throws Error for what a filter of states takes.
+void check_linearised(const TrackOptions& options) {
+  const auto refuse = [](const std::string& name, const char* what) {
+    throw Error("rls integrates no noise and starts where the batch does: leave the " +
+                std::string(what) + " '" + name + "' out, or take ekf, iekf or srif");
+  };
+  if (!options.process_noise.empty()) refuse(options.process_noise.begin()->first, "process noise");
+  if (!options.initial_states.empty()) refuse(options.initial_states.begin()->first, "state");
+}
+
 std::map<std::string, double> held(const StreamStart& start) {
   std::map<std::string, double> values;
   for (std::size_t k = 0; k < start.names.size(); ++k) {
@@ -186,7 +196,10 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
   if (along != nullptr && options.method != TrackMethod::rls) {
     return states::track_jointly(*along, record, start, options);
   }
-  if (along != nullptr) check_trajectories(along->plan(), start);
+  if (along != nullptr) {
+    check_linearised(options);
+    check_trajectories(along->plan(), start);
+  }
   check_start(model.tables(), start);
   if (options.method != TrackMethod::rls && model.new_carry() != nullptr) {
     throw Error("a model that carries a state of its own is tracked by rls, not by " +

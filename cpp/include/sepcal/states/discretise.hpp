@@ -19,21 +19,25 @@ struct DiscreteNoise {
 /// Gamma Q_d Gamma' open: with Q_d = Q they are wrong by a factor of dt. Van Loan's block
 /// exp([-F density; 0 F'] dt) = [. E12; 0 E22], Phi = E22', Q_d = Phi E12, is taken over dt / 2^s
 /// only, where its exp(-F dt) is harmless, and doubled s times: Q_d <- Q_d + Phi Q_d Phi', which
-/// adds positive terms. All NaN where an argument is not finite.
+/// adds positive terms. Of F dt balanced: units of states don't count. All NaN where an argument is
+/// not finite.
 template <int NX>
 DiscreteNoise<NX> discretise(const Eigen::Matrix<double, NX, NX>& F,
                              const Eigen::Matrix<double, NX, NX>& density, double dt) {
   using Matrix = Eigen::Matrix<double, NX, NX>;
   using Square = Eigen::Matrix<double, 2 * NX, 2 * NX>;
-  const Matrix whole = F * dt;
+  Matrix whole = F * dt;
+  const Eigen::Vector<double, NX> d = states::balance(whole);
   const int doublings = states::count_halvings(whole);
-  const double size = states::column_norm(density);  // Q_d is linear in it: units are taken out
+  const Matrix balanced_density =
+      d.cwiseInverse().asDiagonal() * density * d.cwiseInverse().asDiagonal();
+  const double size = states::column_norm(balanced_density);  // Q_d is linear in it
   const double unit = size > 0 ? 1.0 / size : 1.0;
-  const double step = std::ldexp(dt, -doublings);
+  const double part = std::ldexp(1.0, -doublings);
   Square block = Square::Zero();
-  block.template topLeftCorner<NX, NX>() = -F * step;
-  block.template bottomRightCorner<NX, NX>() = F.transpose() * step;
-  block.template topRightCorner<NX, NX>() = density * unit;
+  block.template topLeftCorner<NX, NX>() = -whole * part;
+  block.template bottomRightCorner<NX, NX>() = whole.transpose() * part;
+  block.template topRightCorner<NX, NX>() = balanced_density * unit;
   const Square E = matrix_exponential(block);
 
   Matrix Phi = E.template bottomRightCorner<NX, NX>().transpose();
@@ -42,7 +46,9 @@ DiscreteNoise<NX> discretise(const Eigen::Matrix<double, NX, NX>& F,
     Q += states::product(Phi, Q, Phi.transpose());
     Phi = states::product(Phi, Phi);
   }
-  return {Phi, (0.5 * step / unit) * (Q + Q.transpose())};
+  Q = (0.5 * dt * part / unit) * (Q + Q.transpose()).eval();
+  return {d.asDiagonal() * Phi * d.cwiseInverse().asDiagonal(),
+          d.asDiagonal() * Q * d.asDiagonal()};
 }
 
 template <int NX, int NU>

@@ -3,17 +3,16 @@
 // its fixed point is the state of highest probability given y.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "sepcal/states/filter.hpp"
+#include "sepcal/states/triangle.hpp"
 
 namespace sepcal {
 
 struct IterationOptions {
   int iterations = 20;      // at most
-  double tolerance = 1e-8;  // |eta_l - eta_(l-1)| <= tolerance, in standard deviations of the prior
+  double tolerance = 1e-8;  // |eta_l - eta_(l-1)| <= tolerance, in standard deviations of eta_l
 };
 
 /// Updates `filter` by y (n_z, NaN where missing) with `outputs(eta)`, a Linearisation<NZ, NX> at
@@ -21,16 +20,16 @@ struct IterationOptions {
 /// ended it.
 ///
 /// S 3.16 divides by |eta|, which fails at zero and adds metres to radians. Here a step's length is
-/// its length in the metric of P(k+1|k), with no inverse of it: eta - x(k+1|k) = P a with
-/// a = H'S^-1 w, so the square is (a_l - a_(l-1))'(eta_l - eta_(l-1)). P(k+1|k) does not depend on
-/// eta, other than S 3.18 prints.
+/// its length in the metric of P(k+1|k+1) = U'U, |U^-T (eta_l - eta_(l-1))|: in that of P(k+1|k)
+/// every step is short where little was known before. What rounds in eta is not asked for.
+/// P(k+1|k) does not depend on eta, other than S 3.18 prints.
 template <int NX, class Form, int NZ, class Outputs>
 Innovation<NZ> iterated_update(Filter<NX, Form>& filter, const Eigen::Vector<double, NZ>& y,
                                const Outputs& outputs, const Eigen::Matrix<double, NZ, NZ>& R,
                                const IterationOptions& options = {}) {
   using Vector = Eigen::Vector<double, NX>;
+  constexpr double digits_lost = 8.0;
   Filter<NX, Form> latest = filter;
-  Vector a = Vector::Zero(filter.x().size());
   Innovation<NZ> innovation;
   for (int l = 0; l < options.iterations; ++l) {
     // S 3.15 is S 2.9 with the linearisation about eta carried to x(k+1|k).
@@ -40,11 +39,10 @@ Innovation<NZ> iterated_update(Filter<NX, Form>& filter, const Eigen::Vector<dou
     latest = filter;
     innovation = latest.update(y, carried, R);
     if (innovation.status != FilterStatus::ok) return innovation;
-    const Vector next = states::product(carried.jacobian.transpose(),
-                                        states::solve_upper(innovation.S, innovation.w));
-    const double square = (next - a).dot(latest.x() - eta);
-    a = next;
-    if (std::sqrt(std::max(square, 0.0)) <= options.tolerance) {
+    const auto U = latest.form().root();
+    const double step = states::solve_transposed<NX, 1>(U, latest.x() - eta).norm();
+    const double size = states::solve_transposed<NX, 1>(U, eta).norm();
+    if (step <= options.tolerance + digits_lost * states::rounding * size) {
       filter = std::move(latest);
       return innovation;
     }

@@ -34,22 +34,26 @@ class JosephForm {
   template <int NW>
   void predict(const Matrix& Phi, const Eigen::Matrix<double, NX, NW>& Gamma,
                const Eigen::Matrix<double, NW, NW>& Q_d) {
+    const Eigen::Matrix<double, NW, NX> noise =  // all NaN where Q_d is no covariance
+        states::product(states::upper_root(Q_d), Gamma.transpose());
     P_ = symmetric(states::product(Phi, P_, Phi.transpose()) +
-                   states::product(Gamma, Q_d, Gamma.transpose()));
+                   states::product(noise.transpose(), noise));
   }
 
   /// S 2.11, and 3.18 in place of 2.10: P <- (I - K C) P (I - K C)' + K R K'.
   template <int NZ>
   Gain<NX, NZ> update(const Eigen::Matrix<double, NZ, NX>& C,
                       const Eigen::Matrix<double, NZ, NZ>& R) {
+    const Eigen::Matrix<double, NZ, NZ> U_R = states::upper_root(R);
     const Eigen::Matrix<double, NZ, NX> CP = states::product(C, P_);
-    const Eigen::Matrix<double, NZ, NZ> S =
-        states::upper_root<NZ>(states::product(CP, C.transpose()) + R);
+    const Eigen::Matrix<double, NZ, NZ> S = states::upper_root<NZ>(
+        states::product(CP, C.transpose()) + states::product(U_R.transpose(), U_R));
     const Eigen::Matrix<double, NZ, NX> whitened = states::solve_transposed(S, CP);  // Kbar'
     const Eigen::Matrix<double, NX, NZ> K = states::solve_upper(S, whitened).transpose();
     const Matrix rest = Matrix::Identity(P_.rows(), P_.cols()) - states::product(K, C);
+    const Eigen::Matrix<double, NZ, NX> noise = states::product(U_R, K.transpose());
     P_ = symmetric(states::product(rest, P_, rest.transpose()) +
-                   states::product(K, R, K.transpose()));
+                   states::product(noise.transpose(), noise));
     return {S, whitened.transpose()};
   }
 

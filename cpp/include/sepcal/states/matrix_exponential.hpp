@@ -26,6 +26,42 @@ T column_norm(const Eigen::Matrix<T, N, N>& A) {
   return norm;
 }
 
+/// Makes columns of A as long as their rows by d, powers of two: A <- D^-1 A D, so that units which
+/// differ don't cost squarings. Parlett & Reinsch, Numerische Mathematik 13 (1969) 293.
+template <class T, int N>
+Eigen::Vector<double, N> balance(Eigen::Matrix<T, N, N>& A) {
+  using std::abs;
+  constexpr int sweeps = 20;
+  Eigen::Vector<double, N> d = Eigen::Vector<double, N>::Ones();
+  bool changed = true;
+  for (int sweep = 0; changed && sweep < sweeps; ++sweep) {
+    changed = false;
+    for (int i = 0; i < N; ++i) {
+      T column(0.0);
+      T row(0.0);
+      for (int j = 0; j < N; ++j) {
+        if (j == i) continue;
+        column += abs(A(j, i));
+        row += abs(A(i, j));
+      }
+      double factor = 1.0;
+      while (column > T(0.0) && column * T(4.0 * factor * factor) <= row && factor < 1e100)
+        factor *= 2.0;
+      while (row > T(0.0) && column * T(factor * factor) >= row * T(4.0) && factor > 1e-100)
+        factor *= 0.5;
+      if (factor == 1.0) continue;
+      changed = true;
+      d[i] *= factor;
+      for (int j = 0; j < N; ++j) {
+        if (j == i) continue;
+        A(j, i) *= T(factor);
+        A(i, j) *= T(1.0 / factor);
+      }
+    }
+  }
+  return d;
+}
+
 /// How often A must be halved to have a norm of at most 1/2; -1 where A is not finite or beyond
 /// 2^1000.
 template <class T, int N>
@@ -74,9 +110,11 @@ Eigen::Matrix<T, N, N> eliminate(Eigen::Matrix<T, N, N> A, Eigen::Matrix<T, N, N
 template <class T, int N>
 Eigen::Matrix<T, N, N> matrix_exponential(const Eigen::Matrix<T, N, N>& A) {
   using Matrix = Eigen::Matrix<T, N, N>;
-  const int halvings = states::count_halvings(A);
+  Matrix balanced = A;
+  const Eigen::Vector<double, N> d = states::balance(balanced);
+  const int halvings = states::count_halvings(balanced);
   if (halvings < 0) return Matrix::Constant(T(std::nan("")));
-  const Matrix scaled = A * T(std::ldexp(1.0, -halvings));
+  const Matrix scaled = balanced * T(std::ldexp(1.0, -halvings));
 
   constexpr int order = 6;
   double coefficient = 1.0;
@@ -91,6 +129,9 @@ Eigen::Matrix<T, N, N> matrix_exponential(const Eigen::Matrix<T, N, N>& A) {
   }
   Matrix result = states::eliminate(below, above);
   for (int k = 0; k < halvings; ++k) result = states::product(result, result);
+  for (int j = 0; j < N; ++j) {
+    for (int i = 0; i < N; ++i) result(i, j) *= T(d[i] / d[j]);
+  }
   return result;
 }
 

@@ -92,8 +92,24 @@ class ModelSteps final : public StateSteps {
     return step;
   }
 
+  Eigen::MatrixXd rate_slopes(std::size_t row, const Eigen::VectorXd& x) const override {
+    const std::vector<int>& free = plan_.integrated();
+    const auto n = static_cast<Eigen::Index>(free.size());
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n);
+    if constexpr (!is_discrete<M>()) {
+      using Number = ceres::Jet<double, n_x + n_w>;  // as advance() has it
+      const StateRow<M> here = row_at(row);
+      const Vec<Number, n_p> p = p_.template cast<Number>();
+      const Vec<Number, n_x> rate = model_.rate(whole<Number>(here, x), here.u, p);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        F.row(i) = rate[free[static_cast<std::size_t>(i)]].v(free).transpose();
+      }
+    }
+    return F;
+  }
+
   Reading read(std::size_t row, const Eigen::VectorXd& x) const override {
-    using Number = ceres::Jet<double, n_x>;
+    using Number = ceres::Jet<double, n_x + n_w>;  // as advance() has it
     const auto expected = affine<Number>(row, x, p_.template cast<Number>());
     const std::vector<int>& free = plan_.integrated();
     Reading reading = empty_reading(static_cast<Eigen::Index>(free.size()));

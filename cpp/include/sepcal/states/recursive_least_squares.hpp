@@ -7,6 +7,7 @@
 
 #include "sepcal/states/measured.hpp"
 #include "sepcal/states/product.hpp"
+#include "sepcal/states/square_root_form.hpp"
 #include "sepcal/states/triangle.hpp"
 
 namespace sepcal {
@@ -54,8 +55,9 @@ class InformationRecursion {
   Matrix R_;
 };
 
-/// S 4.14 and 4.12: R^-1 itself is kept, and a matrix of M x M is factored a sample. S 4.14 prints
-/// a W^-1 too many: R^-1(k+1) = (I - R^-1 H'(H R^-1 H' + W)^-1 H) R^-1, W = W(k+1).
+/// S 4.14 and 4.12: R^-1 is kept, as its root: subtracted as it stands, what little is left of a
+/// wide start would be rounding. S 4.14 prints a W^-1 too many:
+/// R^-1(k+1) = (I - R^-1 H'(H R^-1 H' + W)^-1 H) R^-1, W = W(k+1).
 template <int N>
 class CovarianceRecursion {
  public:
@@ -63,30 +65,28 @@ class CovarianceRecursion {
   using Matrix = Eigen::Matrix<double, N, N>;
 
   /// p(0) and R^-1(0), its covariance, positive semidefinite.
-  CovarianceRecursion(Vector p, Matrix P) : p_(std::move(p)), P_(std::move(P)) {}
+  CovarianceRecursion(Vector p, const Matrix& P) : p_(std::move(p)), form_(P) {}
 
   /// As InformationRecursion::absorb(); W may be singular as long as H R^-1 H' + W is not.
   template <int M>
   bool absorb(const Eigen::Matrix<double, M, N>& H, const Eigen::Vector<double, M>& y,
               const Eigen::Matrix<double, M, M>& W) {
     const states::Measured<M, N> seen(y, states::product(H, p_), H, W);
-    const Eigen::Matrix<double, M, N> HP = states::product(seen.H, P_);
-    const Eigen::Matrix<double, M, M> U =
-        states::upper_root<M>(states::product(HP, seen.H.transpose()) + seen.R);
-    const Eigen::Matrix<double, M, N> gain = states::solve_transposed(U, HP);
-    const Vector p = p_ + states::product(gain.transpose(), states::solve_transposed(U, seen.e));
-    if (!(U.diagonal().array() > 0).all() || !p.allFinite()) return false;
+    SquareRootForm<N> next = form_;
+    const Gain<N, M> gain = next.update(seen.H, seen.R);
+    const Vector p = p_ + states::product(gain.Kbar, states::solve_transposed(gain.S, seen.e));
+    if (!(gain.S.diagonal().array() > 0).all() || !p.allFinite()) return false;
     p_ = p;
-    P_ -= states::product(gain.transpose(), gain);
+    form_ = std::move(next);
     return true;
   }
 
   const Vector& solution() const { return p_; }
-  const Matrix& covariance() const { return P_; }
+  Matrix covariance() const { return form_.covariance(); }
 
  private:
   Vector p_;
-  Matrix P_;
+  SquareRootForm<N> form_;
 };
 
 }  // namespace sepcal

@@ -96,7 +96,8 @@ struct SmoothedMeans {
 /// x(0|1) and w(0|1) by S 2.14 and 2.15, from y(1) (NaN where missing), what is expected of it at
 /// x(1|1), and R(1) (positive definite). Right as printed: R^-1 goes with the residual of the
 /// *filtered* state; of the predicted one, y - C x(1|0), it would be Lambda^-1. The covariances are
-/// those of smooth_stage(), S 2.18 and 2.19.
+/// those of smooth_stage(), S 2.18 and 2.19. Where P is much larger than R the residual of the
+/// filtered state is what rounding left of it: there smooth_stage() keeps its digits.
 template <int NX, int NW, int NZ>
 SmoothedMeans<NX, NW> smooth_by_residual(const Stage<NX, NW>& stage,
                                          const Eigen::Vector<double, NZ>& y,

@@ -47,6 +47,9 @@ class StateSteps {
   virtual Step advance(std::size_t row, const Eigen::VectorXd& x) const = 0;
   virtual Reading read(std::size_t row, const Eigen::VectorXd& x) const = 0;
 
+  /// F = df/dx, n_x x n_x [1/s], at a row; zero of a model in discrete time.
+  virtual Eigen::MatrixXd rate_slopes(std::size_t row, const Eigen::VectorXd& x) const = 0;
+
   /// The same by x and xi. `density`: of each noise, its table's unit squared (n_w).
   virtual JointStep advance_jointly(std::size_t row, const Eigen::VectorXd& x,
                                     const Eigen::VectorXd& density) const = 0;
@@ -69,6 +72,9 @@ class StateBlockModel : public BlockModel {
 
   /// The largest eigenvalue of a trajectory's transition matrix, in size; 1 where none is larger.
   double growth(const Record& record, const Eigen::VectorXd& xi) const override;
+
+  /// dt / substeps times the largest eigenvalue of F, in size, at some 200 rows.
+  double coarseness(const Record& record, const Eigen::VectorXd& xi) const override;
 };
 
 }  // namespace sepcal

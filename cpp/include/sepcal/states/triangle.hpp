@@ -127,7 +127,8 @@ Eigen::Matrix<double, N, M> solve_upper(const Eigen::Matrix<double, N, N>& U,
   return B;
 }
 
-/// X with A X = B (N x M) by reflections; all NaN where A (N x N) is singular.
+/// X with A X = B (N x M) by reflections; all NaN where A (N x N) is singular. Rows are brought to
+/// one size first, so that units of states are no singularity.
 template <int N, int M>
 Eigen::Matrix<double, N, M> solve_square(const Eigen::Matrix<double, N, N>& A,
                                          const Eigen::Matrix<double, N, M>& B) {
@@ -136,8 +137,10 @@ Eigen::Matrix<double, N, M> solve_square(const Eigen::Matrix<double, N, N>& A,
   const Eigen::Index n = A.cols();
   const Eigen::Index m = B.cols();
   Array T = Array::Zero(n + m, n + m);
+  const Eigen::Vector<double, N> size = A.cwiseAbs().rowwise().maxCoeff();
   Eigen::Matrix<double, N, both> rows(n, n + m);
   rows << A, B;
+  rows = size.cwiseInverse().asDiagonal() * rows;
   absorb_rows(T, rows);
   const Eigen::Matrix<double, N, N> U = T.template topLeftCorner<N, N>(n, n);
   if (!is_regular(U)) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sepcal._states: models with a state, filters and the aircraft for the Python front, which
+// documents them. A module of its own, because it is long to compile and who calibrates a sensor
+// needs none of it; its functions take and give the classes of sepcal._core.
+#include "bindings.hpp"
+#include "sepcal/solver_log.hpp"
+
+PYBIND11_MODULE(_states, module) {
+  using namespace sepcal::bindings;
+  pybind11::module_::import("sepcal._core");
+  sepcal::silence_solver_log();
+  define_states(module);
+  define_filters(module);
+  define_aircraft(module);
+}

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Made by scripts/lint --fix from cpp/src/bindings.
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import sepcal._core
+import typing
+
+__all__: list[str] = [
+    "Filter",
+    "Fit",
+    "Options",
+    "RecursiveLeastSquares",
+    "StateTables",
+    "Steps",
+    "TrajectoryOptions",
+    "fit",
+    "flight_path",
+    "parse",
+    "python_state_model",
+    "read",
+    "read_aircraft",
+    "short_period",
+    "simulate",
+    "smooth",
+    "standard_regressors",
+    "track",
+    "two_steps",
+]
+
+class TrajectoryOptions:
+    def __init__(
+        self,
+        *,
+        inputs: str,
+        substeps: typing.SupportsInt | typing.SupportsIndex,
+        shoot: typing.SupportsFloat | typing.SupportsIndex,
+        measured: collections.abc.Sequence[str],
+        outputs: collections.abc.Sequence[str],
+        separable: bool,
+        scales_about_start: bool,
+    ) -> None: ...
+
+class StateTables:
+    def __init__(
+        self,
+        tables: typing.Annotated[
+            collections.abc.Sequence[
+                collections.abc.Sequence[
+                    tuple[
+                        str,
+                        str,
+                        typing.SupportsFloat | typing.SupportsIndex,
+                        typing.SupportsFloat | typing.SupportsIndex,
+                    ]
+                ]
+            ],
+            "FixedSize(6)",
+        ],
+        linear_dynamic: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        linear_in_state: bool,
+        scales: collections.abc.Sequence[bool],
+        acts_on: collections.abc.Sequence[collections.abc.Sequence[bool]],
+        discrete: bool,
+    ) -> None: ...
+
+class Filter:
+    @typing.overload
+    def __init__(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg2: str,
+    ) -> None: ...
+    @typing.overload
+    def __init__(self, arg0: Filter) -> None: ...
+    def predict(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> bool: ...
+    def update(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> sepcal._core.Innovation | None: ...
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class RecursiveLeastSquares:
+    def __init__(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,
+        arg2: str,
+    ) -> None: ...
+    def absorb(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> bool: ...
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def determined(self) -> bool: ...
+    @property
+    def solution(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class Options:
+    def __init__(
+        self,
+        *,
+        model: str,
+        geometry: str | None,
+        equations: collections.abc.Mapping[str, collections.abc.Sequence[str]],
+        trajectory: TrajectoryOptions,
+        gravity: typing.SupportsFloat | typing.SupportsIndex,
+        window: typing.SupportsFloat | typing.SupportsIndex,
+        fit: sepcal._core.Options,
+    ) -> None: ...
+
+class Fit:
+    def add(self, arg0: sepcal._core.Flight, arg1: str) -> Fit: ...
+    def apply(
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    ) -> tuple[dict[str, numpy.typing.NDArray[numpy.float64]], list[str]]: ...
+    def apply_to_file(
+        self,
+        arg0: str,
+        arg1: str,
+        arg2: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    ) -> sepcal._core.Applied: ...
+    def compare(self, arg0: sepcal._core.Flight) -> sepcal._core.Comparison: ...
+    def save(self, arg0: str) -> None: ...
+    def smooth(
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    ) -> sepcal._core.SmoothedRecord: ...
+    def to_json(self) -> str: ...
+    def track(
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: str,
+        arg2: typing.SupportsInt | typing.SupportsIndex,
+        arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        arg6: sepcal._core.IterationOptions,
+    ) -> tuple[sepcal._core.Track, list[str]]: ...
+    @property
+    def equations(self) -> dict[str, list[str]]: ...
+    @property
+    def file(self) -> str: ...
+    @property
+    def fit(self) -> sepcal._core.Fit: ...
+    @property
+    def history(self) -> list[tuple[str, dict[str, float], dict[str, float]]]: ...
+    @property
+    def initial_states(self) -> list[str]: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def model(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def warning(self) -> str: ...
+
+class Steps:
+    @property
+    def aero(self) -> Fit: ...
+    @property
+    def explained(self) -> str: ...
+    @property
+    def json(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def path(self) -> Fit: ...
+    @property
+    def text(self) -> str: ...
+
+def fit(arg0: sepcal._core.Flight, arg1: Options) -> Fit: ...
+def flight_path(
+    arg0: bool,
+    arg1: typing.SupportsFloat | typing.SupportsIndex,
+    arg2: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    arg3: TrajectoryOptions,
+) -> sepcal._core.Model: ...
+def parse(arg0: str, arg1: str) -> Fit: ...
+def python_state_model(
+    arg0: StateTables, arg1: TrajectoryOptions, arg2: typing.Any
+) -> sepcal._core.Model: ...
+def read(arg0: str) -> Fit: ...
+def read_aircraft(arg0: str) -> str: ...
+def short_period(arg0: TrajectoryOptions) -> sepcal._core.Model: ...
+def simulate(
+    arg0: str,
+    arg1: collections.abc.Sequence[
+        tuple[str, collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]]
+    ],
+    arg2: str,
+    arg3: str,
+    arg4: typing.SupportsInt | typing.SupportsIndex,
+    arg5: typing.SupportsFloat | typing.SupportsIndex,
+    arg6: typing.SupportsInt | typing.SupportsIndex,
+    arg7: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[sepcal._core.Flight, dict[str, float], list[str]]: ...
+def smooth(
+    arg0: sepcal._core.Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg6: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg7: sepcal._core.Fit | None,
+) -> sepcal._core.SmoothedRecord: ...
+def standard_regressors(arg0: str) -> list[str]: ...
+def track(
+    arg0: sepcal._core.Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: str,
+    arg4: typing.SupportsInt | typing.SupportsIndex | None,
+    arg5: sepcal._core.Fit | None,
+    arg6: sepcal._core.Options,
+    arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg9: sepcal._core.IterationOptions,
+) -> sepcal._core.Track: ...
+def two_steps(arg0: sepcal._core.Flight, arg1: Options) -> Steps: ...

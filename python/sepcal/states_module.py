@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is compiled of models with a state and of the aircraft, loaded where it is asked for."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+
+def states_module() -> ModuleType:
+    """sepcal._states. Raises ImportError where the build left it out, as one for sensors alone."""
+    try:
+        from sepcal import _states
+    except ImportError as error:
+        raise ImportError(
+            "this sepcal was built for sensors alone, without filters, models with a state and "
+            "aircraft; build all of it: cmake --build build"
+        ) from error
+    return _states
