@@ -45,8 +45,8 @@ class ModelArguments {
              "the aircraft: area_m2, chord_m, span_m, mass_kg, inertia_kgm2 ...")
         ->type_name("AIRCRAFT.json");
     verb.add_option("--equation", equations_,
-                    "takes the place of a coefficient's own regressors; with it only these "
-                    "coefficients are fitted; may be repeated")
+                    "takes the place of a coefficient's own regressors; of --model aero only these "
+                    "coefficients are fitted then; may be repeated")
         ->type_name("C=1,X,...")
         ->take_all()
         ->allow_extra_args(false);

@@ -95,7 +95,9 @@ TEST_CASE("what is no equation is refused") {
     CHECK_THROWS_WITH_AS(Regressor(std::string(text)), Contains("can't be read; write 1, x, x^2"),
                          Error);
   }
-  refuse({{"Cm", {"1", "mach"}}}, "Cm has the regressor 'mach', which is no column; add it");
+  refuse(
+      {{"Cm", {"1", "mach"}}},
+      "Cm has the regressor 'mach', which is no column with a number in every row; add or mend it");
   refuse({{"CZ", {"1"}}}, "CZ wasn't computed; the coefficients are Cm");
   refuse({{"Cm", {}}}, "Cm has no regressors");
   refuse({{"Cm", {"1", "alpha", "1"}}}, "the regressor '1' of Cm stands twice");

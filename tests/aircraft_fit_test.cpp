@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "aircraft_records.hpp"
 #include "sepcal/aircraft/output_error.hpp"
@@ -174,6 +176,18 @@ TEST_CASE("its derivatives are those of differences") {
   CHECK(sepcal::test::error_of_tangent(*laid.model, laid.record, xi2, xi1) < 1e-7);
 }
 
+TEST_CASE("an equation of one coefficient leaves the others theirs: no lift, no flight") {
+  const AircraftTruth truth;
+  const Record record = record_of(simulate_aircraft(truth, {.rows = 400}));
+  const sepcal::AircraftTrajectory laid = sepcal::lay_aircraft(
+      record, truth.geometry,
+      {.axes = sepcal::AircraftAxes::longitudinal, .equations = {{"Cm", {"1", "alpha"}}}});
+  std::map<std::string, std::size_t> count;
+  for (const auto& [coefficient, regressors] : laid.equations)
+    count[coefficient] = regressors.size();
+  CHECK(count == std::map<std::string, std::size_t>{{"CX", 5}, {"CZ", 4}, {"Cm", 2}});
+}
+
 TEST_CASE("what can't be is refused in one line") {
   const AircraftTruth truth;
   const Record record = record_of(simulate_aircraft(truth, {.rows = 400}));
@@ -187,7 +201,7 @@ TEST_CASE("what can't be is refused in one line") {
       long_one.regressors.push_back(std::string(variable) + "^" + std::to_string(i));
     }
   }
-  refuse({.equations = {long_one}}, "46 regressors; 40 is the most");
+  refuse({.equations = {long_one}}, "73 regressors; 40 is the most");
   refuse({.equations = {{"Cm", {"1", "flaps"}}}}, "the regressor 'flaps', which is no column");
   refuse({.free = {"b_gear"}}, "'b_gear' is not held; those that may be freed are: lambda_v");
   refuse({.trajectory = {.measured = {"height"}}}, "the model has no state 'height'");

@@ -69,7 +69,8 @@ class RigidAircraft:
         aircraft: Its dimensions, mass and inertia.
         axes: Which states are integrated, the others being read from the flight: "longitudinal",
             u w q theta; "lateral", v p r phi; "six-dof", these and, where yaw is an output, psi.
-        equations: {coefficient: [regressors]} [the standard ones of the axes].
+        equations: {coefficient: [regressors]} [the standard ones of the axes; these also of
+            coefficients that are not named].
         gravity: At the place of the flight [m/s^2].
         window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
         **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.

@@ -232,6 +232,14 @@ def test_process_noise_gives_smoothed_states(flown: Path) -> None:
             ("fit", FLIGHT, "--model", "aero", "--geometry", GEOMETRY, "--equation", "Cm"),
             "write it as Cm=1,alpha,q_hat,elevator",
         ),
+        (
+            ("fit", FLIGHT, "--model=longitudinal", "--geometry", GEOMETRY, "--effect=CY[beta]"),
+            "the model 'longitudinal' has no CY here; it has CX, CZ, Cm",
+        ),
+        (
+            ("fit", "still.csv", "--model", "aero", "--geometry", GEOMETRY),
+            "airspeed is 0 in row 9 (counted from 0)",
+        ),
         (("compare", FLIGHT, GEOMETRY), "give the JSON that fit wrote with -o"),
         (("fit", "upside_down.csv", "--model", "path"), "level flight must read az = -9.81"),
         (("fit", "load_factor.csv", "--model", "path"), "log az_g = -an_g"),
@@ -241,6 +249,7 @@ def test_process_noise_gives_smoothed_states(flown: Path) -> None:
 def test_what_is_wrong_is_one_line(flown: Path, arguments: tuple[str, ...], said: str) -> None:
     change: dict[str, Callable[[str], str]] = {
         "upside_down.csv": lambda text: text,
+        "still.csv": lambda text: text,
         "load_factor.csv": lambda text: text.replace("az_mps2", "an_g", 1),
         "no_q.csv": lambda text: text.replace("q_radps", "qq", 1),
     }
@@ -250,6 +259,10 @@ def test_what_is_wrong_is_one_line(flown: Path, arguments: tuple[str, ...], said
         place = rows[0].index("az_mps2")
         for row in rows[1:]:
             row[place] = str(-float(row[place]))
+        text = "\n".join(",".join(row) for row in rows) + "\n"
+    if arguments[1] == "still.csv":
+        rows = [line.split(",") for line in text.splitlines()]
+        rows[10][rows[0].index("airspeed_mps")] = "0"
         text = "\n".join(",".join(row) for row in rows) + "\n"
     if arguments[1] in change:
         (flown / arguments[1]).write_text(change[arguments[1]](text))

@@ -36,7 +36,8 @@ void check_columns(const AeroCoefficients& coefficients,
     for (const std::string& variable : variables_of({equation})) {
       if (coefficients.record.has(variable)) continue;
       throw Error(equation.coefficient + " has the regressor '" + variable +
-                  "', which is no column; add it, or give equations without it. There are " +
+                  "', which is no column with a number in every row; add or mend it, or give "
+                  "equations without it. There are " +
                   base::list_names(coefficients.record.names()));
     }
   }

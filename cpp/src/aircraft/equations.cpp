@@ -89,6 +89,15 @@ std::vector<AeroEquation> standard_equations(const std::vector<std::string>& coe
   return chosen;
 }
 
+std::vector<AeroEquation> complete_equations(std::vector<AeroEquation> equations,
+                                             const std::vector<std::string>& coefficients) {
+  for (AeroEquation& standard : standard_equations(coefficients)) {
+    const auto at = std::ranges::find(equations, standard.coefficient, &AeroEquation::coefficient);
+    if (at == equations.end()) equations.push_back(std::move(standard));
+  }
+  return equations;
+}
+
 std::string parameter_name(std::string_view coefficient, std::string_view regressor) {
   std::string name = std::string(coefficient) + "_";
   if (regressor == "1") return name + "0";

@@ -81,6 +81,19 @@ void check_surfaces(const Record& record) {
   }
 }
 
+void check_airspeed(const Record& record) {
+  if (!record.has("airspeed")) return;
+  const std::span<const double> airspeed = record.column("airspeed");
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t row = segment.first; row < segment.last; ++row) {
+      if (airspeed[row] > 0.0) continue;
+      throw Error("airspeed is " + base::short_number(airspeed[row]) + " in row " +
+                  std::to_string(row) +
+                  " (counted from 0); coefficients need air that flows: leave such rows out");
+    }
+  }
+}
+
 double seven_rows(const Record& record) {
   std::vector<double> steps;
   for (const Segment& segment : record.segments()) {
@@ -101,6 +114,7 @@ Channels::Channels(const Record& record, const AircraftGeometry& geometry,
       vane_(geometry.vane - geometry.cg) {
   check_body_axes(record);
   check_surfaces(record);
+  check_airspeed(record);
   need(record, "airspeed", "every coefficient", "add it, m/s");
   if (!record.has("qbar")) {
     need(record, "rho", "the dynamic pressure", "add it, kg/m^3, or qbar, Pa");

@@ -166,18 +166,16 @@ void check_measured(const Record& record, const Names& measured) {
 
 AircraftTrajectory lay_aircraft(const Record& record, const AircraftGeometry& geometry,
                                 const OutputErrorOptions& options) {
+  if (!geometry.has_inertia()) {
+    throw Error("output error needs the aircraft's inertia; give Ix, Iy, Iz and Ixz");
+  }
   AircraftTrajectory laid;
   laid.fit = options.fit;
-  laid.equations = options.equations.empty()
-                       ? standard_equations(axes_of(options.axes).coefficients)
-                       : options.equations;
+  laid.equations = complete_equations(options.equations, axes_of(options.axes).coefficients);
   Names coefficients;
   for (const AeroEquation& equation : laid.equations) coefficients.push_back(equation.coefficient);
   const AeroCoefficients found =
       aero_coefficients(record, geometry, {.coefficients = coefficients, .window = options.window});
-  if (!geometry.has_inertia()) {
-    throw Error("output error needs the aircraft's inertia; give Ix, Iy, Iz and Ixz");
-  }
   const AeroFit start =
       fit_equation_error(found, laid.equations, {.coloured_errors = false, .threads = 1});
   for (const Parameter& parameter : start.fit.parameters) {

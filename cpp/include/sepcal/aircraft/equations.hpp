@@ -48,6 +48,11 @@ struct AeroEquation {
 /// coefficient: the thrust is taken off, or inside where it isn't known.
 std::vector<AeroEquation> standard_equations(const std::vector<std::string>& coefficients = {});
 
+/// The equations given, and the standard ones of those of `coefficients` that they leave out: an
+/// aircraft that is integrated needs all of its forces. Throws Error as standard_equations() does.
+std::vector<AeroEquation> complete_equations(std::vector<AeroEquation> equations,
+                                             const std::vector<std::string>& coefficients);
+
 /// "Cm_0" of "1", "Cm_q" of "q_hat" (and p_hat, r_hat), else "Cm_" and the regressor.
 std::string parameter_name(std::string_view coefficient, std::string_view regressor);
 

@@ -177,6 +177,8 @@ std::vector<CorrectedColumn> apply_aircraft(const AircraftFit& fitted, const Fli
     const SmoothedRecord smoothed =
         within(flight, [&] { return smooth_laid(fitted, fit, laid, process_noise); });
     add_smoothed(smoothed, process_noise, tables, laid, flight, columns);
+    if (!fitted.warning.empty())
+      notes.push_back(fitted.warning);  // the bands have the fit's errors
   }
   notes.insert(notes.end(), laid.notes.begin(), laid.notes.end());
   return columns;

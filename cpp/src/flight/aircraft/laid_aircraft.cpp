@@ -121,7 +121,9 @@ const AircraftGeometry& geometry_of(const AircraftOptions& options) {
 std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
   if (options.model == AircraftModel::path) return {};
   std::vector<AeroEquation> equations =
-      options.equations.empty() ? standard_equations(coefficients_of(options)) : options.equations;
+      options.model == AircraftModel::aero && !options.equations.empty()
+          ? options.equations
+          : complete_equations(options.equations, coefficients_of(options));
   for (const EffectSetting& effect : options.calibration.effects) {
     const std::string& name = effect.name;
     const std::size_t open = name.find('[');
@@ -131,6 +133,12 @@ std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
       std::string known;
       for (const AeroEquation& one : equations)
         known += (known.empty() ? "" : ", ") + one.coefficient;
+      if (open != std::string::npos &&
+          std::ranges::find(coefficient_names, std::string_view(name).substr(0, open)) !=
+              coefficient_names.end()) {
+        throw Error(fmt::format("effect {}: the model '{}' has no {} here; it has {}", name,
+                                to_string(options.model), name.substr(0, open), known));
+      }
       throw Error(
           fmt::format("effect {}: write it as COEFFICIENT[REGRESSOR], as {}[alpha^2]; the "
                       "coefficients here are: {}",
