@@ -351,6 +351,7 @@ TEST_CASE("misuse is named") {
                        "all states are measured; there is nothing to integrate", Error);
   CHECK_THROWS_WITH_AS(make({.substeps = 0}), "substeps must be at least 1", Error);
   CHECK_THROWS_WITH_AS(make({.shoot = 0}), "shoot must be a time above 0 s", Error);
+  CHECK_THROWS_WITH_AS(make({.shoot = 1e-3}), doctest::Contains("shoot cuts "), Error);
   CHECK_THROWS_WITH_AS(TrajectoryModel(Oscillator{}, TrajectoryOptions{.shoot = 1}),
                        Contains("make the model of the record"), Error);
   Record backwards;

@@ -101,6 +101,12 @@ void TrajectoryPlan::choose_outputs(const StateTables& model) {
 void TrajectoryPlan::find_starts(const Record& record) {
   labels_.clear();
   for (const Segment& segment : record.segments()) cut(record, segment);
+  constexpr std::size_t fewest_rows = 4;  // of a piece, which has initial states to pay for
+  if (std::isfinite(options_.shoot) && record.rows() < fewest_rows * labels_.size()) {
+    throw Error("shoot cuts " + std::to_string(record.rows()) + " rows into " +
+                std::to_string(labels_.size()) +
+                " pieces, each with initial states of its own; take a longer time");
+  }
   const std::set<std::string> distinct(labels_.begin(), labels_.end());
   if (labels_.size() == 1) {
     starts_.clear();
