@@ -40,6 +40,9 @@ class ModelArguments {
         ->required();
   }
 
+  /// The file of it, or empty.
+  const std::string& geometry() const { return geometry_; }
+
   void add_to(CLI::App& verb) {
     add_file(verb, "--geometry", geometry_,
              "the aircraft: area_m2, chord_m, span_m, mass_kg, inertia_kgm2 ...")
@@ -231,7 +234,7 @@ class AircraftApp {
   }
 
   int fit() const {
-    Delivery delivery(wishes_, {flight_});
+    Delivery delivery(wishes_, {flight_, model_.geometry()});
     AircraftOptions options = model_.resolve(fit_arguments_.resolve());
     const Flight flight = read_flight();
     ProgressLine line;
@@ -243,7 +246,7 @@ class AircraftApp {
   }
 
   int two_step() const {
-    Delivery delivery(wishes_, {flight_});
+    Delivery delivery(wishes_, {flight_, model_.geometry()});
     const AircraftOptions options = model_.resolve(fit_arguments_.resolve());
     const TwoStepFit fitted = fit_two_steps(read_flight(), options);
     delivery.deliver(fitted);
@@ -293,6 +296,7 @@ class AircraftApp {
   }
 
   int simulate() const {
+    if (!truth_.empty()) check_not_input(wishes_.output, truth_);
     OutputFile output(wishes_.output);
     const bool given = !truth_.empty() && std::filesystem::exists(truth_);
     const SimulationOrder order = simulation_.resolve();

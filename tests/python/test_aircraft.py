@@ -266,3 +266,17 @@ def test_bad_input_is_one_line(
     refuse(lambda: sepcal.fit(sepcal.Aero(light, "CZ"), flight), "mass")
     loaded = pickle.loads(pickle.dumps(fits("path")))
     refuse(loaded.compare, "a loaded fit has no flight", "compare(sepcal.read_csv(")
+
+
+def test_headings_that_wrap_go_on(flights: list[sepcal.Flight]) -> None:
+    """The same flight towards the south, its heading logged within half a turn."""
+    columns = {name: np.array(flights[0][name]) for name in flights[0].columns}
+    turned = columns["yaw_rad"] - columns["yaw_rad"].mean() + np.pi
+    turned -= 2 * np.pi * np.round(turned[0] / (2 * np.pi))
+    model = sepcal.FlightPath(outputs=["airspeed", "alpha", "beta", "roll", "pitch", "yaw"])
+    fits = []
+    for yaw in (turned, np.angle(np.exp(1j * turned))):
+        fits.append(sepcal.fit(model, sepcal.Flight({**columns, "yaw_rad": yaw})))
+    assert np.ptp(np.angle(np.exp(1j * turned))) > 6.0
+    for one, other in zip(fits[0].parameters.values(), fits[1].parameters.values(), strict=True):
+        assert other.value == pytest.approx(one.value, abs=1e-6 * (one.standard_error or 1.0))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of flight paths and aircraft: its numbers are the flight's and the smoother's."""
 
+import argparse
 import re
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import apps
 import sepcal
 from refusals import refuse
 from sepcal.__main__ import main
+from sepcal.reporting import command
 from sepcal.reporting.page import Figure, Grid, Section
 from sepcal.reporting.trajectory import compose_flown, gather_flown
 
@@ -29,14 +31,14 @@ TITLES = [
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A flight, its aircraft, the path and the longitudinal motion of it."""
     folder = tmp_path_factory.mktemp("report")
-    for command in (
+    for arguments in (
         ("simulate", "-o", "flight.csv", "--geometry", "aircraft.json"),
         ("fit", "flight.csv", "--model", "path", "-o", "path.json"),
         ("fit", "flight.csv", "--model", "longitudinal", "--geometry", "aircraft.json",
          "-o", "lon.json"),
         ("add", "flight.csv", "lon.json", "Cm[alpha^2]", "-o", "next.json"),
     ):  # fmt: skip
-        done = apps.run("sepcal-aircraft", *command, folder=folder)
+        done = apps.run("sepcal-aircraft", *arguments, folder=folder)
         assert done.code == 0, done.err
     return folder
 
@@ -108,3 +110,17 @@ def test_bad_input_is_one_line(
         assert code == 2
         assert f"--process-noise {text}: write it as NAME=SD" in capsys.readouterr().err
     assert not Path("r.html").exists()
+
+
+def test_what_was_read_is_not_written_over(folder: Path) -> None:
+    log, path = folder / "flight.csv", folder / "path.json"
+    for read in (log, path):
+        before = read.read_bytes()
+        wishes = argparse.Namespace(
+            flight=str(log), calibrations=[str(path)], output=str(read), process_noise=[]
+        )
+        refuse(
+            lambda wishes=wishes: command.run(wishes),
+            f"{read}: it is an input, and writing there would lose it; name another file",
+        )
+        assert read.read_bytes() == before

@@ -9,15 +9,12 @@
 #include "sepcal/error.hpp"
 
 namespace sepcal::numerics {
-namespace {
 
-void unwrap(std::vector<double>& angles) {
+void unwrap(std::span<double> angles) {
   for (std::size_t i = 1; i < angles.size(); ++i) {
     angles[i] = angles[i - 1] + std::remainder(angles[i] - angles[i - 1], 2.0 * std::numbers::pi);
   }
 }
-
-}  // namespace
 
 InterpolatedColumn::InterpolatedColumn(const Record& record, const std::string& name, bool angle) {
   const std::span<const double> time = record.column("time");

@@ -13,6 +13,9 @@
 
 namespace sepcal::numerics {
 
+/// Takes out jumps of a whole turn [rad].
+void unwrap(std::span<double> angles);
+
 class InterpolatedColumn {
  public:
   /// `angle`: jumps of a whole turn are taken out first. Rows outside the segments of `record` have

@@ -49,6 +49,12 @@ def run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.output).parent
     if not folder.is_dir():
         raise Error(f"{arguments.output}: folder '{folder}' isn't there; make it first")
+    for read in (arguments.flight, *arguments.calibrations):
+        written = Path(arguments.output)
+        if written.exists() and Path(read).exists() and written.samefile(read):
+            raise Error(
+                f"{written}: it is an input, and writing there would lose it; name another file"
+            )
     flight = read_csv(arguments.flight)
     chain = [load(file) for file in arguments.calibrations]
     live = sys.stderr.isatty()

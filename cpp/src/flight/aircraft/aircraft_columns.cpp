@@ -4,8 +4,13 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include "base/columns.hpp"
 #include "flight/probes/air_columns.hpp"
+#include "numerics/interpolated_column.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::aircraft_log {
@@ -68,6 +73,22 @@ void need_air(RecordBuilder& builder, const Flight& flight) {
   }
 }
 
+/// The record with roll and yaw going on where they are logged within a turn: a state that is
+/// integrated doesn't jump.
+Record without_jumps(const Record& record) {
+  base::Columns columns(record);
+  for (const char* name : {"roll", "yaw"}) {
+    if (!record.has(name)) continue;
+    const std::span<const double> logged = record.column(name);
+    std::vector<double> angles(logged.begin(), logged.end());
+    for (const Segment& segment : record.segments()) {
+      numerics::unwrap(std::span(angles).subspan(segment.first, segment.rows()));
+    }
+    columns.set(name, std::move(angles));
+  }
+  return columns.record();
+}
+
 }  // namespace
 
 ProbeRecord prepare(const Flight& flight, AircraftModel model, bool drop_invalid) {
@@ -90,7 +111,9 @@ ProbeRecord prepare(const Flight& flight, AircraftModel model, bool drop_invalid
   builder.offer({"vn", "ve", "vd"});
   builder.offer({"pdot", "qdot", "rdot"});
   probes::offer_temperature(builder);
-  return builder.finish();
+  ProbeRecord prepared = builder.finish();
+  prepared.record = without_jumps(prepared.record);
+  return prepared;
 }
 
 }  // namespace sepcal::aircraft_log
