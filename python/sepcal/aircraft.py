@@ -46,6 +46,10 @@ class Aero:
         self.aircraft, self.window = _to_aircraft(aircraft), float(window)
         self.equations = _to_equations(equations)
         for coefficient in coefficients:
+            if not isinstance(coefficient, str):
+                raise _core.Error(
+                    f"{coefficient!r} is no coefficient; write Aero(aircraft, 'CZ', 'Cm')"
+                )
             self.equations.setdefault(coefficient, standard_regressors(coefficient))
 
     def _aircraft_options(self) -> dict[str, Any]:

@@ -144,7 +144,8 @@ void Channels::differentiate(double window) {
     const auto time = record_.column("time").subspan(segment.first, segment.rows());
     const std::size_t fewest = numerics::fewest_rows(time, window_);
     if (segment.rows() < rows_of_cubic) {
-      throw Error("a segment has " + std::to_string(segment.rows()) +
+      const std::string label = segment.label.empty() ? "" : " '" + segment.label + "'";
+      throw Error("the segment" + label + " has " + std::to_string(segment.rows()) +
                   " rows, and rates are differentiated over 5 at least; leave it out");
     }
     if (fewest < rows_of_cubic) {
