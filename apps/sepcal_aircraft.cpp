@@ -173,12 +173,12 @@ class AircraftApp {
     for (CLI::App* verb : {&compare_, &add_, &apply_, &track_}) {
       add_file(*verb, "FIT", base_, "what fit wrote with -o")->required();
     }
-    for (CLI::App* verb : {&apply_, &track_}) {
+    for (CLI::App* verb : {&fit_, &two_step_, &apply_, &track_}) {
       add_deviations(
           *verb, "--process-noise", process_noise_,
           "root of the spectral density of a noise that drives the states, in the unit "
-          "of the model's table (ax of a path: m/s^2/sqrt(Hz)); apply then adds smoothed "
-          "states; may be repeated");
+          "of the model's table (ax of a path: m/s^2/sqrt(Hz)); a fit allows for it in its "
+          "intervals, apply then adds smoothed states; may be repeated");
     }
     tracking_.add_to(track_);
     add_deviations(track_, "--initial-state", initial_states_,
@@ -233,9 +233,15 @@ class AircraftApp {
     return read_csv(flight_, [&](double fraction) { line.show("reading " + flight_, fraction); });
   }
 
+  AircraftOptions resolve_fit() const {
+    AircraftOptions options = model_.resolve(fit_arguments_.resolve());
+    options.calibration.fit.process_noise = parse_deviations("--process-noise", process_noise_);
+    return options;
+  }
+
   int fit() const {
     Delivery delivery(wishes_, {flight_, model_.geometry()});
-    AircraftOptions options = model_.resolve(fit_arguments_.resolve());
+    AircraftOptions options = resolve_fit();
     const Flight flight = read_flight();
     ProgressLine line;
     options.calibration.fit.progress = shown_on(line);
@@ -247,7 +253,7 @@ class AircraftApp {
 
   int two_step() const {
     Delivery delivery(wishes_, {flight_, model_.geometry()});
-    const AircraftOptions options = model_.resolve(fit_arguments_.resolve());
+    const AircraftOptions options = resolve_fit();
     const TwoStepFit fitted = fit_two_steps(read_flight(), options);
     delivery.deliver(fitted);
     return std::max(exit_code(fitted.path.fit.status), exit_code(fitted.aero.fit.status));

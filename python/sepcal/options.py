@@ -61,6 +61,10 @@ class FitOptions(TypedDict, total=False):
         descents: Stage one descends from at most so many samples to tell minima apart [8].
         coloured_errors: Standard errors allow for residuals that are not white; without, they equal
             the white ones [True].
+        process_noise: Of a model with a state: noise that drives it, by the names of its table
+            `noise`, as roots of spectral densities in the table's unit (in discrete time: standard
+            deviations a row). It has no part in the fit; standard errors allow for it [none; of a
+            FlightPath the white noise of the inertial unit's readings].
         threads: The caller's included; 0: one a core [0]. The result does not depend on it.
         free: For flights: parameters freed that the probe holds by default [none].
         drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
@@ -89,6 +93,7 @@ class FitOptions(TypedDict, total=False):
     iterations: int | None
     descents: int | None
     coloured_errors: bool | None
+    process_noise: Mapping[str, float] | None
     threads: int | None
     free: Sequence[str] | None
     drop_invalid: bool | None

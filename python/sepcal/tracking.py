@@ -16,7 +16,7 @@ from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.results import Fit
 from sepcal.states_module import states_module
 
-REFUSED = ("effects", "drop_invalid")
+REFUSED = ("effects", "drop_invalid")  # of a fit's options
 
 
 class Track(_core.Track):
@@ -39,8 +39,8 @@ class Track(_core.Track):
         return f"<sepcal.Track {', '.join(self.names)}: {len(self.rows)} rows>"
 
 
-@spelled_out(without=REFUSED)
-def track(
+@spelled_out(without=(*REFUSED, "process_noise"))
+def track(  # type: ignore[misc]  # its process_noise drives the filter, not errors of a fit
     model: AnyModel,
     data: Columns,
     *,

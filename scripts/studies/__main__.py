@@ -18,6 +18,7 @@ from sepcal.progress import progress_bar
 from studies import (
     effect_coverage,
     field_strength,
+    flight_path,
     hidden_effects,
     intervals,
     monte_carlo,
@@ -33,6 +34,7 @@ STUDIES: tuple[Study, ...] = (
     monte_carlo.STUDY,
     effect_coverage.STUDY,
     field_strength.STUDY,
+    flight_path.STUDY,
     *native.STUDIES,
 )
 OUTSIDE_LIMITS = 1

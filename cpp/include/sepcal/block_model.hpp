@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sepcal/eigen.hpp"
 #include "sepcal/quantity.hpp"
@@ -94,6 +95,10 @@ class BlockModel {
   /// otherwise, and stage one doesn't sample them.
   virtual std::map<std::string, double> starting_values(const Record& record) const;
 
+  /// Parameters on which nothing in this record depends, as initial states of segments that are
+  /// left out; none unless overridden.
+  virtual std::vector<std::string> idle_parameters(const Record& record) const;
+
   /// The factor by which a small error of a state grows along the trajectory where it grows most,
   /// at parameters (n); 1 of a model without a state.
   virtual double growth(const Record& record, const Eigen::VectorXd& xi) const;
@@ -101,6 +106,17 @@ class BlockModel {
   /// The longest step of integration times the fastest rate of the dynamics there, at parameters
   /// (n); 0 of a model that integrates nothing.
   virtual double coarseness(const Record& record, const Eigen::VectorXd& xi) const;
+
+  /// The noises that drive a state; none of a model without one.
+  virtual std::span<const Variable> process_noises() const { return {}; }
+
+  /// The covariance (n x n) of the score J' R^-1 e, at parameters (n), where e is what process
+  /// noise makes of the outputs along trajectories that know nothing of it; zero of a model without
+  /// a state. `noise`: the outputs' deviations (n_z). `density`: of each process noise the root of
+  /// its spectral density (process_noises()).
+  virtual Eigen::MatrixXd score_noise(const Record& record, const Eigen::VectorXd& xi,
+                                      const Eigen::VectorXd& noise,
+                                      const Eigen::VectorXd& density) const;
 
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.

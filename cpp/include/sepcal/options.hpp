@@ -91,6 +91,11 @@ struct FitOptions {
   /// false: they equal the white ones, and the fit does without that pass.
   bool coloured_errors = true;
 
+  /// Of a model with a state: noise that drives it, by the names of its table `noise`, as the root
+  /// of the spectral density in the table's unit (of a model in discrete time as the standard
+  /// deviation a row). It takes no part in the fit; standard errors allow for it.
+  std::map<std::string, double> process_noise = {};
+
   /// Threads, the caller's included; 0: one a core. The result does not depend on it.
   int threads = 0;
   FitProgress progress = {};

@@ -33,11 +33,12 @@ TwoStep two_step(const Record& record, const AircraftGeometry& geometry,
   }
   const CoefficientOptions wanted{.coefficients = coefficients, .window = options.window};
   aero_coefficients(record, geometry, wanted);  // what is missing is said before the path is fitted
-  const PathTrajectory path = lay_path(record, {.trajectory = options.path,
-                                                .gravity = options.gravity,
-                                                .vane = geometry.vane - geometry.imu,
-                                                .free = options.free,
-                                                .fit = options.path_fit});
+  PathTrajectory path = lay_path(record, {.trajectory = options.path,
+                                          .gravity = options.gravity,
+                                          .vane = geometry.vane - geometry.imu,
+                                          .free = options.free,
+                                          .fit = options.path_fit});
+  if (path.fit.process_noise.empty()) path.fit.process_noise = noise_of_readings(path.record);
   TwoStep found;
   found.path = fit(*path.model, path.record, path.fit);
   found.initial_states = path.initial_states;

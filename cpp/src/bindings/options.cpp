@@ -112,6 +112,7 @@ void define_options(py::module_& module) {
   define_choice<&FitOptions::noise_iterations>(options, "noise_iterations");
   define_choice<&FitOptions::iterations>(options, "iterations");
   define_choice<&FitOptions::coloured_errors>(options, "coloured_errors");
+  define_choice<&FitOptions::process_noise>(options, "process_noise");
   define_choice<&FitOptions::threads>(options, "threads");
   options.def_readwrite("free", &Options::free);
   options.def_readwrite("drop_invalid", &Options::drop_invalid);

@@ -13,6 +13,7 @@
 #include "estimation/model_trial.hpp"
 #include "estimation/plausibility.hpp"
 #include "estimation/prior_checks.hpp"
+#include "estimation/process_noise.hpp"
 #include "estimation/runaway.hpp"
 #include "estimation/sampling.hpp"
 #include "estimation/stage_one.hpp"
@@ -143,7 +144,8 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
 }  // namespace
 
 Fit fit(const BlockModel& model, const Record& record, const FitOptions& given) {
-  const FitOptions options = with_starting_values(model, record, given);
+  check_process_noise(model, given);
+  const FitOptions options = with_starting_values(model, record, given.stage_two_segments, given);
   const Problem problem(model, options);
   base::ThreadPool pool(options.threads);
   const model::Measurements second(problem.model(), record.select(options.stage_two_segments));
@@ -162,6 +164,7 @@ Fit fit(const BlockModel& model, const Record& record, const FitOptions& given) 
   const StageTwo two = run_stage_two(problem, second, result.stage_one, pool);
   describe(result, model, problem, second, two, pool);
   const Record fitted = record.select(options.stage_two_segments);
+  allow_for_process_noise(result, model, fitted, options);
   warn_of_coarse_steps(result, model, fitted);
   warn_of_runaway(result, model, fitted);
   return result;

@@ -126,12 +126,43 @@ VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions
   return point;
 }
 
-FitOptions with_starting_values(const BlockModel& model, const Record& record, FitOptions options) {
+namespace {
+
+/// Where it would begin.
+void hold_idle(const BlockModel& model, const std::string& name, FitOptions& options) {
+  double value = 0.0;
+  for (auto* known : {&options.unsampled, &options.start}) {
+    const auto at = known->find(name);
+    if (at == known->end()) continue;
+    value = at->second;
+    known->erase(at);
+  }
+  for (const Variable& parameter : model.tables().parameters()) {
+    if (parameter.name == name) value = std::clamp(value, parameter.lower, parameter.upper);
+  }
+  options.bounds.erase(name);
+  options.fixed.emplace(name, value);
+}
+
+}  // namespace
+
+FitOptions with_starting_values(const BlockModel& model, const Record& record,
+                                const std::string& segments, FitOptions options) {
   auto& known = options.start.empty() ? options.unsampled : options.start;
   for (const auto& [name, value] : model.starting_values(record)) {
     const bool said = options.fixed.contains(name) || options.sampling_distribution.contains(name);
     if (!said) known.emplace(name, value);
   }
+  if (!segments.empty()) {
+    for (const std::string& name : model.idle_parameters(record.select(segments))) {
+      if (!options.prior.contains(name)) hold_idle(model, name, options);
+    }
+  }
+  const std::vector<Variable> all = model.tables().parameters();
+  const bool nothing_to_sample = std::ranges::all_of(all, [&](const Variable& parameter) {
+    return options.fixed.contains(parameter.name) || options.unsampled.contains(parameter.name);
+  });
+  if (nothing_to_sample) options.start.merge(options.unsampled);
   return options;
 }
 

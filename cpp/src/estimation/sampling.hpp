@@ -25,8 +25,10 @@ Eigen::MatrixXd draw_samples(const std::vector<Variable>& parameters, const FitO
 Eigen::VectorXd nominal_point(const std::vector<Variable>& parameters, const FitOptions& options);
 
 /// The options with what the model itself says of where to begin (BlockModel::starting_values()):
-/// among `start` where there is one, else `unsampled`. What the options say of a parameter goes
-/// before it.
-FitOptions with_starting_values(const BlockModel& model, const Record& record, FitOptions options);
+/// among `start` where there is one, or where nothing else is free, else `unsampled`. What the
+/// options say of a parameter goes before it. Parameters on which nothing in the selected segments
+/// depends are held there.
+FitOptions with_starting_values(const BlockModel& model, const Record& record,
+                                const std::string& segments, FitOptions options);
 
 }  // namespace sepcal::estimation

@@ -212,7 +212,7 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
 }
 
 StageOne stage_one(const BlockModel& model, const Record& record, const FitOptions& given) {
-  const FitOptions options = with_starting_values(model, record, given);
+  const FitOptions options = with_starting_values(model, record, given.stage_one_segments, given);
   const Problem problem(model, options);
   const model::Measurements measurements(problem.model(),
                                          record.select(options.stage_one_segments));

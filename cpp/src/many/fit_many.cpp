@@ -73,6 +73,9 @@ const FlightFit& ManyFit::flight(std::string_view name) const {
 
 ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options) {
   const estimation::Problem problem(model, options.fit);
+  if (!options.fit.process_noise.empty()) {
+    throw Error("process_noise is for one record's fit; many flights are fitted without");
+  }
   if (options.fit.loss != Loss::squares) {
     throw Error("many flights are fitted jointly by least squares alone, without loss '" +
                 std::string(to_string(options.fit.loss)) +

@@ -56,10 +56,17 @@ std::map<std::string, double> BlockModel::starting_values(const Record& /*record
   return {};
 }
 
+std::vector<std::string> BlockModel::idle_parameters(const Record& /*record*/) const { return {}; }
+
 double BlockModel::growth(const Record& /*record*/, const VectorXd& /*xi*/) const { return 1.0; }
 
 double BlockModel::coarseness(const Record& /*record*/, const VectorXd& /*xi*/) const {
   return 0.0;
+}
+
+MatrixXd BlockModel::score_noise(const Record& /*record*/, const VectorXd& xi,
+                                 const VectorXd& /*noise*/, const VectorXd& /*density*/) const {
+  return MatrixXd::Zero(xi.size(), xi.size());
 }
 
 bool BlockModel::add_second_derivatives(

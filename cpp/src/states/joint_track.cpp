@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/name_list.hpp"
+#include "base/parameter_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
@@ -120,11 +121,12 @@ class JointStream {
         options_(options),
         layout_(lay_out(plan_, start)),
         xi_(layout_.start),
-        density_(deviations_by_name(options.process_noise, plan_.model().noise, "process noise")
-                     .cwiseAbs2()),
+        density_(
+            base::deviations_in_order(plan_.model().noise, options.process_noise, "process noise")
+                .cwiseAbs2()),
         R_(noise_of(plan_.tables().outputs, start, options).cwiseAbs2().asDiagonal()),
         steps_(model.steps(record, xi_)) {
-    deviations_by_name(options.initial_states, plan_.model().states, "state");
+    base::deviations_in_order(plan_.model().states, options.initial_states, "state");
     for (const Variable& output : plan_.tables().outputs) {
       outputs_.push_back(record.column(output.name));
     }
@@ -294,27 +296,10 @@ Track track_jointly(const StateBlockModel& model, const Record& record, const St
   return JointStream(model, record, start, options).run(start);
 }
 
-VectorXd deviations_by_name(const std::map<std::string, double>& values,
-                            const std::vector<Variable>& table, const std::string& what) {
-  VectorXd result = VectorXd::Zero(static_cast<Index>(table.size()));
-  for (const auto& [name, value] : values) {
-    const auto at = std::ranges::find(table, name, &Variable::name);
-    if (at == table.end()) {
-      throw Error("the model has no " + what + " '" + name + "'; it has " +
-                  base::list_names(table));
-    }
-    if (!(value >= 0.0) || !std::isfinite(value)) {
-      throw Error(what + " '" + name + "' needs a standard deviation of 0 or more");
-    }
-    result[at - table.begin()] = value;
-  }
-  return result;
-}
-
 VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
                   const TrackOptions& options) {
   if (options.noise.empty()) return start.noise;
-  const VectorXd noise = deviations_by_name(options.noise, outputs, "output");
+  const VectorXd noise = base::deviations_in_order(outputs, options.noise, "output");
   for (Index j = 0; j < noise.size(); ++j) {
     if (noise[j] > 0) continue;
     throw Error("output '" + outputs[static_cast<std::size_t>(j)].name +

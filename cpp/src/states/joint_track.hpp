@@ -12,11 +12,6 @@ namespace sepcal::states {
 Track track_jointly(const StateBlockModel& model, const Record& record, const StreamStart& start,
                     const TrackOptions& options);
 
-/// Values by name over a table; `otherwise` for those not named. Throws Error for other names and
-/// for what is no standard deviation.
-Eigen::VectorXd deviations_by_name(const std::map<std::string, double>& values,
-                                   const std::vector<Variable>& table, const std::string& what);
-
 /// n_z: the options', or the start's. Throws Error where an output has none.
 Eigen::VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
                          const TrackOptions& options);

@@ -108,7 +108,7 @@ class Smoothing {
   }
 
   void run(const Segment& segment) {
-    const VectorXd x = start_of(segment);
+    const VectorXd x = states::start_of(plan_, plan_.trajectory_at(segment.first, true), xi_);
     const VectorXd deviations =
         states::start_deviations(*steps_, segment, x, result_.states, noise_.start);
     const MatrixXd P = deviations.cwiseAbs2().asDiagonal();
@@ -129,16 +129,6 @@ class Smoothing {
     throw Error("the filter can't go on from row " + std::to_string(row) +
                 " (counted from 0): the state or what is expected there is not finite; cut the "
                 "segment, or start nearer");
-  }
-
-  VectorXd start_of(const Segment& segment) const {
-    const int trajectory = plan_.trajectory_at(segment.first, true);
-    VectorXd x(static_cast<Index>(result_.states.size()));
-    for (Index i = 0; i < x.size(); ++i) {
-      x[i] =
-          xi_[plan_.column_of_start(plan_.integrated()[static_cast<std::size_t>(i)], trajectory)];
-    }
-    return x;
   }
 
   Stages filter(const Segment& segment, Filter<Dynamic> filter) {

@@ -22,6 +22,15 @@ VectorXd largest_on_the_way(const StateSteps& steps, const Segment& segment, Vec
 
 }  // namespace
 
+VectorXd start_of(const TrajectoryPlan& plan, int trajectory, const VectorXd& xi) {
+  const std::vector<int>& states = plan.integrated();
+  VectorXd x(static_cast<Index>(states.size()));
+  for (Index i = 0; i < x.size(); ++i) {
+    x[i] = xi[plan.column_of_start(states[static_cast<std::size_t>(i)], trajectory)];
+  }
+  return x;
+}
+
 VectorXd start_deviations(const StateSteps& steps, const Segment& segment, const VectorXd& x,
                           const std::vector<std::string>& names,
                           const std::map<std::string, double>& given) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How well the state is known where a segment begins, for filters that run along records.
+// The state where a trajectory begins, and how well filters that run along records know it there.
 #pragma once
 
 #include <map>
@@ -10,6 +10,9 @@
 #include "sepcal/states/state_steps.hpp"
 
 namespace sepcal::states {
+
+/// x (n_x) where a trajectory begins, at xi (n).
+Eigen::VectorXd start_of(const TrajectoryPlan& plan, int trajectory, const Eigen::VectorXd& xi);
 
 /// Standard deviations (n_x) of x at a segment's start. Of states without one that is given, ten
 /// times the largest value that the state has on the way from there: as good as unknown.

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/name_list.hpp"
+#include "base/parameter_values.hpp"
 #include "model/fixed_model.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/error.hpp"
@@ -205,8 +206,8 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
     throw Error("a model that carries a state of its own is tracked by rls, not by " +
                 std::string(to_string(options.method)));
   }
-  states::deviations_by_name(options.process_noise, {}, "process noise");
-  states::deviations_by_name(options.initial_states, {}, "state");
+  base::deviations_in_order({}, options.process_noise, "process noise");
+  base::deviations_in_order({}, options.initial_states, "state");
   Samples samples(model, record, start, states::noise_of(model.tables().outputs, start, options));
   Collected collected(record, start, model.tables().n_z());
   if (options.method == TrackMethod::rls) {

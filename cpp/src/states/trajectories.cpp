@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast errors of a state grow along trajectories, and how long steps of integration are beside
-// the fastest rate: where trajectories can't be integrated, and where they aren't integrated well.
+// What a fit asks of trajectories: which of them a record leaves out; how fast errors of a state
+// grow along them, and how long steps of integration are beside the fastest rate: where they can't
+// be integrated, and where they aren't integrated well.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "sepcal/states/state_steps.hpp"
+#include "states/start_deviations.hpp"
 
 namespace sepcal {
 namespace {
@@ -12,16 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// x where a trajectory begins, n_x.
-VectorXd start_of(const TrajectoryPlan& plan, int trajectory, const VectorXd& xi) {
-  const std::vector<int>& states = plan.integrated();
-  VectorXd x(static_cast<Index>(states.size()));
-  for (Index i = 0; i < x.size(); ++i) {
-    x[i] = xi[plan.column_of_start(states[static_cast<std::size_t>(i)], trajectory)];
-  }
-  return x;
-}
 
 double largest_eigenvalue(const MatrixXd& A) {
   if (!A.allFinite()) return infinity;
@@ -36,7 +28,7 @@ void follow(const TrajectoryPlan& plan, const StateSteps& along, const Record& r
   for (const Segment& segment : record.segments()) {
     for (std::size_t row = segment.first; row + 1 < segment.last; ++row) {
       const int trajectory = plan.trajectory_at(row, row == segment.first);
-      if (trajectory >= 0) x = start_of(plan, trajectory, xi);
+      if (trajectory >= 0) x = states::start_of(plan, trajectory, xi);
       const StateSteps::Step step = along.advance(row, x);
       visit(row, trajectory >= 0, x, step);
       x = step.x;
@@ -45,6 +37,25 @@ void follow(const TrajectoryPlan& plan, const StateSteps& along, const Record& r
 }
 
 }  // namespace
+
+std::vector<std::string> StateBlockModel::idle_parameters(const Record& record) const {
+  std::vector<bool> begun(static_cast<std::size_t>(plan().trajectories()), false);
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t row = segment.first; row < segment.last; ++row) {
+      const int trajectory = plan().trajectory_at(row, row == segment.first);
+      if (trajectory >= 0) begun[static_cast<std::size_t>(trajectory)] = true;
+    }
+  }
+  std::vector<std::string> idle;
+  for (int t = 0; t < plan().trajectories(); ++t) {
+    if (begun[static_cast<std::size_t>(t)]) continue;
+    for (const int i : plan().integrated()) {
+      const std::string& state = plan().model().states[static_cast<std::size_t>(i)].name;
+      idle.push_back(plan().start_name(state, t));
+    }
+  }
+  return idle;
+}
 
 double StateBlockModel::growth(const Record& record, const VectorXd& xi) const {
   const std::unique_ptr<StateSteps> along = steps(record, xi);

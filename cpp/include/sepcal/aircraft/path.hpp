@@ -2,6 +2,7 @@
 // A flight path laid along a record, with what is measured, held and started from.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@ struct PathTrajectory {
   FitOptions fit;
   std::vector<std::string> initial_states;  // names of parameters
 };
+
+/// The white noise of an inertial unit as its readings tell it, for FitOptions::process_noise: by
+/// name of FlightPath::noise, from fourth differences of each column. Vibration counts as noise,
+/// and drift is not seen. Columns without any (held, simulated without noise) are left out.
+std::map<std::string, double> noise_of_readings(const Record& record);
 
 /// Throws Error for a record without any of the outputs, a parameter to free that isn't held, and
 /// as TrajectoryModel does.

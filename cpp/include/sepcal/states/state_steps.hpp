@@ -75,6 +75,14 @@ class StateBlockModel : public BlockModel {
 
   /// dt / substeps times the largest eigenvalue of F, in size, at some 200 rows.
   double coarseness(const Record& record, const Eigen::VectorXd& xi) const override;
+
+  std::vector<std::string> idle_parameters(const Record& record) const override;
+
+  std::span<const Variable> process_noises() const override { return plan().model().noise; }
+
+  Eigen::MatrixXd score_noise(const Record& record, const Eigen::VectorXd& xi,
+                              const Eigen::VectorXd& noise,
+                              const Eigen::VectorXd& density) const override;
 };
 
 }  // namespace sepcal

@@ -77,6 +77,7 @@ Json write_fitted(const AircraftFit& fitted) {
   root["equations"] = write_equations(fitted.equations);
   root["initial_states"] = fitted.initial_states;
   root["warning"] = fitted.warning;
+  root["notes"] = fitted.notes;
   write_estimates(fitted.fit, root);
   write_rest(fitted.fit, fitted.options.calibration.fit, root);
   root["history"] = Json::array();
@@ -97,6 +98,7 @@ AircraftFit read_fitted(const Json& root) {
   fitted.equations = read_equations(root.at("equations"));
   fitted.initial_states = root.at("initial_states").get<std::vector<std::string>>();
   fitted.warning = root.at("warning").get<std::string>();
+  if (root.contains("notes")) fitted.notes = root.at("notes").get<std::vector<std::string>>();
   std::vector<std::string> outputs;
   for (const auto& [name, rmse] : entries_of(root.at("rmse"))) outputs.push_back(name);
   fitted.fit = read_fit(root, fitted.options.calibration, outputs);

@@ -47,9 +47,11 @@ void lay_along_path(const AircraftOptions& options, LaidAircraft& laid) {
   laid.record = std::move(path.record);
   laid.fit = std::move(path.fit);
   laid.initial_states = std::move(path.initial_states);
-  laid.warning =
-      "noise of the inertial unit, which is integrated, adds up along segments and is not in these "
-      "intervals; cut long segments (shoot)";
+  const bool told = laid.fit.process_noise.empty();
+  if (told) laid.fit.process_noise = noise_of_readings(laid.record);
+  laid.warning = fmt::format(
+      "intervals allow for {} of the inertial unit, not for its drift; cut long segments (shoot)",
+      told ? "the white noise" : "the process noise that was given");
 }
 
 void lay_coefficients(const AircraftOptions& options, LaidAircraft& laid) {

@@ -118,6 +118,7 @@ Json write_options(const CalibrationOptions& chosen) {
   options["noise_iterations"] = fit.noise_iterations;
   options["iterations"] = fit.iterations;
   options["coloured_errors"] = fit.coloured_errors;
+  if (!fit.process_noise.empty()) options["process_noise"] = fit.process_noise;
   options["threads"] = fit.threads;
   options["drop_invalid"] = chosen.drop_invalid;
   return options;
@@ -154,6 +155,9 @@ CalibrationOptions read_options(const Json& options) {
   fit.noise_iterations = whole_number<int>(options.at("noise_iterations"));
   fit.iterations = whole_number<int>(options.at("iterations"));
   fit.coloured_errors = options.at("coloured_errors").get<bool>();
+  if (options.contains("process_noise")) {
+    fit.process_noise = options.at("process_noise").get<std::map<std::string, double>>();
+  }
   fit.threads = whole_number<int>(options.at("threads"));
   result.drop_invalid = options.at("drop_invalid").get<bool>();
   return result;
