@@ -8,6 +8,8 @@
 #include "flights_with_effects.hpp"
 #include "sepcal/flight/comparison.hpp"
 
+namespace adding_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Texts = std::vector<std::string>;
@@ -180,3 +182,5 @@ TEST_CASE("what is no effect or no driver here is refused and names it") {
   check_refused([&] { add(base, flight, "wind[time]+"); }, {"a name is missing beside '+'"});
   check_refused([&] { add(base, flight, ""); }, {"a name is missing"});
 }
+
+}  // namespace adding_test

@@ -10,6 +10,8 @@
 #include "draws.hpp"
 #include "sepcal/error.hpp"
 
+namespace aero_model_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using sepcal::AeroCoefficients;
@@ -103,3 +105,5 @@ TEST_CASE("what is no equation is refused") {
   refuse({{"Cm", {"1", "alpha", "1"}}}, "the regressor '1' of Cm stands twice");
   refuse({{"Cm", {"1"}}, {"Cm", {"alpha"}}}, "Cm has two equations");
 }
+
+}  // namespace aero_model_test

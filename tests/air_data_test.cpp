@@ -9,6 +9,8 @@
 
 #include "composed_checks.hpp"
 
+namespace air_data_test {
+
 using Eigen::AngleAxisd;
 using Eigen::Index;
 using Eigen::Matrix3d;
@@ -43,18 +45,18 @@ NamedValues values_for(const BlockModel& model, const NamedValues& given) {
 /// derivatives are checked by the way.
 template <class Made, class Expected>
 double difference(const Made& effect, const NamedValues& given, const Expected& expected) {
-  const auto model = sepcal::block_model(probe + effect);
+  const auto model = sepcal::block_model(five_holes + effect);
   const NamedValues values = values_for(*model, given);
   check_tangent(*model, record, values);
   check_input_tangent(*model, record, values);
   const VectorXd predicted = predict(*model, record, values);
-  const VectorXd without = predict(*sepcal::block_model(probe), record, values);
+  const VectorXd without = predict(*sepcal::block_model(five_holes), record, values);
   CHECK((predicted - without).norm() > 1e-3 * without.norm());  // it does something
   return (predicted - expected(values)).cwiseAbs().maxCoeff();
 }
 
 VectorXd predict_host(const Record& changed, const NamedValues& values) {
-  return predict(*sepcal::block_model(probe), changed, values);
+  return predict(*sepcal::block_model(five_holes), changed, values);
 }
 
 VectorXd predict_host(const NamedValues& values) { return predict_host(record, values); }
@@ -146,7 +148,7 @@ TEST_CASE("heading_bias: the logged yaw is the true one + delta") {
 
 TEST_CASE("lever_arm: the probe sits at r + dr") {
   const auto expected = [](const NamedValues& values) {
-    sepcal::FiveHoleProbe moved = probe;
+    sepcal::FiveHoleProbe moved = five_holes;
     moved.lever_arm += Vector3d(0.5, -0.4, 0.3);
     return predict(*sepcal::block_model(moved), record, values);
   };
@@ -181,7 +183,7 @@ TEST_CASE("mounting_error: probe axes turned by small angles about body y and z"
 
 TEST_CASE("all of them at zero leave the model as it is") {
   const auto model =
-      sepcal::block_model(probe + Wind<"altitude_m">{300} + PressureOffset<"throttle">{} +
+      sepcal::block_model(five_holes + Wind<"altitude_m">{300} + PressureOffset<"throttle">{} +
                           AlphaOffset<"q">{} + HeadingBias{} + LeverArm{} + MountingError{});
   Draws draws(402);
   NamedValues values = draw_values(sepcal::tables_of<sepcal::FiveHoleProbe>(), draws);
@@ -189,3 +191,5 @@ TEST_CASE("all of them at zero leave the model as it is") {
     values.try_emplace(parameter.name, 0.0);
   CHECK((predict(*model, record, values) - predict_host(values)).cwiseAbs().maxCoeff() < 1e-12);
 }
+
+}  // namespace air_data_test

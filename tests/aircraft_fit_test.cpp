@@ -12,6 +12,8 @@
 #include "sepcal/error.hpp"
 #include "trajectories.hpp"
 
+namespace aircraft_fit_test {
+
 using doctest::Contains;
 using sepcal::AeroFit;
 using sepcal::AircraftAxes;
@@ -212,3 +214,5 @@ TEST_CASE("what can't be is refused in one line") {
   CHECK_THROWS_WITH_AS(sepcal::fit_output_error(record, light, {.equations = {{"CZ", {"1"}}}}),
                        Contains("output error needs the aircraft's inertia"), sepcal::Error);
 }
+
+}  // namespace aircraft_fit_test

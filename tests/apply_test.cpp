@@ -10,6 +10,8 @@
 #include "flights_with_effects.hpp"
 #include "temporary_folder.hpp"
 
+namespace apply_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -229,3 +231,5 @@ TEST_CASE("a field's rate comes from the body rates or, without them, from the r
   // By differences over 0.05 s: a natural spline's slope at a segment's ends is off by 0.1 uT/s.
   CHECK(worst(without(flight, {"p_radps", "q_radps", "r_radps"})) < 2e-3);
 }
+
+}  // namespace apply_test

@@ -11,6 +11,8 @@
 #include "sepcal/static_model.hpp"
 #include "simulated_records.hpp"
 
+namespace attitude_independent_magnetometer_test {
+
 using doctest::Approx;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -140,3 +142,5 @@ TEST_CASE("a reading of n itself, which has no direction, is finite") {
   model.evaluate({inputs, 1, 0, true}, xi2.data(), &none, nullptr, rows);
   CHECK(rows.allFinite());
 }
+
+}  // namespace attitude_independent_magnetometer_test

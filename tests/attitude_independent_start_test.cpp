@@ -11,6 +11,8 @@
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "simulated_records.hpp"
 
+namespace attitude_independent_start_test {
+
 using doctest::Approx;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -160,3 +162,5 @@ TEST_CASE("a rotation is always listed; a bound that is met makes the fit not id
     CHECK(fit.message.find("the bounds of lambda_z, alpha_xy kept") != std::string::npos);
   }
 }
+
+}  // namespace attitude_independent_start_test

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+namespace basins_test {
+
 using namespace sepcal;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -83,3 +85,5 @@ TEST_CASE("scatter within a narrow valley makes shallow basins, a second minimum
   CHECK(basins[1].depth > 0.8);
   for (std::size_t i = 2; i < basins.size(); ++i) CHECK(basins[i].depth < basins[1].depth);
 }
+
+}  // namespace basins_test

@@ -10,6 +10,8 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/static_model.hpp"
 
+namespace bend_test {
+
 namespace {
 
 /// z = u (x + k x^2). With z = 0, noise 1 and u of unit length the cost is (x + k x^2)^2: at -3 and
@@ -65,3 +67,5 @@ TEST_CASE("nothing is said across a bound, and where nobody asks for standard er
   options.coloured_errors = false;
   CHECK(!is_said(message(0.1, options)));
 }
+
+}  // namespace bend_test

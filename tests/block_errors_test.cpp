@@ -11,6 +11,8 @@
 #include "sepcal/fit.hpp"
 #include "small_models.hpp"
 
+namespace block_errors_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -186,3 +188,5 @@ TEST_CASE("in white noise block errors are those of white noise, on average to s
   }
   CHECK(sum == Approx(20.0 / 19.0).epsilon(0.08));
 }
+
+}  // namespace block_errors_test

@@ -11,6 +11,8 @@
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 
+namespace block_model_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -172,3 +174,5 @@ TEST_CASE("a model that carries a state can't be differentiated by its inputs, a
                        doctest::Contains("carries a state can't be differentiated by its input"),
                        sepcal::Error);
 }
+
+}  // namespace block_model_test

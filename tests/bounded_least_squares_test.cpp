@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+namespace bounded_least_squares_test {
+
 using namespace sepcal;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -96,3 +98,5 @@ TEST_CASE("a column of zeros takes no step") {
   CHECK(solution.x == (VectorXd(2) << 1, 0).finished());
   CHECK(solution.active[0]);
 }
+
+}  // namespace bounded_least_squares_test

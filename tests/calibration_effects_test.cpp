@@ -7,6 +7,8 @@
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/comparison.hpp"
 
+namespace calibration_effects_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Json = nlohmann::ordered_json;
@@ -131,3 +133,5 @@ TEST_CASE("the same effect twice is refused and named") {
   check_refused([&] { calibrate_with("five-hole", simulated, {"wind_shear", "wind[altitude_m]"}); },
                 {"wind[altitude_m].n"});
 }
+
+}  // namespace calibration_effects_test

@@ -7,6 +7,8 @@
 #include "calibrated_flights.hpp"
 #include "sepcal/flight/calibration.hpp"
 
+namespace calibration_probes_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Json = nlohmann::ordered_json;
@@ -184,3 +186,5 @@ TEST_CASE("a record of arrays is calibrated as a flight is") {
   const Calibration whole = calibrate_strength(0.3);
   CHECK((arrays.fit.values() - whole.fit.values()).norm() < 1e-9);
 }
+
+}  // namespace calibration_probes_test

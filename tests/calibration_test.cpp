@@ -9,6 +9,8 @@
 #include "calibrated_flights.hpp"
 #include "temporary_folder.hpp"
 
+namespace calibration_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Json = nlohmann::ordered_json;
@@ -360,3 +362,5 @@ TEST_CASE("misuse of a calibration is refused") {
                 {"flight: the segments of stage two (stage_two)", "'taxi'", "within 0 to 117.6",
                  "the labels are: wind_circle_1"});
 }
+
+}  // namespace calibration_test

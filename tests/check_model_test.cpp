@@ -11,6 +11,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace check_model_test {
+
 using doctest::Contains;
 using sepcal::check_model;
 using sepcal::Error;
@@ -169,3 +171,5 @@ TEST_CASE("a record without rows, or without a column, is an error") {
   narrow.add("u", {1, 2}).add("z", {1, 2});
   CHECK_THROWS_WITH_AS(check_model(Sound{}, narrow), Contains("column 'y' is missing"), Error);
 }
+
+}  // namespace check_model_test

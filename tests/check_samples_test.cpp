@@ -2,6 +2,8 @@
 // Clocks and samples that are not what they seem, each put into a clean log by hand.
 #include "checked_logs.hpp"
 
+namespace check_samples_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -202,3 +204,5 @@ TEST_CASE("readings cut off at a limit are told, peaks on steps are not") {
   }
   CHECK(notes_of(check_tube(peaks), "clipped").empty());
 }
+
+}  // namespace check_samples_test

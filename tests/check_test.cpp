@@ -7,6 +7,8 @@
 #include "flight/checks/excitation.hpp"
 #include "sepcal/flight/calibration.hpp"
 
+namespace check_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -234,3 +236,5 @@ TEST_CASE("a fit notes what the check found") {
   const Calibration calibration = calibrate(pitot_static_probe(), log.build());
   CHECK(mentions(calibration.notes, "as mps under the header airspeed_kt"));
 }
+
+}  // namespace check_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace choices_test {
+
 using doctest::Contains;
 
 TEST_CASE_TEMPLATE("a choice is found by its own name", T, sepcal::Search, sepcal::Sampling,
@@ -28,3 +30,5 @@ TEST_CASE("an unknown name is refused with those there are") {
                        Contains("--loss 'tukey' is unknown; known: 'squares', 'huber', 'cauchy'"),
                        sepcal::Error);
 }
+
+}  // namespace choices_test

@@ -11,6 +11,8 @@
 
 #include "sepcal/error.hpp"
 
+namespace coefficients_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Matrix3d;
@@ -205,3 +207,5 @@ TEST_CASE("degrees, g and the wrong sign of gravity are refused") {
   deflected.add("elevator", std::vector<double>(300, -12.0));
   refuse(deflected, "'elevator' reaches -12 rad; it is probably in degrees");
 }
+
+}  // namespace coefficients_test

@@ -10,6 +10,8 @@
 #include "sepcal/flight/comparison.hpp"
 #include "simulated_records.hpp"
 
+namespace comparison_channels_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -165,3 +167,5 @@ TEST_CASE("channels and windows in the JSON, and none of a flight too short for 
   CHECK(small.channels.empty());
   CHECK(small.windows.size() == 2);
 }
+
+}  // namespace comparison_channels_test

@@ -8,6 +8,8 @@
 
 #include "flights_with_effects.hpp"
 
+namespace comparison_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Values = std::vector<double>;
@@ -187,3 +189,5 @@ TEST_CASE("a flight without an effect's channel is refused, one in which it is c
   check_refused([&] { compare(calibration, make_flight(level)); },
                 {"flight: effect airspeed_bias[flap]: there is no channel 'flap'"});
 }
+
+}  // namespace comparison_test

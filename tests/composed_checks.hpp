@@ -11,7 +11,7 @@
 
 namespace sepcal::test {
 
-inline const FiveHoleProbe probe{4.5, 4.0, {0.35, -0.1, -0.02}};
+inline const FiveHoleProbe five_holes{4.5, 4.0, {0.35, -0.1, -0.02}};
 
 /// 60 rows of an aircraft, in two segments.
 Record five_hole_record();

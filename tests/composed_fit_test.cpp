@@ -12,6 +12,8 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/static_effect.hpp"
 
+namespace composed_fit_test {
+
 using Eigen::Index;
 using sepcal::block_model;
 using sepcal::compose;
@@ -173,3 +175,5 @@ TEST_CASE("magnetometer: a current's field, a temperature's scale and a late rea
   CHECK(inner.rows() < record.rows());
   check_recovers(sepcal::fit(*composed, inner, options), truth);
 }
+
+}  // namespace composed_fit_test

@@ -8,6 +8,8 @@
 #include "sepcal/error.hpp"
 #include "sepcal/static_effect.hpp"
 
+namespace composition_reach_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using sepcal::Delay;
@@ -101,3 +103,5 @@ TEST_CASE("without_edges drops the rows nearer than the margin to an edge of the
   CHECK_THROWS_WITH_AS(kept(50), Contains("no segment is longer than twice 50"), Error);
   CHECK(ten.rows() == 12);
 }
+
+}  // namespace composition_reach_test

@@ -14,6 +14,8 @@
 #include "sepcal/static_effect.hpp"
 #include "small_models.hpp"
 
+namespace composition_test {
+
 using doctest::Contains;
 using sepcal::block_model;
 using sepcal::compose;
@@ -43,7 +45,7 @@ Effect in_time(const std::string& name, Delay::Kind kind, double longest,
 }
 
 std::shared_ptr<const sepcal::BlockModel> compose_probe(const std::vector<Effect>& effects) {
-  return compose(block_model(probe), effects, record);
+  return compose(block_model(five_holes), effects, record);
 }
 
 void check_refused(const std::vector<Effect>& effects, const char* words) {
@@ -87,7 +89,7 @@ class Counting final : public sepcal::BlockModel {
 }  // namespace
 
 TEST_CASE("without effects the model is the model itself") {
-  const auto model = block_model(probe);
+  const auto model = block_model(five_holes);
   CHECK(compose(model, {}, record) == model);
 }
 
@@ -291,3 +293,5 @@ TEST_CASE("a composed model composes again") {
   const NamedValues values = draw_values(once->tables(), draws);
   CHECK(largest_difference(*once, *twice, record, values) < 1e-13);
 }
+
+}  // namespace composition_test

@@ -8,6 +8,8 @@
 #include "estimation/minimise.hpp"
 #include "simulated_records.hpp"
 
+namespace compressed_problem_test {
+
 using doctest::Approx;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -115,3 +117,5 @@ TEST_CASE("a descent stays in its box, starts in it, and stops at its number of 
       sepcal::estimation::minimise(objective, VectorXd::Zero(5), {lower, upper}, {.iterations = 1})
           .converged);
 }
+
+}  // namespace compressed_problem_test

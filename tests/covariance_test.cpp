@@ -12,6 +12,8 @@
 #include "sepcal/fit.hpp"
 #include "small_models.hpp"
 
+namespace covariance_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -199,3 +201,5 @@ TEST_CASE("what has no noise model is white") {
   CHECK(fit["s"].standard_error == fit["s"].standard_error_white);
   CHECK_FALSE(find_residual_noise(as_span(VectorXd::Zero(100)), {{"", 0, 100}}));
 }
+
+}  // namespace covariance_test

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <functional>
 
+namespace crossing_bracket_test {
+
 using doctest::Approx;
 using sepcal::numerics::CrossingBracket;
 
@@ -70,3 +72,5 @@ TEST_CASE("a value far above what lies below promises is a leap, and may be take
   CHECK(bracket.low() == 1.25);
   CHECK(bracket.next() == Approx(1.75));  // the slope is 0.5 now
 }
+
+}  // namespace crossing_bracket_test

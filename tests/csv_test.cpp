@@ -12,6 +12,8 @@
 #include "sepcal/error.hpp"
 #include "temporary_folder.hpp"
 
+namespace csv_test {
+
 using doctest::Contains;
 using sepcal::CsvReader;
 using sepcal::Error;
@@ -241,3 +243,5 @@ TEST_CASE("numbers are decimal, finite and whole cells") {
     CHECK_FALSE(parse_number(text).has_value());
   }
 }
+
+}  // namespace csv_test

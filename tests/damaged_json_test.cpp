@@ -5,6 +5,8 @@
 #include "calibrated_flights.hpp"
 #include "sepcal/simulation/truth.hpp"
 
+namespace damaged_json_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -49,3 +51,5 @@ TEST_CASE("a text with line ends and escape codes is quoted in one line") {
   check_refused([] { parse_five_hole_truth(R"({"par\u2028ameters": 1})", "t.json"); },
                 {"t.json", "'par\\xe2\\x80\\xa8ameters'"});
 }
+
+}  // namespace damaged_json_test

@@ -15,6 +15,8 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/static_model.hpp"
 
+namespace damped_sinusoids_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -186,3 +188,5 @@ TEST_CASE("one mode at irregular times, with an offset") {
   near("sin_1", -1.5 * std::sin(0.6));
   near("offset", 0.7);
 }
+
+}  // namespace damped_sinusoids_test

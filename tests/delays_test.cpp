@@ -12,6 +12,8 @@
 #include "sepcal/static_effect.hpp"
 #include "small_models.hpp"
 
+namespace delays_test {
+
 using Eigen::Index;
 using Eigen::VectorXd;
 using sepcal::block_model;
@@ -142,16 +144,17 @@ TEST_CASE("five-hole: late or lagging air data are the probe's own readings at a
   Draws draws(451);
   NamedValues values = draw_values(sepcal::tables_of<sepcal::FiveHoleProbe>(), draws);
 
-  const auto late = compose(block_model(probe),
+  const auto late = compose(block_model(five_holes),
                             {in_time("late", Delay::Kind::inputs_late, 0.5, air_data)}, record);
   values["late.tau"] = 0.33;
   CHECK(difference(*late, inner, values,
-                   predict(*block_model(probe), expected(signals, 0.33), values)) < 1e-7);
+                   predict(*block_model(five_holes), expected(signals, 0.33), values)) < 1e-7);
   check_tangent(*late, inner, values, 1e-5);
 
   const std::vector<std::string> pressures{"pt", "ps", "dpa", "dpb"};
-  const auto lagging = compose(
-      block_model(probe), {in_time("lag", Delay::Kind::inputs_lagging, 0.5, pressures)}, record);
+  const auto lagging =
+      compose(block_model(five_holes),
+              {in_time("lag", Delay::Kind::inputs_lagging, 0.5, pressures)}, record);
   values["lag.tau"] = 0.2;
   Signals undone = signals;
   for (const std::string& name : pressures) {
@@ -160,7 +163,7 @@ TEST_CASE("five-hole: late or lagging air data are the probe's own readings at a
     };
   }
   CHECK(difference(*lagging, inner, values,
-                   predict(*block_model(probe), expected(undone, 0.0), values)) < 1e-5);
+                   predict(*block_model(five_holes), expected(undone, 0.0), values)) < 1e-5);
   check_tangent(*lagging, inner, values, 1e-5);
 }
 
@@ -176,13 +179,13 @@ TEST_CASE("late outputs: every physical input is shifted, a yaw that wraps too, 
   wash.corrections.push_back(sepcal::driven_inputs(
       "wash", sepcal::power_driver({"throttle", ""}, 0, 1),
       {{"s", sepcal::Variable(sepcal::port("pressure_offset", "Pa"))}}, "Pa", 50.0));
-  const auto model = compose(block_model(probe),
+  const auto model = compose(block_model(five_holes),
                              {wind, in_time("late", Delay::Kind::outputs_late, 0.5), wash}, record);
-  const auto host = compose(block_model(probe), {wind, wash}, record);
+  const auto host = compose(block_model(five_holes), {wind, wash}, record);
   Draws draws(452);
   NamedValues values = draw_values(model->tables(), draws);
   values["late.tau"] = 0.21;
-  Record then = sample(signals, time, -0.21, names_of(block_model(probe)->tables().inputs));
+  Record then = sample(signals, time, -0.21, names_of(block_model(five_holes)->tables().inputs));
   then.cut(inner.segments());
   CHECK(difference(*model, inner, values, predict(*host, then, values)) < 1e-7);
   check_tangent(*model, inner, values, 1e-5);
@@ -244,3 +247,5 @@ TEST_CASE("no row of another segment has a share in a shifted block") {
     CHECK(before.middleRows(120 * j + 70, 50) != after.middleRows(120 * j + 70, 50));
   }
 }
+
+}  // namespace delays_test

@@ -14,6 +14,8 @@
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
+namespace diagnosis_candidate_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Eigen::Index;
@@ -235,3 +237,5 @@ TEST_CASE("a candidate by an alias, of a pair; what can't be made is refused") {
   other.fit.parameters.pop_back();
   check_refused([&] { diagnosis::CandidateRoom(other, pool); }, {"are not those of its model"});
 }
+
+}  // namespace diagnosis_candidate_test

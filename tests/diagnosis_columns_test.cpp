@@ -8,6 +8,8 @@
 #include "linearisations.hpp"
 #include "simulated_records.hpp"
 
+namespace diagnosis_columns_test {
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -71,3 +73,5 @@ TEST_CASE("products beyond some columns are those of what least squares on them 
   CHECK(worst(diagnosis::products_beyond(columns.transpose() * columns, 4) -
               left.transpose() * left) < 1e-9);
 }
+
+}  // namespace diagnosis_columns_test

@@ -14,6 +14,8 @@
 #include "noises.hpp"
 #include "small_models.hpp"
 
+namespace diagnosis_held_out_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -307,3 +309,5 @@ TEST_CASE("real fits and one step agree for a linear model on any selection of r
   CHECK(by_fits.passed == by_steps.passed);
   CHECK(by_steps.after < 0.999 * by_steps.before);
 }
+
+}  // namespace diagnosis_held_out_test

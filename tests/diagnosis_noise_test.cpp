@@ -17,6 +17,8 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/tails.hpp"
 
+namespace diagnosis_noise_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -308,3 +310,5 @@ TEST_CASE("the residual in words: correlation, Ljung and Box, the floor in the o
   CHECK(described[1].floor == Approx(4.0).epsilon(0.05));
   CHECK(described[0].noise.sigma == described[0].floor);
 }
+
+}  // namespace diagnosis_noise_test

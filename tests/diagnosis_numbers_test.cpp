@@ -5,6 +5,8 @@
 #include "diagnosed_flights.hpp"
 #include "sepcal/flight/adding.hpp"
 
+namespace diagnosis_numbers_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -96,3 +98,5 @@ TEST_CASE("the error on rows held out falls by about as much, to the noise at be
     CHECK(effect.held_out_gain < 2.0 * effect.predicted_drop);
   }
 }
+
+}  // namespace diagnosis_numbers_test

@@ -11,6 +11,8 @@
 #include "numerics/decompositions.hpp"
 #include "simulated_records.hpp"
 
+namespace diagnosis_projection_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -173,3 +175,5 @@ TEST_CASE("nothing is seen of a candidate within the tangent, nor of one that is
   const MatrixXd wide = problem.draws.normal_matrix(4, 6);
   CHECK(project(MatrixXd(4, 0), wide, wide, least_visibility).visible() == 0);
 }
+
+}  // namespace diagnosis_projection_test

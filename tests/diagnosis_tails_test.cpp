@@ -11,6 +11,8 @@
 
 #include "simulated_records.hpp"
 
+namespace diagnosis_tails_test {
+
 using doctest::Approx;
 using namespace sepcal;
 
@@ -169,3 +171,5 @@ TEST_CASE("probabilities too small for a double are zero and keep their places")
   check_equal(numerics::adjust_by_benjamini_hochberg(log10_p), {0.04 / 3, 0.0, 0.0, 0.1});
   check_equal(numerics::adjust_by_holm({-300.0, 0.0}), {2e-300, 1.0});
 }
+
+}  // namespace diagnosis_tails_test

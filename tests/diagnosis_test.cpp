@@ -10,6 +10,8 @@
 #include "noises.hpp"
 #include "small_models.hpp"
 
+namespace diagnosis_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -263,3 +265,5 @@ TEST_CASE("verdicts and statuses by their names") {
   CHECK(to_string(FindingStatus::not_seen) == "not_seen");
   CHECK(to_string(FindingStatus::cannot_be_seen) == "cannot_be_seen");
 }
+
+}  // namespace diagnosis_test

@@ -8,6 +8,8 @@
 
 #include "sepcal/states/triangle.hpp"
 
+namespace discretise_test {
+
 using Eigen::Matrix2d;
 using sepcal::discretise;
 using sepcal::discretise_inputs;
@@ -161,3 +163,5 @@ TEST_CASE("units of the states cost transition and noise no digits") {
           1e-13 * expected.Q_d.norm());
   }
 }
+
+}  // namespace discretise_test

@@ -9,6 +9,8 @@
 #include "composed_checks.hpp"
 #include "sepcal/static_effect.hpp"
 
+namespace driven_test {
+
 using doctest::Approx;
 using sepcal::Quantity;
 using sepcal::Vec;
@@ -61,3 +63,5 @@ TEST_CASE("each is the kind of effect that it is taken for") {
   static_assert(sepcal::InputCorrection<Wash> && sepcal::StaticEffect<Wash>);
   static_assert(!sepcal::Term<Wash> && !sepcal::VaryingTerm<Wash>);
 }
+
+}  // namespace driven_test

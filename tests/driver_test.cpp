@@ -9,6 +9,8 @@
 #include "composed_models.hpp"
 #include "sepcal/error.hpp"
 
+namespace driver_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -187,3 +189,5 @@ TEST_CASE("a delayed driver doesn't see past its segment") {
   driver->evaluate(&unused, 3, 1.5, values, nullptr);
   CHECK((values - Eigen::Vector3d(101.5, 100.5, 99.5)).norm() < 1e-12);
 }
+
+}  // namespace driver_test

@@ -11,6 +11,8 @@
 
 #include "sepcal/flight/probe_effects.hpp"
 
+namespace effect_catalogue_test {
+
 using namespace sepcal;
 using Names = std::set<std::string, std::less<>>;
 
@@ -88,3 +90,5 @@ TEST_CASE("another model has none") {
   CHECK(effect_catalogue("venturi").empty());
   CHECK(effect_catalogue("").empty());
 }
+
+}  // namespace effect_catalogue_test

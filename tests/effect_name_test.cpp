@@ -9,6 +9,8 @@
 
 #include "sepcal/error.hpp"
 
+namespace effect_name_test {
+
 using sepcal::EffectName;
 using sepcal::parse_effect_name;
 using sepcal::split_effects;
@@ -166,3 +168,5 @@ TEST_CASE("a channel that port[channel] names, and those that it doesn't") {
     CHECK_FALSE(sepcal::can_name(channel));
   }
 }
+
+}  // namespace effect_name_test

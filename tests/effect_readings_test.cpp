@@ -10,6 +10,8 @@
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/natural_spline.hpp"
 
+namespace effect_readings_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -185,3 +187,5 @@ TEST_CASE("effects in time are found and undone") {
   check_hidden({"magnetometer", {"time_offset", {0.05}}}, turning, 7 * noise);
   check_hidden({"magnetometer", {"sensor_lag", {0.05}}}, turning, 20 * noise);
 }
+
+}  // namespace effect_readings_test

@@ -12,6 +12,8 @@
 #include "flight/catalogue/effect_channels.hpp"
 #include "sepcal/error.hpp"
 
+namespace effect_table_test {
+
 using namespace sepcal;
 using namespace sepcal::catalogue;
 
@@ -62,3 +64,5 @@ TEST_CASE("what acts on the world is what docs/effects.md leaves uncorrected") {
 TEST_CASE("there is no table of another probe") {
   CHECK_THROWS_WITH_AS(effect_table("venturi"), "there is no model 'venturi'", Error);
 }
+
+}  // namespace effect_table_test

@@ -7,6 +7,8 @@
 #include "composed_checks.hpp"
 #include "sepcal/composition.hpp"
 
+namespace effect_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -121,7 +123,7 @@ TEST_CASE("parameters that vary with a shaped driver, an input's share and a spl
                                            sepcal::decay_driver({"time", "s"}, 0, 12),
                                            {{"s", offset}}, "Pa", 30.0));
   const auto model =
-      sepcal::compose(sepcal::block_model(probe), {wind, scale, bend, share, wash}, record);
+      sepcal::compose(sepcal::block_model(five_holes), {wind, scale, bend, share, wash}, record);
   Draws draws(421);
   const NamedValues values = draw_values(model->tables(), draws);
   check_tangent(*model, record, values);
@@ -146,7 +148,7 @@ TEST_CASE("two shares of one input's driver in one output add up") {
   Effect share{.name = "share"};
   share.varying.push_back(
       {sepcal::constant_driver(), {{"s", "", {{1, {"p", "rad/s"}}, {1, {"q", "rad/s"}}}}}, "m"});
-  const auto model = sepcal::compose(sepcal::block_model(probe), {share}, record);
+  const auto model = sepcal::compose(sepcal::block_model(five_holes), {share}, record);
   Draws draws(422);
   const auto columns = named_columns(*model, record, draw_values(model->tables(), draws));
   for (Index k = 0; k < 60; ++k) {
@@ -175,8 +177,9 @@ TEST_CASE("a driver is read as it was logged, whatever shifts or corrects its ch
     late.delays.push_back({sepcal::Delay::Kind::outputs_late, {"late.tau", "s", -0.5, 0.5}, {}});
     return std::vector<Effect>{turn, scale, tilt, late};
   };
-  const auto shared = sepcal::compose(sepcal::block_model(probe), effects_of("q"), copied);
-  const auto separate = sepcal::compose(sepcal::block_model(probe), effects_of("q_logged"), copied);
+  const auto shared = sepcal::compose(sepcal::block_model(five_holes), effects_of("q"), copied);
+  const auto separate =
+      sepcal::compose(sepcal::block_model(five_holes), effects_of("q_logged"), copied);
   Draws draws(446);
   NamedValues values = draw_values(shared->tables(), draws);
   values["turn.s"] = 0.2;
@@ -184,3 +187,5 @@ TEST_CASE("a driver is read as it was logged, whatever shifts or corrects its ch
   CHECK(largest_difference(*shared, *separate, copied, values) < 1e-14);
   check_tangent(*shared, copied, values, 1e-5);
 }
+
+}  // namespace effect_test

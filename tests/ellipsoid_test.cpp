@@ -11,6 +11,8 @@
 
 #include "simulated_records.hpp"
 
+namespace ellipsoid_test {
+
 using doctest::Approx;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -133,3 +135,5 @@ TEST_CASE("a shape splits into scale factors and soft iron") {
     CHECK((split->soft_iron - alpha).norm() < 1e-9);
   }
 }
+
+}  // namespace ellipsoid_test

@@ -6,6 +6,8 @@
 
 #include <string>
 
+namespace error_test {
+
 TEST_CASE("an Error carries its line and is caught as a standard exception") {
   const auto fail = [] { throw sepcal::Error("column 'yaw' is missing"); };
   CHECK_THROWS_AS(fail(), const std::runtime_error&);
@@ -29,3 +31,5 @@ TEST_CASE("a message is one printable line, whatever it quotes") {
         "\xC3\xBC \xE2\x82\xAC \xF0\x9F\x9B\xA9 \xC2\xA0");
   CHECK(line("caf\xE9 \xED\xA0\x80 \xE2\x82") == "caf\\xe9 \\xed\\xa0\\x80 \\xe2\\x82");
 }
+
+}  // namespace error_test

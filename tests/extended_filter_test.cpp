@@ -9,6 +9,8 @@
 #include "sepcal/states/autodiff.hpp"
 #include "sepcal/states/filter.hpp"
 
+namespace extended_filter_test {
+
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using sepcal::Filter;
@@ -169,3 +171,5 @@ TEST_CASE("a model in discrete time is a transition as it stands: bias times gai
   P(0, 0) += 0.25;
   CHECK((filter.covariance() - P).norm() < 1e-14);
 }
+
+}  // namespace extended_filter_test

@@ -9,6 +9,8 @@
 #include "flights_with_effects.hpp"
 #include "sepcal/flight/comparison.hpp"
 
+namespace figures_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -119,3 +121,5 @@ TEST_CASE("where only a field's strength is known it stands beside that of the c
   CHECK((figures.modelled - figures.measured - compared.residuals).cwiseAbs().maxCoeff() < 1e-10);
   CHECK(figures.airspeed.empty());
 }
+
+}  // namespace figures_test

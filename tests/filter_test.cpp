@@ -14,6 +14,8 @@
 #include "sepcal/states/smoother.hpp"
 #include "stacked_system.hpp"
 
+namespace filter_test {
+
 using sepcal::Filter;
 using sepcal::FilterStatus;
 using sepcal::InformationForm;
@@ -277,3 +279,5 @@ TEST_CASE("sizes that are known at run time give the same filter, smoother and r
     CHECK((free_smoothed[k].Q - smoothed[k].Q).norm() < 1e-12 * smoothed[k].Q.norm());
   }
 }
+
+}  // namespace filter_test

@@ -10,6 +10,8 @@
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 
+namespace fit_bounds_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -177,3 +179,5 @@ TEST_CASE("a bound that the solution doesn't reach changes nothing") {
           1e-8 * free.parameters[k].standard_error);
   }
 }
+
+}  // namespace fit_bounds_test

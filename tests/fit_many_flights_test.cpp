@@ -9,6 +9,8 @@
 
 #include "simulated_fleets.hpp"
 
+namespace fit_many_flights_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -127,3 +129,5 @@ TEST_CASE("the white test is the drop in cost where a flight has its own shared 
     CHECK(flight.departure.p_white == Approx(1.0 - 2.0 * tail).epsilon(1e-6));
   }
 }
+
+}  // namespace fit_many_flights_test

@@ -5,6 +5,8 @@
 #include "sepcal/error.hpp"
 #include "simulated_fleets.hpp"
 
+namespace fit_many_refusals_test {
+
 using doctest::Contains;
 using namespace sepcal;
 using test::fleet_probe;
@@ -74,3 +76,5 @@ TEST_CASE("misuse is refused in a line that names the culprit") {
   CHECK_THROWS_WITH_AS((void)joint["w_n"], Contains("no shared parameter 'w_n'"), Error);
   CHECK_THROWS_WITH_AS((void)joint.flight("x"), Contains("no flight 'x'"), Error);
 }
+
+}  // namespace fit_many_refusals_test

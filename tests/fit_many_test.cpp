@@ -11,6 +11,8 @@
 
 #include "simulated_fleets.hpp"
 
+namespace fit_many_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -265,3 +267,5 @@ TEST_CASE("the order of the flights is irrelevant to rounding") {
           Approx(flight.departure.statistic).epsilon(1e-6));
   }
 }
+
+}  // namespace fit_many_test

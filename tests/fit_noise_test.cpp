@@ -10,6 +10,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace fit_noise_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -201,3 +203,5 @@ TEST_CASE("progress of both stages lies within [0, 1]") {
   CHECK(heard_one);
   CHECK(heard_two);
 }
+
+}  // namespace fit_noise_test

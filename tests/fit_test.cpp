@@ -12,6 +12,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace fit_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -255,3 +257,5 @@ TEST_CASE("a model that is not finite in some rows is refused whatever the stage
   CHECK_THROWS_WITH_AS(sepcal::fit(sepcal::test::Root{}, record), Contains("not finite"),
                        sepcal::Error);
 }
+
+}  // namespace fit_test

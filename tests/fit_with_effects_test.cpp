@@ -12,6 +12,8 @@
 #include "sepcal/static_model.hpp"
 #include "small_models.hpp"
 
+namespace fit_with_effects_test {
+
 using doctest::Approx;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -127,3 +129,5 @@ TEST_CASE("misuse is refused by name") {
   std::vector<EffectSetting> missing{{.name = "c[heat]"}};
   CHECK_THROWS_WITH_AS(fit_line(u, missing), doctest::Contains("'heat'"), sepcal::Error);
 }
+
+}  // namespace fit_with_effects_test

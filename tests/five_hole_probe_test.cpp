@@ -9,6 +9,8 @@
 
 #include "simulated_records.hpp"
 
+namespace five_hole_probe_test {
+
 using sepcal::FiveHoleProbe;
 using sepcal::Vec;
 
@@ -133,3 +135,5 @@ TEST_CASE("the ports join the pressure that the airspeed is read from, and the a
     CHECK((a.b - b.b).norm() < 1e-12 * b.b.norm());
   }
 }
+
+}  // namespace five_hole_probe_test

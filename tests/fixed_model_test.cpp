@@ -8,6 +8,8 @@
 #include "dense_reference.hpp"
 #include "simulated_records.hpp"
 
+namespace fixed_model_test {
+
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -91,3 +93,5 @@ TEST_CASE("the derivatives by the inputs are the whole model's at the held value
   CHECK(part.given == whole.given);
   CHECK((part.given - part.numeric).norm() < 1e-8 * part.numeric.norm());
 }
+
+}  // namespace fixed_model_test

@@ -9,6 +9,8 @@
 #include "diagnosed_flights.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
+namespace flight_diagnosis_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -237,3 +239,5 @@ TEST_CASE("errors name the flight once, whatever it is called") {
     CHECK(what.starts_with("a\\tlog: column '"));
   }
 }
+
+}  // namespace flight_diagnosis_test

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,8 +11,6 @@
 #include "sepcal/flight/probe_columns.hpp"
 
 namespace sepcal::test {
-
-inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// A flight's columns by header, to be changed by a test before it is built.
 struct Log {

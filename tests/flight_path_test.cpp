@@ -13,6 +13,8 @@
 #include "sepcal/fit.hpp"
 #include "trajectories.hpp"
 
+namespace flight_path_test {
+
 using doctest::Contains;
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -206,3 +208,5 @@ TEST_CASE("a path that pitches beyond 85 deg while it is tried is no number, and
   CHECK(std::isfinite(rows(0, 15)));
   CHECK(std::isnan(rows(199, 15)));
 }
+
+}  // namespace flight_path_test

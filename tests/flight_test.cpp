@@ -9,6 +9,8 @@
 #include "sepcal/error.hpp"
 #include "temporary_folder.hpp"
 
+namespace flight_test {
+
 using doctest::Contains;
 using sepcal::Error;
 using sepcal::Flight;
@@ -105,3 +107,5 @@ TEST_CASE("a file's faults come through, and progress ends at one") {
   read_csv(folder.write("a\n1\n"), [&](double fraction) { last = fraction; });
   CHECK(last == 1);
 }
+
+}  // namespace flight_test

@@ -22,12 +22,12 @@ inline Record simulate_with_outliers(std::uint64_t seed, bool both_ways) {
   std::vector<double> eta = draws.uniform_column(200, 0.0, 2.0 * std::numbers::pi);
   std::vector<double> z;
   for (std::size_t k = 0; k < eta.size(); ++k) {
-    double reading =
+    double value =
         (1.0 + outliers_truth[0]) * std::cos(eta[k] + outliers_truth[2]) + outliers_truth[1];
-    reading += 0.1 * draws.normal();
+    value += 0.1 * draws.normal();
     const double sign = both_ways && draws.uniform(-1.0, 1.0) < 0.0 ? -1.0 : 1.0;
-    if (k % 20 == 7) reading += 3.0 * sign;
-    z.push_back(reading);
+    if (k % 20 == 7) value += 3.0 * sign;
+    z.push_back(value);
   }
   Record record;
   record.add("eta", std::move(eta)).add("z", std::move(z));

@@ -9,6 +9,8 @@
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft_file.hpp"
 
+namespace geometry_test {
+
 using doctest::Contains;
 using sepcal::AircraftGeometry;
 using sepcal::Error;
@@ -82,3 +84,5 @@ TEST_CASE("a file that is none is refused in one line") {
   refuse(head + R"("mass_kg": -1000, "rate_reference": "c/V"})", "mass is -1e+03 kg");
   CHECK_THROWS_WITH_AS(sepcal::read_aircraft("nowhere.json"), Contains("nowhere.json"), Error);
 }
+
+}  // namespace geometry_test

@@ -12,6 +12,8 @@
 #include "sepcal/fit.hpp"
 #include "small_models.hpp"
 
+namespace global_search_failures_test {
+
 using doctest::Approx;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
@@ -89,3 +91,5 @@ TEST_CASE("what a model throws comes out as it was thrown") {
   CHECK(descent.converged);
   CHECK(std::abs(descent.x[0]) < 1e-5);
 }
+
+}  // namespace global_search_failures_test

@@ -16,6 +16,8 @@
 #include "sepcal/models/pitot_static.hpp"
 #include "small_models.hpp"
 
+namespace global_search_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::Vector2d;
@@ -269,3 +271,5 @@ TEST_CASE("progress rises to one") {
   (void)stage_one(*wave.model, wave.record, options);
   CHECK(last == 1.0);
 }
+
+}  // namespace global_search_test

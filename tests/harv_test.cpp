@@ -17,6 +17,8 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/models/flight_path.hpp"
 
+namespace harv_test {
+
 using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::FlightPath;
@@ -147,3 +149,5 @@ TEST_CASE("HARV with all 24 parameters: psi_0 with b_psi is unseen, and named") 
   CHECK(std::set<std::string>(unseen.parameters.begin(), unseen.parameters.end()) ==
         std::set<std::string>{"b_psi", "psi_0"});
 }
+
+}  // namespace harv_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace headers_test {
+
 using sepcal::files::accepted_headers;
 using sepcal::files::ask_for_near_miss;
 using sepcal::files::describe_missing;
@@ -144,3 +146,5 @@ TEST_CASE("a unit's other spellings are known where they are no other unit's") {
   CHECK(asked("time", UnitKind::time, "TIME_MS").ends_with("time_ms"));
   CHECK(asked("pt", UnitKind::pressure, "Pt [mbar]").ends_with("pt_hpa"));
 }
+
+}  // namespace headers_test

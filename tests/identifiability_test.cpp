@@ -9,6 +9,8 @@
 #include "numerics/decompositions.hpp"
 #include "simulated_records.hpp"
 
+namespace identifiability_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -193,3 +195,5 @@ TEST_CASE("sparsify turns a mixed basis of coordinate axes back into the axes") 
   CHECK(sparse.row(1).sum() == Approx(1.0));
   CHECK(sparse.row(3).sum() == Approx(1.0));
 }
+
+}  // namespace identifiability_test

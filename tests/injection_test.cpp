@@ -5,6 +5,8 @@
 
 #include "diagnosed_flights.hpp"
 
+namespace injection_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -120,3 +122,5 @@ TEST_CASE("what can't be injected is refused") {
   refused({"wind[time]", {}}, {"inject wind[time]", "0 sizes"});
   refused({"wind_shear", {0.1}}, {"has the effect wind[altitude_m] already"});
 }
+
+}  // namespace injection_test

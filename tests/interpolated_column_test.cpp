@@ -10,6 +10,8 @@
 #include "composed_models.hpp"
 #include "sepcal/error.hpp"
 
+namespace interpolated_column_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using sepcal::NaturalSpline;
@@ -120,3 +122,5 @@ TEST_CASE("rows outside the segments have no value, a segment of one row is an e
   CHECK(lone[0].value == 4);
   CHECK(lone[0].slope == 0);
 }
+
+}  // namespace interpolated_column_test

@@ -8,6 +8,8 @@
 
 #include "calibrated_flights.hpp"
 
+namespace intervals_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Json = nlohmann::ordered_json;
@@ -78,3 +80,5 @@ TEST_CASE("a calibration that was read predicts as the one that was written") {
   CHECK(prediction.prediction.standard_error.isApprox(expected.prediction.standard_error, 1e-12));
   CHECK(to_json(find_intervals(read, flight)) == to_json(find_intervals(base, flight)));
 }
+
+}  // namespace intervals_test

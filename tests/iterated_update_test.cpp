@@ -10,6 +10,8 @@
 #include "sepcal/states/autodiff.hpp"
 #include "sepcal/states/joseph_form.hpp"
 
+namespace iterated_update_test {
+
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using sepcal::Filter;
@@ -168,3 +170,5 @@ TEST_CASE_TEMPLATE("where nothing was known before, ok means the point of least 
     CHECK(std::abs(slope) * sd[k] < 1e-3);
   }
 }
+
+}  // namespace iterated_update_test

@@ -15,6 +15,8 @@
 #include "sepcal/states/joseph_form.hpp"
 #include "short_periods.hpp"
 
+namespace joint_filter_test {
+
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
@@ -214,3 +216,5 @@ TEST_CASE("a new segment begins a new state and keeps what is known of the param
   CHECK((after.topLeftCorner<2, 2>() - U * U).norm() < 1e-15);
   CHECK(after.topRightCorner<2, 8>().norm() == 0.0);
 }
+
+}  // namespace joint_filter_test

@@ -9,6 +9,8 @@
 
 #include "draws.hpp"
 
+namespace least_squares_test {
+
 using Eigen::Vector2d;
 using sepcal::iterate_least_squares;
 using sepcal::LeastSquaresRows;
@@ -123,3 +125,5 @@ TEST_CASE("statuses: too few iterations, a parameter that nothing tells of, bad 
   CHECK(iterate_least_squares(decay, 0, Vector2d(2.0, 0.7)).status ==
         LeastSquaresStatus::not_determined);
 }
+
+}  // namespace least_squares_test

@@ -12,6 +12,8 @@
 #include "sepcal/static_model.hpp"
 #include "small_models.hpp"
 
+namespace likelihood_test {
+
 using doctest::Approx;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
@@ -177,3 +179,5 @@ TEST_CASE("after three failures or the last update R is that of the parameters r
   CHECK(end.noise_iterations == 2);
   CHECK(end.noise == end.x);
 }
+
+}  // namespace likelihood_test

@@ -10,6 +10,8 @@
 
 #include "simulated_records.hpp"
 
+namespace loss_test {
+
 using doctest::Approx;
 using Eigen::VectorXd;
 using sepcal::Loss;
@@ -83,3 +85,5 @@ TEST_CASE("residuals that are mostly zero have no scale") {
   r.head(5).setConstant(1.0);
   CHECK(RobustLoss(Loss::huber, 0.0).scale(r) == 0.0);
 }
+
+}  // namespace loss_test

@@ -8,6 +8,8 @@
 
 #include "composed_checks.hpp"
 
+namespace magnetic_test {
+
 using Eigen::AngleAxisd;
 using Eigen::Index;
 using Eigen::Matrix3d;
@@ -140,3 +142,5 @@ TEST_CASE("attitude_bias: h + h x (x, y, 0)") {
   };
   CHECK(difference(AttitudeBias{}, given, expected) < 1e-12);
 }
+
+}  // namespace magnetic_test

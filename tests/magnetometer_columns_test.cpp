@@ -11,14 +11,16 @@
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 
+namespace magnetometer_columns_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using sepcal::Error;
+using sepcal::not_a_number;
 using sepcal::prepare_magnetometer;
 using sepcal::test::column;
 using sepcal::test::Log;
 using sepcal::test::mentions;
-using sepcal::test::not_a_number;
 
 namespace {
 
@@ -170,3 +172,5 @@ TEST_CASE("times that differ as logged and are one in seconds do not increase") 
   CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()),
                        Contains("log row 2: time_us repeats at"), Error);
 }
+
+}  // namespace magnetometer_columns_test

@@ -10,6 +10,8 @@
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 
+namespace magnetometer_test {
+
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using sepcal::Magnetometer;
@@ -109,3 +111,5 @@ TEST_CASE("the linear fit m = C h + n, split into its factors, is where the mini
   // A sensor that reads nothing: C can't be split.
   CHECK(Magnetometer::guess(draws.normal_matrix(12, 3), Eigen::MatrixXd::Zero(12, 3)).cols() == 0);
 }
+
+}  // namespace magnetometer_test

@@ -9,6 +9,8 @@
 
 #include "draws.hpp"
 
+namespace matrix_exponential_test {
+
 using sepcal::matrix_exponential;
 
 TEST_CASE("a rotation, a nilpotent and a diagonal matrix") {
@@ -85,3 +87,5 @@ TEST_CASE("units of the states cost no digits") {
     CHECK((back - expected).norm() < 1e-13 * expected.norm());
   }
 }
+
+}  // namespace matrix_exponential_test

@@ -12,6 +12,8 @@
 #include "sepcal/static_model.hpp"
 #include "small_models.hpp"
 
+namespace measurements_test {
+
 using doctest::Contains;
 using sepcal::Error;
 using sepcal::Record;
@@ -138,3 +140,5 @@ TEST_CASE("a column that is missing or not finite in a selected row is an error 
     CHECK_NOTHROW(Measurements(*line, record));
   }
 }
+
+}  // namespace measurements_test

@@ -15,6 +15,8 @@
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/stream_start.hpp"
 
+namespace mini_batch_test {
+
 using Eigen::Matrix4d;
 using Eigen::Vector4d;
 using sepcal::Filter;
@@ -156,3 +158,5 @@ TEST_CASE("what goes over from the batch is its covariance, and starts are check
                        "'d' is held; a filter of all parameters needs a start that estimates it",
                        sepcal::Error);
 }
+
+}  // namespace mini_batch_test

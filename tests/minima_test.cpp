@@ -9,6 +9,8 @@
 #include "estimation/problem.hpp"
 #include "formula_objective.hpp"
 
+namespace minima_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -177,3 +179,5 @@ TEST_CASE("another minimum is spoken of where its residuals are less than twice 
   CHECK(describe_other_minima(problem, {at(1, 2, 0.25), at(3, 4, 0.36), at(5, 6, 0.5)})
             .ends_with("1.2 times as large, and 1 more (see stage_one)"));
 }
+
+}  // namespace minima_test

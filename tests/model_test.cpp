@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+namespace model_test {
+
 using sepcal::Affine;
 using sepcal::Quantity;
 using sepcal::SeparableModel;
@@ -85,3 +87,5 @@ TEST_CASE("every entry of A and b starts as NaN, so that a forgotten one is seen
     CHECK(std::isnan(dual.b[j].a));
   }
 }
+
+}  // namespace model_test

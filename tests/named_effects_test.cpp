@@ -13,6 +13,8 @@
 #include "sepcal/static_effect.hpp"
 #include "small_models.hpp"
 
+namespace named_effects_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using doctest::Approx;
@@ -286,3 +288,5 @@ TEST_CASE("an effect of known columns joins A, row by row of the record") {
   column(3, 0) = not_a_number;
   refused(column, {"effect gusts, component 'up' holds something else than finite numbers"});
 }
+
+}  // namespace named_effects_test

@@ -11,6 +11,8 @@
 #include "sepcal/error.hpp"
 #include "simulated_records.hpp"
 
+namespace natural_spline_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -201,3 +203,5 @@ TEST_CASE("knots that are too few, not increasing or without a value each are re
   CHECK_THROWS_WITH_AS(sepcal::even_knots(0, 1, 1), Contains("1 knots"), Error);
   CHECK_THROWS_WITH_AS(sepcal::even_knots(2, 2, 4), Contains("must increase"), Error);
 }
+
+}  // namespace natural_spline_test

@@ -12,6 +12,8 @@
 #include "sepcal/models/pitot_static.hpp"
 #include "simulated_records.hpp"
 
+namespace nested_dual_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -140,3 +142,5 @@ TEST_CASE("all models give their second derivatives, and add them") {
   const auto tube = sepcal::block_model(sepcal::PitotStatic{});
   check_second_derivatives(*tube, air, Eigen::Vector3d(3, -2, 0.5), Eigen::Vector2d(0.95, 0.5));
 }
+
+}  // namespace nested_dual_test

@@ -8,6 +8,8 @@
 
 #include "noises.hpp"
 
+namespace noise_families_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -87,3 +89,5 @@ TEST_CASE("each family finds what is its own") {
   CHECK(better(draw_noise("pink", 2000, draws)) < 0.0);
   CHECK(std::abs(better(draw_noise("white", 2000, draws))) < 10.0);
 }
+
+}  // namespace noise_families_test

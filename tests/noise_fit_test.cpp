@@ -9,6 +9,8 @@
 #include "sepcal/error.hpp"
 #include "sepcal/noise_model.hpp"
 
+namespace noise_fit_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -253,3 +255,5 @@ TEST_CASE("bad input is refused in words") {
   CHECK_THROWS_WITH_AS(fit_noise(as_span(e), make_segments({5}), options), Contains("d is 1.5"),
                        Error);
 }
+
+}  // namespace noise_fit_test

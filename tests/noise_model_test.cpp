@@ -11,6 +11,8 @@
 #include "numerics/decompositions.hpp"
 #include "sepcal/error.hpp"
 
+namespace noise_model_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -298,3 +300,5 @@ TEST_CASE("what is no noise model is refused") {
   CHECK_THROWS_WITH_AS(whitener.apply(wrong), Contains("9 rows"), Error);
   CHECK_THROWS_WITH_AS(sepcal::covariance_product({}, segments, wrong), Contains("9 rows"), Error);
 }
+
+}  // namespace noise_model_test

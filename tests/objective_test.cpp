@@ -11,6 +11,8 @@
 #include "sepcal/static_model.hpp"
 #include "simulated_records.hpp"
 
+namespace objective_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -311,3 +313,5 @@ TEST_CASE("projected: a bound of a linear parameter costs what holding it there 
   const VectorXd left = held - others * others.colPivHouseholderQr().solve(held);
   CHECK(objective.square_within(flight.xi2, box) == Approx(left.squaredNorm()).epsilon(1e-9));
 }
+
+}  // namespace objective_test

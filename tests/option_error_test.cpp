@@ -9,6 +9,8 @@
 #include "base/thread_pool.hpp"
 #include "calibrated_flights.hpp"
 
+namespace option_error_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -119,3 +121,5 @@ TEST_CASE("a fit names the option that would have helped") {
   CHECK(refuse([&] { calibrate_tube(50, options); }).as_typed ==
         "--free w_d and --fix w_d contradict each other; keep one");
 }
+
+}  // namespace option_error_test

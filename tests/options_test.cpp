@@ -11,6 +11,8 @@
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 
+namespace options_test {
+
 using doctest::Contains;
 using sepcal::FitOptions;
 
@@ -160,3 +162,5 @@ TEST_CASE("fewer measurements than parameters is misuse, just as many is not") {
   CHECK(std::isnan(exact["a"].standard_error));
   CHECK(std::isfinite(exact.cost));
 }
+
+}  // namespace options_test

@@ -12,6 +12,8 @@
 #include "short_periods.hpp"
 #include "trajectories.hpp"
 
+namespace output_error_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -208,3 +210,5 @@ TEST_CASE("errors of a state grow by the largest eigenvalue") {
   CHECK(grown(pieces, 12.0) == Approx(exact(12.0, 1.0)).epsilon(1e-3));
   CHECK(grown(whole, -12.0) == 1.0);
 }
+
+}  // namespace output_error_test

@@ -13,6 +13,8 @@
 #include "sepcal/error.hpp"
 #include "temporary_folder.hpp"
 
+namespace output_file_test {
+
 using doctest::Contains;
 using sepcal::Error;
 using sepcal::OutputFile;
@@ -276,3 +278,5 @@ TEST_CASE("a name without a folder goes to the current one") {
   std::filesystem::current_path(before);
   CHECK(read_bytes(folder.path() / "base.json") == "x");
 }
+
+}  // namespace output_file_test

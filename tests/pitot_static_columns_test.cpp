@@ -9,15 +9,17 @@
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 
+namespace pitot_static_columns_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using sepcal::Error;
+using sepcal::not_a_number;
 using sepcal::prepare_pitot_static;
 using sepcal::read_pitot_static;
 using sepcal::test::column;
 using sepcal::test::Log;
 using sepcal::test::mentions;
-using sepcal::test::not_a_number;
 
 namespace {
 
@@ -157,3 +159,5 @@ TEST_CASE("readings of which no airspeed can be computed name their row") {
                        Contains("log row 6: airspeed is computed from this row's readings as inf"),
                        Error);
 }
+
+}  // namespace pitot_static_columns_test

@@ -10,6 +10,8 @@
 #include "sepcal/static_model.hpp"
 #include "simulated_records.hpp"
 
+namespace pitot_static_test {
+
 using doctest::Approx;
 using sepcal::PitotStatic;
 using sepcal::Vec;
@@ -136,3 +138,5 @@ TEST_CASE("the wind from the circles that the ground velocity lies on, whatever 
   CHECK(PitotStatic::guess(u, z)(0, 0) == Approx(8.0).epsilon(1e-9));
   CHECK(PitotStatic::guess(u, z)(1, 0) == Approx(-5.0).epsilon(1e-9));
 }
+
+}  // namespace pitot_static_test

@@ -9,6 +9,8 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/static_model.hpp"
 
+namespace plausibility_test {
+
 using namespace sepcal;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -64,3 +66,5 @@ TEST_CASE("a loose prior is centred in the bounds or at zero, and ten lengths wi
   CHECK(prior.mean == (VectorXd(3) << 0.0, 3.0, 0.0).finished());
   CHECK(prior.weight.isApprox((VectorXd(3) << 0.02, 0.1, 0.1).finished()));
 }
+
+}  // namespace plausibility_test

@@ -5,10 +5,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
 #include "flight_log.hpp"
+
+namespace plausible_readings_test {
 
 using doctest::Contains;
 using sepcal::files::UnitKind;
@@ -152,7 +155,7 @@ TEST_CASE(
     log[header].assign(4, 30);
   }
   CHECK(sepcal::prepare_magnetometer(log.build()).notes.empty());
-  log["mx_ut"] = {30, 3e5, 3e5, sepcal::test::not_a_number};
+  log["mx_ut"] = {30, 3e5, 3e5, std::nan("")};
   CHECK(sepcal::read_magnetometer(log.build(), true).notes.size() == 2);
   log["mx_ut"] = {3e5, 3e5, 3e5, 3e5};
   const std::string expected =
@@ -160,3 +163,5 @@ TEST_CASE(
   CHECK(mentions(sepcal::prepare_magnetometer(log.build()).notes, expected));
   CHECK(mentions(sepcal::read_magnetometer(log.build()).notes, expected));
 }
+
+}  // namespace plausible_readings_test

@@ -8,6 +8,8 @@
 
 #include "sepcal/models/scale.hpp"
 
+namespace plausible_scales_test {
+
 using sepcal::Fit;
 using sepcal::FitStatus;
 using sepcal::probes::judge_scales;
@@ -71,3 +73,5 @@ TEST_CASE("what was fixed is not judged") {
   judge_scales(fit, magnetometer);
   CHECK(fit.message.empty());
 }
+
+}  // namespace plausible_scales_test

@@ -12,6 +12,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace prediction_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -139,3 +141,5 @@ TEST_CASE("an input that is missing, another model and a level beyond 1 are refu
                        doctest::Contains("not the model's"), sepcal::Error);
   CHECK_THROWS_AS((void)sepcal::predict(Line{}, record, fit, {}, 1.0), sepcal::Error);
 }
+
+}  // namespace prediction_test

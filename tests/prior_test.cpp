@@ -12,6 +12,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace prior_test {
+
 using doctest::Approx;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
@@ -196,3 +198,5 @@ TEST_CASE("the prior of a fixed parameter, or one that is no normal, is refused"
   CHECK_THROWS_WITH_AS(sepcal::fit(Line{}, line.record, options),
                        doctest::Contains("positive standard deviation"), sepcal::Error);
 }
+
+}  // namespace prior_test

@@ -11,16 +11,18 @@
 #include "sepcal/error.hpp"
 #include "temporary_folder.hpp"
 
+namespace probe_columns_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using sepcal::Error;
 using sepcal::Flight;
+using sepcal::not_a_number;
 using sepcal::prepare_five_hole;
 using sepcal::read_csv;
 using sepcal::test::column;
 using sepcal::test::Log;
 using sepcal::test::mentions;
-using sepcal::test::not_a_number;
 using sepcal::test::TemporaryFolder;
 
 namespace {
@@ -298,3 +300,5 @@ TEST_CASE("applying a five-hole calibration keeps every row and marks what can't
   log.erase("dpa_pa");
   CHECK_THROWS_WITH_AS(sepcal::read_five_hole(log.build()), Contains("'dpa_pa' is missing"), Error);
 }
+
+}  // namespace probe_columns_test

@@ -12,6 +12,8 @@
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/static_effect.hpp"
 
+namespace probe_effects_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using Eigen::Index;
@@ -206,3 +208,5 @@ TEST_CASE("an effect of the caller's own goes before one of that name") {
 TEST_CASE("there is no kit of another model") {
   check_refused([] { effect_kit("venturi"); }, {"there is no model 'venturi'"});
 }
+
+}  // namespace probe_effects_test

@@ -9,6 +9,8 @@
 
 #include "calibrated_flights.hpp"
 
+namespace probe_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -229,3 +231,5 @@ TEST_CASE("what no probe is, is refused") {
   check_refused([] { attitude_independent_probe(48, -1); }, {"field_noise is -1"});
   check_refused([] { make_probe("magnetometer-norm", {}); }, {"'field_strength'", "1 number"});
 }
+
+}  // namespace probe_test

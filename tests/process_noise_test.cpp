@@ -10,6 +10,8 @@
 #include "sepcal/fit.hpp"
 #include "trajectories.hpp"
 
+namespace process_noise_test {
+
 namespace {
 
 using Eigen::Index;
@@ -208,3 +210,5 @@ TEST_CASE("initial states of segments that are left out are held where they are 
   CHECK(fit.parameters[0].value == record.column("x_m")[0]);
   CHECK_FALSE(fit.parameters[1].fixed);
 }
+
+}  // namespace process_noise_test

@@ -11,6 +11,8 @@
 #include "sepcal/profile.hpp"
 #include "small_models.hpp"
 
+namespace profile_ends_test {
+
 using doctest::Approx;
 using sepcal::Fit;
 using sepcal::FitOptions;
@@ -206,3 +208,5 @@ TEST_CASE("as many parameters as measurements: nothing ends an interval but a bo
   CHECK(intervals[0].upper_end == IntervalEnd::bound);
   CHECK(intervals[1].lower_end == IntervalEnd::open);
 }
+
+}  // namespace profile_ends_test

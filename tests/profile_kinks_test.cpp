@@ -11,6 +11,8 @@
 #include "profile_records.hpp"
 #include "sepcal/profile.hpp"
 
+namespace profile_kinks_test {
+
 using doctest::Approx;
 using sepcal::Fit;
 using sepcal::FitOptions;
@@ -118,3 +120,5 @@ TEST_CASE("an end that could not be found says where and why") {
   CHECK(interval.message.find("the other parameters could not be fitted; bound c") !=
         std::string::npos);
 }
+
+}  // namespace profile_kinks_test

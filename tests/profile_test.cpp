@@ -13,6 +13,8 @@
 #include "sepcal/error.hpp"
 #include "small_models.hpp"
 
+namespace profile_test {
+
 using doctest::Approx;
 using sepcal::Fit;
 using sepcal::FitOptions;
@@ -213,3 +215,5 @@ TEST_CASE("the prior of the profiled parameter itself narrows its interval") {
     CHECK(interval.profile.upper == Approx(interval.value + half).epsilon(1e-6));
   }
 }
+
+}  // namespace profile_test

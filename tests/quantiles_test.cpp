@@ -8,6 +8,8 @@
 
 #include "sepcal/error.hpp"
 
+namespace quantiles_test {
+
 using doctest::Approx;
 using sepcal::numerics::normal_reach;
 using sepcal::numerics::student_reach;
@@ -53,3 +55,5 @@ TEST_CASE("a level must lie between 0 and 1") {
     CHECK_THROWS_AS(student_reach(level, 5), sepcal::Error);
   }
 }
+
+}  // namespace quantiles_test

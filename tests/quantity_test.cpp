@@ -8,6 +8,8 @@
 
 #include "sepcal/error.hpp"
 
+namespace quantity_test {
+
 using doctest::Contains;
 using sepcal::Error;
 using sepcal::Quantity;
@@ -75,3 +77,5 @@ TEST_CASE("an input, an output and a parameter may share a name") {
   const Tables tables{{{"x", "1"}}, {{"x", "1"}}, {{"x", "1"}}, {}};
   CHECK_NOTHROW(tables.check_names());
 }
+
+}  // namespace quantity_test

@@ -8,6 +8,8 @@
 
 #include "sepcal/error.hpp"
 
+namespace record_test {
+
 using doctest::Contains;
 using sepcal::Error;
 using sepcal::find_runs;
@@ -215,3 +217,5 @@ TEST_CASE("a run goes on where a label changes and ends at a gap") {
   timeless.add("u", {1, 2, 3, 4}).cut({{"a", 0, 2}, {"b", 2, 4}});
   CHECK(describe(find_runs(timeless)) == "[0,2) [2,4) ");
 }
+
+}  // namespace record_test

@@ -11,6 +11,8 @@
 #include "sepcal/states/information_root.hpp"
 #include "sepcal/triangular_factor.hpp"
 
+namespace recursive_least_squares_test {
+
 using sepcal::CovarianceRecursion;
 using sepcal::InformationRecursion;
 using sepcal::InformationRoot;
@@ -190,3 +192,5 @@ TEST_CASE("a covariance keeps its digits from a start a million times as wide") 
   CHECK(((covariance.solution() - batch.p).array().abs() <= 1e-8 * sd.array()).all());
   CHECK((covariance.covariance() - batch.covariance).norm() < 1e-8 * batch.covariance.norm());
 }
+
+}  // namespace recursive_least_squares_test

@@ -8,6 +8,8 @@
 
 #include "formula_objective.hpp"
 
+namespace refine_test {
+
 using doctest::Approx;
 using Eigen::Matrix2d;
 using Eigen::MatrixXd;
@@ -102,3 +104,5 @@ TEST_CASE("where no minimum is near, and where the model is not finite, the star
   CHECK_FALSE(none.converged);
   CHECK(none.x[0] == 1.0);  // the start, clipped to the box
 }
+
+}  // namespace refine_test

@@ -14,6 +14,8 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "simulated_records.hpp"
 
+namespace robust_fit_test {
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -121,3 +123,5 @@ TEST_CASE("a Cauchy loss of width w differs from squares by 1 / w^2 where the no
           doctest::Approx(expected[static_cast<Index>(k)]).epsilon(1e-6));
   }
 }
+
+}  // namespace robust_fit_test

@@ -9,6 +9,8 @@
 
 #include "simulated_records.hpp"
 
+namespace rotation_test {
+
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -52,3 +54,5 @@ TEST_CASE("it is yaw, then pitch, then roll, and a rotation, at any angles") {
     CHECK(C.determinant() == doctest::Approx(1.0).epsilon(1e-14));
   }
 }
+
+}  // namespace rotation_test

@@ -11,6 +11,8 @@
 #include "numerics/quantiles.hpp"
 #include "sepcal/error.hpp"
 
+namespace sampling_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -134,3 +136,5 @@ TEST_CASE(
   expected << 2, 0, 3, 0.2, 1;
   CHECK(sepcal::estimation::nominal_point(parameters, options) == expected);
 }
+
+}  // namespace sampling_test

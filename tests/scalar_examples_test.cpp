@@ -8,6 +8,8 @@
 
 #include "simulated_records.hpp"
 
+namespace scalar_examples_test {
+
 using sepcal::ScalarExample1;
 using sepcal::ScalarExample2;
 using sepcal::Vec;
@@ -42,3 +44,5 @@ TEST_CASE("example 2 is (1 + a) cos(eta (1 + b) + c) + d, with eta (1 + b) as in
     CHECK(z == doctest::Approx((1 + a) * std::cos(eta * (1 + b) + c) + d).epsilon(1e-14));
   }
 }
+
+}  // namespace scalar_examples_test

@@ -13,6 +13,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace scan_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -103,3 +105,5 @@ TEST_CASE("a parameter that isn't there and bounds without a row are refused") {
       },
       {"no two rows of the record", "'c[step(time)].t0'", "widen its bounds"});
 }
+
+}  // namespace scan_test

@@ -11,6 +11,8 @@
 #include "profile_cost.hpp"
 #include "sepcal/error.hpp"
 
+namespace screens_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -288,3 +290,5 @@ TEST_CASE("thresholds that mean nothing, and l_2 without bounds, are errors") {
                        doctest::Contains("'b' has no finite bounds, from which the screens' l_2"),
                        sepcal::Error);
 }
+
+}  // namespace screens_test

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <random>
 
+namespace selection_test {
+
 using doctest::Approx;
 using sepcal::numerics::share_after_selection;
 
@@ -47,3 +49,5 @@ TEST_CASE("estimates told only where they are large are right in the mean with t
     if (truth < 4.5) CHECK(plain / told > 1.08);
   }
 }
+
+}  // namespace selection_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace sentences_test {
+
 using sepcal::base::join_sentences;
 using sepcal::base::one_sentence;
 using sepcal::base::split_sentences;
@@ -28,3 +30,5 @@ TEST_CASE("a message is cut where its sentences were joined") {
     CHECK(split_sentences(join_sentences(sentences)) == sentences);
   }
 }
+
+}  // namespace sentences_test

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace sepcal_test {
+
 TEST_CASE("five lines fit a model to arrays") {
   std::vector<double> eta;
   std::vector<double> z;
@@ -22,3 +24,5 @@ TEST_CASE("five lines fit a model to arrays") {
   CHECK(fit["b"].value == doctest::Approx(0.2).epsilon(1e-10));
   CHECK(fit["c"].value == doctest::Approx(-0.3).epsilon(1e-10));
 }
+
+}  // namespace sepcal_test

@@ -8,6 +8,8 @@
 #include "aircraft_records.hpp"
 #include "sepcal/error.hpp"
 
+namespace simulate_aircraft_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::AngleAxisd;
@@ -132,3 +134,5 @@ TEST_CASE("an aircraft that can't fly is refused") {
   truth.geometry.inertia = {};
   refuse(truth, "has no inertia");
 }
+
+}  // namespace simulate_aircraft_test

@@ -8,6 +8,8 @@
 #include "simulated_flights.hpp"
 #include "simulation/hidden_spline.hpp"
 
+namespace simulate_drivers_test {
+
 namespace {
 
 using namespace sepcal;
@@ -191,3 +193,5 @@ TEST_CASE("effects add up, in any order") {
   CHECK(one.truth == other.truth);
   CHECK(one.truth.contains("bias[time].x"));
 }
+
+}  // namespace simulate_drivers_test

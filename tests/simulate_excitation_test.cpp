@@ -10,6 +10,8 @@
 #include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_excitation_test {
+
 namespace {
 
 using namespace sepcal;
@@ -145,3 +147,5 @@ TEST_CASE("an excitation that there isn't") {
   truth.field = {0, 0, 0};
   check_refused([&] { simulate_magnetometer(truth, flown(Excitation::third)); }, {"field is zero"});
 }
+
+}  // namespace simulate_excitation_test

@@ -8,6 +8,8 @@
 #include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_hidden_five_hole_test {
+
 namespace {
 
 using namespace sepcal;
@@ -236,3 +238,5 @@ TEST_CASE("lagging pressures keep their equation") {
   CHECK(worst_difference(lagging, plain, "rho_kgpm3") == 0);
   CHECK(worst_difference(lagging, plain, "vn_mps") == 0);
 }
+
+}  // namespace simulate_hidden_five_hole_test

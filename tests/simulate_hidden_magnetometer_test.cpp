@@ -8,6 +8,8 @@
 #include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_hidden_magnetometer_test {
+
 namespace {
 
 using namespace sepcal;
@@ -153,3 +155,5 @@ TEST_CASE("without its own attitude the sensor is the same") {
             doctest::Approx(strength).epsilon(1e-12));
   }
 }
+
+}  // namespace simulate_hidden_magnetometer_test

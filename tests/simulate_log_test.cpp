@@ -16,6 +16,8 @@
 #include "sepcal/error.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_log_test {
+
 namespace {
 
 using namespace sepcal;
@@ -175,7 +177,7 @@ TEST_CASE("a failing stream is left failed") {
 
 TEST_CASE("misuse is refused in one line with the way out") {
   const auto fly = [](auto spoil, const char* culprit, const char* way_out) {
-    check_refused(simulate_five_hole, spoil, culprit, way_out);
+    check_refused(sepcal::simulate_five_hole, spoil, culprit, way_out);
   };
   fly([](auto& t, auto&) { t.parameters["lambda_v"] = 0; }, "'lambda_v' is unknown", "lambda_va");
   fly([](auto& t, auto&) { t.parameters.erase("w_e"); }, "'w_e' is missing", "w_n");
@@ -204,3 +206,5 @@ TEST_CASE("a column that is not there is named, with those that are") {
   CHECK_THROWS_WITH_AS(flight.column("vn"), doctest::Contains("'vn' is missing; it has: time_s, "),
                        Error);
 }
+
+}  // namespace simulate_log_test

@@ -13,6 +13,8 @@
 #include "simulated_flights.hpp"
 #include "simulation/simulated_noise.hpp"
 
+namespace simulate_noise_test {
+
 namespace {
 
 using namespace sepcal;
@@ -178,3 +180,5 @@ TEST_CASE("decoys drive nothing and are of five kinds in turn") {
   options.decoys = 1001;
   check_refused([&] { simulate_five_hole({}, options); }, {"1001", "at most 1000"});
 }
+
+}  // namespace simulate_noise_test

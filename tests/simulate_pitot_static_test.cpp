@@ -8,6 +8,8 @@
 #include "calibrated_flights.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_pitot_static_test {
+
 namespace {
 
 using namespace sepcal;
@@ -165,3 +167,5 @@ TEST_CASE("a tube that can't read is refused") {
         {"nothing to read", "smaller"});
   }
 }
+
+}  // namespace simulate_pitot_static_test

@@ -7,6 +7,8 @@
 #include "calibrated_flights.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_refusals_test {
+
 namespace {
 
 using namespace sepcal;
@@ -121,3 +123,5 @@ TEST_CASE("an effect and its sizes as they are typed") {
                   {"--hide wind[time]=", "is not a number"});
   }
 }
+
+}  // namespace simulate_refusals_test

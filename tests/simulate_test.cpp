@@ -12,6 +12,8 @@
 #include "numerics/decompositions.hpp"
 #include "simulated_flights.hpp"
 
+namespace simulate_test {
+
 namespace {
 
 using namespace sepcal;
@@ -206,3 +208,5 @@ TEST_CASE("the noise is white and Gaussian with the standard deviations asked fo
   check_noise(simulate_magnetometer(magnetometer, {.seed = 2}),
               simulate_magnetometer(quiet(magnetometer)), reading, magnetometer.noise);
 }
+
+}  // namespace simulate_test

@@ -12,6 +12,8 @@
 #include "sepcal/error.hpp"
 #include "sepcal/states/trajectory_model.hpp"
 
+namespace smooth_record_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -155,3 +157,5 @@ TEST_CASE("what can't be smoothed is said in one line") {
   CHECK_THROWS_WITH_AS(smooth(model, record, {{"b", 0.1}}, noise()),
                        Contains("parameter 'x_0' has no value"), Error);
 }
+
+}  // namespace smooth_record_test

@@ -10,6 +10,8 @@
 #include "sepcal/states/filter.hpp"
 #include "stacked_system.hpp"
 
+namespace smoother_test {
+
 using sepcal::Estimate;
 using sepcal::Filter;
 using sepcal::LinearDynamics;
@@ -152,3 +154,5 @@ TEST_CASE("a vague start: smoothed covariances stay positive and true") {
   CHECK(smoothed[0].P(0, 0) == doctest::Approx(r * r / information).epsilon(1e-9));
   CHECK(smoothed[0].Q(0, 0) > 0.0);
 }
+
+}  // namespace smoother_test

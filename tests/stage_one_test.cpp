@@ -9,10 +9,13 @@
 
 #include "dense_reference.hpp"
 #include "numerics/decompositions.hpp"
+#include "profile_cost.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "simulated_records.hpp"
 #include "small_models.hpp"
+
+namespace stage_one_test {
 
 using doctest::Approx;
 using Eigen::Index;
@@ -21,21 +24,10 @@ using Eigen::VectorXd;
 using sepcal::FitOptions;
 using sepcal::stage_one;
 using sepcal::StageOne;
+using sepcal::test::dense_trace;
 using sepcal::test::Simulated;
 
 namespace {
-
-/// Tr[R] at one sample: mean squared residual after dense linear least squares with R = I, summed
-/// over outputs.
-double dense_trace(const Simulated& simulated, const VectorXd& xi2) {
-  MatrixXd values = sepcal::test::dense_values(*simulated.model, simulated.record, xi2);
-  const Index n_1 = values.cols() - 1;
-  const VectorXd y =
-      sepcal::test::dense_outputs(*simulated.model, simulated.record) - values.col(n_1);
-  const MatrixXd A = values.leftCols(n_1);
-  const VectorXd r = y - A * A.colPivHouseholderQr().solve(y);
-  return r.squaredNorm() / static_cast<double>(simulated.record.rows());
-}
 
 FitOptions samples(int count) {
   FitOptions options;
@@ -257,3 +249,5 @@ TEST_CASE("a model that is finite nowhere is an error, one that is not everywher
   CHECK_THROWS_WITH_AS(stage_one(*growth, record, options),
                        doctest::Contains("not finite at any of the 50"), sepcal::Error);
 }
+
+}  // namespace stage_one_test

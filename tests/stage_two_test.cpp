@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace stage_two_test {
+
 using sepcal::FitOptions;
 using sepcal::SecondStage;
 using sepcal::StageOne;
@@ -101,3 +103,5 @@ TEST_CASE("two ends agree where both converged to within one standard error of c
   CHECK_FALSE(agree(one, {.converged = true, .cost = 10.6}));
   CHECK_FALSE(agree(one, {.converged = false, .cost = 10.0}));
 }
+
+}  // namespace stage_two_test

@@ -10,6 +10,8 @@
 #include "sepcal/models/short_period.hpp"
 #include "trajectories.hpp"
 
+namespace state_model_test {
+
 using sepcal::FlightPath;
 using sepcal::Rate;
 using sepcal::ShortPeriod;
@@ -69,3 +71,5 @@ TEST_CASE("the inertial unit's noise enters a flight path as its readings do") {
     CHECK((G.col(i) - column).cwiseAbs().maxCoeff() < 1e-12);
   }
 }
+
+}  // namespace state_model_test

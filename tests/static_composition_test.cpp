@@ -10,6 +10,8 @@
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/effects/magnetic.hpp"
 
+namespace static_composition_test {
+
 using sepcal::block_model;
 using sepcal::Effect;
 using sepcal::FiveHoleProbe;
@@ -127,7 +129,7 @@ void check_pair(const Model& model, const Record& record, const A& a, const B& b
 
 TEST_CASE("the tables are joined: the model's first, inputs once each, corrections' outermost") {
   const auto tables =
-      sepcal::tables_of<decltype(probe + PressureOffset<"throttle">{} + Wind<"altitude_m">{} +
+      sepcal::tables_of<decltype(five_holes + PressureOffset<"throttle">{} + Wind<"altitude_m">{} +
                                  LeverArm{} + HeadingBias{})>();
   CHECK(tables.n_u() == 16);  // 14, altitude_m and throttle
   CHECK(tables.n_z() == 3);
@@ -144,9 +146,9 @@ TEST_CASE("the tables are joined: the model's first, inputs once each, correctio
 
 TEST_CASE("five-hole: pairs in both orders, of terms, of corrections and of one each") {
   const Record record = five_hole_record();
-  check_pair(probe, record, wind, airspeed_scale);
-  check_pair(probe, record, pressure_offset, heading_bias);
-  check_pair(probe, record, lever_arm, heading_bias);  // the term sees the corrected yaw
+  check_pair(five_holes, record, wind, airspeed_scale);
+  check_pair(five_holes, record, pressure_offset, heading_bias);
+  check_pair(five_holes, record, lever_arm, heading_bias);  // the term sees the corrected yaw
 }
 
 TEST_CASE("magnetometer: pairs in both orders") {
@@ -173,7 +175,7 @@ TEST_CASE("corrections of the same inputs act in the order in which they are nam
 // Every effect of the catalogue that exists at compile time. Types this deep take a compiler long.
 TEST_CASE("everything at once is the same at compile time and at run time") {
   const Record flight = five_hole_record();
-  check_same(probe, flight, wind, airspeed_scale, pressure_offset, alpha_offset, heading_bias,
+  check_same(five_holes, flight, wind, airspeed_scale, pressure_offset, alpha_offset, heading_bias,
              lever_arm, mounting_error, airspeed_bias, beta_offset);
   const Record turns = magnetometer_record();
   check_same(Magnetometer{}, turns, bias, scale, declination, cubic, attitude_bias, eddy,
@@ -191,8 +193,10 @@ TEST_CASE("a composed model can be used in constant expressions' places: it owns
 
 TEST_CASE("composed models are differentiated by their inputs too, drivers among them") {
   const Record record = five_hole_record();
-  const auto model = block_model(probe + Wind<"altitude_m">{300} + PressureOffset<"throttle">{} +
-                                 HeadingBias{} + LeverArm{});
+  const auto model = block_model(five_holes + Wind<"altitude_m">{300} +
+                                 PressureOffset<"throttle">{} + HeadingBias{} + LeverArm{});
   Draws draws(434);
   check_input_tangent(*model, record, draw_values(model->tables(), draws));
 }
+
+}  // namespace static_composition_test

@@ -15,6 +15,8 @@
 #include "sepcal/models/triad.hpp"
 #include "simulated_records.hpp"
 
+namespace static_concatenation_test {
+
 using doctest::Approx;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
@@ -270,3 +272,5 @@ TEST_CASE("side by side they are what they are alone") {
     }
   }
 }
+
+}  // namespace static_concatenation_test

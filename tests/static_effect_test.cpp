@@ -8,6 +8,8 @@
 
 #include "composed_checks.hpp"
 
+namespace static_effect_test {
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using sepcal::Quantity;
@@ -98,3 +100,5 @@ TEST_CASE("a correction keeps its tables and gives values and derivatives") {
   correction.evaluate({inputs, 2, 0, true}, &k, alone, nullptr);
   CHECK((alone - expected).norm() < 1e-14);
 }
+
+}  // namespace static_effect_test

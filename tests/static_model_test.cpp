@@ -12,6 +12,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace static_model_test {
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -156,3 +158,5 @@ TEST_CASE("a model that takes inputs in double alone is differentiated by differ
   MatrixXd none(1, 0);
   CHECK_NOTHROW(model->input_tangent({inputs, 1, 0, true}, &xi1, &xi1, {}, none));
 }
+
+}  // namespace static_model_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace status_text_test {
+
 using sepcal::Detail;
 using sepcal::FitStatus;
 using sepcal::text::sentence_lines;
@@ -59,3 +61,5 @@ TEST_CASE("the status counts and names the parameters at their bounds") {
   CHECK(status_lines(FitStatus::not_identifiable, {"a", "b"}, "", Detail::brief) ==
         "status: not_identifiable, 2 parameters at their bounds: a, b\n");
 }
+
+}  // namespace status_text_test

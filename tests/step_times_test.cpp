@@ -5,6 +5,8 @@
 #include "flights_with_steps.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
+namespace step_times_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -64,3 +66,5 @@ TEST_CASE("only effects that step have a time to be found") {
   CHECK(times.at("bias_step.t0") == settings.data());
   CHECK(times.at("scale[step(time)].t0") == &settings[2]);
 }
+
+}  // namespace step_times_test

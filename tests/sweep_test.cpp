@@ -11,6 +11,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace sweep_test {
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -119,3 +121,5 @@ TEST_CASE("a model with nothing linear has a tangent all the same") {
   rows << 0.5 * std::exp(0.15), 1.0 - std::exp(0.15), -2 * std::exp(-0.6), 2.0 - std::exp(-0.6);
   CHECK((T.transpose() * T - rows.transpose() * rows).norm() < 1e-14);
 }
+
+}  // namespace sweep_test

@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+namespace thread_pool_test {
+
 using sepcal::base::ThreadPool;
 
 TEST_CASE("every task runs exactly once, whatever the number of threads and tasks") {
@@ -55,3 +57,5 @@ TEST_CASE("what one call wrote is seen by the next") {
 }
 
 TEST_CASE("a pool that was never asked for anything ends quietly") { const ThreadPool pool(4); }
+
+}  // namespace thread_pool_test

@@ -10,6 +10,8 @@
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/states/track.hpp"
 
+namespace track_flight_path_test {
+
 using Eigen::Index;
 using sepcal::FitOptions;
 using sepcal::FlightPath;
@@ -69,3 +71,5 @@ TEST_CASE("flight path reconstruction runs along a record from its first third")
     }
   }
 }
+
+}  // namespace track_flight_path_test

@@ -20,6 +20,8 @@
 #include "simulated_records.hpp"
 #include "small_models.hpp"
 
+namespace track_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -396,3 +398,5 @@ TEST_CASE("bad input is one line") {
   says([&] { track(ShortPeriod{}, record, start, {}, {.shoot = 2.0}); },
        "a track runs on; leave shoot out");
 }
+
+}  // namespace track_test

@@ -13,6 +13,8 @@
 #include "simulated_records.hpp"
 #include "trajectories.hpp"
 
+namespace trajectory_model_test {
+
 using doctest::Approx;
 using doctest::Contains;
 using Eigen::Index;
@@ -368,3 +370,5 @@ TEST_CASE("misuse is named") {
   CHECK_THROWS_WITH_AS(rows_of(make({}), otherwise, VectorXd::Zero(9), nullptr),
                        Contains("a segment begins in row 10"), Error);
 }
+
+}  // namespace trajectory_model_test

@@ -11,6 +11,8 @@
 #include "sepcal/error.hpp"
 #include "simulated_records.hpp"
 
+namespace triangular_factor_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -245,3 +247,5 @@ TEST_CASE("a regular triangle leaves nothing unseen, and order zero is allowed")
   CHECK(solution.unseen.cols() == 0);
   CHECK(sepcal::solve_triangular(MatrixXd(0, 0), VectorXd(0)).x.size() == 0);
 }
+
+}  // namespace triangular_factor_test

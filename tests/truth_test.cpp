@@ -5,6 +5,8 @@
 
 #include "calibrated_flights.hpp"
 
+namespace truth_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -97,11 +99,11 @@ TEST_CASE("a truth with hidden effects flies the same flight again") {
     }
     CHECK(to_json(as_flown(truth, again)) == json);
   };
-  check(FiveHoleTruth{}, simulate_five_hole, parse_five_hole_truth,
+  check(FiveHoleTruth{}, sepcal::simulate_five_hole, parse_five_hole_truth,
         {{"wind_shear", {0.01, -0.02}}, {"icing_ramp", {-1e-4}}, {"wind[maneuver]", {0.5}}});
-  check(PitotStaticTruth{}, simulate_pitot_static, parse_pitot_static_truth,
+  check(PitotStaticTruth{}, sepcal::simulate_pitot_static, parse_pitot_static_truth,
         {{"wind[spline(time,4)]", {1, 2, 3, 4, 5, 6}}, {"pneumatic_lag", {0.2}}});
-  check(MagnetometerTruth{}, simulate_magnetometer, parse_magnetometer_truth,
+  check(MagnetometerTruth{}, sepcal::simulate_magnetometer, parse_magnetometer_truth,
         {{"bias[throttle^n]", {1, 2, 3, 1.5}}, {"warm_up", {4}}, {"eddy_currents", {0.01}}});
 }
 
@@ -187,3 +189,5 @@ TEST_CASE("what is no truth is refused, opened by its source") {
   check_refused([] { parse_magnetometer_truth(R"({"noise": {"vn": 1}})", "t.json"); },
                 {"t.json", "'vn'", "mx, my, mz"});
 }
+
+}  // namespace truth_test

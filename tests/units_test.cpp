@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace units_test {
+
 using doctest::Approx;
 using sepcal::files::find_unit;
 using sepcal::files::UnitKind;
@@ -99,3 +101,5 @@ TEST_CASE("unknown units are not found") {
   CHECK(find_unit(UnitKind::angle, "RAD") == nullptr);
   CHECK(find_unit(UnitKind::speed, "rad") == nullptr);
 }
+
+}  // namespace units_test

@@ -10,6 +10,8 @@
 #include "diagnosis/spectral_line.hpp"
 #include "noises.hpp"
 
+namespace unlogged_test {
+
 using namespace sepcal;
 using namespace sepcal::test;
 using namespace sepcal::diagnosis;
@@ -158,3 +160,5 @@ TEST_CASE("causes and offsets are corrected together, and the significant are ke
   CHECK(to_string(UnloggedKind::common_cause) == "common_cause");
   CHECK(to_string(UnloggedKind::spectral_line) == "spectral_line");
 }
+
+}  // namespace unlogged_test

@@ -6,6 +6,8 @@
 
 #include <string>
 
+namespace utf8_test {
+
 using sepcal::base::utf8_length;
 
 namespace {
@@ -49,3 +51,5 @@ TEST_CASE("a character that is cut off or broken is none, and its place in the t
   CHECK(utf8_length("\xF0\x9F\x9B\xC3\xA9", 0) == 0);
   CHECK(utf8_length("\xFF", 0) == 0);
 }
+
+}  // namespace utf8_test

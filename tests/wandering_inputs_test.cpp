@@ -13,6 +13,8 @@
 #include "numerics/tails.hpp"
 #include "simulated_records.hpp"
 
+namespace wandering_inputs_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -162,3 +164,5 @@ TEST_CASE("without corrections that wander there is none") {
   fit.wandering.resize(2 * rows, 0);
   CHECK(diagnosis::WanderingInputs(diagnosis::TangentBasis(fit)).is_empty());
 }
+
+}  // namespace wandering_inputs_test

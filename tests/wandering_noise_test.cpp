@@ -12,6 +12,8 @@
 #include "noises.hpp"
 #include "numerics/decompositions.hpp"
 
+namespace wandering_noise_test {
+
 using doctest::Approx;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -193,3 +195,5 @@ TEST_CASE("white noise is nearly always called white") {
   }
   CHECK(coloured <= 5);
 }
+
+}  // namespace wandering_noise_test

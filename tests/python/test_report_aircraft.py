@@ -32,7 +32,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A flight, its aircraft, the path and the longitudinal motion of it."""
     folder = tmp_path_factory.mktemp("report")
     for arguments in (
-        ("simulate", "-o", "flight.csv", "--geometry", "aircraft.json"),
+        ("simulate", "-o", "flight.csv", "--geometry", "aircraft.json", "--rows", "1000"),
         ("fit", "flight.csv", "--model", "path", "-o", "path.json"),
         ("fit", "flight.csv", "--model", "longitudinal", "--geometry", "aircraft.json",
          "-o", "lon.json"),

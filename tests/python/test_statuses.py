@@ -166,15 +166,15 @@ def test_ceres_stays_silent(pitot: Bench):
 
 
 @pytest.mark.long
-def test_a_million_rows(pitot: Bench):
-    """370 MB of text are read, fitted and checked against the truth, well within a minute."""
-    million = 1_000_000
-    simulated = pitot.run("simulate", "-o", "long.csv", "--rows", str(million))
+def test_a_long_log(pitot: Bench):
+    """110 MB of text are read, fitted and checked against the truth."""
+    rows = 300_000
+    simulated = pitot.run("simulate", "-o", "long.csv", "--rows", str(rows))
     assert simulated.code == 0, simulated.err
     fitted = pitot.fit("--samples", "20", flight="long.csv")
     (pitot.folder / "long.csv").unlink()
     assert (fitted.code, fitted.err) == (0, "")
-    assert fitted.result["inputs"]["rows_used"] == million
+    assert fitted.result["inputs"]["rows_used"] == rows
     truth = pitot.run("simulate", "-o", "x", "--rows", "5", "--truth", "t.json", "--json").result
     for name, entry in fitted.result["parameters"].items():
         assert entry["value"] == pytest.approx(

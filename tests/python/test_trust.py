@@ -27,24 +27,26 @@ def test_a_large_step_is_found_at_its_row(size: float):
 def test_a_receivers_drift_is_no_effect():
     """White noise and as large a drift of 60 s: chi-squared on one family called 17 of 40 found.
 
-    A rate of 5 % finds more than 3 of 12 in 2 of 10^3 sets of seeds; these are fixed.
+    A rate of 5 % finds more than 2 of 6 in 2 of 10^3 sets of seeds; these are fixed.
+    The rate itself is `scripts/study trust`'s.
     """
     found = 0
     for probe in ("five-hole", "pitot-static", "magnetometer"):
-        for seed in range(4):
+        for seed in range(2):
             flight, _ = fly(probe, "white + GM 60 s", seed, 300)
             found += calibrate(probe, flight).diagnose().verdict == "effect_missing"
-    assert found <= 3
+    assert found <= 2
 
 
 def test_an_attitude_that_wanders_is_no_effect():
     """0.01 rad of AR(0.99) in each angle: noise of single outputs called 7 of 40 found.
 
-    A rate of 7 % finds more than 2 of 10 in 3 of 100 sets of seeds; these are fixed.
+    A rate of 7 % finds more than 2 of 6 in 6 of 10^3 sets of seeds; these are fixed.
+    The rate itself is `scripts/study trust`'s.
     """
     found = 0
     for probe in ("five-hole", "magnetometer"):
-        for seed in range(5):
+        for seed in range(3):
             flight, _ = fly(probe, ATTITUDE, seed, 300)
             found += calibrate(probe, flight).diagnose().verdict == "effect_missing"
     assert found <= 2

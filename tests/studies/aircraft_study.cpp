@@ -17,6 +17,8 @@
 #include "short_periods.hpp"
 #include "studies/seeds.hpp"
 
+namespace aircraft_study {
+
 using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::FitStatus;
@@ -237,3 +239,5 @@ TEST_CASE("output error is right on the whole, and its coloured intervals hold")
     CHECK(std::abs(output_error.bias(i)) < 6.0);
   }
 }
+
+}  // namespace aircraft_study

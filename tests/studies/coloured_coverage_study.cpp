@@ -11,6 +11,8 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "studies/seeds.hpp"
 
+namespace coloured_coverage_study {
+
 using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::Record;
@@ -97,3 +99,5 @@ TEST_CASE(
     check_white_fail(coverage, name);
   }
 }
+
+}  // namespace coloured_coverage_study

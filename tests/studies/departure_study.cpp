@@ -11,6 +11,8 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "studies/seeds.hpp"
 
+namespace departure_study {
+
 using namespace sepcal;
 using sepcal::test::draw_autoregression;
 using sepcal::test::Draws;
@@ -181,3 +183,5 @@ TEST_CASE("what departs is among the others of its neighbours, and makes them de
     CHECK_FALSE(outside_binomial(p.false_alarms, p.fleets, rate.another));
   }
 }
+
+}  // namespace departure_study

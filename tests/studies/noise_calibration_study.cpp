@@ -9,6 +9,8 @@
 #include "sepcal/noise_model.hpp"
 #include "studies/seeds.hpp"
 
+namespace noise_calibration_study {
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -103,3 +105,5 @@ TEST_CASE("an irrelevant column: the likelihood ratio rejects at its nominal 5 %
   }
   check_few_in_all(in_all, 6 * seeds);
 }
+
+}  // namespace noise_calibration_study

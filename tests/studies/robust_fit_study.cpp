@@ -15,6 +15,8 @@
 #include "sepcal/models/scalar_examples.hpp"
 #include "studies/seeds.hpp"
 
+namespace robust_fit_study {
+
 using sepcal::Fit;
 using sepcal::FitOptions;
 using sepcal::Loss;
@@ -89,3 +91,5 @@ TEST_CASE("outliers on one side: each fit by its own standard errors") {
   CHECK(plain.of_95[1] >= 0.99 * flights);
   check_rate(flights - plain.of_three, 620.0 / 4000.0);
 }
+
+}  // namespace robust_fit_study

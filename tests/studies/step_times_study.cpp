@@ -8,6 +8,8 @@
 #include "flights_with_steps.hpp"
 #include "studies/seeds.hpp"
 
+namespace step_times_study {
+
 using namespace sepcal;
 using namespace sepcal::test;
 
@@ -51,3 +53,5 @@ TEST_CASE("so it is where its coefficient is nonlinear") {
   }
   MESSAGE("in the field's strength the farthest of ", count, " is ", farthest, " rows off");
 }
+
+}  // namespace step_times_study
