@@ -150,7 +150,7 @@ TEST_CASE("the estimate and its covariance are those of generalised least square
 }
 
 TEST_CASE("the larger hypothesis is never the worse one") {
-  for (const std::string& kind : kinds) {
+  for (const std::string& kind : noise_kinds) {
     CAPTURE(kind);
     Draws draws(17);
     const diagnosis::RowLayout layout = make_layout({{"a", 150}, {"b", 250}}, {1.0, 1.0});

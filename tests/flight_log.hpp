@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/quantity.hpp"
 
 namespace sepcal::test {
 

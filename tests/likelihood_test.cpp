@@ -119,7 +119,7 @@ namespace {
 struct Halving {
   struct Point {
     double x = 0.0;
-    double noise = 8.0;
+    VectorXd noise = VectorXd::Constant(1, 8.0);
     bool refined = false;
     bool settled = false;
     int noise_iterations = 0;
@@ -132,15 +132,12 @@ struct Halving {
   bool noise_given() const { return given; }
   Point find_minimum(Point at) {
     at.refined = ++searches > blind;
-    at.x = 0.5 * at.noise + 1.0;
+    at.x = 0.5 * at.noise[0] + 1.0;
     return at;
   }
   Point follow_minimum(Point at) { return find_minimum(at); }
-  double update_noise(Point& at) const {
-    const double ratio = at.x / at.noise;
-    at.noise = at.x;
-    return std::abs(ratio * ratio - 1.0);
-  }
+  VectorXd noise_at(const Point& at) const { return VectorXd::Constant(1, at.x); }
+  void take_noise(Point& at, const VectorXd& noise) const { at.noise = noise; }
 };
 
 }  // namespace
@@ -158,7 +155,7 @@ TEST_CASE("a given R stays, and one search is enough") {
   Halving halving{.given = true};
   const auto end = sepcal::estimation::alternate(halving, Halving::Point{}, FitOptions{});
   CHECK(end.settled);
-  CHECK(end.noise == 8.0);
+  CHECK(end.noise[0] == 8.0);
   CHECK(halving.searches == 1);
 }
 
@@ -168,7 +165,7 @@ TEST_CASE("after three failures or the last update R is that of the parameters r
   CHECK_FALSE(end.refined);
   CHECK_FALSE(end.settled);
   CHECK(never.searches == 3);
-  CHECK(end.noise == end.x);
+  CHECK(end.noise[0] == end.x);
 
   FitOptions two;
   two.noise_iterations = 2;
@@ -177,7 +174,7 @@ TEST_CASE("after three failures or the last update R is that of the parameters r
   CHECK(end.refined);
   CHECK_FALSE(end.settled);
   CHECK(end.noise_iterations == 2);
-  CHECK(end.noise == end.x);
+  CHECK(end.noise[0] == end.x);
 }
 
 }  // namespace likelihood_test

@@ -39,7 +39,7 @@ double log_determinant(const MatrixXd& matrix) {
 
 TEST_CASE("what find() says of a member is its likelihood by the dense covariance") {
   const NoiseFamilies families(runs);
-  for (const std::string& kind : kinds) {
+  for (const std::string& kind : noise_kinds) {
     for (const NoiseFamily family : noise::noise_families) {
       CAPTURE(kind);
       Draws draws(4);

@@ -147,7 +147,7 @@ TEST_CASE("AIC: white noise is most often of order 0, and AR(2) of order 2 or mo
 
 TEST_CASE("a re-estimation from its own result takes few evaluations and stays there") {
   Draws draws(750);
-  for (const std::string& kind : sepcal::test::kinds) {
+  for (const std::string& kind : sepcal::test::noise_kinds) {
     CAPTURE(kind);
     const VectorXd e = draw_noise(kind, 1000, draws);
     const auto segments = make_segments({600, 400});

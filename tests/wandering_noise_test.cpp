@@ -163,7 +163,7 @@ TEST_CASE("rows that were held or interpolated are told, and slow noise is not t
   const Index interpolated = estimation::find_held_rows(straight, whole);
   CHECK(interpolated >= 3);
   CHECK(interpolated <= 6);
-  for (const std::string& kind : kinds) {
+  for (const std::string& kind : noise_kinds) {
     CAPTURE(kind);
     CHECK(estimation::find_held_rows(draw_noise(kind, length, draws), whole) == 1);
   }

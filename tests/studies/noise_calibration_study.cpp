@@ -53,7 +53,7 @@ TEST_CASE("a portmanteau of the whitened residual rejects near its nominal 5 %")
   constexpr Index rows = 1000;
   const auto segments = make_segments({600, 400});
   int in_all = 0;
-  for (const std::string& kind : sepcal::test::kinds) {
+  for (const std::string& kind : sepcal::test::noise_kinds) {
     int rejected = 0;
     for (int seed = 0; seed < seeds; ++seed) {
       Draws draws(static_cast<std::uint64_t>(10000 + seed));
@@ -69,7 +69,7 @@ TEST_CASE("a portmanteau of the whitened residual rejects near its nominal 5 %")
     CHECK_FALSE(outside_binomial(rejected, seeds, 0.05));
     in_all += rejected;
   }
-  check_few_in_all(in_all, static_cast<int>(sepcal::test::kinds.size()) * seeds);
+  check_few_in_all(in_all, static_cast<int>(sepcal::test::noise_kinds.size()) * seeds);
 }
 
 TEST_CASE("an irrelevant column: the likelihood ratio rejects at its nominal 5 %") {

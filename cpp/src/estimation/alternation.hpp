@@ -3,21 +3,29 @@
 // one flight and for that of many.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "estimation/acceleration.hpp"
 #include "sepcal/options.hpp"
 
 namespace sepcal::estimation {
 
+/// The largest relative change of a variance (Eq. 26).
+inline double change_of_variance(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+  return (after.cwiseQuotient(before).array().square() - 1.0).abs().maxCoeff();
+}
+
 /// Steps `at` until R settles; ends with the R of the parameters that it returns. Point has
-/// `refined` (the parameters are a minimum at its R), `settled` (Eq. 26) and `noise_iterations`.
-/// Stage has
-///   bool noise_given()             R is known and stays
-///   Point find_minimum(Point)      the parameters at the first R, from a start
-///   Point follow_minimum(Point)    the parameters at another R, from the minimum at the last
-///   double update_noise(Point&)    R at the parameters; the largest relative change of a variance
+/// `noise` (the deviations of R), `refined` (the parameters are a minimum at its R), `settled`
+/// (Eq. 26) and `noise_iterations`. Stage has
+///   bool noise_given()                  R is known and stays
+///   Point find_minimum(Point)           the parameters at the first R, from a start
+///   Point follow_minimum(Point)         the parameters at another R, from the minimum at the last
+///   VectorXd noise_at(const Point&)     R at the parameters (Eq. 25)
+///   void take_noise(Point&, VectorXd)   another R from now on
 template <class Stage, class Point>
 Point alternate(Stage& stage, Point at, const FitOptions& options) {
   constexpr int most_failures = 3;  // then another R will not help
@@ -25,8 +33,11 @@ Point alternate(Stage& stage, Point at, const FitOptions& options) {
   at.settled = stage.noise_given();
   int failures = at.refined ? 0 : 1;
   int updates = 0;
+  Acceleration acceleration;
   while (!at.settled && failures < most_failures && updates < options.noise_iterations) {
-    at.settled = stage.update_noise(at) < options.noise_tolerance;
+    const Eigen::VectorXd found = stage.noise_at(at);
+    at.settled = change_of_variance(at.noise, found) < options.noise_tolerance;
+    stage.take_noise(at, at.settled ? found : acceleration.next(at.noise, found));
     ++updates;
     if (options.progress) {
       options.progress("stage two", static_cast<double>(updates) / options.noise_iterations);
@@ -35,7 +46,7 @@ Point alternate(Stage& stage, Point at, const FitOptions& options) {
     at = stage.follow_minimum(std::move(at));
     if (!at.refined) ++failures;
   }
-  if (!at.settled) stage.update_noise(at);
+  if (!at.settled) stage.take_noise(at, stage.noise_at(at));
   at.noise_iterations += updates;
   return at;
 }

@@ -44,10 +44,8 @@ struct Turns {
     return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius));
   }
 
-  double update_noise(StageTwo& at) const {
-    const Eigen::VectorXd before = std::exchange(at.noise, likelihood.noise_at(at));
-    return (at.noise.cwiseQuotient(before).array().square() - 1.0).abs().maxCoeff();
-  }
+  Eigen::VectorXd noise_at(const StageTwo& at) const { return likelihood.noise_at(at); }
+  void take_noise(StageTwo& at, Eigen::VectorXd noise) const { at.noise = std::move(noise); }
 };
 
 /// Step 5 in one way.

@@ -57,19 +57,19 @@ class JointLikelihood {
     return at.refined ? at : find_minimum(std::move(at));
   }
 
-  /// R-hat of the present residuals with its floor; the largest relative change (Eq. 26).
-  double update_noise(JointStage& at) const {
+  /// Of the present residuals, with its floor.
+  VectorXd noise_at(const JointStage& at) const {
     VectorXd sums = VectorXd::Zero(at.noise.size());
     for (Index i = 0; i < joint_.layout.flights; ++i) sums += objective_.squares(i);
-    double change = 0.0;
     for (Index j = 0; j < sums.size(); ++j) {
-      const double next = std::max(std::sqrt(sums[j] / joint_.rows), joint_.noise_floor(j));
-      const double ratio = next / at.noise[j];
-      change = std::max(change, std::abs(ratio * ratio - 1.0));
-      at.noise[j] = next;
+      sums[j] = std::max(std::sqrt(sums[j] / joint_.rows), joint_.noise_floor(j));
     }
+    return sums;
+  }
+
+  void take_noise(JointStage& at, VectorXd noise) const {
+    at.noise = std::move(noise);
     objective_.weigh(at.noise.cwiseInverse());
-    return change;
   }
 
  private:

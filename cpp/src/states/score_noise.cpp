@@ -5,9 +5,7 @@
 //   cov(s) <- cov(s) + B P B' + B C + C'B',   C <- C + P B',
 // and from a row to the next P <- Phi P Phi' + Gamma Q_d Gamma', C <- Phi C. One pass, nothing
 // kept.
-#include <algorithm>
-#include <utility>
-
+#include "model/measurements.hpp"
 #include "sepcal/states/state_steps.hpp"
 #include "states/start_deviations.hpp"
 
@@ -17,32 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr std::size_t rows_at_a_time = 256;
-
-/// The columns of the model's inputs from a row of the record on.
-class Inputs {
- public:
-  Inputs(const Tables& tables, const Record& record) {
-    for (const Variable& input : tables.inputs) {
-      const bool absent = !record.has(input.name) && std::isfinite(input.absent);
-      constants_.emplace_back(absent ? rows_at_a_time : 0, input.absent);
-      columns_.push_back(absent ? nullptr : record.column(input.name).data());
-    }
-  }
-
-  std::vector<const double*> from(std::size_t row) const {
-    std::vector<const double*> inputs;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      inputs.push_back(columns_[i] == nullptr ? constants_[i].data() : columns_[i] + row);
-    }
-    return inputs;
-  }
-
- private:
-  std::vector<std::vector<double>> constants_;
-  std::vector<const double*> columns_;
-};
 
 class ScoreNoise {
  public:
@@ -54,35 +26,47 @@ class ScoreNoise {
         weights_(noise.cwiseAbs2().cwiseInverse()),
         density_(density.cwiseAbs2()),
         steps_(model.steps(record, xi)),
-        inputs_(model.tables(), record),
+        measurements_(model, record),
         time_(record.column("time")),
         score_(MatrixXd::Zero(xi.size(), xi.size())) {}
 
-  void run(const Segment& segment) {
+  void run() {
     const std::unique_ptr<Carry> carry = model_.new_carry();
+    std::vector<const double*> inputs;
     MatrixXd tangent;
-    for (std::size_t row = segment.first; row < segment.last; ++row) {
-      const std::size_t within = (row - segment.first) % rows_at_a_time;
-      if (within == 0) fill(segment, row, *carry, tangent);
-      const int trajectory = plan_.trajectory_at(row, row == segment.first);
-      if (trajectory >= 0) begin(trajectory);
-      add(row, within, tangent);
-      if (row + 1 < segment.last) advance(row);
+    for (const std::vector<Range>& chunk : measurements_.chunks()) {
+      for (const Range& range : chunk) {
+        fill(measurements_.block(range, inputs), *carry, tangent);
+        follow(range, tangent);
+      }
     }
   }
 
   const MatrixXd& covariance() const { return score_; }
 
  private:
-  void fill(const Segment& segment, std::size_t row, Carry& carry, MatrixXd& tangent) const {
-    const std::size_t rows = std::min(rows_at_a_time, segment.last - row);
-    const std::vector<const double*> inputs = inputs_.from(row);
-    tangent.resize(static_cast<Index>(rows) * weights_.size(), xi_.size() + 1);
-    const Block block{inputs, rows, row, row == segment.first};
+  using Range = model::Measurements::Range;
+
+  /// [A | D | b] of a block, (n_z * rows) x (n + 1).
+  void fill(const Block& block, Carry& carry, MatrixXd& tangent) const {
+    tangent.resize(static_cast<Index>(block.rows) * weights_.size(), xi_.size() + 1);
     const int n_1 = model_.tables().n_1();
     const VectorXd linear = xi_.head(n_1);
     const VectorXd nonlinear = xi_.tail(xi_.size() - n_1);
     model_.evaluate(block, values_of(nonlinear), values_of(linear), &carry, tangent);
+  }
+
+  void follow(const Range& range, const MatrixXd& tangent) {
+    for (std::size_t k = 0; k < range.rows; ++k) {
+      const std::size_t row = range.first + k;
+      const int trajectory = plan_.trajectory_at(row, k == 0 && range.starts_segment);
+      if (trajectory >= 0) {
+        begin(trajectory);
+      } else {
+        advance(row - 1);
+      }
+      add(row, k, tangent);
+    }
   }
 
   void begin(int trajectory) {
@@ -117,7 +101,7 @@ class ScoreNoise {
   VectorXd weights_;  // n_z, R^-1
   VectorXd density_;  // n_w
   std::unique_ptr<StateSteps> steps_;
-  Inputs inputs_;
+  model::Measurements measurements_;
   std::span<const double> time_;
   VectorXd x_;
   MatrixXd P_;      // n_x x n_x
@@ -130,7 +114,7 @@ class ScoreNoise {
 MatrixXd StateBlockModel::score_noise(const Record& record, const VectorXd& xi,
                                       const VectorXd& noise, const VectorXd& density) const {
   ScoreNoise score(*this, record, xi, noise, density);
-  for (const Segment& segment : record.segments()) score.run(segment);
+  score.run();
   return score.covariance();
 }
 

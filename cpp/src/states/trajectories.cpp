@@ -39,19 +39,16 @@ void follow(const TrajectoryPlan& plan, const StateSteps& along, const Record& r
 }  // namespace
 
 std::vector<std::string> StateBlockModel::idle_parameters(const Record& record) const {
-  std::vector<bool> begun(static_cast<std::size_t>(plan().trajectories()), false);
-  for (const Segment& segment : record.segments()) {
-    for (std::size_t row = segment.first; row < segment.last; ++row) {
-      const int trajectory = plan().trajectory_at(row, row == segment.first);
-      if (trajectory >= 0) begun[static_cast<std::size_t>(trajectory)] = true;
-    }
-  }
+  const std::vector<std::size_t>& starts = plan().starts();
   std::vector<std::string> idle;
-  for (int t = 0; t < plan().trajectories(); ++t) {
-    if (begun[static_cast<std::size_t>(t)]) continue;
+  for (std::size_t t = 0; t < starts.size(); ++t) {
+    const auto holds = [row = starts[t]](const Segment& segment) {
+      return segment.first <= row && row < segment.last;
+    };
+    if (std::ranges::any_of(record.segments(), holds)) continue;
     for (const int i : plan().integrated()) {
       const std::string& state = plan().model().states[static_cast<std::size_t>(i)].name;
-      idle.push_back(plan().start_name(state, t));
+      idle.push_back(plan().start_name(state, static_cast<int>(t)));
     }
   }
   return idle;
