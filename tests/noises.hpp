@@ -15,7 +15,8 @@
 
 namespace sepcal::test {
 
-inline const std::vector<std::string> noise_kinds{"white", "AR(0.9)", "pink", "random walk", "bursty"};
+inline const std::vector<std::string> noise_kinds{"white", "AR(0.9)", "pink", "random walk",
+                                                  "bursty"};
 
 /// First-order noise of unit variance.
 Eigen::VectorXd draw_autoregression(double correlation, Eigen::Index rows, Draws& draws);
