@@ -56,6 +56,20 @@ TEST_CASE("what find() says of a member is its likelihood by the dense covarianc
   }
 }
 
+TEST_CASE("whiten_backwards() is the transpose of a wandering member's whiten()") {
+  const NoiseFamilies families(runs);
+  Draws draws(11);
+  for (const std::string& kind : noise_kinds) {
+    const NoiseMember member =
+        families.find(NoiseFamily::wandering, draw_noise(kind, rows, draws), 0);
+    MatrixXd factor = MatrixXd::Identity(rows, rows);
+    families.whiten(member, factor);
+    MatrixXd transposed = MatrixXd::Identity(rows, rows);
+    for (auto column : transposed.colwise()) families.whiten_backwards(member, column);
+    CHECK(transposed.isApprox(factor.transpose(), 1e-12));
+  }
+}
+
 TEST_CASE("the wandering family is white noise plus Gauss and Markov's, run by run") {
   const NoiseFamilies families(runs);
   Draws draws(9);

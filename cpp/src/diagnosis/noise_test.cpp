@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <span>
 
-#include "diagnosis/noise_hypothesis.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/sign_flips.hpp"
 #include "numerics/tails.hpp"
@@ -21,8 +19,6 @@ using noise::NoiseFamilies;
 using noise::NoiseFamily;
 using noise::NoiseMember;
 
-using Kinds = std::span<const NoiseFamily>;
-
 void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
                     const NoiseMembers& noise, MatrixXd& columns) {
   for (std::size_t j = 0; j < noise.size(); ++j) {
@@ -30,86 +26,9 @@ void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
   }
 }
 
-MatrixXd white_products(const NoiseFamilies& families, const RowLayout& layout,
-                        const NoiseMembers& noise, const Columns& X, const VectorXd& e) {
-  return diagnosis::white_products(layout, X, e, [&](std::size_t j, Eigen::Ref<MatrixXd> white) {
-    families.whiten(noise[j], white);
-  });
-}
-
-/// The likeliest members of some families for what coefficients leave.
-NoiseMembers find_members(const NoiseFamilies& families, const RowLayout& layout, Kinds kinds,
-                          const VectorXd& left, const std::vector<int>& orders) {
-  NoiseMembers members;
-  for (std::size_t j = 0; j < orders.size(); ++j) {
-    const VectorXd e = left.segment(layout.first(j), layout.rows);
-    NoiseMember best;
-    best.minus_two_log_likelihood = infinity;
-    for (const NoiseFamily kind : kinds) {
-      NoiseMember member = families.find(kind, e, orders[j]);
-      if (member.minus_two_log_likelihood < best.minus_two_log_likelihood) best = member;
-    }
-    best.sigma = std::max(best.sigma, least_sigma);
-    members.push_back(std::move(best));
-  }
-  return members;
-}
-
-/// Members for coefficients and coefficients for members, in turn until that gains little.
-FamilyFit maximise(const NoiseFamilies& families, const RowLayout& layout, Kinds kinds,
-                   const Columns& columns, const VectorXd& residual,
-                   const std::vector<int>& orders) {
-  constexpr int most_rounds = 5;
-  constexpr double least_gain = 0.05;
-  FamilyFit best;
-  best.minus_two_log_likelihood = infinity;
-  VectorXd coefficients = multiply_transposed(layout, columns, residual);
-  for (int round = 0; round < most_rounds; ++round) {
-    NoiseMembers members = find_members(families, layout, kinds,
-                                        subtract(layout, residual, columns, coefficients), orders);
-    double value = 0.0;
-    for (const NoiseMember& member : members) value += member.minus_two_log_likelihood;
-    const double gain = best.minus_two_log_likelihood - value;
-    if (!(gain > 0.0)) break;
-    const MatrixXd products = white_products(families, layout, members, columns, residual);
-    const Index k = columns.cols();
-    best.covariance = pseudo_inverse(products.topLeftCorner(k, k));
-    best.coefficients = coefficients = best.covariance * products.col(k).head(k);
-    best.noise = std::move(members);
-    best.minus_two_log_likelihood = value;
-    if (gain < least_gain) break;
-  }
-  return best;
-}
-
-NoiseTest::Ratios ratios_of(const std::array<FamilyFit, 2>& nulls, const NoiseFamilies& families,
-                            const RowLayout& layout, const Columns& columns,
-                            const VectorXd& residual, const std::vector<int>& orders) {
-  NoiseTest::Ratios ratios;
-  double null = infinity;
-  double with = infinity;
-  for (std::size_t k = 0; k < nulls.size(); ++k) {
-    FamilyFit fit =
-        maximise(families, layout, {&noise::noise_families[k], 1}, columns, residual, orders);
-    const double before = nulls[k].minus_two_log_likelihood;
-    ratios.own[k] = std::max(0.0, before - fit.minus_two_log_likelihood);
-    null = std::min(null, before);
-    if (!(fit.minus_two_log_likelihood < with)) continue;
-    with = fit.minus_two_log_likelihood;
-    ratios.with = std::move(fit);
-  }
-  ratios.joint = std::max(0.0, null - with);
-  return ratios;
-}
-
-std::array<FamilyFit, 2> fit_nulls(const NoiseFamilies& families, const RowLayout& layout,
-                                   const Columns& basis, const VectorXd& residual,
-                                   const std::vector<int>& orders) {
-  std::array<FamilyFit, 2> nulls;
-  for (std::size_t k = 0; k < nulls.size(); ++k) {
-    nulls[k] = maximise(families, layout, {&noise::noise_families[k], 1}, basis, residual, orders);
-  }
-  return nulls;
+/// The least of both families.
+double least(const std::array<FamilyFit, 2>& fits) {
+  return std::min(fits[0].minus_two_log_likelihood, fits[1].minus_two_log_likelihood);
 }
 
 /// Fewer rows: means of `stride` that follow each other in a run, or one in `stride`.
@@ -198,12 +117,19 @@ NoiseTest::NoiseTest(const TangentBasis& tangent, std::vector<int> orders)
       basis_(tangent.columns()),
       orders_(std::move(orders)),
       families_(fit_.layout.runs),
-      nulls_(fit_nulls(families_, fit_.layout, basis_, fit_.residual, orders_)),
+      nulls_(fit_families(families_, fit_.layout, basis_, fit_.residual, orders_)),
       inputs_(tangent) {}
 
 NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
-  Ratios ratios =
-      ratios_of(nulls_, families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+  auto with = fit_families(families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+  Ratios ratios;
+  for (std::size_t k = 0; k < nulls_.size(); ++k) {
+    ratios.own[k] =
+        std::max(0.0, nulls_[k].minus_two_log_likelihood - with[k].minus_two_log_likelihood);
+  }
+  ratios.joint = std::max(0.0, least(nulls_) - least(with));
+  const bool second = with[1].minus_two_log_likelihood < with[0].minus_two_log_likelihood;
+  ratios.with = std::move(with[second ? 1 : 0]);
   if (!inputs_.is_empty()) ratios.of_inputs = inputs_.ratio(added);
   return ratios;
 }
@@ -227,9 +153,11 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     basis = orthonormal_basis(std::move(basis));
     reduced_added = orthonormal_basis(remove_span(basis, reduced_added));
   }
-  const Columns reduced_basis = view(basis);
-  const Columns reduced_columns = join(reduced_basis, view(reduced_added));
   const NoiseFamilies reduced_families(reduction.layout.runs);
+  MatrixXd reduced(basis.rows(), basis.cols() + reduced_added.cols());
+  reduced << basis, reduced_added;
+  const FamilyRegression regression(reduced_families, reduction.layout, std::move(reduced),
+                                    orders_);
 
   // What a step leaves in its own row must not be drawn as noise.
   MatrixXd beside = subtract(layout, fit_.residual, columns, ratios.with.coefficients);
@@ -249,20 +177,21 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     }
     std::vector<double> drawn(residuals.size());
     pool.for_each(residuals.size(), [&](std::size_t i) {
+      const FamilyRegression::Residual drawn_residual = regression.take(residuals[i]);
+      const auto likelihood = [&](NoiseFamily family, Index count) {
+        return drawn_residual.fit(family, count).minus_two_log_likelihood;
+      };
       if (which < 2) {
-        const Kinds kind{&noise::noise_families[which], 1};
-        drawn[i] =
-            maximise(reduced_families, reduction.layout, kind, reduced_basis, residuals[i], orders_)
-                .minus_two_log_likelihood -
-            maximise(reduced_families, reduction.layout, kind, reduced_columns, residuals[i],
-                     orders_)
-                .minus_two_log_likelihood;
+        const NoiseFamily family = noise::noise_families[which];
+        drawn[i] = likelihood(family, basis.cols()) - likelihood(family, regression.columns());
       } else {
-        const auto nulls =
-            fit_nulls(reduced_families, reduction.layout, reduced_basis, residuals[i], orders_);
-        drawn[i] = ratios_of(nulls, reduced_families, reduction.layout, reduced_columns,
-                             residuals[i], orders_)
-                       .joint;
+        double without = infinity;
+        double with = infinity;
+        for (const NoiseFamily family : noise::noise_families) {
+          without = std::min(without, likelihood(family, basis.cols()));
+          with = std::min(with, likelihood(family, regression.columns()));
+        }
+        drawn[i] = std::max(0.0, without - with);
       }
     });
     return enlargement(std::move(drawn), static_cast<int>(reduced_added.cols()));
@@ -284,7 +213,7 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
 }
 
 MatrixXd NoiseTest::products(const NoiseMembers& noise, const Columns& X, const VectorXd& e) const {
-  return white_products(families_, fit_.layout, noise, X, e);
+  return family_products(families_, fit_.layout, noise, X, e);
 }
 
 double NoiseTest::floor(const NoiseMembers& noise) const {

@@ -13,21 +13,11 @@
 #include <vector>
 
 #include "base/thread_pool.hpp"
+#include "diagnosis/family_fit.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/wandering_inputs.hpp"
-#include "noise/noise_families.hpp"
 
 namespace sepcal::diagnosis {
-
-using NoiseMembers = std::vector<noise::NoiseMember>;  // of each used output, in units of its RMSE
-
-/// Columns and noise, estimated together by maximum likelihood.
-struct FamilyFit {
-  NoiseMembers noise = {};
-  double minus_two_log_likelihood = 0.0;
-  Eigen::VectorXd coefficients = {};  // of the columns
-  Eigen::MatrixXd covariance = {};
-};
 
 /// log10 of the two tails; `either` is of the worse family.
 struct NoiseTails {

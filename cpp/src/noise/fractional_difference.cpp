@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
+
+#include "noise/lanes.hpp"
 
 namespace sepcal::noise {
 namespace {
@@ -12,25 +13,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+static_assert(Exponentials::count == lane_count);
 constexpr Index near_rows = Index{2} * Exponentials::count;
 // Trapezoids in ln(lambda) converge like e^{-pi^2 / step}: 2e-11 here.
 constexpr double step = 0.4;
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-// The loop in the widest registers that the processor has.
-#define SEPCAL_EVERY_WIDTH \
-  __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#else
-#define SEPCAL_EVERY_WIDTH
-#endif
-
 // NOLINTBEGIN(*-pointer-arithmetic,*-c-arrays,*-constant-array-index): lanes of a register.
 
-using Lanes [[gnu::vector_size(sizeof(Exponentials::decay))]] = double;
 constexpr std::size_t most_groups = 16;
-
-inline void load(const double* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); }
 
 /// y_t from the last near_rows of x, by `near` (the oldest first), and from all before, by the
 /// exponentials.

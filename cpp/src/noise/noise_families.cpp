@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "noise/autoregression.hpp"
+#include "noise/lanes.hpp"
 #include "noise/noise_autocovariance.hpp"
 #include "noise/noise_room.hpp"
 #include "sepcal/quantity.hpp"
@@ -23,6 +24,50 @@ constexpr double differences_from = 0.5;
 constexpr std::array white_shares{0.0, 0.1, 0.25, 0.45, 0.65, 0.8, 0.9, 0.96, 0.99, 0.999};
 constexpr int correlation_times = 10;
 constexpr Index longest_settling = 4096;  // rows that gains are kept for
+
+/// Kalman filters of members side by side: a state's decay, and what each does at a row.
+struct FilterBank {
+  const double* decays;
+  const double* gains;       // members x rows of a run
+  const double* precisions;  // likewise, of the innovations
+  Index members;             // a multiple of lanes_at_once
+  Index settled;             // the last row, which stands for all later ones
+};
+
+constexpr Index groups_at_once = 4;  // whose filters run at once, as each waits for its own state
+constexpr Index lanes_at_once = groups_at_once * lane_count;
+
+// NOLINTBEGIN(*-pointer-arithmetic,*-c-arrays,*-constant-array-index): lanes of a register.
+
+/// Adds each member's sum of squared innovations over their variances, of a run.
+SEPCAL_EVERY_WIDTH void add_squares(const FilterBank& bank, const double* e, Index rows,
+                                    double* squares) {
+  for (Index first = 0; first < bank.members; first += lanes_at_once) {
+    Lanes decay[groups_at_once];
+    Lanes state[groups_at_once] = {};
+    Lanes square[groups_at_once] = {};
+    for (Index g = 0; g < groups_at_once; ++g) load(bank.decays + first + g * lane_count, decay[g]);
+    for (Index t = 0; t < rows; ++t) {
+      const Index at = std::min(t, bank.settled) * bank.members + first;
+      for (Index g = 0; g < groups_at_once; ++g) {
+        Lanes gain;
+        Lanes precision;
+        load(bank.gains + at + g * lane_count, gain);
+        load(bank.precisions + at + g * lane_count, precision);
+        const Lanes innovation = e[t] - state[g];
+        square[g] += innovation * innovation * precision;
+        state[g] = decay[g] * (state[g] + gain * innovation);
+      }
+    }
+    for (Index g = 0; g < groups_at_once; ++g) {
+      for (Index lane = 0; lane < lane_count; ++lane) {
+        squares[first + g * lane_count + lane] += square[g][lane];
+      }
+    }
+  }
+}
+
+// NOLINTEND(*-pointer-arithmetic,*-c-arrays,*-constant-array-index)
 
 /// The variance of the sum of `rows` increments (1 - B)^delta u = w.
 double variance_of_sum(double delta, Index rows) {
@@ -91,12 +136,14 @@ NoiseFamilies::NoiseFamilies(const std::vector<Segment>& runs) : lengths_(find_l
   Index settled = 0;
   for (const Wander& wander : wanders_) settled = std::max(settled, wander.gain.size());
   const auto members = static_cast<Index>(wanders_.size());
-  gains_.resize(members, settled);
-  precisions_.resize(members, settled);
+  const Index lanes = (members + lanes_at_once - 1) / lanes_at_once * lanes_at_once;
+  decays_ = VectorXd::Zero(lanes);
+  gains_ = precisions_ = MatrixXd::Zero(lanes, settled);
   log_variances_ = VectorXd::Zero(members);
   for (Index m = 0; m < members; ++m) {
     const Wander& wander = wanders_[static_cast<std::size_t>(m)];
     const Index own = wander.gain.size();
+    decays_[m] = wander.a;
     gains_.row(m).setConstant(wander.gain[own - 1]);
     precisions_.row(m).setConstant(std::pow(wander.deviation[own - 1], -2));
     gains_.row(m).head(own) = wander.gain;
@@ -178,14 +225,22 @@ VectorXd NoiseFamilies::gather_blocks(const Fraction& fraction, const VectorXd& 
   return rows;
 }
 
-NoiseMember NoiseFamilies::find_fractional(const VectorXd& e, int order) const {
+MatrixXd NoiseFamilies::differences(const VectorXd& e) const {
+  MatrixXd all = e.replicate(1, static_cast<Index>(fractions_.size()));
+  for (std::size_t k = 0; k < fractions_.size(); ++k) {
+    difference(fractions_[k], all.col(static_cast<Index>(k)));
+  }
+  return all;
+}
+
+NoiseMember NoiseFamilies::find_fractional(const Ref<const MatrixXd>& differences,
+                                           int order) const {
   NoiseMember best;
   best.minus_two_log_likelihood = infinity;
   const auto n = static_cast<double>(rows_);
   for (std::size_t k = 0; k < fractions_.size(); ++k) {
     const Fraction& fraction = fractions_[k];
-    VectorXd y = e;
-    difference(fraction, y);
+    const auto y = differences.col(static_cast<Index>(k));
     const VectorXd rows = gather_blocks(fraction, y);
     const BurgFit burg = fit_burg(rows, fraction.blocks, order);
     // Burg's criterion profiles sigma over its rows; the first ones of the runs join them.
@@ -201,26 +256,15 @@ NoiseMember NoiseFamilies::find_fractional(const VectorXd& e, int order) const {
 }
 
 NoiseMember NoiseFamilies::find_wandering(const VectorXd& e) const {
-  const auto members = static_cast<Index>(wanders_.size());
-  ArrayXd a(members);
-  for (Index m = 0; m < members; ++m) a[m] = wanders_[static_cast<std::size_t>(m)].a;
-  ArrayXd state(members);
-  ArrayXd square = ArrayXd::Zero(members);
-  const Index settled = gains_.cols() - 1;
+  const FilterBank bank{decays_.data(), gains_.data(), precisions_.data(), gains_.rows(),
+                        gains_.cols() - 1};
+  VectorXd squares = VectorXd::Zero(gains_.rows());
   Index first = 0;
   for (const Index length : lengths_) {
-    state.setZero();
-    for (Index t = 0; t < length; ++t) {
-      const Index at = std::min(t, settled);
-      const double value = e[first + t];
-      for (Index m = 0; m < members; ++m) {
-        const double innovation = value - state[m];
-        square[m] += innovation * innovation * precisions_(m, at);
-        state[m] = a[m] * (state[m] + gains_(m, at) * innovation);
-      }
-    }
+    add_squares(bank, e.data() + first, length, squares.data());
     first += length;
   }
+  const ArrayXd square = squares.head(static_cast<Index>(wanders_.size()));
   const auto n = static_cast<double>(rows_);
   NoiseMember best{.family = NoiseFamily::wandering};
   Index least = 0;
@@ -232,24 +276,49 @@ NoiseMember NoiseFamilies::find_wandering(const VectorXd& e) const {
 }
 
 NoiseMember NoiseFamilies::find(NoiseFamily family, const VectorXd& e, int order) const {
-  return family == NoiseFamily::fractional ? find_fractional(e, order) : find_wandering(e);
+  return family == NoiseFamily::fractional ? find_fractional(differences(e), order)
+                                           : find_wandering(e);
+}
+
+void NoiseFamilies::whiten_differenced(const NoiseMember& member, Ref<MatrixXd> columns) const {
+  const Index skipped = fractions_[member.at].differences ? 1 : 0;
+  for (auto column : columns.colwise()) {
+    Index first = 0;
+    for (const Index length : lengths_) {
+      whiten_autoregression(member.partial, column.segment(first + skipped, length - skipped));
+      first += length;
+    }
+  }
+  columns /= member.sigma;
+}
+
+void NoiseFamilies::whiten_backwards(const NoiseMember& member, Ref<VectorXd> column) const {
+  const Wander& wander = wanders_[member.at];
+  const Index settled = wander.gain.size() - 1;
+  Index first = 0;
+  for (const Index length : lengths_) {
+    double state = 0.0;  // what a row's state does to all later rows
+    for (Index t = length - 1; t >= 0; --t) {
+      const Index at = std::min(t, settled);
+      const double fed = wander.a * state;
+      const double innovation = column[first + t] / wander.deviation[at] + wander.gain[at] * fed;
+      column[first + t] = innovation;
+      state = fed - innovation;
+    }
+    first += length;
+  }
+  column /= member.sigma;
 }
 
 void NoiseFamilies::whiten(const NoiseMember& member, Ref<MatrixXd> columns) const {
+  if (member.family == NoiseFamily::fractional) {
+    for (auto column : columns.colwise()) difference(fractions_[member.at], column);
+    whiten_differenced(member, columns);
+    return;
+  }
+  const Wander& wander = wanders_[member.at];
+  const Index settled = wander.gain.size() - 1;
   for (auto column : columns.colwise()) {
-    if (member.family == NoiseFamily::fractional) {
-      const Fraction& fraction = fractions_[member.at];
-      difference(fraction, column);
-      Index first = 0;
-      for (const Index length : lengths_) {
-        const Index skipped = fraction.differences ? 1 : 0;
-        whiten_autoregression(member.partial, column.segment(first + skipped, length - skipped));
-        first += length;
-      }
-      continue;
-    }
-    const Wander& wander = wanders_[member.at];
-    const Index settled = wander.gain.size() - 1;
     Index first = 0;
     for (const Index length : lengths_) {
       double state = 0.0;

@@ -33,9 +33,22 @@ class NoiseFamilies {
 
   /// The likeliest member for a residual `e`. Fractional: with an AR of this order.
   NoiseMember find(NoiseFamily family, const Eigen::VectorXd& e, int order) const;
+  /// The same in the fractional family of what differences() makes of `e`.
+  NoiseMember find_fractional(const Eigen::Ref<const Eigen::MatrixXd>& differences,
+                              int order) const;
+
+  /// How many members the wandering family has; `at` is one of them.
+  std::size_t wanders() const { return wanders_.size(); }
+
+  /// What the fractional family's differences make of e, a column each, which is linear in e.
+  Eigen::MatrixXd differences(const Eigen::VectorXd& e) const;
 
   /// Columns become white, of variance 1.
   void whiten(const NoiseMember& member, Eigen::Ref<Eigen::MatrixXd> columns) const;
+  /// The same of columns that a fractional member's difference has made.
+  void whiten_differenced(const NoiseMember& member, Eigen::Ref<Eigen::MatrixXd> columns) const;
+  /// The transpose of a wandering member's whiten(), which makes R^-1 e of it.
+  void whiten_backwards(const NoiseMember& member, Eigen::Ref<Eigen::VectorXd> column) const;
 
   /// The inverse: innovations become noise.
   void colour(const NoiseMember& member, Eigen::Ref<Eigen::VectorXd> innovations) const;
@@ -69,14 +82,14 @@ class NoiseFamilies {
   Wander make_wander(double rows, double white) const;
   void difference(const Fraction& fraction, Eigen::Ref<Eigen::VectorXd> x) const;
   Eigen::VectorXd gather_blocks(const Fraction& fraction, const Eigen::VectorXd& x) const;
-  NoiseMember find_fractional(const Eigen::VectorXd& e, int order) const;
   NoiseMember find_wandering(const Eigen::VectorXd& e) const;
 
   std::vector<Eigen::Index> lengths_;
   Eigen::Index rows_ = 0;
   std::vector<Fraction> fractions_;
   std::vector<Wander> wanders_;
-  Eigen::MatrixXd gains_;          // members x rows of a run until all have settled
+  Eigen::VectorXd decays_;         // a of each member and of those that fill the last lanes
+  Eigen::MatrixXd gains_;          // such members x rows of a run until all have settled
   Eigen::MatrixXd precisions_;     // of the innovations
   Eigen::VectorXd log_variances_;  // summed over the rows, of each member
 };

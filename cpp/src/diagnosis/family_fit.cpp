@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/family_fit.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "diagnosis/noise_hypothesis.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using noise::NoiseFamilies;
+using noise::NoiseFamily;
+using noise::NoiseMember;
+
+/// Members for coefficients and coefficients for members, in turn until that gains little.
+/// `problem`:
+///   NoiseMembers find_members(coefficients)  the likeliest for what these leave
+///   MatrixXd products(members)               [X e]' [X e] in their noise, of k columns
+template <class Problem>
+FamilyFit maximise(const Problem& problem, VectorXd coefficients) {
+  constexpr int most_rounds = 5;
+  constexpr double least_gain = 0.05;
+  const Index k = coefficients.size();
+  FamilyFit best;
+  best.minus_two_log_likelihood = infinity;
+  for (int round = 0; round < most_rounds; ++round) {
+    NoiseMembers members = problem.find_members(coefficients);
+    double value = 0.0;
+    for (NoiseMember& member : members) {
+      value += member.minus_two_log_likelihood;
+      member.sigma = std::max(member.sigma, least_sigma);
+    }
+    const double gain = best.minus_two_log_likelihood - value;
+    if (!(gain > 0.0)) break;
+    const MatrixXd products = problem.products(members);
+    best.covariance = pseudo_inverse(products.topLeftCorner(k, k));
+    best.coefficients = coefficients = best.covariance * products.col(k).head(k);
+    best.noise = std::move(members);
+    best.minus_two_log_likelihood = value;
+    if (gain < least_gain) break;
+  }
+  return best;
+}
+
+/// A residual of any length: its columns are made anew wherever they are asked for.
+struct OneResidual {
+  const NoiseFamilies& families;
+  const RowLayout& layout;
+  NoiseFamily family;
+  const Columns& columns;
+  const VectorXd& residual;
+  const std::vector<int>& orders;
+
+  NoiseMembers find_members(const VectorXd& coefficients) const {
+    const VectorXd left = subtract(layout, residual, columns, coefficients);
+    NoiseMembers members;
+    for (std::size_t j = 0; j < orders.size(); ++j) {
+      members.push_back(
+          families.find(family, left.segment(layout.first(j), layout.rows), orders[j]));
+    }
+    return members;
+  }
+
+  MatrixXd products(const NoiseMembers& members) const {
+    return family_products(families, layout, members, columns, residual);
+  }
+};
+
+}  // namespace
+
+std::array<FamilyFit, 2> fit_families(const NoiseFamilies& families, const RowLayout& layout,
+                                      const Columns& columns, const VectorXd& residual,
+                                      const std::vector<int>& orders) {
+  const VectorXd start = multiply_transposed(layout, columns, residual);
+  std::array<FamilyFit, 2> fits;
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const NoiseFamily family = noise::noise_families[k];
+    fits[k] = maximise(OneResidual{families, layout, family, columns, residual, orders}, start);
+  }
+  return fits;
+}
+
+MatrixXd family_products(const NoiseFamilies& families, const RowLayout& layout,
+                         const NoiseMembers& noise, const Columns& X, const VectorXd& e) {
+  return white_products(layout, X, e, [&](std::size_t j, Eigen::Ref<MatrixXd> white) {
+    families.whiten(noise[j], white);
+  });
+}
+
+/// What the columns are in one output.
+struct FamilyRegression::Output {
+  /// X' R^-1 X of a wandering member with sigma 1.
+  struct Square {
+    std::once_flag made;
+    MatrixXd value;
+  };
+
+  MatrixXd columns;
+  std::vector<MatrixXd> differences;      // of each of the fractional family's
+  mutable std::vector<Square> wandering;  // of each member of that family
+};
+
+FamilyRegression::FamilyRegression(const NoiseFamilies& families, const RowLayout& layout,
+                                   MatrixXd columns, std::vector<int> orders)
+    : families_(families),
+      layout_(layout),
+      columns_(std::move(columns)),
+      orders_(std::move(orders)) {
+  for (std::size_t j = 0; j < orders_.size(); ++j) {
+    const MatrixXd own = columns_.middleRows(layout.first(j), layout.rows);
+    std::vector<MatrixXd> differences;
+    for (Index k = 0; k < own.cols(); ++k) {
+      const MatrixXd column = families.differences(own.col(k));
+      differences.resize(static_cast<std::size_t>(column.cols()), own);
+      for (Index d = 0; d < column.cols(); ++d) {
+        differences[static_cast<std::size_t>(d)].col(k) = column.col(d);
+      }
+    }
+    outputs_.push_back(std::make_unique<Output>(
+        Output{own, std::move(differences), std::vector<Output::Square>(families.wanders())}));
+  }
+}
+
+FamilyRegression::~FamilyRegression() = default;
+
+FamilyRegression::Residual FamilyRegression::take(const VectorXd& e) const {
+  Residual residual;
+  residual.regression_ = this;
+  residual.e_ = e;
+  for (std::size_t j = 0; j < outputs_.size(); ++j) {
+    residual.differences_.push_back(families_.differences(of_output(e, j)));
+  }
+  return residual;
+}
+
+/// The problem that maximise() solves.
+struct FamilyRegression::Residual::InFamily {
+  const FamilyRegression& all;
+  const Residual& residual;
+  NoiseFamily family;
+  Index count;  // columns
+
+  NoiseMembers find_members(const VectorXd& coefficients) const {
+    NoiseMembers members;
+    for (std::size_t j = 0; j < all.outputs_.size(); ++j) {
+      const Output& output = *all.outputs_[j];
+      if (family == NoiseFamily::fractional) {
+        MatrixXd left = residual.differences_[j];
+        for (Index d = 0; d < left.cols(); ++d) {
+          left.col(d) -=
+              output.differences[static_cast<std::size_t>(d)].leftCols(count) * coefficients;
+        }
+        members.push_back(all.families_.find_fractional(left, all.orders_[j]));
+      } else {
+        const VectorXd left =
+            all.of_output(residual.e_, j) - output.columns.leftCols(count) * coefficients;
+        members.push_back(all.families_.find(family, left, all.orders_[j]));
+      }
+    }
+    return members;
+  }
+
+  MatrixXd products(const NoiseMembers& members) const {
+    MatrixXd sum = MatrixXd::Zero(count + 1, count + 1);
+    for (std::size_t j = 0; j < members.size(); ++j) {
+      if (family == NoiseFamily::fractional) {
+        add_fractional(members[j], j, sum);
+      } else {
+        add_wandering(members[j], j, sum);
+      }
+    }
+    return sum;
+  }
+
+  void add_fractional(const NoiseMember& member, std::size_t j, MatrixXd& sum) const {
+    const auto d = static_cast<Index>(member.at);
+    MatrixXd white(all.layout_.rows, count + 1);
+    white << all.outputs_[j]->differences[member.at].leftCols(count),
+        residual.differences_[j].col(d);
+    all.families_.whiten_differenced(member, white);
+    sum.noalias() += white.transpose() * white;
+  }
+
+  void add_wandering(const NoiseMember& member, std::size_t j, MatrixXd& sum) const {
+    const Output& output = *all.outputs_[j];
+    Output::Square& square = output.wandering[member.at];
+    std::call_once(square.made, [&] {
+      MatrixXd white = output.columns;
+      NoiseMember unit = member;
+      unit.sigma = 1.0;
+      all.families_.whiten(unit, white);
+      square.value = white.transpose() * white;
+    });
+    const VectorXd e = all.of_output(residual.e_, j);
+    MatrixXd white = e;
+    all.families_.whiten(member, white);
+    sum(count, count) += white.squaredNorm();
+    all.families_.whiten_backwards(member, white.col(0));
+    const VectorXd shares = output.columns.leftCols(count).transpose() * white.col(0);
+    sum.col(count).head(count) += shares;
+    sum.row(count).head(count) += shares.transpose();
+    sum.topLeftCorner(count, count) +=
+        square.value.topLeftCorner(count, count) / (member.sigma * member.sigma);
+  }
+};
+
+FamilyFit FamilyRegression::Residual::fit(NoiseFamily family, Index count) const {
+  const VectorXd start = regression_->columns_.leftCols(count).transpose() * e_;
+  return maximise(InFamily{*regression_, *this, family, count}, start);
+}
+
+}  // namespace sepcal::diagnosis
