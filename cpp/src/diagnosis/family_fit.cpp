@@ -87,7 +87,7 @@ std::array<FamilyFit, 2> fit_families(const NoiseFamilies& families, const RowLa
 
 MatrixXd family_products(const NoiseFamilies& families, const RowLayout& layout,
                          const NoiseMembers& noise, const Columns& X, const VectorXd& e) {
-  return white_products(layout, X, e, [&](std::size_t j, Eigen::Ref<MatrixXd> white) {
+  return white_products(layout, X, e, [&](std::size_t j, const Eigen::Ref<MatrixXd>& white) {
     families.whiten(noise[j], white);
   });
 }

@@ -117,10 +117,10 @@ Hypothesis step(const RowLayout& layout, const Columns& columns, const VectorXd&
                 const NoiseModels& noise, bool afresh) {
   constexpr double precise = 1e-3;  // of the search, in -2 ln L
   const Index k = columns.cols();
-  const MatrixXd products =
-      white_products(layout, columns, residual, [&](std::size_t j, Eigen::Ref<MatrixXd> white) {
-        Whitener(noise[j], layout.runs).apply(white);
-      });
+  const MatrixXd products = white_products(layout, columns, residual,
+                                           [&](std::size_t j, const Eigen::Ref<MatrixXd>& white) {
+                                             Whitener(noise[j], layout.runs).apply(white);
+                                           });
   Hypothesis at{.noise = noise, .covariance = pseudo_inverse(products.topLeftCorner(k, k))};
   at.coefficients = at.covariance * products.col(k).head(k);
   const VectorXd left = subtract(layout, residual, columns, at.coefficients);

@@ -17,7 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using noise::NoiseFamilies;
 using noise::NoiseFamily;
-using noise::NoiseMember;
 
 void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
                     const NoiseMembers& noise, MatrixXd& columns) {
