@@ -127,7 +127,7 @@ def test_smoothed_states_are_near_the_models(
     assert 0.8 < np.nanstd(innovations) < 1.2
 
 
-@pytest.mark.parametrize("model", ["path", "longitudinal", "lateral"])
+@pytest.mark.parametrize("model", NOISE)
 def test_smoothed_states_are_columns_of_apply(model: str, fits: Fits) -> None:
     fit = fits(model)
     smoothed = fit.smooth(NOISE[model])
@@ -164,7 +164,7 @@ def test_intervals_of_a_path_hold(aircraft: sepcal.Aircraft) -> None:
 
 
 def test_smoothed_states_of_a_path_are_as_sure_as_they_say(aircraft: sepcal.Aircraft) -> None:
-    """Against the flight itself, three seeds: what the path leaves open widens the bands."""
+    """Against the flight itself, six seeds: what the path leaves open widens the bands."""
     sensors = ("ax", "ay", "az", "p", "q", "r")
     others = ("airspeed", "alpha", "beta", "pitch", "roll", "yaw", "vn", "ve", "vd")
     quiet = sepcal.simulate(aircraft, noise=dict.fromkeys((*sensors, *others), 1e-9))
@@ -173,7 +173,7 @@ def test_smoothed_states_of_a_path_are_as_sure_as_they_say(aircraft: sepcal.Airc
     true |= {"phi": quiet["roll_rad"], "theta": quiet["pitch_rad"], "psi": quiet["yaw_rad"]}
     density = {name: (0.05 if name.startswith("a") else 0.002) * 0.02**0.5 for name in sensors}
     off = []
-    for seed in range(2, 5):
+    for seed in range(2, 8):
         smoothed = sepcal.fit(sepcal.FlightPath(), sepcal.simulate(aircraft, seed=seed)).smooth(
             density
         )

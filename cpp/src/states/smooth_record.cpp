@@ -21,7 +21,6 @@ using Eigen::Dynamic;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Stages = std::vector<Stage<Dynamic, Dynamic>>;
 
 std::vector<std::string> names_in(const std::vector<Variable>& table) {
   std::vector<std::string> names;
@@ -91,14 +90,53 @@ VectorXd point_of(const Tables& tables, const std::map<std::string, double>& par
   return xi;
 }
 
-/// One record's smoothing; a segment at a time.
+/// Columns are the errors' axes, each as long as its standard deviation: the errors' covariance is
+/// axes axes'. Taken of the correlations, as units differ.
+MatrixXd axes_of(const MatrixXd& covariance) {
+  const VectorXd sd = covariance.diagonal().cwiseSqrt();
+  const MatrixXd correlation =
+      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(correlation);
+  const VectorXd lengths = parts.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return sd.asDiagonal() * parts.eigenvectors() * lengths.asDiagonal();
+}
+
+/// The axes of the errors that act on a smoother, which are not an initial state's: a row for each
+/// of the plan's parameters.
+MatrixXd axes_on(const TrajectoryPlan& plan, const ParameterErrors& errors) {
+  std::set<std::string> starts;
+  for (const int i : plan.integrated()) {
+    const std::string& state = plan.model().states[static_cast<std::size_t>(i)].name;
+    for (int t = 0; t < plan.trajectories(); ++t) starts.insert(plan.start_name(state, t));
+  }
+  const std::vector<std::string> all = names_in(plan.tables().parameters());
+  std::vector<Index> acting;
+  std::vector<Index> rows;
+  for (std::size_t k = 0; k < errors.names.size(); ++k) {
+    if (starts.contains(errors.names[k])) continue;
+    const auto at = std::ranges::find(all, errors.names[k]);
+    if (at == all.end()) {
+      throw Error("there is an error of '" + errors.names[k] +
+                  "', which is no parameter of the model; it has: " + base::list_names(all));
+    }
+    acting.push_back(static_cast<Index>(k));
+    rows.push_back(at - all.begin());
+  }
+  MatrixXd axes = MatrixXd::Zero(static_cast<Index>(all.size()), static_cast<Index>(acting.size()));
+  if (!acting.empty()) axes(rows, Eigen::all) = axes_of(errors.covariance(acting, acting));
+  return axes;
+}
+
+/// One record's smoothing; a segment at a time. What axes of the parameters' errors do to the
+/// states goes along with them, to first order and with the gains as they are.
 class Smoothing {
  public:
   Smoothing(const StateBlockModel& model, const Record& record, const VectorXd& xi,
-            const SmoothingNoise& noise, SmoothedRecord& result)
+            const SmoothingNoise& noise, MatrixXd axes, SmoothedRecord& result)
       : plan_(model.plan()),
         xi_(xi),
         noise_(noise),
+        axes_(std::move(axes)),
         result_(result),
         density_(squares_of(noise.process, result.noises)),
         R_(squares_of(noise.outputs, result.outputs).asDiagonal()),
@@ -112,35 +150,39 @@ class Smoothing {
     const VectorXd deviations =
         states::start_deviations(*steps_, segment, x, result_.states, noise_.start);
     const MatrixXd P = deviations.cwiseAbs2().asDiagonal();
-    const Stages pass = filter(segment, Filter<Dynamic>(x, P));
-    std::vector<Smoothed<Dynamic, Dynamic>> smoothed(pass.size());
-    sepcal::smooth(std::span<const Stage<Dynamic, Dynamic>>(pass), std::span(smoothed));
-    for (std::size_t k = 0; k < smoothed.size(); ++k) {
-      const auto row = static_cast<Index>(segment.first + k);
-      result_.x.row(row) = smoothed[k].x.transpose();
-      result_.w.row(row) = smoothed[k].w.transpose();
-      result_.P[segment.first + k] = std::move(smoothed[k].P);
-      result_.Q[segment.first + k] = std::move(smoothed[k].Q);
-    }
+    smooth(segment, filter(segment, Filter<Dynamic>(x, P)));
   }
 
  private:
+  /// A row on the way: its stage, and what the axes do to x(k|k) and x(k+1|k).
+  struct Passed {
+    Stage<Dynamic, Dynamic> stage;
+    MatrixXd filtered;   // n_x x axes
+    MatrixXd predicted;  // n_x x axes
+  };
+
   [[noreturn]] static void give_up(std::size_t row) {
     throw Error("the filter can't go on from row " + std::to_string(row) +
                 " (counted from 0): the state or what is expected there is not finite; cut the "
                 "segment, or start nearer");
   }
 
-  Stages filter(const Segment& segment, Filter<Dynamic> filter) {
-    Stages pass;
+  std::vector<Passed> filter(const Segment& segment, Filter<Dynamic> filter) {
+    std::vector<Passed> pass;
+    pass.reserve(segment.rows());
+    MatrixXd moved = MatrixXd::Zero(filter.x().size(), axes_.cols());
     for (std::size_t row = segment.first; row < segment.last; ++row) {
-      update(row, filter);
-      pass.push_back({filter.estimate()});
-      Transition<Dynamic, Dynamic>& next = pass.back().next;
+      update(row, filter, moved);
+      pass.push_back({{filter.estimate()}, moved, {}});
+      Transition<Dynamic, Dynamic>& next = pass.back().stage.next;
       const bool last = row + 1 == segment.last;
       const double held = plan_.discrete() || last ? 1.0 : time_[row + 1] - time_[row];
       next.Q_d = (density_ / held).asDiagonal();
       if (last) break;
+      if (in_doubt()) {
+        moved = pass.back().predicted =
+            move(steps_->advance_jointly(row, filter.x(), density_).Phi, moved);
+      }
       StateSteps::Step step = steps_->advance(row, filter.x());
       next = {std::move(step.x), std::move(step.Phi), std::move(step.Gamma), std::move(next.Q_d)};
       if (filter.predict(next) != FilterStatus::ok) give_up(row);
@@ -148,10 +190,12 @@ class Smoothing {
     return pass;
   }
 
-  void update(std::size_t row, Filter<Dynamic>& filter) {
+  void update(std::size_t row, Filter<Dynamic>& filter, MatrixXd& moved) {
     VectorXd y(static_cast<Index>(outputs_.size()));
     for (Index j = 0; j < y.size(); ++j) y[j] = outputs_[static_cast<std::size_t>(j)][row];
-    StateSteps::Reading expected = steps_->read(row, filter.x());
+    const VectorXd x = filter.x();
+    StateSteps::Reading expected = steps_->read(row, x);
+    const MatrixXd H = expected.H;
     const auto innovation =
         filter.update<Dynamic>(y, {std::move(expected.z), std::move(expected.H)}, R_);
     if (innovation.status != FilterStatus::ok) give_up(row);
@@ -163,11 +207,47 @@ class Smoothing {
       result_.innovations(static_cast<Index>(row), j) = innovation.e[j];
       result_.innovation_sd(static_cast<Index>(row), j) = std::sqrt(Lambda(j, j));
     }
+    if (!in_doubt()) return;
+    // K = P(k|k) H' R^-1, of outputs that are there
+    const VectorXd there = y.array().isNaN().select(0.0, R_.diagonal().cwiseInverse());
+    const MatrixXd K = filter.covariance() * H.transpose() * there.asDiagonal();
+    moved -= K * move(steps_->read_jointly(row, x).H, moved);
+  }
+
+  void smooth(const Segment& segment, const std::vector<Passed>& pass) {
+    Smoothed<Dynamic, Dynamic> at = smooth_last(pass.back().stage);
+    MatrixXd moved = pass.back().filtered;
+    keep(segment.last - 1, at, moved, MatrixXd::Zero(at.w.size(), moved.cols()));
+    for (std::size_t k = pass.size() - 1; k-- > 0;) {
+      const auto& [stage, filtered, predicted] = pass[k];
+      const auto gain = smoother_gain(stage);
+      at = smooth_stage(stage, gain, at.x, at.P);
+      const MatrixXd shift = gain.transposed.transpose() * (moved - predicted);
+      moved = filtered + shift.topRows(at.x.size());
+      keep(segment.first + k, at, moved, shift.bottomRows(at.w.size()));
+    }
+  }
+
+  void keep(std::size_t row, const Smoothed<Dynamic, Dynamic>& smoothed, const MatrixXd& moved_x,
+            const MatrixXd& moved_w) {
+    const auto at = static_cast<Index>(row);
+    result_.x.row(at) = smoothed.x.transpose();
+    result_.w.row(at) = smoothed.w.transpose();
+    result_.P[row] = smoothed.P + moved_x * moved_x.transpose();
+    result_.Q[row] = smoothed.Q + moved_w * moved_w.transpose();
+  }
+
+  bool in_doubt() const { return axes_.cols() > 0; }
+
+  /// Slopes by x and xi times what the axes do to these.
+  MatrixXd move(const MatrixXd& slopes, const MatrixXd& moved) const {
+    return slopes.leftCols(moved.rows()) * moved + slopes.rightCols(axes_.rows()) * axes_;
   }
 
   const TrajectoryPlan& plan_;
   const VectorXd& xi_;
   const SmoothingNoise& noise_;
+  MatrixXd axes_;  // a row for each of the plan's parameters
   SmoothedRecord& result_;
   VectorXd density_;
   MatrixXd R_;
@@ -176,47 +256,25 @@ class Smoothing {
   std::vector<std::span<const double>> outputs_;
 };
 
-/// Columns are the errors' axes, each as long as its standard deviation: the errors' covariance is
-/// axes axes'. Taken of the correlations, as units differ.
-MatrixXd axes_of(const MatrixXd& covariance) {
-  const VectorXd sd = covariance.diagonal().cwiseSqrt();
-  const MatrixXd correlation =
-      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(correlation);
-  const VectorXd lengths = parts.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return sd.asDiagonal() * parts.eigenvectors() * lengths.asDiagonal();
+}  // namespace
+
+ParameterErrors errors_of(const Fit& fit) {
+  std::vector<Index> places;
+  ParameterErrors errors;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const Parameter& parameter = fit.parameters[k];
+    if (parameter.fixed || !(parameter.standard_error > 0.0)) continue;
+    if (!std::isfinite(parameter.standard_error)) continue;
+    places.push_back(static_cast<Index>(k));
+    errors.names.push_back(parameter.name);
+  }
+  errors.covariance = fit.covariance(places, places);
+  return errors;
 }
 
-/// Those of the errors that act on a smoother: not an initial state's.
-ParameterErrors without_starts(const ParameterErrors& errors, const TrajectoryPlan& plan) {
-  std::set<std::string> starts;
-  for (const int i : plan.integrated()) {
-    const std::string& state = plan.model().states[static_cast<std::size_t>(i)].name;
-    for (int t = 0; t < plan.trajectories(); ++t) starts.insert(plan.start_name(state, t));
-  }
-  std::vector<Index> kept;
-  ParameterErrors result;
-  for (std::size_t k = 0; k < errors.names.size(); ++k) {
-    if (starts.contains(errors.names[k])) continue;
-    kept.push_back(static_cast<Index>(k));
-    result.names.push_back(errors.names[k]);
-  }
-  result.covariance = errors.covariance(kept, kept);
-  return result;
-}
-
-/// The outer product of each row of half a difference joins the row's covariance.
-void widen(std::vector<MatrixXd>& covariances, const MatrixXd& above, const MatrixXd& below) {
-  for (std::size_t row = 0; row < covariances.size(); ++row) {
-    const auto at = static_cast<Index>(row);
-    const VectorXd half = 0.5 * (above.row(at) - below.row(at)).transpose();
-    covariances[row] += half * half.transpose();
-  }
-}
-
-SmoothedRecord smooth_at(const StateBlockModel& model, const Record& record,
-                         const std::map<std::string, double>& parameters,
-                         const SmoothingNoise& noise) {
+SmoothedRecord smooth(const StateBlockModel& model, const Record& record,
+                      const std::map<std::string, double>& parameters, const SmoothingNoise& noise,
+                      const ParameterErrors& errors) {
   const TrajectoryPlan& plan = model.plan();
   SmoothedRecord result;
   for (const int i : plan.integrated()) {
@@ -244,47 +302,8 @@ SmoothedRecord smooth_at(const StateBlockModel& model, const Record& record,
   };
   result.P.assign(record.length(), empty(result.states));
   result.Q.assign(record.length(), empty(result.noises));
-  Smoothing smoothing(model, record, xi, noise, result);
+  Smoothing smoothing(model, record, xi, noise, axes_on(plan, errors), result);
   for (const Segment& segment : record.segments()) smoothing.run(segment);
-  return result;
-}
-
-}  // namespace
-
-ParameterErrors errors_of(const Fit& fit) {
-  std::vector<Index> places;
-  ParameterErrors errors;
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    const Parameter& parameter = fit.parameters[k];
-    if (parameter.fixed || !(parameter.standard_error > 0.0)) continue;
-    if (!std::isfinite(parameter.standard_error)) continue;
-    places.push_back(static_cast<Index>(k));
-    errors.names.push_back(parameter.name);
-  }
-  errors.covariance = fit.covariance(places, places);
-  return errors;
-}
-
-SmoothedRecord smooth(const StateBlockModel& model, const Record& record,
-                      const std::map<std::string, double>& parameters, const SmoothingNoise& noise,
-                      const ParameterErrors& errors) {
-  SmoothedRecord result = smooth_at(model, record, parameters, noise);
-  const ParameterErrors acting = without_starts(errors, model.plan());
-  if (acting.names.empty()) return result;
-  const MatrixXd axes = axes_of(acting.covariance);
-  const auto moved = [&](const VectorXd& by) {
-    std::map<std::string, double> values = parameters;
-    for (Index k = 0; k < by.size(); ++k) {
-      values.at(acting.names[static_cast<std::size_t>(k)]) += by[k];
-    }
-    return smooth_at(model, record, values, noise);
-  };
-  for (Index axis = 0; axis < axes.cols(); ++axis) {
-    const SmoothedRecord above = moved(axes.col(axis));
-    const SmoothedRecord below = moved(-axes.col(axis));
-    widen(result.P, above.x, below.x);
-    widen(result.Q, above.w, below.w);
-  }
   return result;
 }
 

@@ -57,8 +57,9 @@ struct SmoothedRecord {
 /// parameter or an output's noise that is missing, for an input that is not finite, and where the
 /// filter can't go on, naming the row.
 /// With `errors` P and Q are those of x and w whose parameters are as uncertain as said, to first
-/// order: differences of the smoother along each axis of the errors, which takes two passes an
-/// axis. Initial states are not among them: the smoother has its own.
+/// order: what each axis of the errors does to the states goes along with them, by the derivatives
+/// of every step, with the gains as they are (which change only what the innovations do). Initial
+/// states are not among them: the smoother has its own.
 SmoothedRecord smooth(const StateBlockModel& model, const Record& record,
                       const std::map<std::string, double>& parameters, const SmoothingNoise& noise,
                       const ParameterErrors& errors = {});

@@ -34,17 +34,25 @@ struct Smoothed {
   Eigen::Matrix<double, NW, NW> Q;  // Q(k|N)
 };
 
-/// From k + 1 back to k, S 2.20 to 2.23; with x(1|1) and P(1|1) it is S 2.16 to 2.19, the second
-/// form of single-stage smoothing. Signs as in 2.20 and 2.21: 2.16 and 2.17 print a plus.
-///
+/// What sample k + 1 says of x and w at k: C_k and B_k of S 2.20 and 2.21, and what it leaves open.
+template <int NX, int NW = NX>
+struct SmootherGain {
+  static constexpr int N = states::together(NX, NW);
+  Eigen::Matrix<double, NX, N> transposed;  // [C_k' B_k']
+  Eigen::Matrix<double, N, N> W;            // W'W: covariance of (x, w) given x(k+1)
+
+  /// Of (x, w) at k, for a shift of x(k+1) from what was predicted.
+  Eigen::Vector<double, N> shift(const Eigen::Vector<double, NX>& ahead) const {
+    return states::product(transposed.transpose(), ahead);
+  }
+};
+
 /// The array [U_P Phi' U_P 0; U_Q Gamma' 0 U_Q] = Q [U+ V; 0 W] holds all of it: U+ is the root of
-/// P(k+1|k), [C_k' B_k'] = U+^-1 V, and W'W the covariance of (x, w) given x(k+1). So P(k|N) =
-/// P(k|k) - C_k (P(k+1|k) - P(k+1|N)) C_k' is a sum of two positive terms, without an inverse; what
-/// a singular P(k+1|k) (a state without noise) does not see is not corrected, as it must be.
+/// P(k+1|k), [C_k' B_k'] = U+^-1 V. What a singular P(k+1|k) (a state without noise) does not see
+/// is not corrected, as it must be.
 template <int NX, int NW>
-Smoothed<NX, NW> smooth_stage(const Stage<NX, NW>& stage, const Eigen::Vector<double, NX>& x_next,
-                              const Eigen::Matrix<double, NX, NX>& P_next) {
-  constexpr int N = states::together(NX, NW);
+SmootherGain<NX, NW> smoother_gain(const Stage<NX, NW>& stage) {
+  constexpr int N = SmootherGain<NX, NW>::N;
   constexpr int all = states::together(NX, N);
   using Array = Eigen::Matrix<double, all, all>;
   const Eigen::Index n_x = stage.next.Phi.rows();
@@ -61,26 +69,46 @@ Smoothed<NX, NW> smooth_stage(const Stage<NX, NW>& stage, const Eigen::Vector<do
   states::absorb_rows(T, rows, static_cast<double>(n) * states::rounding);
 
   const Eigen::Matrix<double, NX, NX> root = T.template topLeftCorner<NX, NX>(n_x, n_x);
-  const Eigen::Matrix<double, NX, N> gains =
-      states::solve_upper<NX, N>(root, T.template topRightCorner<NX, N>(n_x, n));
-  const Eigen::Matrix<double, N, N> W = T.template bottomRightCorner<N, N>(n, n);
+  return {states::solve_upper<NX, N>(root, T.template topRightCorner<NX, N>(n_x, n)),
+          T.template bottomRightCorner<N, N>(n, n)};
+}
+
+/// From k + 1 back to k, S 2.20 to 2.23; with x(1|1) and P(1|1) it is S 2.16 to 2.19, the second
+/// form of single-stage smoothing. Signs as in 2.20 and 2.21: 2.16 and 2.17 print a plus. P(k|N) =
+/// P(k|k) - C_k (P(k+1|k) - P(k+1|N)) C_k' is a sum of two positive terms, without an inverse.
+template <int NX, int NW>
+Smoothed<NX, NW> smooth_stage(const Stage<NX, NW>& stage, const SmootherGain<NX, NW>& gain,
+                              const Eigen::Vector<double, NX>& x_next,
+                              const Eigen::Matrix<double, NX, NX>& P_next) {
+  constexpr int N = SmootherGain<NX, NW>::N;
+  const Eigen::Index n_x = stage.next.Phi.rows();
+  const Eigen::Index n_w = stage.next.Q_d.rows();
   const Eigen::Matrix<double, N, N> covariance =
-      states::product(W.transpose(), W) + states::product(gains.transpose(), P_next, gains);
-  const Eigen::Vector<double, N> shift = states::product(gains.transpose(), x_next - stage.next.x);
+      states::product(gain.W.transpose(), gain.W) +
+      states::product(gain.transposed.transpose(), P_next, gain.transposed);
+  const Eigen::Vector<double, N> shift = gain.shift(x_next - stage.next.x);
   return {stage.filtered.x + shift.template topRows<NX>(n_x),
           covariance.template topLeftCorner<NX, NX>(n_x, n_x), shift.template bottomRows<NW>(n_w),
           covariance.template bottomRightCorner<NW, NW>(n_w, n_w)};
 }
+template <int NX, int NW>
+Smoothed<NX, NW> smooth_stage(const Stage<NX, NW>& stage, const Eigen::Vector<double, NX>& x_next,
+                              const Eigen::Matrix<double, NX, NX>& P_next) {
+  return smooth_stage(stage, smoother_gain(stage), x_next, P_next);
+}
 
-/// All stages, S 2.20 to 2.23: smoothed[k] for k = N ... 0. Both spans have the same length. Of the
-/// last sample x(N|N), and w = 0 with Q_d: nothing later was measured.
+/// Of the last sample, x(N|N), and w = 0 with Q_d: nothing later was measured.
+template <int NX, int NW>
+Smoothed<NX, NW> smooth_last(const Stage<NX, NW>& last) {
+  return {last.filtered.x, last.filtered.covariance(),
+          Eigen::Vector<double, NW>::Zero(last.next.Q_d.rows()), last.next.Q_d};
+}
+
+/// All stages, S 2.20 to 2.23: smoothed[k] for k = N ... 0. Both spans have the same length.
 template <int NX, int NW>
 void smooth(std::span<const Stage<NX, NW>> pass, std::span<Smoothed<NX, NW>> smoothed) {
   if (pass.empty()) return;
-  const Stage<NX, NW>& last = pass.back();
-  smoothed[pass.size() - 1] = {last.filtered.x, last.filtered.covariance(),
-                               Eigen::Vector<double, NW>::Zero(last.next.Q_d.rows()),
-                               last.next.Q_d};
+  smoothed[pass.size() - 1] = smooth_last(pass.back());
   for (std::size_t k = pass.size() - 1; k-- > 0;) {
     smoothed[k] = smooth_stage(pass[k], smoothed[k + 1].x, smoothed[k + 1].P);
   }
