@@ -173,7 +173,7 @@ class Smoothing {
     MatrixXd moved = MatrixXd::Zero(filter.x().size(), axes_.cols());
     for (std::size_t row = segment.first; row < segment.last; ++row) {
       update(row, filter, moved);
-      pass.push_back({{filter.estimate()}, moved, {}});
+      pass.push_back({{filter.estimate()}, moved, moved});
       Transition<Dynamic, Dynamic>& next = pass.back().stage.next;
       const bool last = row + 1 == segment.last;
       const double held = plan_.discrete() || last ? 1.0 : time_[row + 1] - time_[row];
