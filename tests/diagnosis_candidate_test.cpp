@@ -12,7 +12,6 @@
 #include "sepcal/composition.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 
 namespace diagnosis_candidate_test {
 
@@ -23,20 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-/// What diagnose() makes of a calibration and a flight. The calibration must outlive it.
-DiagnosedFit diagnosed_fit(const Calibration& calibration, const Flight& flight) {
-  const Probe& probe = *calibration.probe;
-  const Record record = probe.prepare(flight, false).record;
-  std::vector<EffectSetting> settings = calibration.options.effects;
-  const auto rows = with_effects(probe, record, settings, {}).prepared.record.segments();
-  return {.model = model_of(probe),
-          .kit = effect_kit(probe.name()),
-          .effects = settings,
-          .record = record,
-          .rows = rows,
-          .fit = calibration.fit};
-}
 
 /// What the model with the fit's effects and these predicts, less the measurements: rows x n_z.
 class Prediction {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flights_with_effects.hpp"
 
+#include "sepcal/flight/probe_effects.hpp"
+
 namespace sepcal::test {
 
 double field_strength() {
@@ -26,6 +28,19 @@ CalibrationOptions options_with(const std::vector<std::string>& effects) {
 Calibration calibrate_with(std::string_view probe, const SimulatedFlight& flight,
                            const std::vector<std::string>& effects) {
   return calibrate(make_probe_called(probe), make_flight(flight), options_with(effects));
+}
+
+DiagnosedFit diagnosed_fit(const Calibration& calibration, const Flight& flight) {
+  const Probe& probe = *calibration.probe;
+  const Record record = probe.prepare(flight, false).record;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  const auto rows = with_effects(probe, record, settings, {}).prepared.record.segments();
+  return {.model = model_of(probe),
+          .kit = effect_kit(probe.name()),
+          .effects = settings,
+          .record = record,
+          .rows = rows,
+          .fit = calibration.fit};
 }
 
 bool is_of_the_world(const std::string& effect) {

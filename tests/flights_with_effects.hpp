@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calibrated_flights.hpp"
+#include "sepcal/diagnosis.hpp"
 #include "sepcal/effect_name.hpp"
 
 namespace sepcal::test {
@@ -70,6 +71,9 @@ CalibrationOptions options_with(const std::vector<std::string>& effects);
 
 Calibration calibrate_with(std::string_view probe, const SimulatedFlight& flight,
                            const std::vector<std::string>& effects);
+
+/// What diagnose() makes of a calibration and a flight. The calibration must outlive it.
+DiagnosedFit diagnosed_fit(const Calibration& calibration, const Flight& flight);
 
 /// Effects on the world or on the navigation, which a perfect sensor has as well.
 bool is_of_the_world(const std::string& effect);

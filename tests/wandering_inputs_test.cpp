@@ -110,7 +110,7 @@ TEST_CASE("the ratio is that of the dense covariance") {
                             dense_likelihood(flight, columns, fit.residual);
     CAPTURE(time);
     CHECK(expected > 1.0);
-    CHECK(inputs.ratio(added) == Approx(expected).epsilon(0.15));
+    CHECK(inputs.compare(added).ratio() == Approx(expected).epsilon(0.15));
   }
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("in white noise the ratio of a driven column is nearly least squares'"
   const MatrixXd added = diagnosis::orthonormal_basis(diagnosis::remove_span(basis, G));
   const VectorXd left = fit.residual - added * (added.transpose() * fit.residual);
   const double expected = 2.0 * rows * std::log(fit.residual.squaredNorm() / left.squaredNorm());
-  CHECK(diagnosis::WanderingInputs(diagnosis::TangentBasis(fit)).ratio(added) ==
+  CHECK(diagnosis::WanderingInputs(diagnosis::TangentBasis(fit)).compare(added).ratio() ==
         Approx(expected).epsilon(0.03));
 }
 
@@ -140,14 +140,15 @@ TEST_CASE("a heading that wanders is seldom taken for one that is off") {
       Draws draws(seed);
       const diagnosis::LinearisedFit fit = flight.fit(flight.draw(draws, time));
       const diagnosis::WanderingInputs inputs{diagnosis::TangentBasis(fit)};
-      std::vector<double> ratios = inputs.draw_ratios(added, 60, seed);
+      std::vector<double> ratios =
+          inputs.draw_ratios(added, diagnosis::WanderingInputs::Noise::without, 60, seed);
       std::ranges::sort(ratios);
       const double factor = ratios.empty()
                                 ? 1.0
                                 : std::max({1.0, ratios[30] / numerics::chi_squared_point(0.5, 1),
                                             ratios[54] / numerics::chi_squared_point(0.1, 1)});
       const double point = numerics::chi_squared_point(0.05, 1);
-      found += inputs.ratio(added) / factor > point;
+      found += inputs.compare(added).ratio() / factor > point;
       const double square = added.col(0).dot(fit.residual);
       found_in_white += square * square > point * fit.residual.squaredNorm() / (2.0 * rows);
     }

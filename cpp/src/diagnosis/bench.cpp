@@ -23,7 +23,9 @@ bool may_be_slow(const Trial& trial, double threshold) {
 
 Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool)
     : fitted_(fitted), options_(options), pool_(pool), room_(fitted, pool) {
-  if (!is_exact()) null_ = find_null(room_.fit());
+  if (is_exact()) return;
+  room_.add_wandering();
+  null_ = find_null(room_.fit());
 }
 
 void Bench::report_progress(std::string_view task, double fraction) const {

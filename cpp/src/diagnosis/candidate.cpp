@@ -88,6 +88,9 @@ CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
       effects_(make_effects(fitted.kit, *fitted.model, settings_, record_)),
       values_(fitted.fit.by_name()) {
   linearise(fitted.fit, pool);
+}
+
+void CandidateRoom::add_wandering() {
   linearisation_.wandering = wandering_columns();
   if (linearisation_.wandering.cols() > 0) linearisation_.times = times();
 }

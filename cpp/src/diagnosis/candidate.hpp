@@ -46,6 +46,9 @@ class CandidateRoom {
   /// Evaluates the fit. Throws Error for a fit whose parameters are not those of its model.
   CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool);
 
+  /// Adds to fit() what corrections of inputs that may wander do to the outputs.
+  void add_wandering();
+
   const LinearisedFit& fit() const { return linearisation_; }
   const Record& record() const { return record_; }
   const std::vector<Segment>& rows() const { return fitted_.rows; }

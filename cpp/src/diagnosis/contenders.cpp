@@ -13,15 +13,17 @@
 namespace sepcal::diagnosis {
 namespace {
 
-constexpr std::size_t most_fitted = 8;
-constexpr std::size_t most_pairs = 12;
-constexpr double worth_a_fit = 0.01;     // p, of what was not found
-constexpr double hardly_worse = 2.0;     // in the criterion
-constexpr std::size_t most_beside = 12;  // asked beside the first
-constexpr double counts_below = 0.01;    // p beside the first, over their number
-
 using Eigen::Index;
 using Eigen::MatrixXd;
+
+constexpr std::size_t most_fitted = 8;
+constexpr std::size_t most_pairs = 12;
+constexpr double worth_a_fit = 0.01;             // p, of what was not found
+constexpr std::size_t most_fitted_rows = 20000;  // the rest by a step
+constexpr double hardly_worse = 2.0;             // in the criterion
+constexpr std::size_t most_beside = 12;          // asked beside the first
+constexpr double counts_below = 0.01;            // p beside the first, over their number
+
 using Findings = std::vector<EffectFinding>;
 
 struct Asked {
@@ -80,8 +82,8 @@ NoiseMembers noise_beside(const Bench& bench, const std::vector<Asked>& asked) {
   return bench.null().test->compare(span_beyond(bench.null().basis, columns)).with.noise;
 }
 
-/// -2 ln L of a fit in a noise that is known, but for a constant; minus infinity where it leaves
-/// nothing of an output.
+/// -2 ln L in a noise that is known, but for a constant, one step from a fit; minus infinity where
+/// that leaves nothing of an output.
 double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
                                 const DiagnosedFit& fitted) {
   base::ThreadPool alone(1);
@@ -118,7 +120,7 @@ std::vector<Contender> fit_all(const Bench& bench, const NoiseMembers& noise,
     Contender& contender = contenders[i];
     contender.name = candidate.name;
     try {
-      contender.fit = refit_with(bench.room(), candidate, shape);
+      contender.fit = refit_nearly(bench.room(), candidate, shape, most_fitted_rows);
       contender.minus_two_log_likelihood = minus_two_log_likelihood(
           bench, noise, with_candidate(bench.fitted(), candidate, contender.fit));
       contender.criterion =

@@ -126,10 +126,18 @@ NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
     ratios.own[k] =
         std::max(0.0, nulls_[k].minus_two_log_likelihood - with[k].minus_two_log_likelihood);
   }
-  ratios.joint = std::max(0.0, least(nulls_) - least(with));
+  double null = least(nulls_);
+  double least_with = least(with);
+  if (!inputs_.is_empty()) {
+    const WanderingInputs::Likelihoods of_inputs = inputs_.compare(added);
+    ratios.of_inputs = of_inputs.ratio();
+    ratios.inputs_wander = of_inputs.with < least_with;
+    null = std::min(null, of_inputs.null);
+    least_with = std::min(least_with, of_inputs.with);
+  }
+  ratios.joint = std::max(0.0, null - least_with);
   const bool second = with[1].minus_two_log_likelihood < with[0].minus_two_log_likelihood;
   ratios.with = std::move(with[second ? 1 : 0]);
-  if (!inputs_.is_empty()) ratios.of_inputs = inputs_.ratio(added);
   return ratios;
 }
 
@@ -196,10 +204,13 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     return enlargement(std::move(drawn), static_cast<int>(reduced_added.cols()));
   };
   const auto freedom = static_cast<int>(added.cols());
+  const auto enlarge_by_inputs = [&](WanderingInputs::Noise noise) {
+    return enlargement(inputs_.draw_ratios(added, noise, draws, seed), freedom);
+  };
   NoiseTails result{-infinity, 0.0};
   if (!inputs_.is_empty()) {
-    const double factor = enlargement(inputs_.draw_ratios(added, draws, seed), freedom);
-    result.either = log10_tail(ratios.of_inputs / factor, freedom);
+    result.either =
+        log10_tail(ratios.of_inputs / enlarge_by_inputs(WanderingInputs::Noise::without), freedom);
   }
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
     MatrixXd white = subtract(layout, fit_.residual, basis_, nulls_[k].coefficients);
@@ -207,7 +218,9 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     const double factor = enlarge(nulls_[k], cap_sizes(layout, white).cwiseMin(largest), k);
     result.either = std::max(result.either, log10_tail(ratios.own[k] / factor, freedom));
   }
-  result.beside = log10_tail(ratios.joint / enlarge(ratios.with, beside_sizes, 2), freedom);
+  const double factor = ratios.inputs_wander ? enlarge_by_inputs(WanderingInputs::Noise::beside)
+                                             : enlarge(ratios.with, beside_sizes, 2);
+  result.beside = log10_tail(ratios.joint / factor, freedom);
   return result;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Is a candidate more than noise? A likelihood ratio in each of two families of noise of the
-// outputs (and in one of the inputs, where these wander), and one in the union of the two, each
+// outputs (and in one of the inputs, where these wander), and one in the union of all, each
 // held against draws of the noise that it must not be mistaken for: of either family as the record
 // has it without the candidate, and with it. A wandering noise that is no member of one family is
 // one of the other; and draws of the noise beside the candidate know what noise is there once the
@@ -39,8 +39,9 @@ class NoiseTest {
   struct Ratios {
     std::array<double, 2> own = {};  // of noise::noise_families
     double of_inputs = infinity;     // beside inputs that wander; infinite where none do
-    double joint = 0.0;              // of their union
-    FamilyFit with = {};             // of the columns [basis, added], in the union
+    double joint = 0.0;              // of the union of all
+    FamilyFit with = {};             // of the columns [basis, added], in the union of those two
+    bool inputs_wander = false;      // beside the columns noise of inputs is the likeliest
   };
   Ratios compare(const Columns& added) const;
 

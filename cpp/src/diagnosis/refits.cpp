@@ -14,6 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr std::size_t most_held_in = 20000;  // rows that others are predicted from
+
 /// Rows [first, last) of the layout as segments of the record.
 void append_rows(const CandidateRoom& room, Index first, Index last, std::vector<Segment>& rows) {
   const std::vector<Segment>& layout = room.fit().layout.segments;
@@ -25,6 +27,22 @@ void append_rows(const CandidateRoom& room, Index first, Index last, std::vector
     const std::size_t shift = whole.first - layout[i].first;
     rows.push_back({whole.label, begin + shift, end + shift});
   }
+}
+
+/// About so many rows in blocks that lie evenly over every segment; all where there are no more.
+std::vector<Segment> spread(const std::vector<Segment>& segments, std::size_t most) {
+  constexpr std::size_t block = 200;
+  std::size_t rows = 0;
+  for (const Segment& segment : segments) rows += segment.rows();
+  if (rows <= most) return segments;
+  const std::size_t apart = block * rows / most;  // from a block's first row to the next one's
+  std::vector<Segment> blocks;
+  for (const auto& [label, begin, end] : segments) {
+    for (std::size_t first = begin; first < end; first += apart) {
+      blocks.push_back({label, first, std::min(first + block, end)});
+    }
+  }
+  return blocks;
 }
 
 /// What a fit to some of the rows takes from the fit to all of them.
@@ -78,7 +96,7 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
     }
   }
   Record rows = room.record();
-  rows.cut(others);
+  rows.cut(spread(others, most_held_in));
   const Fit fitted = fit(model, rows, options);
   base::ThreadPool alone(1);
   VectorXd squares(static_cast<Index>(left_out.size()));
@@ -99,9 +117,14 @@ double shape_of(const EffectFinding& finding) {
 }
 
 Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape) {
+  return refit_nearly(room, candidate, shape, room.record().length());
+}
+
+Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double shape,
+                 std::size_t most_rows) {
   const auto with = room.model_with(candidate.effects);
   Record rows = room.record();
-  rows.cut(room.rows());
+  rows.cut(spread(room.rows(), most_rows));
   return fit(*with, rows,
              with_candidate(options_from(room.fitted()), with->tables(), candidate, shape));
 }
@@ -119,7 +142,7 @@ HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate
   std::vector<VectorXd> after(count);
   try {
     Record rows = room.record();
-    rows.cut(room.rows());
+    rows.cut(spread(room.rows(), most_held_in));
     extended = start_from(extended, fit(*with, rows, extended));
     pool.for_each(2 * count, [&](std::size_t task) {
       const std::size_t f = task / 2;

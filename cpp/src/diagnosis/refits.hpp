@@ -14,8 +14,14 @@ double shape_of(const EffectFinding& finding);
 /// The fit of the model with the candidate to all rows, from the estimates without it.
 Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape);
 
+/// The same to about `most_rows` where there are more, in blocks that lie evenly over every
+/// segment: one step from the fit to all rows, as linearised there.
+Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double shape,
+                 std::size_t most_rows);
+
 /// Fits the model with and without the candidate to all folds but one, from the estimates on all
-/// rows and within the fit's bounds, and predicts the rows left out. Not judged where a fit fails.
+/// rows and within the fit's bounds, and predicts the rows left out; of long records to some of the
+/// rows, spread evenly. Not judged where a fit fails.
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
                            const Folds& folds, base::ThreadPool& pool);
 

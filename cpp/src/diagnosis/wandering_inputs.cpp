@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/wandering_inputs.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index knots = 16;
+constexpr Index knots = 64;  // what wanders between them is taken for noise of the outputs
 
 /// Of a correction's size, over that of the white noise.
 constexpr std::array variances{0.01, 0.03, 0.09, 0.27, 0.81, 2.4, 7.3, 22.0, 66.0, 200.0};
@@ -20,16 +22,25 @@ constexpr std::array variances{0.01, 0.03, 0.09, 0.27, 0.81, 2.4, 7.3, 22.0, 66.
 /// Correlation times, over the record's.
 constexpr std::array shares{0.02, 0.06, 0.2, 0.6, 2.0};
 
-/// The inverse covariance of a Gauss-Markov process of unit variance at the knots: tridiagonal.
-MatrixXd inverse_covariance(double correlation) {
-  const double innovation = 1.0 - correlation * correlation;
-  MatrixXd inverse = MatrixXd::Zero(knots, knots);
-  for (Index i = 0; i < knots; ++i) {
-    const bool inner = i > 0 && i + 1 < knots;
-    inverse(i, i) = (inner ? 1.0 + correlation * correlation : 1.0) / innovation;
-    if (i > 0) inverse(i, i - 1) = inverse(i - 1, i) = -correlation / innovation;
+/// Adds the inverse covariance of Gauss-Markov processes of this variance at the knots, one a
+/// correction, side by side at each knot.
+void add_inverse_covariance(double correlation, double variance, Index corrections, MatrixXd& to) {
+  const double innovation = variance * (1.0 - correlation * correlation);
+  for (Index i = 0; i < to.rows(); ++i) {
+    const bool inner = i >= corrections && i + corrections < to.rows();
+    to(i, i) += (inner ? 1.0 + correlation * correlation : 1.0) / innovation;
+    if (i < corrections) continue;
+    to(i, i - corrections) -= correlation / innovation;
+    to(i - corrections, i) -= correlation / innovation;
   }
-  return inverse;
+}
+
+/// Of a banded matrix, positive definite; its own order keeps the band.
+Eigen::SparseMatrix<double> cholesky(const MatrixXd& banded) {
+  const Eigen::SparseMatrix<double> sparse = banded.sparseView();
+  return Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower,
+                              Eigen::NaturalOrdering<int>>(sparse)
+      .matrixL();
 }
 
 /// ln of the sum of squares that the last of the columns keeps beside the others, by their
@@ -42,15 +53,40 @@ double log_left(const MatrixXd& products) {
 
 }  // namespace
 
-WanderingInputs::WanderingInputs(const TangentBasis& tangent)
-    : fit_(tangent.fit()), basis_(tangent.columns()) {
+WanderingInputs::WanderingInputs(const TangentBasis& tangent) : fit_(tangent.fit()) {
   const double square_sum = fit_.wandering.squaredNorm();
   if (!(square_sum > 0.0)) return;
+  find_loudness();
+  basis_ = by_loudness(tangent.columns());
+  residual_ = by_loudness(view(fit_.residual)).dense(fit_.layout);
   scale_ = std::sqrt(static_cast<double>(fit_.wandering.rows()) / square_sum);
   const auto [first, last] = std::ranges::minmax(fit_.times);
   first_ = first;
   span_ = last - first;
   add_members();
+}
+
+/// Neighbours differ by the white noise of both.
+void WanderingInputs::find_loudness() {
+  constexpr double least = 1e-3;  // of the residual's rms, which is one
+  const RowLayout& layout = fit_.layout;
+  loudness_.resize(static_cast<Index>(layout.outputs.size()));
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const auto rows = fit_.residual.segment(layout.first(j), layout.rows);
+    const Index pairs = layout.rows - 1;
+    const double square = (rows.tail(pairs) - rows.head(pairs)).squaredNorm();
+    loudness_[static_cast<Index>(j)] =
+        std::max(least, std::sqrt(0.5 * square / static_cast<double>(pairs)));
+  }
+  loudness_ /= std::exp(loudness_.array().log().mean());
+}
+
+Columns WanderingInputs::by_loudness(const Columns& columns) const {
+  return {columns.cols(), [columns, loudness = loudness_, N = fit_.layout.rows](
+                              Index first, Eigen::Ref<MatrixXd> rows) {
+            columns.fill(first, rows);
+            rows /= loudness[first / N];
+          }};
 }
 
 void WanderingInputs::add_members() {
@@ -59,27 +95,29 @@ void WanderingInputs::add_members() {
   const double step = span_ / static_cast<double>(knots - 1);
   for (const double share : shares) {
     const double correlation = std::exp(-step / (share * span_));
-    const MatrixXd one = inverse_covariance(correlation);
     const double log_knots =
         static_cast<double>((knots - 1) * corrections()) * std::log1p(-correlation * correlation);
     for (const double variance : variances) {
       Member member{.correlation = correlation, .variance = variance};
       MatrixXd after = seen;
-      for (Index k = 0; k < corrections(); ++k) {
-        after.block(k * knots, k * knots, knots, knots) += one / variance;
-      }
-      member.factor.compute(after);
-      const MatrixXd L = member.factor.matrixL();
-      member.log_determinant = 2.0 * L.diagonal().array().log().sum() + log_knots +
+      add_inverse_covariance(correlation, variance, corrections(), after);
+      member.L = cholesky(after);
+      member.log_determinant = 2.0 * VectorXd(member.L.diagonal()).array().log().sum() + log_knots +
                                static_cast<double>(after.rows()) * std::log(variance);
-      member.known = L.triangularView<Eigen::Lower>().solve(known);
+      member.known = member.solve(known);
       members_.push_back(std::move(member));
     }
   }
 }
 
+MatrixXd WanderingInputs::Member::solve(MatrixXd gathered) const {
+  L.triangularView<Eigen::Lower>().solveInPlace(gathered);
+  return gathered;
+}
+
 WanderingInputs::Fixed WanderingInputs::fix(const Columns& added) const {
-  Fixed fixed{.columns = join(added, basis_), .gathered = gather(added)};
+  const Columns quiet = by_loudness(added);
+  Fixed fixed{.columns = join(quiet, basis_), .gathered = gather(quiet)};
   const Index count = fixed.columns.cols();
   fixed.squares = MatrixXd::Zero(count, count);
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
@@ -89,7 +127,7 @@ WanderingInputs::Fixed WanderingInputs::fix(const Columns& added) const {
   return fixed;
 }
 
-std::vector<WanderingInputs::Likelihoods> WanderingInputs::evaluate(
+std::vector<WanderingInputs::Found> WanderingInputs::evaluate(
     const Fixed& fixed, const Eigen::Ref<const MatrixXd>& residuals) const {
   const Index p = basis_.cols();
   const Index count = fixed.columns.cols();
@@ -100,7 +138,7 @@ std::vector<WanderingInputs::Likelihoods> WanderingInputs::evaluate(
         fixed.columns.rows(first, panel).transpose() * residuals.middleRows(first, panel);
   });
   const MatrixXd of_residuals = gather(view(residuals));
-  std::vector<Likelihoods> found(static_cast<std::size_t>(residuals.cols()));
+  std::vector<Found> found(static_cast<std::size_t>(residuals.cols()));
   const auto offer = [&](const Member* member, const MatrixXd& taken, const MatrixXd& of_each) {
     MatrixXd left(count + 1, count + 1);
     left.topLeftCorner(count, count) = fixed.squares - taken.transpose() * taken;
@@ -108,29 +146,28 @@ std::vector<WanderingInputs::Likelihoods> WanderingInputs::evaluate(
       left.col(count).head(count) = products.col(i) - taken.transpose() * of_each.col(i);
       left.row(count).head(count) = left.col(count).head(count).transpose();
       left(count, count) = residuals.col(i).squaredNorm() - of_each.col(i).squaredNorm();
-      const double constant = member == nullptr ? 0.0 : member->log_determinant;
-      Likelihoods& best = found[static_cast<std::size_t>(i)];
+      const double constant =
+          (member == nullptr ? 0.0 : member->log_determinant) - rows * std::log(rows);
+      Found& best = found[static_cast<std::size_t>(i)];
       const double null = constant + rows * log_left(left.bottomRightCorner(p + 1, p + 1));
-      best.with = std::min(best.with, constant + rows * log_left(left));
-      if (!(null < best.null)) continue;
-      best.null = null;
-      best.likeliest = member;
+      const double with = constant + rows * log_left(left);
+      if (null < best.null) best.without = member;
+      if (with < best.with) best.beside = member;
+      best.null = std::min(best.null, null);
+      best.with = std::min(best.with, with);
     }
   };
   offer(nullptr, MatrixXd::Zero(1, count), MatrixXd::Zero(1, residuals.cols()));
   for (const Member& member : members_) {
-    const MatrixXd L = member.factor.matrixL();
-    const auto lower = L.triangularView<Eigen::Lower>();
-    MatrixXd taken(L.rows(), count);
-    taken << lower.solve(fixed.gathered), member.known;
-    offer(&member, taken, lower.solve(of_residuals));
+    MatrixXd taken(of_residuals.rows(), count);
+    taken << member.solve(fixed.gathered), member.known;
+    offer(&member, taken, member.solve(of_residuals));
   }
   return found;
 }
 
-double WanderingInputs::ratio(const Columns& added) const {
-  const Likelihoods found = evaluate(fix(added), fit_.residual).front();
-  return std::max(0.0, found.null - found.with);
+WanderingInputs::Likelihoods WanderingInputs::compare(const Columns& added) const {
+  return evaluate(fix(added), residual_).front();
 }
 
 VectorXd WanderingInputs::draw(const Member& member, std::mt19937_64& generator) const {
@@ -138,73 +175,70 @@ VectorXd WanderingInputs::draw(const Member& member, std::mt19937_64& generator)
   VectorXd sizes(knots * corrections());
   for (Index i = 0; i < sizes.size(); ++i) {
     const double innovation = std::sqrt(member.variance) * normal(generator);
-    sizes[i] = i % knots == 0
+    sizes[i] = i < corrections()
                    ? innovation
-                   : member.correlation * sizes[i - 1] +
+                   : member.correlation * sizes[i - corrections()] +
                          std::sqrt(1.0 - member.correlation * member.correlation) * innovation;
   }
   VectorXd drawn(fit_.layout.count());
+  Weights at;
   for (Index row = 0; row < drawn.size(); ++row) {
-    const Place at = place(row);
-    drawn[row] = normal(generator);
-    for (Index k = 0; k < corrections(); ++k) {
-      drawn[row] += slope(row, k) * at.hats.dot(sizes.segment<2>(k * knots + at.knot));
-    }
+    weigh(row, at);
+    drawn[row] = normal(generator) + at.of.dot(sizes.segment(at.first, at.of.size()));
   }
   return drawn;
 }
 
-std::vector<double> WanderingInputs::draw_ratios(const Columns& added, int draws,
+std::vector<double> WanderingInputs::draw_ratios(const Columns& added, Noise noise, int draws,
                                                  std::uint64_t seed) const {
   constexpr int most_at_once = 8;  // in memory
   const Fixed fixed = fix(added);
-  const Member* likeliest = evaluate(fixed, fit_.residual).front().likeliest;
+  const Found own = evaluate(fixed, residual_).front();
+  const Member* likeliest = noise == Noise::without ? own.without : own.beside;
   std::vector<double> ratios;
   if (likeliest == nullptr) return ratios;
   std::mt19937_64 generator(seed);
   for (int done = 0; done < draws; done += most_at_once) {
     MatrixXd residuals(fit_.layout.count(), std::min(most_at_once, draws - done));
     for (auto residual : residuals.colwise()) residual = draw(*likeliest, generator);
-    for (const Likelihoods& found : evaluate(fixed, residuals)) {
-      ratios.push_back(std::max(0.0, found.null - found.with));
-    }
+    for (const Found& found : evaluate(fixed, residuals)) ratios.push_back(found.ratio());
   }
   return ratios;
 }
 
-WanderingInputs::Place WanderingInputs::place(Index row) const {
+void WanderingInputs::weigh(Index row, Weights& weights) const {
   const double time = fit_.times[static_cast<std::size_t>(row % fit_.layout.rows)];
   const double at = (time - first_) * (static_cast<double>(knots - 1) / span_);
   const Index knot = std::min(static_cast<Index>(at), knots - 2);
   const double after = at - static_cast<double>(knot);
-  return {knot, {1.0 - after, after}};
+  const auto slopes =
+      scale_ / loudness_[row / fit_.layout.rows] * fit_.wandering.row(row).transpose();
+  weights.first = knot * corrections();
+  weights.of.resize(2 * corrections());
+  weights.of << (1.0 - after) * slopes, after * slopes;
 }
 
 MatrixXd WanderingInputs::gather(const Columns& columns) const {
   MatrixXd sums = MatrixXd::Zero(knots * corrections(), columns.cols());
+  Weights at;
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
     const MatrixXd panel = columns.rows(first, rows);
     for (Index row = 0; row < rows; ++row) {
-      const Place at = place(first + row);
-      for (Index k = 0; k < corrections(); ++k) {
-        sums.middleRows<2>(k * knots + at.knot) += slope(first + row, k) * at.hats * panel.row(row);
-      }
+      weigh(first + row, at);
+      sums.middleRows(at.first, at.of.size()).noalias() += at.of * panel.row(row);
     }
   });
   return sums;
 }
 
 MatrixXd WanderingInputs::square() const {
-  const Index k = corrections();
-  MatrixXd sums = MatrixXd::Zero(knots * k, knots * k);
+  const Index sizes = knots * corrections();
+  MatrixXd sums = MatrixXd::Zero(sizes, sizes);
+  Weights at;
   for (Index row = 0; row < fit_.wandering.rows(); ++row) {
-    const Place at = place(row);
-    for (Index a = 0; a < k; ++a) {
-      for (Index b = 0; b < k; ++b) {
-        sums.block<2, 2>(a * knots + at.knot, b * knots + at.knot) +=
-            slope(row, a) * slope(row, b) * at.hats * at.hats.transpose();
-      }
-    }
+    weigh(row, at);
+    sums.block(at.first, at.first, at.of.size(), at.of.size()).noalias() +=
+        at.of * at.of.transpose();
   }
   return sums;
 }

@@ -3,11 +3,13 @@
 // The third family of noise: white outputs beside corrections whose sizes are Gauss-Markov
 // processes of one strength and one correlation time. It is joint over the outputs, for one error
 // of the heading is in all of them; its covariance is the identity and a part of low rank, by
-// Woodbury's identity.
+// Woodbury's identity. How loud the outputs are beside each other is told by neighbouring rows,
+// from which nothing has wandered.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -24,30 +26,42 @@ class WanderingInputs {
 
   bool is_empty() const { return members_.empty(); }
 
-  /// Twice the logarithm of the likelihood ratio, not negative, for columns that are orthonormal
-  /// and orthogonal to the basis: strength and time at their likeliest in either model.
-  double ratio(const Columns& added) const;
+  /// -2 ln L without and with columns, strength and time at their likeliest in either, as
+  /// noise::NoiseFamilies has it.
+  struct Likelihoods {
+    double null = infinity;
+    double with = infinity;
 
-  /// The same of draws of the noise that is likeliest without the columns; none where that is
-  /// white.
-  std::vector<double> draw_ratios(const Columns& added, int draws, std::uint64_t seed) const;
+    /// Twice the logarithm of the ratio, not negative.
+    double ratio() const { return std::max(0.0, null - with); }
+  };
+  Likelihoods compare(const Columns& added) const;
+
+  /// In which noise a ratio is drawn.
+  enum class Noise { without, beside };  // likeliest without the columns, or with them
+
+  /// The ratio of draws of a noise; none where that is white.
+  std::vector<double> draw_ratios(const Columns& added, Noise noise, int draws,
+                                  std::uint64_t seed) const;
 
  private:
   /// One strength and correlation time.
   struct Member {
-    double correlation = 0.0;                 // of neighbouring knots
-    double variance = 0.0;                    // of a size, over the white noise's
-    Eigen::LLT<Eigen::MatrixXd> factor = {};  // of the knots' inverse covariance after the record
-    double log_determinant = 0.0;             // of the rows' covariance
-    Eigen::MatrixXd known = {};               // the factor's solution for the basis
+    double correlation = 0.0;         // of neighbouring knots
+    double variance = 0.0;            // of a size, over the white noise's
+    Eigen::SparseMatrix<double> L{};  // L L': the sizes' inverse covariance after the record
+    double log_determinant = 0.0;     // of the rows' covariance
+    Eigen::MatrixXd known = {};       // L^-1 of what is gathered of the basis
+
+    Eigen::MatrixXd solve(Eigen::MatrixXd gathered) const;  // L^-1 of it
   };
 
-  /// Where a row stands among the knots: the one before it, and the weights of that and the next.
-  struct Place {
-    Eigen::Index knot = 0;
-    Eigen::Vector2d hats = {};
+  /// A row of Z: sizes stand knot by knot, the corrections' side by side.
+  struct Weights {
+    Eigen::Index first = 0;   // size
+    Eigen::VectorXd of = {};  // the sizes at the knot before the row and at the next
   };
-  Place place(Eigen::Index row) const;
+  void weigh(Eigen::Index row, Weights& weights) const;
 
   /// Columns beside the basis, and what the likelihoods need of them.
   struct Fixed {
@@ -56,27 +70,29 @@ class WanderingInputs {
     Eigen::MatrixXd gathered = {};  // of the added
   };
 
-  /// -2 ln L without and with columns, at the likeliest members.
-  struct Likelihoods {
-    double null = infinity;
-    double with = infinity;
-    const Member* likeliest = nullptr;  // without them; null: white
+  /// With the members where they are likeliest; null: white.
+  struct Found : Likelihoods {
+    const Member* without = nullptr;
+    const Member* beside = nullptr;
   };
 
   Eigen::Index corrections() const { return fit_.wandering.cols(); }
-  double slope(Eigen::Index row, Eigen::Index k) const { return scale_ * fit_.wandering(row, k); }
 
   /// Z'X: Z interpolates sizes at the knots to the rows, times the slopes.
   Eigen::MatrixXd gather(const Columns& columns) const;
   Eigen::MatrixXd square() const;  // Z'Z
   void add_members();
   Fixed fix(const Columns& added) const;
-  std::vector<Likelihoods> evaluate(const Fixed& fixed,
-                                    const Eigen::Ref<const Eigen::MatrixXd>& residuals) const;
+  std::vector<Found> evaluate(const Fixed& fixed,
+                              const Eigen::Ref<const Eigen::MatrixXd>& residuals) const;
+  void find_loudness();
+  Columns by_loudness(const Columns& columns) const;
   Eigen::VectorXd draw(const Member& member, std::mt19937_64& generator) const;
 
   const LinearisedFit& fit_;
-  Columns basis_;
+  Eigen::VectorXd loudness_;  // of each output's white noise; their geometric mean is one
+  Columns basis_;             // over the loudness, as what follows
+  Eigen::VectorXd residual_;
   double scale_ = 1.0;  // makes all slopes' mean square one
   double first_ = 0.0;  // [s]
   double span_ = 0.0;   // [s]

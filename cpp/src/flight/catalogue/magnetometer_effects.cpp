@@ -54,6 +54,29 @@ Effect eddy_currents(const BlockModel& /*model*/, EffectSetting& setting, Record
   return effect(setting.name, effects::EddyCurrents{});
 }
 
+/// The logged angles less the true ones, small. Each turns the field about its own axis: roll's is
+/// body x, pitch's lies level across the heading, yaw's points down.
+struct AngleErrors {
+  static constexpr int corrected = 3;
+  static constexpr std::array inputs = composing::join(
+      effects::true_field, std::array{Quantity{"roll", "rad"}, Quantity{"pitch", "rad"}});
+  static constexpr std::array nonlinear{Quantity{"angle_errors.roll", "rad", -0.175, 0.175},
+                                        Quantity{"angle_errors.pitch", "rad", -0.175, 0.175},
+                                        Quantity{"angle_errors.yaw", "rad", -0.175, 0.175}};
+
+  template <class T>
+  Vec<T, 3> correct(const Vec<T, 5>& u, const Vec<T, 3>& error) const {
+    using std::cos;
+    using std::sin;
+    const Vec<T, 3> h = u.template head<3>();
+    const Vec<T, 3> level(T(0.0), cos(u[3]), -sin(u[3]));
+    const Vec<T, 3> down(-sin(u[4]), sin(u[3]) * cos(u[4]), cos(u[3]) * cos(u[4]));
+    const Vec<T, 3> turned =
+        error[1] * level + error[2] * down + Vec<T, 3>(error[0], T(0.0), T(0.0));
+    return h + turned.cross(h);
+  }
+};
+
 }  // namespace
 
 EffectTable magnetometer_effects() {
@@ -105,7 +128,7 @@ EffectTable magnetometer_effects() {
        .maker = maker_of(effects::AttitudeBias{})}};
   table.aliases = magnetic_aliases();
   table.channels = magnetic_channels();
-  table.wandering = {maker_of(effects::AttitudeBias{}), maker_of(effects::FieldDeclination{})};
+  table.wandering = {maker_of(AngleErrors{})};
   return table;
 }
 
