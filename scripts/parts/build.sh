@@ -24,11 +24,11 @@ configure_with_python() {
     -Dpybind11_DIR="$(.venv/bin/python -m pybind11 --cmakedir)"
 }
 
-# The jobs that the processors and the memory take, with 2 GB for each.
+# The jobs that the processors and the memory take, with 2.5 GB for each.
 count_jobs() {
   local kilobytes jobs
   kilobytes=$(awk '$1 == "MemAvailable:" { print $2 }' /proc/meminfo)
-  jobs=$((kilobytes / 2000000))
+  jobs=$((kilobytes / 2500000))
   echo $((jobs < 1 ? 1 : jobs < $(nproc) ? jobs : $(nproc)))
 }
 

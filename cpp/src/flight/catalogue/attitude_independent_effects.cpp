@@ -2,13 +2,13 @@
 // The effects on a magnetometer without attitude: those that show in the strength of the field. x
 // is a driver about its centre, s a coefficient, h the true field in body axes, C the sensor's
 // matrix.
+#include "flight/catalogue/effect_makers.hpp"
 #include "flight/catalogue/magnetic_rows.hpp"
 
 namespace sepcal::catalogue {
 namespace {
 
 constexpr double largest_field = 500.0;  // [uT] of a bias
-constexpr double largest_scale = 0.5;    // [1]
 
 }  // namespace
 

@@ -12,6 +12,7 @@ namespace sepcal::catalogue {
 
 inline constexpr double longest_offset = 0.5;      // [s] of a sensor's clock
 inline constexpr double longest_sensor_lag = 0.2;  // [s]
+inline constexpr double largest_scale = 0.5;       // of what is scaled
 
 /// An effect that is another one under its own name: `means` is "bias[step(time)]", `port` bias.
 EffectKit::Maker renamed(const std::string& means, const Port& port);

@@ -14,13 +14,13 @@
 namespace sepcal::catalogue {
 namespace {
 
-constexpr std::array<const char*, 3> field{"hx", "hy", "hz"};
-constexpr std::array<const char*, 3> field_rate{"hx_dot", "hy_dot", "hz_dot"};
+constexpr std::array<const char*, 3> field_names{"hx", "hy", "hz"};
+constexpr std::array<const char*, 3> field_rate_names{"hx_dot", "hy_dot", "hz_dot"};
 
 /// dh/dt in body axes: -w x h where the rates are logged, else from the field itself. Nothing where
 /// there is no field: who corrects a reading finds both.
 void derive_field_rate(Record& record) {
-  if (record.has(field_rate[0]) || !record.has(field[0])) return;
+  if (record.has(field_rate_names[0]) || !record.has(field_names[0])) return;
   std::array<std::vector<double>, 3> rate;
   for (std::vector<double>& column : rate) column.assign(record.length(), 0.0);
   const auto logged = [&](const char* rate_name) { return is_logged(record, rate_name); };
@@ -36,7 +36,7 @@ void derive_field_rate(Record& record) {
     }
   } else {
     for (std::size_t i = 0; i < 3; ++i) {
-      const numerics::InterpolatedColumn column(record, field[i]);
+      const numerics::InterpolatedColumn column(record, field_names[i]);
       for (const Segment& segment : record.segments()) {
         std::vector<NaturalSpline::Value> values(segment.rows());
         column.fill(segment.first, 0.0, values);
@@ -46,7 +46,7 @@ void derive_field_rate(Record& record) {
       }
     }
   }
-  for (std::size_t i = 0; i < 3; ++i) record.add(field_rate[i], std::move(rate[i]));
+  for (std::size_t i = 0; i < 3; ++i) record.add(field_rate_names[i], std::move(rate[i]));
 }
 
 Effect eddy_currents(const BlockModel& /*model*/, EffectSetting& setting, Record& record) {
@@ -84,7 +84,7 @@ EffectTable magnetometer_effects() {
   Port scale{"scale", "1", {{.name = "s"}}};
   Port axis_scale{"axis_scale", "1", {}};
   for (std::size_t i = 0; i < 3; ++i) {
-    const Varying::Share share{static_cast<int>(i), {field[i], "uT"}};
+    const Varying::Share share{static_cast<int>(i), {field_names[i], "uT"}};
     bias.components.push_back({.name = axes[i], .linear = std::string("n_") + axes[i]});
     scale.components.front().shares.push_back(share);
     axis_scale.components.push_back({.name = axes[i], .shares = {share}});

@@ -8,7 +8,6 @@ namespace sepcal::catalogue {
 namespace {
 
 constexpr double largest_wind = 200.0;  // [m/s]
-constexpr double largest_scale = 0.5;   // [1]
 constexpr double largest_speed = 50.0;  // [m/s] of a bias
 
 EffectKit::Maker temperature_error(const Port& airspeed_scale) {

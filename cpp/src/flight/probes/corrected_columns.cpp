@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::array axes{"x", "y", "z"};
-constexpr std::array field{"hx", "hy", "hz"};
+constexpr std::array field_names{"hx", "hy", "hz"};
 constexpr std::array field_rate{"hx_dot", "hy_dot", "hz_dot"};
 
 void check_invertible(const Matrix3d& C) {
@@ -105,7 +105,7 @@ void add_term(const ReadingEffects::Term& term, const Record& record, const Matr
   std::vector<int> moving;
   std::vector<std::pair<bool, Index>> axis_of;  // whether of the rate, and which
   for (const Variable& input : term.model->tables().inputs) {
-    const std::size_t axis = place_in(field, input.name);
+    const std::size_t axis = place_in(field_names, input.name);
     const std::size_t of_rate = place_in(field_rate, input.name);
     if (axis == 3 && of_rate == 3) {
       inputs.push_back(record.column(input.name).data());
