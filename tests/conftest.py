@@ -12,9 +12,12 @@ if importlib.util.find_spec("sepcal") is None:
 
 # Whole stories, each of many fits: read logs, write pages, start clusters, fly studies.
 LONG = {
+    "test_aircraft",
+    "test_aircraft_app",
     "test_attitude_independent",
     "test_bad_outputs",
     "test_diagnose_api",
+    "test_documented_runs",
     "test_documents",
     "test_effect_coverage",
     "test_fit_many_cluster",
@@ -22,10 +25,12 @@ LONG = {
     "test_interval_coverage",
     "test_monte_carlo",
     "test_monte_carlo_cluster",
+    "test_own_state_model",
     "test_recorded_probes",
     "test_report",
     "test_same_diagnoses",
     "test_studies",
+    "test_trust",
 }
 
 

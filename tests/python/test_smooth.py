@@ -251,6 +251,7 @@ def test_segments_are_smoothed_alone(fit: sepcal.Fit) -> None:
     assert np.isfinite(whole.x).all()
 
 
+@pytest.mark.long
 def test_measured_states_are_known(fit: sepcal.Fit) -> None:
     options = {"measured": ["q"], "outputs": ["alpha_m", "az_m"]}
     data = {**FLIGHT, "q": FLIGHT["q_m"] + 0.01}
