@@ -18,11 +18,10 @@ using Eigen::MatrixXd;
 
 constexpr std::size_t most_fitted = 8;
 constexpr std::size_t most_pairs = 12;
-constexpr double worth_a_fit = 0.01;             // p, of what was not found
-constexpr std::size_t most_fitted_rows = 20000;  // the rest by a step
-constexpr double hardly_worse = 2.0;             // in the criterion
-constexpr std::size_t most_beside = 12;          // asked beside the first
-constexpr double counts_below = 0.01;            // p beside the first, over their number
+constexpr double worth_a_fit = 0.01;     // p, of what was not found
+constexpr double hardly_worse = 2.0;     // in the criterion
+constexpr std::size_t most_beside = 12;  // asked beside the first
+constexpr double counts_below = 0.01;    // p beside the first, over their number
 
 using Findings = std::vector<EffectFinding>;
 
@@ -120,7 +119,7 @@ std::vector<Contender> fit_all(const Bench& bench, const NoiseMembers& noise,
     Contender& contender = contenders[i];
     contender.name = candidate.name;
     try {
-      contender.fit = refit_nearly(bench.room(), candidate, shape, most_fitted_rows);
+      contender.fit = refit_nearly(bench.room(), candidate, shape, enough_rows);
       contender.minus_two_log_likelihood = minus_two_log_likelihood(
           bench, noise, with_candidate(bench.fitted(), candidate, contender.fit));
       contender.criterion =

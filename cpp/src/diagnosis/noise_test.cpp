@@ -25,9 +25,9 @@ void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
   }
 }
 
-/// The least of both families.
-double least(const std::array<FamilyFit, 2>& fits) {
-  return std::min(fits[0].minus_two_log_likelihood, fits[1].minus_two_log_likelihood);
+/// Of both families.
+const FamilyFit& likeliest(const std::array<FamilyFit, 2>& fits) {
+  return *std::ranges::min_element(fits, {}, &FamilyFit::minus_two_log_likelihood);
 }
 
 /// Fewer rows: means of `stride` that follow each other in a run, or one in `stride`.
@@ -120,14 +120,16 @@ NoiseTest::NoiseTest(const TangentBasis& tangent, std::vector<int> orders)
       inputs_(tangent) {}
 
 NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
-  auto with = fit_families(families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+  const auto with =
+      fit_families(families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
   Ratios ratios;
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
     ratios.own[k] =
         std::max(0.0, nulls_[k].minus_two_log_likelihood - with[k].minus_two_log_likelihood);
   }
-  double null = least(nulls_);
-  double least_with = least(with);
+  ratios.with = likeliest(with);
+  double null = likeliest(nulls_).minus_two_log_likelihood;
+  double least_with = ratios.with.minus_two_log_likelihood;
   if (!inputs_.is_empty()) {
     const WanderingInputs::Likelihoods of_inputs = inputs_.compare(added);
     ratios.of_inputs = of_inputs.ratio();
@@ -136,8 +138,6 @@ NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
     least_with = std::min(least_with, of_inputs.with);
   }
   ratios.joint = std::max(0.0, null - least_with);
-  const bool second = with[1].minus_two_log_likelihood < with[0].minus_two_log_likelihood;
-  ratios.with = std::move(with[second ? 1 : 0]);
   return ratios;
 }
 

@@ -14,8 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t most_held_in = 20000;  // rows that others are predicted from
-
 /// Rows [first, last) of the layout as segments of the record.
 void append_rows(const CandidateRoom& room, Index first, Index last, std::vector<Segment>& rows) {
   const std::vector<Segment>& layout = room.fit().layout.segments;
@@ -96,7 +94,7 @@ VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOpt
     }
   }
   Record rows = room.record();
-  rows.cut(spread(others, most_held_in));
+  rows.cut(spread(others, enough_rows));
   const Fit fitted = fit(model, rows, options);
   base::ThreadPool alone(1);
   VectorXd squares(static_cast<Index>(left_out.size()));
@@ -142,7 +140,7 @@ HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate
   std::vector<VectorXd> after(count);
   try {
     Record rows = room.record();
-    rows.cut(spread(room.rows(), most_held_in));
+    rows.cut(spread(room.rows(), enough_rows));
     extended = start_from(extended, fit(*with, rows, extended));
     pool.for_each(2 * count, [&](std::size_t task) {
       const std::size_t f = task / 2;

@@ -8,6 +8,9 @@
 
 namespace sepcal::diagnosis {
 
+/// Rows that a fit of a long record needs, where one step or a prediction follows.
+inline constexpr std::size_t enough_rows = 20000;
+
 /// Where a scanned effect was found; NaN for others.
 double shape_of(const EffectFinding& finding);
 
