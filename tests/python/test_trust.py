@@ -74,6 +74,17 @@ def test_nothing_stands_in_for_an_effect_that_no_fit_takes():
     assert "alpha_offset[beta]: fitted, it runs into the bounds" in diagnosis.advice["withheld"][0]
 
 
+def test_nothing_is_advised_that_would_do_harm_were_another_the_cause():
+    """beta_offset[alpha] does as well as alpha_offset[beta], and took parameters 6 errors away."""
+    case = BY_LABEL["five-hole: alpha_offset[beta]"]
+    hide = {case.effect: case.sizes(size_for(case, 10.0))}
+    flight, _ = fly(case.probe, "white", 31000, case.rows, hide)
+    diagnosis = calibrate(case.probe, flight).diagnose()
+    assert {"alpha_offset[beta]", "beta_offset[alpha]"} <= set(diagnosis.explanations)
+    assert diagnosis.advice["effect"] != "beta_offset[alpha]"
+    assert any("would do as well, and has" in why for why in diagnosis.advice["withheld"])
+
+
 def test_what_would_do_as_well_instead_does_so():
     """In white noise -2 ln L is a sum of logarithms of RMSEs, whoever fits."""
     size = {"bias[current_a]": [0.03, -0.02, 0.03]}

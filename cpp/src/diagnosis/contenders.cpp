@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ranges>
+#include <span>
 #include <utility>
 
 #include "diagnosis/projection.hpp"
@@ -24,11 +25,6 @@ constexpr std::size_t most_beside = 12;  // asked beside the first
 constexpr double counts_below = 0.01;    // p beside the first, over their number
 
 using Findings = std::vector<EffectFinding>;
-
-struct Asked {
-  Candidate candidate;
-  double shape;
-};
 
 bool may_stand_first(const EffectFinding& finding) {
   return finding.status == FindingStatus::found ||
@@ -68,12 +64,12 @@ void order_by_beside(Findings& findings) {
 
 /// The noise that is left beside all of them at once, by one step: what is judged in it must not
 /// bring a noise that swallows what it leaves. Of short records that beside the first.
-NoiseMembers noise_beside(const Bench& bench, const std::vector<Asked>& asked) {
+NoiseMembers noise_beside(const Bench& bench, const std::vector<Contender>& asked) {
   constexpr Index fewest_rows = 10;  // a column
   const CandidateRoom& room = bench.room();
   Columns columns;
-  for (const auto& [candidate, shape] : asked) {
-    const Columns G = room.columns(candidate, shape).whole;
+  for (const Contender& contender : asked) {
+    const Columns G = room.columns(contender.candidate, contender.shape).whole;
     const Index rows_needed = fewest_rows * (columns.cols() + G.cols());
     if (columns.cols() > 0 && rows_needed > room.fit().layout.count()) break;
     columns = join(columns, G);
@@ -111,24 +107,23 @@ double penalty(const RowLayout& layout, const Candidate& candidate) {
          2.0 * std::log(candidate.shape.tried);
 }
 
-std::vector<Contender> fit_all(const Bench& bench, const NoiseMembers& noise,
-                               const std::vector<Asked>& asked) {
-  std::vector<Contender> contenders(asked.size());
+void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contender>& asked) {
   bench.pool().for_each(asked.size(), [&](std::size_t i) {
-    const auto& [candidate, shape] = asked[i];
-    Contender& contender = contenders[i];
-    contender.name = candidate.name;
+    Contender& contender = asked[i];
     try {
-      contender.fit = refit_nearly(bench.room(), candidate, shape, enough_rows);
+      contender.fit = refit_nearly(bench.room(), contender.candidate, contender.shape, enough_rows);
       contender.minus_two_log_likelihood = minus_two_log_likelihood(
-          bench, noise, with_candidate(bench.fitted(), candidate, contender.fit));
-      contender.criterion =
-          contender.minus_two_log_likelihood + penalty(bench.room().fit().layout, candidate);
+          bench, noise, with_candidate(bench.fitted(), contender.candidate, contender.fit));
+      contender.criterion = contender.minus_two_log_likelihood +
+                            penalty(bench.room().fit().layout, contender.candidate);
     } catch (const Error&) {
       contender.criterion = contender.minus_two_log_likelihood = infinity;
     }
   });
-  return contenders;
+}
+
+auto named(const std::string& name) {
+  return [&name](const Contender& contender) { return contender.candidate.name == name; };
 }
 
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
@@ -138,42 +133,43 @@ EffectFinding& finding_of(Findings& findings, const std::string& name) {
 }  // namespace
 
 Contest fit_contenders(Bench& bench, const Findings& findings) {
-  std::vector<Asked> asked;
+  Contest contest;
   for (const EffectFinding& finding : findings) {
-    if (asked.size() == most_fitted) break;
+    if (contest.contenders.size() == most_fitted) break;
     if (!may_stand_first(finding)) continue;
-    asked.push_back({bench.room().make(finding.name), shape_of(finding)});
+    contest.contenders.push_back({bench.room().make(finding.name), shape_of(finding)});
   }
-  Contest contest{.noise = noise_beside(bench, asked)};
-  contest.contenders = fit_all(bench, contest.noise, asked);
+  contest.noise = noise_beside(bench, contest.contenders);
+  fit_all(bench, contest.noise, contest.contenders);
   return contest;
 }
 
 std::vector<std::string> keep_as_likely(Bench& bench, const Contest& contest,
                                         const std::vector<Pair>& pairs) {
-  std::vector<Asked> asked;
+  std::vector<Contender> fitted;
   for (const Pair& pair : pairs) {
-    if (asked.size() == most_pairs) break;
+    if (fitted.size() == most_pairs) break;
     try {
-      asked.push_back({bench.room().make(pair.name), pair.shape});
+      fitted.push_back({bench.room().make(pair.name), pair.shape});
     } catch (const Error&) {
       continue;  // the two can't stand in one model
     }
   }
-  const std::vector<Contender> fitted = fit_all(bench, contest.noise, asked);
+  fit_all(bench, contest.noise, fitted);
   double least = infinity;
-  for (const auto* all : {&contest.contenders, &fitted}) {
-    for (const Contender& contender : *all) least = std::min(least, contender.criterion);
+  for (const std::span<const Contender> all :
+       {std::span(contest.contenders), std::span(std::as_const(fitted))}) {
+    for (const Contender& contender : all) least = std::min(least, contender.criterion);
   }
   const auto alone = [&](const std::string& name) {
-    const auto single = std::ranges::find(contest.contenders, name, &Contender::name);
+    const auto single = std::ranges::find_if(contest.contenders, named(name));
     return single == contest.contenders.end() ? infinity : single->criterion;
   };
   std::vector<std::string> kept;
   for (const Contender& pair : fitted) {
-    const std::vector<std::string> members = split_effects(pair.name);
+    const std::vector<std::string> members = split_effects(pair.candidate.name);
     const double single = std::ranges::min(members | std::views::transform(alone));
-    if (pair.criterion < std::min(least + as_likely, single)) kept.push_back(pair.name);
+    if (pair.criterion < std::min(least + as_likely, single)) kept.push_back(pair.candidate.name);
   }
   return kept;
 }
@@ -182,7 +178,7 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
                            Findings& findings) {
   const Contender* first = nullptr;
   const auto offer = [&](const Contender& contender, double margin) {
-    if (finding_of(findings, contender.name).status != FindingStatus::found) return;
+    if (finding_of(findings, contender.candidate.name).status != FindingStatus::found) return;
     const double least = first ? first->criterion + margin : infinity;
     if (contender.criterion < least) first = &contender;
   };
@@ -192,31 +188,30 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
     return std::ranges::find(preferred, name) != preferred.end();
   };
   for (const Contender& contender : contest.contenders) {
-    if (is_preferred(first->name)) break;
-    if (is_preferred(contender.name)) offer(contender, hardly_worse);
+    if (is_preferred(first->candidate.name)) break;
+    if (is_preferred(contender.candidate.name)) offer(contender, hardly_worse);
   }
   for (const Contender& contender : contest.contenders) {
     const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
     if (&contender == first || !(std::abs(more) < as_likely)) continue;
-    finding_of(findings, contender.name).beside = Beside::equivalent;
+    finding_of(findings, contender.candidate.name).beside = Beside::equivalent;
   }
   std::ranges::stable_partition(findings, [](const EffectFinding& finding) {
     return finding.beside == Beside::equivalent && finding.status == FindingStatus::found;
   });
-  const auto place = std::ranges::find(findings, first->name, &EffectFinding::name);
+  const auto place = std::ranges::find(findings, first->candidate.name, &EffectFinding::name);
   std::rotate(findings.begin(), place, place + 1);
   return first;
 }
 
 void test_beside(Bench& bench, const Contender& first, Findings& findings) {
-  const DiagnosedFit fitted =
-      with_candidate(bench.fitted(), bench.room().make(first.name), first.fit);
+  const DiagnosedFit fitted = with_candidate(bench.fitted(), first.candidate, first.fit);
   DiagnosisOptions options = bench.options();
   options.progress = {};
   std::vector<std::string> names;
   for (const EffectFinding& finding : findings) {
     if (names.size() == most_beside) break;
-    if (finding.status != FindingStatus::found || finding.name == first.name) continue;
+    if (finding.status != FindingStatus::found || finding.name == first.candidate.name) continue;
     if (finding.beside == Beside::untried) names.push_back(finding.name);
   }
   if (names.empty()) return;

@@ -15,7 +15,8 @@ inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's wi
 
 /// The fit of the model with one more effect, its shape held.
 struct Contender {
-  std::string name = {};
+  Candidate candidate = {};
+  double shape = not_a_number;
   Fit fit = {};                                // undefined where the criterion is infinite
   double minus_two_log_likelihood = infinity;  // in the contest's noise; infinite: can't be fitted
   double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried

@@ -12,6 +12,7 @@
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/pair_set.hpp"
 #include "diagnosis/residual_noise.hpp"
+#include "diagnosis/rivals.hpp"
 #include "diagnosis/unlogged.hpp"
 #include "numerics/selection.hpp"
 #include "numerics/tails.hpp"
@@ -59,6 +60,7 @@ class Recipe {
   std::vector<EffectFinding> judge(Trials& trials, double tests) const;
   void try_pairs();
   void settle();
+  Objection object_to(const EffectFinding& finding);
   void advise();
 
   const DiagnosedFit& fitted_;
@@ -66,6 +68,7 @@ class Recipe {
   base::ThreadPool pool_;
   Bench bench_;
   Trials trials_;
+  Contest contest_;
   Diagnosis result_;
 };
 
@@ -144,10 +147,10 @@ void Recipe::try_pairs() {
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
   bench_.report_progress("fitting what was found", 0.0);
-  const Contest contest = fit_contenders(bench_, result_.effects);
-  const Contender* first = put_first(contest, options_.preferred, result_.effects);
+  contest_ = fit_contenders(bench_, result_.effects);
+  const Contender* first = put_first(contest_, options_.preferred, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
-  result_.pairs = keep_as_likely(bench_, contest, find_pair_set(bench_, trials_, contest.noise));
+  result_.pairs = keep_as_likely(bench_, contest_, find_pair_set(bench_, trials_, contest_.noise));
   for (const Trial& trial : trials_) {
     if (trial.candidate.name == result_.effects.front().name) {
       result_.floor = std::min(result_.floor, trial.floor);
@@ -155,7 +158,15 @@ void Recipe::settle() {
   }
 }
 
-/// The best of what was found that a real fit bears out.
+Objection Recipe::object_to(const EffectFinding& finding) {
+  Objection objection = find_objection(bench_.room(), finding, options_.least_visibility, pool_);
+  if (objection.reason.empty()) {
+    objection.reason = find_rival(bench_, contest_, finding, result_.effects);
+  }
+  return objection;
+}
+
+/// The best of what was found that a real fit bears out and no other contradicts.
 void Recipe::advise() {
   constexpr std::size_t most_fitted = 3;
   std::size_t fitted = 0;
@@ -164,8 +175,7 @@ void Recipe::advise() {
     if (finding.status != FindingStatus::found || fitted == most_fitted) return;
     if (finding.beside == Beside::fades) continue;  // what it explains is the first's
     if (first_stands && finding.beside == Beside::counts) continue;  // alone it would stand in
-    const Objection objection =
-        find_objection(bench_.room(), finding, options_.least_visibility, pool_);
+    const Objection objection = object_to(finding);
     if (objection.reason.empty()) {
       result_.advice.effect = finding.name;
       return;

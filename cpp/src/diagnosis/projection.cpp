@@ -88,9 +88,6 @@ VectorXd TangentBasis::remove_from(VectorXd column) const {
   return column;
 }
 
-namespace {
-
-/// C of J C, what the tangent J explains of G.
 MatrixXd explained_by(const TangentBasis& tangent, const Columns& G) {
   const LinearisedFit& fit = tangent.fit();
   MatrixXd products = MatrixXd::Zero(fit.tangent.cols(), G.cols());
@@ -99,6 +96,8 @@ MatrixXd explained_by(const TangentBasis& tangent, const Columns& G) {
   });
   return tangent.weights() * (tangent.weights().transpose() * products);
 }
+
+namespace {
 
 /// (G - J C) W.
 Columns subtract_tangent(const TangentBasis& tangent, const Columns& G, const MatrixXd& C,

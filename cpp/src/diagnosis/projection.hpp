@@ -39,6 +39,9 @@ class TangentBasis {
   Eigen::MatrixXd weights_ = {};
 };
 
+/// C of J C, what the tangent J explains of G: tangent's columns x G's.
+Eigen::MatrixXd explained_by(const TangentBasis& tangent, const Columns& G);
+
 /// What of G is orthogonal to the tangent, whose fit must outlive it.
 Columns remove_tangent(const TangentBasis& tangent, const Columns& G);
 

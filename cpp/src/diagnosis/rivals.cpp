@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/rivals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "diagnosis/projection.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+using Findings = std::vector<EffectFinding>;
+
+/// What of an effect's columns is the same in every row.
+Columns constant_share(const CandidateColumns& columns) {
+  return {columns.whole.cols(), [columns](Index first, Eigen::Ref<MatrixXd> rows) {
+            MatrixXd varying(rows.rows(), rows.cols());
+            columns.varying.fill(first, varying);
+            columns.whole.fill(first, rows);
+            rows -= varying;
+          }};
+}
+
+/// The model's own parameters by a fit with an effect.
+struct Estimates {
+  VectorXd values;     // where the effect is zero
+  VectorXd at_mean;    // where it is at its mean over the record
+  bool is_about_mean;  // both are the same
+};
+
+Estimates estimates_of(const Bench& bench, const Contender& contender) {
+  const CandidateRoom& room = bench.room();
+  const Fit& fit = contender.fit;
+  const auto values_of = [&fit](const auto& entries, const auto& name_of) {
+    VectorXd values(static_cast<Index>(entries.size()));
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      values[static_cast<Index>(k)] = fit[name_of(entries[k])].value;
+    }
+    return values;
+  };
+  const VectorXd own = values_of(room.fit().parameters, std::identity());
+  const VectorXd effect = values_of(contender.candidate.coefficients,
+                                    [](const Variable& coefficient) { return coefficient.name; });
+  const Columns share = constant_share(room.columns(contender.candidate, contender.shape));
+  const VectorXd shift = explained_by(bench.null().basis, share) * effect;
+  constexpr double rounding = 1e-9;
+  return {own, own + shift, shift.norm() <= rounding * own.norm()};
+}
+
+const Contender* contender_of(const Contest& contest, const std::string& name) {
+  const auto found = std::ranges::find_if(contest.contenders, [&](const Contender& contender) {
+    return contender.candidate.name == name && std::isfinite(contender.criterion);
+  });
+  return found == contest.contenders.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string find_rival(const Bench& bench, const Contest& contest, const EffectFinding& advised,
+                       const Findings& findings) {
+  constexpr double errors = 1.5;  // of the fit with what is advised
+  const Contender* chosen = contender_of(contest, advised.name);
+  if (!chosen) return {};
+  const std::vector<std::string>& names = bench.room().fit().parameters;
+  const Estimates with_chosen = estimates_of(bench, *chosen);
+  double most = errors;
+  std::string worst;
+  for (const EffectFinding& finding : findings) {
+    const bool is_rival = finding.beside == Beside::equivalent || &finding == &findings.front();
+    const Contender* rival = contender_of(contest, finding.name);
+    if (!is_rival || !rival || rival == chosen) continue;
+    const Estimates with_rival = estimates_of(bench, *rival);
+    const bool at_mean = with_chosen.is_about_mean || with_rival.is_about_mean;
+    const VectorXd& now = at_mean ? with_chosen.at_mean : with_chosen.values;
+    const VectorXd& truth = at_mean ? with_rival.at_mean : with_rival.values;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto at = static_cast<Index>(k);
+      const double before = bench.fitted().fit[names[k]].value;
+      const double away = std::abs(now[at] - truth[at]) - std::abs(before - truth[at]);
+      const double ratio = away / chosen->fit[names[k]].standard_error;
+      if (!(ratio > most)) continue;
+      most = ratio;
+      worst = fmt::format(
+          "{} would do as well, and has {} at {:.4g} where this takes it from {:.4g} to {:.4g}",
+          finding.name, names[k], truth[at], before, now[at]);
+    }
+  }
+  return worst;
+}
+
+}  // namespace sepcal::diagnosis
