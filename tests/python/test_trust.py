@@ -74,6 +74,31 @@ def test_nothing_stands_in_for_an_effect_that_no_fit_takes():
     assert "alpha_offset[beta]: fitted, it runs into the bounds" in diagnosis.advice["withheld"][0]
 
 
+@pytest.mark.parametrize("label", ["pitot-static: wind[altitude_m]", "pitot-static: wind[time]"])
+def test_an_effect_that_one_step_misses_is_found_by_its_fit(label: str):
+    """300 sigmas of wind: a scale at its bound, where a step to the true wind shows a tenth of it."""
+    case = BY_LABEL[label]
+    sizes = case.sizes(size_for(case, 300.0))
+    flight, _ = fly(case.probe, "white", 31000, case.rows, {case.effect: sizes})
+    diagnosis = calibrate(case.probe, flight).diagnose()
+    first = diagnosis.effects[0]
+    assert (diagnosis.verdict, first.name) == ("effect_missing", case.effect)
+    assert diagnosis.advice["effect"] == case.effect
+    assert first.held_out_gain > 0.5
+    for estimate, size in zip(first.estimate.values(), sizes, strict=False):
+        assert estimate == pytest.approx(size, rel=0.05)
+
+
+def test_a_warm_up_is_fitted_with_its_own_time():
+    """100 sigmas: a time of a grid leaves more than a spline of time does."""
+    case = BY_LABEL["magnetometer: warm_up"]
+    hide = {case.effect: case.sizes(size_for(case, 100.0))}
+    flight, _ = fly(case.probe, "white", 31000, case.rows, hide)
+    diagnosis = calibrate(case.probe, flight).diagnose()
+    assert diagnosis.effects[0].name == "warm_up"
+    assert "bias[spline(time,6)]" not in diagnosis.list_beside("counts")
+
+
 def test_nothing_is_advised_that_would_do_harm_were_another_the_cause():
     """beta_offset[alpha] does as well as alpha_offset[beta], and took parameters 6 errors away."""
     case = BY_LABEL["five-hole: alpha_offset[beta]"]

@@ -68,18 +68,6 @@ std::string objection_to_fit(const Fit& before, const EffectFinding& finding, co
   return disagreement(finding, fitted);
 }
 
-/// A third of the record at a time, in blocks in between: each fold is two fits.
-Folds few_folds(const LinearisedFit& fit, const Columns& G) {
-  constexpr int count = 3;
-  constexpr int fewest_blocks = 12;
-  Folds folds =
-      interleaved_blocks(fit.layout, correlation_rows(fit.layout, fit.residual), fewest_blocks);
-  for (HeldOutBlock& block : folds.blocks) block.fold %= count;
-  folds.count = count;
-  judge_interpolated(fit.layout, G, folds);
-  return folds;
-}
-
 }  // namespace
 
 Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,

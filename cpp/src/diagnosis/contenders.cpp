@@ -100,10 +100,19 @@ double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
   return products_beyond(products, tangent.rank())(0, 0);
 }
 
-/// Schwarz's penalty for coefficients, and for a shape that of the number tried.
-double penalty(const RowLayout& layout, const Candidate& candidate) {
+auto named(const std::string& name) {
+  return [&name](const Contender& contender) { return contender.candidate.name == name; };
+}
+
+EffectFinding& finding_of(Findings& findings, const std::string& name) {
+  return *std::ranges::find(findings, name, &EffectFinding::name);
+}
+
+}  // namespace
+
+double schwarz_penalty(const Candidate& candidate, Index measurements) {
   return static_cast<double>(candidate.coefficients.size()) *
-             std::log(static_cast<double>(layout.count())) +
+             std::log(static_cast<double>(measurements)) +
          2.0 * std::log(candidate.shape.tried);
 }
 
@@ -115,22 +124,12 @@ void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contende
       contender.minus_two_log_likelihood = minus_two_log_likelihood(
           bench, noise, with_candidate(bench.fitted(), contender.candidate, contender.fit));
       contender.criterion = contender.minus_two_log_likelihood +
-                            penalty(bench.room().fit().layout, contender.candidate);
+                            schwarz_penalty(contender.candidate, bench.room().fit().layout.count());
     } catch (const Error&) {
       contender.criterion = contender.minus_two_log_likelihood = infinity;
     }
   });
 }
-
-auto named(const std::string& name) {
-  return [&name](const Contender& contender) { return contender.candidate.name == name; };
-}
-
-EffectFinding& finding_of(Findings& findings, const std::string& name) {
-  return *std::ranges::find(findings, name, &EffectFinding::name);
-}
-
-}  // namespace
 
 Contest fit_contenders(Bench& bench, const Findings& findings) {
   Contest contest;

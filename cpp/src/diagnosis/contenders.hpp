@@ -13,10 +13,10 @@ namespace sepcal::diagnosis {
 
 inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's with two degrees
 
-/// The fit of the model with one more effect, its shape held.
+/// The fit of the model with one more effect.
 struct Contender {
   Candidate candidate = {};
-  double shape = not_a_number;
+  double shape = not_a_number;                 // where it was found
   Fit fit = {};                                // undefined where the criterion is infinite
   double minus_two_log_likelihood = infinity;  // in the contest's noise; infinite: can't be fitted
   double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried
@@ -27,6 +27,12 @@ struct Contest {
   NoiseMembers noise = {};
   std::vector<Contender> contenders = {};
 };
+
+/// Schwarz's penalty for a candidate's coefficients and for the number of shapes tried.
+double schwarz_penalty(const Candidate& candidate, Eigen::Index measurements);
+
+/// Fits all to the record and judges them in that noise.
+void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contender>& asked);
 
 /// Fits the first of the findings that may stand for what is missing, in their order.
 Contest fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings);

@@ -7,6 +7,7 @@
 
 #include "diagnosis/advice.hpp"
 #include "diagnosis/bench.hpp"
+#include "diagnosis/bent_effects.hpp"
 #include "diagnosis/contenders.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/omnibus.hpp"
@@ -148,6 +149,7 @@ void Recipe::try_pairs() {
 void Recipe::settle() {
   bench_.report_progress("fitting what was found", 0.0);
   contest_ = fit_contenders(bench_, result_.effects);
+  admit_bent(bench_, contest_, result_.effects);
   const Contender* first = put_first(contest_, options_.preferred, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
   result_.pairs = keep_as_likely(bench_, contest_, find_pair_set(bench_, trials_, contest_.noise));

@@ -211,4 +211,15 @@ HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds)
   return summarise(before, after, rows * static_cast<double>(layout.outputs.size()));
 }
 
+Folds few_folds(const LinearisedFit& fit, const Columns& G) {
+  constexpr int count = 3;
+  constexpr int fewest_blocks = 12;
+  Folds folds =
+      interleaved_blocks(fit.layout, correlation_rows(fit.layout, fit.residual), fewest_blocks);
+  for (HeldOutBlock& block : folds.blocks) block.fold %= count;
+  folds.count = count;
+  judge_interpolated(fit.layout, G, folds);
+  return folds;
+}
+
 }  // namespace sepcal::diagnosis

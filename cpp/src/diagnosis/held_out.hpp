@@ -39,6 +39,10 @@ void judge_interpolated(const RowLayout& layout, const Columns& G, Folds& folds)
 /// The integrated correlation time of a residual [rows], of its most correlated output.
 double correlation_rows(const RowLayout& layout, const Eigen::VectorXd& residual);
 
+/// A third of the record at a time, in blocks in between, where each fold is two fits. `G`: the
+/// candidate's columns.
+Folds few_folds(const LinearisedFit& fit, const Columns& G);
+
 struct HeldOut {
   double before = 0.0;  // RMSE over all outputs, in their unit
   double after = 0.0;

@@ -123,8 +123,14 @@ Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double s
   const auto with = room.model_with(candidate.effects);
   Record rows = room.record();
   rows.cut(spread(room.rows(), most_rows));
-  return fit(*with, rows,
-             with_candidate(options_from(room.fitted()), with->tables(), candidate, shape));
+  FitOptions options =
+      with_candidate(options_from(room.fitted()), with->tables(), candidate, shape);
+  const std::string& of_shape = candidate.shape.parameter;
+  if (!of_shape.empty() && candidate.stepping_port.empty()) {  // a step's row is exact
+    options.fixed.erase(of_shape);
+    options.start[of_shape] = shape;
+  }
+  return fit(*with, rows, options);
 }
 
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,

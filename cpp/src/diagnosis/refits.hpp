@@ -14,7 +14,8 @@ inline constexpr std::size_t enough_rows = 20000;
 /// Where a scanned effect was found; NaN for others.
 double shape_of(const EffectFinding& finding);
 
-/// The fit of the model with the candidate to all rows, from the estimates without it.
+/// The fit of the model with the candidate to all rows, from the estimates without it and from the
+/// shape, which a step keeps.
 Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape);
 
 /// The same to about `most_rows` where there are more, in blocks that lie evenly over every

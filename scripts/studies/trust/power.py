@@ -65,7 +65,7 @@ def _try(key: Key) -> Row:
         "effect": name,
         "first": stands_first,
         "found": stands_first or name in [effect.name for effect in diagnosis.found],
-        "visible": diagnosis[name].status != "cannot_be_seen",
+        "visible": diagnosis[name].status != "cannot_be_seen" and not _is_beyond(base, name, hide[case.effect]),
         "advice": diagnosis.advice["effect"],
         "withheld": diagnosis.advice["withheld"],
     }
@@ -74,6 +74,19 @@ def _try(key: Key) -> Row:
     if noise == "white" and diagnosis.found:
         row["differences"] = _differences(base, diagnosis)
     return row
+
+
+def _is_beyond(base: Calibration, name: str, sizes: Sequence[float]) -> bool:
+    """Whether the size lies beyond the bounds that the catalogue gives the effect."""
+    try:
+        better = base.add(name)
+    except Error:
+        return False
+    added = [better[parameter] for parameter in better.names if parameter.startswith(name)]
+    return any(
+        not parameter.lower <= size <= parameter.upper
+        for parameter, size in zip(added, sizes, strict=False)
+    )
 
 
 def _truths(quiet: SimulatedFlight, rows: int, seed: int) -> dict[str, list[float]]:
