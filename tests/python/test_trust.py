@@ -76,7 +76,7 @@ def test_nothing_stands_in_for_an_effect_that_no_fit_takes():
 
 @pytest.mark.parametrize("label", ["pitot-static: wind[altitude_m]", "pitot-static: wind[time]"])
 def test_an_effect_that_one_step_misses_is_found_by_its_fit(label: str):
-    """300 sigmas of wind: a scale at its bound, where a step to the true wind shows a tenth of it."""
+    """300 sigmas of wind: a scale is at its bound, and a step from there shows a tenth of it."""
     case = BY_LABEL[label]
     sizes = case.sizes(size_for(case, 300.0))
     flight, _ = fly(case.probe, "white", 31000, case.rows, {case.effect: sizes})

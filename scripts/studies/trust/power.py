@@ -65,7 +65,8 @@ def _try(key: Key) -> Row:
         "effect": name,
         "first": stands_first,
         "found": stands_first or name in [effect.name for effect in diagnosis.found],
-        "visible": diagnosis[name].status != "cannot_be_seen" and not _is_beyond(base, name, hide[case.effect]),
+        "visible": diagnosis[name].status != "cannot_be_seen"
+        and not _is_beyond(base, name, hide[case.effect]),
         "advice": diagnosis.advice["effect"],
         "withheld": diagnosis.advice["withheld"],
     }
