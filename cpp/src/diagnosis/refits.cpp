@@ -119,12 +119,13 @@ Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double sha
 }
 
 Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double shape,
-                 std::size_t most_rows) {
+                 std::size_t most_rows, bool coloured_errors) {
   const auto with = room.model_with(candidate.effects);
   Record rows = room.record();
   rows.cut(spread(room.rows(), most_rows));
   FitOptions options =
       with_candidate(options_from(room.fitted()), with->tables(), candidate, shape);
+  options.coloured_errors = coloured_errors;
   const std::string& of_shape = candidate.shape.parameter;
   if (!of_shape.empty() && candidate.stepping_port.empty()) {  // a step's row is exact
     options.fixed.erase(of_shape);

@@ -19,9 +19,10 @@ double shape_of(const EffectFinding& finding);
 Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape);
 
 /// The same to about `most_rows` where there are more, in blocks that lie evenly over every
-/// segment: one step from the fit to all rows, as linearised there.
+/// segment: one step from the fit to all rows, as linearised there. `coloured_errors`: as of
+/// FitOptions; without them standard errors are those of white noise.
 Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double shape,
-                 std::size_t most_rows);
+                 std::size_t most_rows, bool coloured_errors = false);
 
 /// Fits the model with and without the candidate to all folds but one, from the estimates on all
 /// rows and within the fit's bounds, and predicts the rows left out; of long records to some of the

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "diagnosis/projection.hpp"
+#include "diagnosis/refits.hpp"
 
 namespace sepcal::diagnosis {
 namespace {
@@ -61,38 +63,71 @@ const Contender* contender_of(const Contest& contest, const std::string& name) {
   return found == contest.contenders.end() ? nullptr : &*found;
 }
 
+/// What another fit has elsewhere.
+struct Clash {
+  double errors = 0.0;  // how many of its errors a parameter is taken away from there
+  std::string sentence = {};
+};
+
+/// Of a parameter `now` with a standard error, that of a rival, and that without either.
+double errors_away(double now, double error, double rival, double before) {
+  return (std::abs(now - rival) - std::abs(before - rival)) / error;
+}
+
+/// The parameter that comes furthest away, were the rival the cause. `errors`: of the parameters.
+Clash compare(const Bench& bench, const Estimates& with_chosen, const VectorXd& errors,
+              const Contender& rival) {
+  const std::vector<std::string>& names = bench.room().fit().parameters;
+  const Estimates with_rival = estimates_of(bench, rival);
+  const bool at_mean = with_chosen.is_about_mean || with_rival.is_about_mean;
+  const VectorXd& now = at_mean ? with_chosen.at_mean : with_chosen.values;
+  const VectorXd& truth = at_mean ? with_rival.at_mean : with_rival.values;
+  Clash worst;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    const double before = bench.fitted().fit[names[k]].value;
+    const double away = errors_away(now[at], errors[at], truth[at], before);
+    if (!(away > worst.errors)) continue;
+    worst = {away, fmt::format("{} would do as well, and has {} at {:.4g} where this takes it from "
+                               "{:.4g} to {:.4g}",
+                               rival.candidate.name, names[k], truth[at], before, now[at])};
+  }
+  return worst;
+}
+
+VectorXd errors_of(const Bench& bench, const Fit& fit) {
+  const std::vector<std::string>& names = bench.room().fit().parameters;
+  VectorXd errors(static_cast<Index>(names.size()));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    errors[static_cast<Index>(k)] = fit[names[k]].standard_error;
+  }
+  return errors;
+}
+
 }  // namespace
 
 std::string find_rival(const Bench& bench, const Contest& contest, const EffectFinding& advised,
                        const Findings& findings) {
-  constexpr double errors = 1.5;  // of the fit with what is advised
+  constexpr double most_errors = 1.5;
   const Contender* chosen = contender_of(contest, advised.name);
   if (!chosen) return {};
-  const std::vector<std::string>& names = bench.room().fit().parameters;
   const Estimates with_chosen = estimates_of(bench, *chosen);
-  double most = errors;
-  std::string worst;
-  for (const EffectFinding& finding : findings) {
-    const bool is_rival = finding.beside == Beside::equivalent || &finding == &findings.front();
-    const Contender* rival = contender_of(contest, finding.name);
-    if (!is_rival || !rival || rival == chosen) continue;
-    const Estimates with_rival = estimates_of(bench, *rival);
-    const bool at_mean = with_chosen.is_about_mean || with_rival.is_about_mean;
-    const VectorXd& now = at_mean ? with_chosen.at_mean : with_chosen.values;
-    const VectorXd& truth = at_mean ? with_rival.at_mean : with_rival.values;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      const auto at = static_cast<Index>(k);
-      const double before = bench.fitted().fit[names[k]].value;
-      const double away = std::abs(now[at] - truth[at]) - std::abs(before - truth[at]);
-      const double ratio = away / chosen->fit[names[k]].standard_error;
-      if (!(ratio > most)) continue;
-      most = ratio;
-      worst = fmt::format(
-          "{} would do as well, and has {} at {:.4g} where this takes it from {:.4g} to {:.4g}",
-          finding.name, names[k], truth[at], before, now[at]);
+  const auto find_worst = [&](const VectorXd& errors) {
+    Clash worst;
+    for (const EffectFinding& finding : findings) {
+      const bool is_rival = finding.beside == Beside::equivalent || &finding == &findings.front();
+      const Contender* rival = contender_of(contest, finding.name);
+      if (!is_rival || !rival || rival == chosen) continue;
+      Clash clash = compare(bench, with_chosen, errors, *rival);
+      if (clash.errors > worst.errors) worst = std::move(clash);
     }
-  }
-  return worst;
+    return worst;
+  };
+  if (!(find_worst(errors_of(bench, chosen->fit)).errors > most_errors)) return {};
+  const Fit coloured =  // whose errors are larger, if any
+      refit_nearly(bench.room(), chosen->candidate, chosen->shape, enough_rows, true);
+  const Clash worst = find_worst(errors_of(bench, coloured));
+  return worst.errors > most_errors ? worst.sentence : std::string();
 }
 
 }  // namespace sepcal::diagnosis
