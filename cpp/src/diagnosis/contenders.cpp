@@ -62,6 +62,14 @@ void order_by_beside(Findings& findings) {
   for (auto& [at, finding] : placed) findings.push_back(std::move(finding));
 }
 
+/// Whether it takes slow noise for its own, as functions of time of any form do.
+bool is_flexible_in_time(const Candidate& candidate) {
+  return std::ranges::any_of(candidate.effects, [](const Effect& effect) {
+    return effect.driver && effect.driver->functions() > 1 && effect.driver->input() &&
+           effect.driver->input()->name == "time";
+  });
+}
+
 /// The noise that is left beside all of them at once, by one step: what is judged in it must not
 /// bring a noise that swallows what it leaves. Of short records that beside the first.
 NoiseMembers noise_beside(const Bench& bench, const std::vector<Contender>& asked) {
@@ -69,6 +77,7 @@ NoiseMembers noise_beside(const Bench& bench, const std::vector<Contender>& aske
   const CandidateRoom& room = bench.room();
   Columns columns;
   for (const Contender& contender : asked) {
+    if (is_flexible_in_time(contender.candidate)) continue;
     const Columns G = room.columns(contender.candidate, contender.shape).whole;
     const Index rows_needed = fewest_rows * (columns.cols() + G.cols());
     if (columns.cols() > 0 && rows_needed > room.fit().layout.count()) break;
