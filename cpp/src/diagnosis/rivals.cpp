@@ -63,18 +63,20 @@ const Contender* contender_of(const Contest& contest, const std::string& name) {
   return found == contest.contenders.end() ? nullptr : &*found;
 }
 
+/// What would be withheld itself is no reason to withhold another.
+bool is_credible(const Bench& bench, const EffectFinding& finding, const Contender& contender) {
+  return finding.visibility >= bench.options().least_visibility &&
+         contender.fit.status == FitStatus::converged;
+}
+
 /// What another fit has elsewhere.
 struct Clash {
   double errors = 0.0;  // how many of its errors a parameter is taken away from there
   std::string sentence = {};
 };
 
-/// Of a parameter `now` with a standard error, that of a rival, and that without either.
-double errors_away(double now, double error, double rival, double before) {
-  return (std::abs(now - rival) - std::abs(before - rival)) / error;
-}
-
-/// The parameter that comes furthest away, were the rival the cause. `errors`: of the parameters.
+/// The parameter that comes furthest away, were the rival the cause, by the larger of the two
+/// standard errors. `errors`: with what is advised.
 Clash compare(const Bench& bench, const Estimates& with_chosen, const VectorXd& errors,
               const Contender& rival) {
   const std::vector<std::string>& names = bench.room().fit().parameters;
@@ -86,7 +88,8 @@ Clash compare(const Bench& bench, const Estimates& with_chosen, const VectorXd& 
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto at = static_cast<Index>(k);
     const double before = bench.fitted().fit[names[k]].value;
-    const double away = errors_away(now[at], errors[at], truth[at], before);
+    const double error = std::max(errors[at], rival.fit[names[k]].standard_error);
+    const double away = (std::abs(now[at] - truth[at]) - std::abs(before - truth[at])) / error;
     if (!(away > worst.errors)) continue;
     worst = {away, fmt::format("{} would do as well, and has {} at {:.4g} where this takes it from "
                                "{:.4g} to {:.4g}",
@@ -115,9 +118,10 @@ std::string find_rival(const Bench& bench, const Contest& contest, const EffectF
   const auto find_worst = [&](const VectorXd& errors) {
     Clash worst;
     for (const EffectFinding& finding : findings) {
-      const bool is_rival = finding.beside == Beside::equivalent || &finding == &findings.front();
+      const bool is_as_good = finding.beside == Beside::equivalent || &finding == &findings.front();
       const Contender* rival = contender_of(contest, finding.name);
-      if (!is_rival || !rival || rival == chosen) continue;
+      if (!is_as_good || !rival || rival == chosen || !is_credible(bench, finding, *rival))
+        continue;
       Clash clash = compare(bench, with_chosen, errors, *rival);
       if (clash.errors > worst.errors) worst = std::move(clash);
     }
