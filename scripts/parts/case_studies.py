@@ -74,8 +74,8 @@ def count_advice(told: Sequence[Told]) -> None:
     harmed = [step.effect for step in followed if step.harmed]
     print(
         f"\nadvice: {sum(one.diagnoses for one in told)} diagnoses, {len(followed)} times next, "
-        f"{sum(one.withheld for one in told)} candidates withheld; rows held out got worse after "
-        f"{len(harmed)}: {', '.join(harmed) or '-'}"
+        f"{sum(one.withheld for one in told)} candidates withheld; "
+        f"held-out rows or the other half got worse after {len(harmed)}: {', '.join(harmed) or '-'}"
     )
 
 

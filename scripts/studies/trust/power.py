@@ -16,6 +16,7 @@ import numpy as np
 
 from sepcal import Calibration, Error
 from sepcal.diagnosis import Diagnosis
+from sepcal.flight import Flight
 from sepcal.simulation import SimulatedFlight, simulate
 from studies.hidden_effects.cases import CASES, OUTPUTS, Case, calibrate, factor_for
 from studies.study import Finding, seed_range
@@ -72,7 +73,7 @@ def _try(key: Key) -> Row:
         "withheld": diagnosis.advice["withheld"],
     }
     if row["advice"]:
-        row["harm"] = _harm(base, base.add(row["advice"]), _truths(quiet, rows, seed))
+        row["harm"] = _harm(base, base.add(row["advice"]), _truths(flight, quiet, seed))
     if noise == "white" and diagnosis.found:
         row["differences"] = _differences(base, diagnosis)
     return row
@@ -91,18 +92,24 @@ def _is_beyond(base: Calibration, name: str, sizes: Sequence[float]) -> bool:
     )
 
 
-def _truths(quiet: SimulatedFlight, rows: int, seed: int) -> dict[str, list[float]]:
+def _truths(flight: Flight, quiet: SimulatedFlight, seed: int) -> dict[str, list[float]]:
     """What each parameter of the probe may be: a hard iron with or without the effect's mean.
 
-    Which of the two it is depends on where the added effect is zero. The wind is the flight's.
+    Which of the two it is depends on where the added effect is zero. What a drift comes to on
+    average is a hard iron of the flight: nothing in it tells the two apart. The wind is the
+    flight's.
     """
     truths = {name: [value] for name, value in quiet.truth.items() if not name.startswith("w_")}
+    for name in [name for name in truths if name.startswith("n_")]:
+        header = f"m{name[-1]}_ut"
+        drift = float(np.mean(flight[header] - quiet[header]))
+        truths[name] = [truths[name][0] + drift]
     if quiet.effects[0].split("[")[0] in ADD_TO_READINGS:
-        without = simulate("magnetometer", rows=rows, seed=seed, noise=QUIET)
+        without = simulate("magnetometer", rows=flight.rows, seed=seed, noise=QUIET)
         for axis in "xyz":
             header = f"m{axis}_ut"
             mean = float(np.mean(np.subtract(quiet[header], without[header])))
-            truths[f"n_{axis}"].append(quiet.truth[f"n_{axis}"] + mean)
+            truths[f"n_{axis}"].append(truths[f"n_{axis}"][0] + mean)
     return truths
 
 
@@ -194,8 +201,8 @@ def _advice(rows: Sequence[Row]) -> list[Finding]:
         Finding(
             "advice of another effect that moves a parameter from the truth by over two errors",
             named(by_another),
-            "none",
-            not by_another,
+            "5 %: an estimate is that far off by chance",
+            len(by_another) <= 0.05 * len(given),
         ),
         Finding(
             "advice of the true effect that does: its errors are too small",
