@@ -98,8 +98,13 @@ void FitArguments::add_to(CLI::App& fit) {
       ->type_name("T")
       ->capture_default_str();
   add_whole_number(fit, "--threads", engine.threads, "threads; 0: one a core", most_threads);
-  fit.add_flag("--drop-invalid", options_.drop_invalid,
+  fit.add_flag("--drop-invalid", options_.rows.drop_invalid,
                "drops rows with a cell that is no number instead of refusing the file");
+  fit.add_option("--drop-repeats", options_.rows.drop_repeats,
+                 "drops the rows between the samples of slow columns that the log holds or "
+                 "interpolates, e.g. airspeed")
+      ->type_name("COLUMN[,COLUMN...]")
+      ->delimiter(',');
 }
 
 CalibrationOptions FitArguments::resolve() const {

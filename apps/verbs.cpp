@@ -43,7 +43,7 @@ Flight Verbs::read_flight() const {
 
 Calibration Verbs::read_base() const {
   Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
-  if (arguments_.drop_invalid) calibration.options.drop_invalid = true;
+  if (arguments_.drop_invalid) calibration.options.rows.drop_invalid = true;
   calibration.probe = instrument_.probe_for_flight(calibration.probe);
   return calibration;
 }

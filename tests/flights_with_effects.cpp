@@ -32,7 +32,7 @@ Calibration calibrate_with(std::string_view probe, const SimulatedFlight& flight
 
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Flight& flight) {
   const Probe& probe = *calibration.probe;
-  const Record record = probe.prepare(flight, false).record;
+  const Record record = probe.prepare(flight, {}).record;
   std::vector<EffectSetting> settings = calibration.options.effects;
   const auto rows = with_effects(probe, record, settings, {}).prepared.record.segments();
   return {.model = model_of(probe),

@@ -129,7 +129,7 @@ TEST_CASE("the field's strength alone needs neither attitude nor field") {
   log["my_ut"][2] = not_a_number;
   CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()), Contains("log row 2"),
                        Error);
-  CHECK(sepcal::prepare_attitude_independent(log.build(), true).rows_used() == 4);
+  CHECK(sepcal::prepare_attitude_independent(log.build(), {.drop_invalid = true}).rows_used() == 4);
   CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.erase("time_s").build()),
                        Contains("column 'time_s' is missing"), Error);
 }
@@ -140,7 +140,7 @@ TEST_CASE("applying a magnetometer calibration needs its readings only") {
   log.rename("my_ut", "my_mgauss");
   log["mz_ut"][3] = not_a_number;
   CHECK_THROWS_WITH_AS(sepcal::read_magnetometer(log.build()), Contains("log row 3"), Error);
-  const auto readings = sepcal::read_magnetometer(log.build(), true);
+  const auto readings = sepcal::read_magnetometer(log.build(), {.drop_invalid = true});
   CHECK(readings.record.names() == std::vector<std::string>{"mx", "my", "mz"});
   CHECK(readings.record.column("my")[0] == 0.6);
   CHECK(readings.record.length() == 5);
@@ -153,7 +153,7 @@ TEST_CASE("a number that its unit's conversion makes infinite is none") {
   CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()),
                        Contains("log row 2: column 'mx_gauss' holds 1e+308, too large to convert"),
                        Error);
-  const auto prepared = sepcal::prepare_attitude_independent(log.build(), true);
+  const auto prepared = sepcal::prepare_attitude_independent(log.build(), {.drop_invalid = true});
   CHECK(prepared.rows_used() == 4);
   log.rename("mx_gauss", "mx_ut");
   CHECK(sepcal::prepare_attitude_independent(log.build()).rows_used() == 5);

@@ -129,7 +129,7 @@ TEST_CASE("a flight that lacks something") {
   Log log = make_log();
   log["airspeed_mps"][6] = not_a_number;
   refuse(log, "log row 6");
-  CHECK(prepare_pitot_static(log.build(), true).rows_used() == 9);
+  CHECK(prepare_pitot_static(log.build(), {.drop_invalid = true}).rows_used() == 9);
   Log pressure = make_pressure_log();
   pressure["rho_kgpm3"].assign(10, -1.2);
   refuse(pressure, "rho is not positive");

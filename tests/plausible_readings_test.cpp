@@ -156,7 +156,7 @@ TEST_CASE(
   }
   CHECK(sepcal::prepare_magnetometer(log.build()).notes.empty());
   log["mx_ut"] = {30, 3e5, 3e5, std::nan("")};
-  CHECK(sepcal::read_magnetometer(log.build(), true).notes.size() == 2);
+  CHECK(sepcal::read_magnetometer(log.build(), {.drop_invalid = true}).notes.size() == 2);
   log["mx_ut"] = {3e5, 3e5, 3e5, 3e5};
   const std::string expected =
       "log: the field of mx_ut, my_ut, mz_ut is usually 3e+05 uT strong, which lies outside";

@@ -43,7 +43,7 @@ std::string with_driver(std::string_view probe, std::string_view catalogued) {
 
 EffectiveFlight prepare(const Probe& probe, const Flight& flight, const std::string& effect) {
   std::vector<EffectSetting> settings{{.name = effect}};
-  return with_effects(probe, flight, probe.prepare(flight, false), settings, {});
+  return with_effects(probe, flight, probe.prepare(flight, {}), settings, {});
 }
 
 /// The middle of the bounds and a little more; one where there are none.
@@ -135,7 +135,7 @@ TEST_CASE("aliases become the effect that they stand for") {
   std::vector<EffectSetting> settings{
       {.name = " wind_shear "}, {.name = "wind_drift"}, {.name = "propwash"}};
   const auto probe = make_probe_called("five-hole");
-  with_effects(*probe, flight, probe->prepare(flight, false), settings, {});
+  with_effects(*probe, flight, probe->prepare(flight, {}), settings, {});
   CHECK(settings[0].name == "wind[altitude_m]");
   CHECK(settings[1].name == "wind[time]");
   CHECK(settings[2].name == "pressure_offset[throttle]");
@@ -191,8 +191,8 @@ TEST_CASE("effects in time leave out the rows that they would have to guess at")
     CHECK(time[after[i].last] > time[before[i].last - 1] - 0.5);
   }
   std::vector<EffectSetting> settings{{.name = "time_offset"}};
-  const EffectiveFlight narrow = with_effects(*probe, flight, probe->prepare(flight, false),
-                                              settings, {}, {{"time_offset.tau", {-0.1, 0.2}}});
+  const EffectiveFlight narrow = with_effects(*probe, flight, probe->prepare(flight, {}), settings,
+                                              {}, {{"time_offset.tau", {-0.1, 0.2}}});
   CHECK(time[narrow.prepared.record.segments()[0].first] < 0.3);
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("an effect of the caller's own goes before one of that name") {
   const auto probe = make_probe_called("five-hole");
   std::vector<EffectSetting> settings{{.name = "upwash"}};
   const Flight flight = make_flight(fly("five-hole", {}));
-  const EffectiveFlight made = with_effects(*probe, flight, probe->prepare(flight, false), settings,
+  const EffectiveFlight made = with_effects(*probe, flight, probe->prepare(flight, {}), settings,
                                             {own_effect("upwash", OwnUpwash{})});
   CHECK(made.model->tables().linear.back().name == "upwash.mine");
 }

@@ -27,8 +27,7 @@ Vector3d air_at_probe(const SimulatedFlight& flight, std::size_t row, const Five
 }
 
 std::vector<CorrectedColumn> correct(const Probe& probe, const SimulatedFlight& flight) {
-  return probe.correct(probe.read(make_flight(flight), false), order_values(probe, flight.truth),
-                       {});
+  return probe.correct(probe.read(make_flight(flight), {}), order_values(probe, flight.truth), {});
 }
 
 /// A magnetometer's parameters, all zero but one.
@@ -86,7 +85,7 @@ TEST_CASE("a magnetometer calibrated by strength alone reads a field of that str
   for (const char* name : {"eta_x", "eta_y", "eta_z"}) truth.parameters[name] = 0.0;
   const SimulatedFlight flight = simulate_magnetometer(truth, condensed(300));
   const auto probe = attitude_independent_probe(Vector3d(truth.field.data()).norm());
-  const ProbeReadings readings = probe->read(make_flight(flight), false);
+  const ProbeReadings readings = probe->read(make_flight(flight), {});
   CHECK(readings.notes.back().find("up to a rotation") != std::string::npos);
   const auto corrected = probe->correct(readings, order_values(*probe, flight.truth), {});
   REQUIRE(corrected.size() == 3);
@@ -106,9 +105,9 @@ TEST_CASE("rows without air to read, and rows that are dropped, have no correcti
   REQUIRE(simulated.columns[12].name == "dpa_pa");
   const Flight flight = make_flight(simulated);
   const auto probe = make_five_hole();
-  check_refused([&] { probe->read(flight, false); }, {"flight row 5", "'dpa_pa'", "drop_invalid"});
+  check_refused([&] { probe->read(flight, {}); }, {"flight row 5", "'dpa_pa'", "drop_invalid"});
 
-  const ProbeReadings readings = probe->read(flight, true);
+  const ProbeReadings readings = probe->read(flight, {.drop_invalid = true});
   for (const auto& column : probe->correct(readings, order_values(*probe, simulated.truth), {})) {
     REQUIRE(column.values.size() == 20);
     for (std::size_t row = 0; row < 20; ++row) {
@@ -120,7 +119,7 @@ TEST_CASE("rows without air to read, and rows that are dropped, have no correcti
 TEST_CASE("a singular C can't be applied") {
   const auto probe = magnetometer_probe(std::nullopt);
   const ProbeReadings readings =
-      probe->read(make_flight(simulate_magnetometer({}, condensed(5))), false);
+      probe->read(make_flight(simulate_magnetometer({}, condensed(5))), {});
   const auto apply = [&](const std::string& name, double value) {
     return [&, name, value] { probe->correct(readings, only(*probe, name, value), {}); };
   };
@@ -132,7 +131,7 @@ TEST_CASE("a singular C can't be applied") {
 TEST_CASE("a tube whose scale is zero can't be applied") {
   const auto probe = pitot_static_probe();
   const ProbeReadings readings =
-      probe->read(make_flight(simulate_pitot_static({}, condensed(5))), false);
+      probe->read(make_flight(simulate_pitot_static({}, condensed(5))), {});
   const Eigen::VectorXd values = Eigen::VectorXd::Zero(5);
   check_refused([&] { probe->correct(readings, values, {}); }, {"s_va is zero", "airspeed"});
 }
@@ -181,7 +180,7 @@ TEST_CASE("a probe is made again from its name and settings") {
 TEST_CASE("for effects a record has the flow angles as read and the temperature in K") {
   SimulatedFlight simulated = simulate_five_hole({}, condensed(20));
   const auto prepare = [&] {
-    return five_hole_probe(4.0, 5.0, {})->prepare(make_flight(simulated), true);
+    return five_hole_probe(4.0, 5.0, {})->prepare(make_flight(simulated), {.drop_invalid = true});
   };
   const ProbeRecord prepared = prepare();
   for (std::size_t row = 0; row < 20; ++row) {
@@ -203,8 +202,8 @@ TEST_CASE("body rates are needed with a lever arm, else they are not") {
   SimulatedFlight simulated = simulate_five_hole({}, condensed(20));
   std::erase_if(simulated.columns, [](const auto& column) { return column.name == "q_radps"; });
   const Flight flight = make_flight(simulated);
-  CHECK(five_hole_probe(4.5, 4.5, {0, 0, 0})->prepare(flight, false).rows_used() == 20);
-  check_refused([&] { make_five_hole()->prepare(flight, false); },
+  CHECK(five_hole_probe(4.5, 4.5, {0, 0, 0})->prepare(flight, {}).rows_used() == 20);
+  check_refused([&] { make_five_hole()->prepare(flight, {}); },
                 {"'q_radps' is missing", "the flight has: time_s, "});
 }
 

@@ -60,7 +60,7 @@ TEST_CASE("only effects that step have a time to be found") {
       {.name = "bias_step"}, {.name = "warm_up"}, {.name = "scale[step(time)]"}};
   const Flight flight = make_flight(fly("magnetometer", {}));
   const EffectiveFlight made =
-      with_effects(*probe, flight, probe->prepare(flight, false), settings, {});
+      with_effects(*probe, flight, probe->prepare(flight, {}), settings, {});
   const auto times = estimation::step_times(settings, made.effects);
   REQUIRE(times.size() == 2);
   CHECK(times.at("bias_step.t0") == settings.data());

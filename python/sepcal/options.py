@@ -9,11 +9,13 @@ from sepcal import _core
 from sepcal.own_effect import Effect
 
 SHAPES = {
+    "drop_repeats": "[column, ...]",
     "bounds": "{name: (lower, upper)}",
     "prior": "{name: (mean, standard deviation)}",
     "sampling_distribution": "{name: (mean, standard deviation)}",
 }
 APP_NAMES = {"fix": "fixed", "effect": "effects"}  # of the apps' --fix, ...
+ROW_CHOICE = ("drop_invalid", "drop_repeats")  # options that choose rows of a flight
 
 
 class FitOptions(TypedDict, total=False):
@@ -68,6 +70,8 @@ class FitOptions(TypedDict, total=False):
         threads: The caller's included; 0: one a core [0]. The result does not depend on it.
         free: For flights: parameters freed that the probe holds by default [none].
         drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
+        drop_repeats: For flights: slow columns, e.g. ["airspeed"]; rows between their samples,
+            which the log holds or interpolates, are dropped [none].
     """
 
     effects: Sequence[str | Effect] | None
@@ -97,6 +101,7 @@ class FitOptions(TypedDict, total=False):
     threads: int | None
     free: Sequence[str] | None
     drop_invalid: bool | None
+    drop_repeats: Sequence[str] | None
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -155,6 +160,13 @@ def to_core(options: Mapping[str, Any]) -> _core.Options:
                 "takes"
             ) from None
     return core
+
+
+def refuse_row_choice(options: Mapping[str, Any]) -> None:
+    """Raises Error for an option that chooses rows of a flight, where there is none."""
+    for name in ROW_CHOICE:
+        if options.get(name):
+            raise _core.Error(f"{name} is for flights; give the data as a sepcal.Flight")
 
 
 def to_names(argument: str, names: Sequence[str]) -> list[str]:

@@ -110,9 +110,9 @@ void check_record(const Flight& flight, const ProbeRecord& prepared) {
 
 void check_probe(const Probe& probe, const Flight& flight) {
   for (const bool drop_invalid : {false, true}) {
-    accepts([&] { check_record(flight, probe.prepare(flight, drop_invalid)); });
+    accepts([&] { check_record(flight, probe.prepare(flight, {.drop_invalid = drop_invalid})); });
     accepts([&] {
-      const ProbeReadings readings = probe.read(flight, drop_invalid);
+      const ProbeReadings readings = probe.read(flight, {.drop_invalid = drop_invalid});
       check_notes(readings.notes);
       require(readings.valid.size() == flight.rows(), "every row is valid or not");
     });

@@ -88,7 +88,7 @@ PreparedFlight prepare_flight(const Model& model, const Flight& flight,
     throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
   }
   const ManyOptions many = many_options(model, options, own, false);
-  ProbeRecord prepared = model.probe->prepare(flight, options.drop_invalid);
+  ProbeRecord prepared = model.probe->prepare(flight, options.rows);
   return {model.block,
           std::make_unique<FlightProblem>(*model.block, std::move(prepared.record), many)};
 }

@@ -115,7 +115,14 @@ void define_options(py::module_& module) {
   define_choice<&FitOptions::process_noise>(options, "process_noise");
   define_choice<&FitOptions::threads>(options, "threads");
   options.def_readwrite("free", &Options::free);
-  options.def_readwrite("drop_invalid", &Options::drop_invalid);
+  options.def_property(
+      "drop_invalid", [](const Options& all) { return all.rows.drop_invalid; },
+      [](Options& all, bool drop) { all.rows.drop_invalid = drop; });
+  options.def_property(
+      "drop_repeats", [](const Options& all) { return all.rows.drop_repeats; },
+      [](Options& all, std::vector<std::string> columns) {
+        all.rows.drop_repeats = std::move(columns);
+      });
 }
 
 }  // namespace sepcal::bindings

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/toeplitz.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
@@ -137,19 +138,17 @@ double correlation_rows(const RowLayout& layout, const VectorXd& residual) {
   constexpr double negligible = 0.05;
   double longest = 1.0;
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const auto e = residual.segment(layout.first(j), layout.rows);
-    const double square = e.squaredNorm();
-    if (!(square > 0)) continue;
+    VectorXd products = VectorXd::Zero(std::max<Index>(1, layout.rows / 4));  // by lag
+    for (const Segment& segment : layout.segments) {
+      const auto rows = static_cast<Index>(segment.rows());
+      const Index lags = std::min(products.size(), rows);
+      const auto e = residual.segment(layout.first(j) + static_cast<Index>(segment.first), rows);
+      products.head(lags) += static_cast<double>(rows) * numerics::autocovariance(e, lags - 1);
+    }
+    if (!(products[0] > 0)) continue;
     double time = 1.0;
-    for (Index lag = 1; lag < layout.rows / 4; ++lag) {
-      double product = 0.0;
-      for (const Segment& segment : layout.segments) {
-        const Index pairs = static_cast<Index>(segment.rows()) - lag;
-        if (pairs <= 0) continue;
-        const auto first = static_cast<Index>(segment.first);
-        product += e.segment(first, pairs).dot(e.segment(first + lag, pairs));
-      }
-      const double correlation = product / square;
+    for (Index lag = 1; lag < products.size(); ++lag) {
+      const double correlation = products[lag] / products[0];
       if (correlation < negligible) break;
       time += 2.0 * correlation;
     }

@@ -116,9 +116,18 @@ INVISIBLE = (
 )
 
 
-def calibrate(probe: str, flight: Flight) -> Calibration:
+def calibrate(
+    probe: str, flight: Flight, *, segments: str = "", drop_repeats: Sequence[str] = ()
+) -> Calibration:
     """The probe without effects, on one thread: the study runs flights side by side."""
-    return fit(PROBES[probe], flight, threads=1)
+    return fit(
+        PROBES[probe],
+        flight,
+        stage_one=segments,
+        stage_two=segments,
+        drop_repeats=drop_repeats,
+        threads=1,
+    )
 
 
 def fly(

@@ -14,11 +14,10 @@ import numpy as np
 
 from sepcal import Error
 from sepcal.calibration import Calibration
-from sepcal.fitting import fit
 from sepcal.flight import Flight
 from studies.hidden_effects.cases import PROBES, calibrate
 from studies.study import Finding, seed_range
-from studies.trust.flights import FURTHER, NOISES, fly
+from studies.trust.flights import FURTHER, HEADERS, NOISES, SAMPLES_ALONE, fly
 from studies.trust.part import Key, Part, Row
 
 WAYS = (
@@ -30,6 +29,7 @@ WAYS = (
 REACH = 1.96
 LENGTHS = (400, 4000)
 LOWER_BOUND = "lower bound"  # what the status says of a record that is too short for its noise
+CUT_STRAIGHT = "no standard error tells"  # what a note says of interpolated columns
 
 
 def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
@@ -45,9 +45,15 @@ def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
 def measure(probe: str, noise: str, seed: int, rows: int) -> Row:
     """By parameter: the estimate's error and what each way says of it, for whole and halves."""
     flight, quiet = fly(probe, noise, seed, rows)
-    whole = calibrate(probe, flight)
-    row: Row = {"status": whole.status, "message": whole.message, "errors": {}, "halves": {}}
-    halves = _halves(probe, flight)
+    slow = HEADERS[probe] if noise == SAMPLES_ALONE else ()
+    whole = calibrate(probe, flight, drop_repeats=slow)
+    row: Row = {
+        "status": whole.status,
+        "told": LOWER_BOUND in whole.message or any(CUT_STRAIGHT in note for note in whole.notes),
+        "errors": {},
+        "halves": {},
+    }
+    halves = _halves(probe, flight, slow)
     for name in whole.names:
         parameter = whole[name]
         if parameter.fixed or name not in quiet.truth:
@@ -67,15 +73,15 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _halves(probe: str, flight: Flight) -> tuple[Calibration, Calibration] | None:
+def _halves(
+    probe: str, flight: Flight, slow: Sequence[str]
+) -> tuple[Calibration, Calibration] | None:
     """Fits of the first and of the second half, where both determine the model."""
     stamps = flight["time_s"]
     middle = float(stamps[stamps.size // 2])
     spans = (f"{stamps[0]:.6f}:{middle - 1e-6:.6f}", f"{middle:.6f}:{stamps[-1]:.6f}")
     try:
-        one, two = (
-            fit(PROBES[probe], flight, stage_one=span, stage_two=span, threads=1) for span in spans
-        )
+        one, two = (calibrate(probe, flight, segments=s, drop_repeats=slow) for s in spans)
     except Error:
         return None
     return (one, two) if one.status == two.status == "converged" else None
@@ -120,8 +126,8 @@ def _summarise(rows: Sequence[Row]) -> list[Finding]:
         groups[row["key"][4], row["key"][2]].append(row)
     findings = []
     for (length, noise), flights in groups.items():
-        short = sum(LOWER_BOUND in row["message"] for row in flights)
-        told = 2 * short > len(flights)
+        warned = sum(row["told"] for row in flights)
+        told = 2 * warned > len(flights)
         for at, way in enumerate(WAYS):
             parts = []
             shares = []
@@ -140,7 +146,7 @@ def _summarise(rows: Sequence[Row]) -> list[Finding]:
             halves = split_half(flights, at)
             figure = f"{', '.join(parts)}, split halves {halves:.2f}"
             if at == 0:
-                figure += f", called a lower bound in {short} of {len(flights)}"
+                figure += f", said to be too small in {warned} of {len(flights)}"
             asked = at == 0 and not told
             chance = 2.0 * np.sqrt(0.05 * 0.95 / len(flights))  # a flight's intervals go together
             holds = not asked or (

@@ -22,7 +22,9 @@ COARSE = "quantised"  # inputs and outputs in coarse steps
 NOISES = (*OUTPUT_NOISES, ATTITUDE, COARSE)
 JITTERY = "AR(0.9), stamps in bursts"
 COLUMNS_INTERPOLATED = "columns interpolated tenfold"  # a slow sensor's, its noise with it
-FURTHER = (*FURTHER_NOISES, JITTERY, COLUMNS_INTERPOLATED)  # of standard errors alone
+SAMPLES_ALONE = "columns interpolated tenfold, their samples alone"
+INTERPOLATED = (COLUMNS_INTERPOLATED, SAMPLES_ALONE)
+FURTHER = (*FURTHER_NOISES, JITTERY, *INTERPOLATED)  # of standard errors alone
 DRAWS = {**OUTPUT_NOISES, **FURTHER_NOISES, JITTERY: OUTPUT_NOISES["AR(0.9)"]}
 STEPS = {"_mps": 0.5, "_rad": 0.01, "_pa": 5.0, "_ut": 0.3}  # of a coarse column, by its unit
 
@@ -59,7 +61,7 @@ def fly(
             step = next((s for unit, s in STEPS.items() if name.endswith(unit)), None)
             if step is not None and name not in FIELD:
                 columns[name] = np.round(values / step) * step
-    if noise == COLUMNS_INTERPOLATED:
+    if noise in INTERPOLATED:
         for header in HEADERS[probe]:
             columns[header] = np.interp(time, time[::10], columns[header][::10])
     maneuvers = quiet.maneuvers

@@ -91,8 +91,8 @@ Record without_jumps(const Record& record) {
 
 }  // namespace
 
-ProbeRecord prepare(const Flight& flight, AircraftModel model, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities, drop_invalid);
+ProbeRecord prepare(const Flight& flight, AircraftModel model, const RowChoice& rows) {
+  RecordBuilder builder(flight, quantities, rows);
   refuse_load_factor(builder, flight);
   builder.need({"time", "ax", "ay", "az", "p", "q", "r"});
   const bool flies_by_air = model != AircraftModel::path;

@@ -33,8 +33,9 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
   const auto read = std::ranges::find(log.columns(), column.header, &LoggedColumn::header);
   const auto time = files::find_quantity(log.flight(), "time", files::UnitKind::time);
   const bool is_time = time && time->column->header == column.header;
-  const Sequence sequence =
-      read != log.columns().end() ? read->sequence : find_sequence(column.values, log.stretches());
+  const probes::Sequence sequence = read != log.columns().end()
+                                        ? read->sequence
+                                        : probes::find_sequence(column.values, log.stretches());
   if (read != log.columns().end()) described.quantity = read->quantity;
   if (is_time) described.quantity = "time";
   described.step = sequence.step;
@@ -46,7 +47,7 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
 /// What a fit would make of the flight.
 void describe_use(const Probe& probe, const Flight& flight, FlightCheck& check) {
   try {
-    const ProbeRecord prepared = probe.prepare(flight, false);
+    const ProbeRecord prepared = probe.prepare(flight, {});
     check.rows_used = prepared.rows_used();
     check.segments = prepared.record.segments().size();
   } catch (const Error& error) {

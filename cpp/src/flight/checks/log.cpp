@@ -8,32 +8,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/gaps.hpp"
 #include "numerics/residual_curves.hpp"
 
 namespace sepcal::checks {
 namespace {
 
 using files::UnitKind;
-
-/// Rows in which time goes on by at least one interval and no gap, under one label.
-std::vector<Segment> find_stretches(std::span<const double> time,
-                                    std::span<const std::string> labels) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    if (time[i] > time[i - 1]) intervals.push_back(time[i] - time[i - 1]);
-  }
-  const double gap = base::find_gap(std::move(intervals));
-  std::vector<Segment> stretches;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    const bool goes_on = i > 0 && time[i] > time[i - 1] && time[i] - time[i - 1] <= gap &&
-                         (labels.empty() || labels[i] == labels[i - 1]);
-    if (!goes_on) stretches.push_back({"", i, i});
-    stretches.back().last = i + 1;
-  }
-  std::erase_if(stretches, [](const Segment& stretch) { return stretch.rows() < 2; });
-  return stretches;
-}
 
 /// Jumps of a whole turn taken out; what is no number stays where it is.
 void unwrap(std::vector<double>& angles) {
@@ -63,14 +43,14 @@ bool is_used(std::string_view model, const probes::ProbeQuantity& quantity) {
 
 Log::Log(std::string_view model, const Flight& flight) : flight_(flight) {
   time_ = files::read_quantity(flight, "time", UnitKind::time);
-  stretches_ = find_stretches(time_, flight.maneuvers());
+  stretches_ = probes::find_stretches(time_, flight.maneuvers());
   for (const probes::ProbeQuantity& quantity : probes::quantities_of(model)) {
     if (quantity.kind == UnitKind::time) continue;
     const auto logged = files::find_quantity(flight, quantity.name, quantity.kind);
     if (!logged) continue;
     LoggedColumn column{quantity.name, *logged, logged->values(), {}, true};
     if (quantity.kind == UnitKind::angle) unwrap(column.values);
-    column.sequence = find_sequence(logged->column->values, stretches_);
+    column.sequence = probes::find_sequence(logged->column->values, stretches_);
     column.used = is_used(model, quantity);
     columns_.push_back(std::move(column));
   }

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "flight/checks/sequence.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/probes/quantities.hpp"
+#include "flight/probes/sequence.hpp"
 #include "sepcal/flight/check.hpp"
 
 namespace sepcal::checks {
@@ -21,7 +21,7 @@ struct LoggedColumn {
   files::LoggedQuantity logged;
   std::vector<double> values;  // in the unit used inside, NaN where the cell is none; no turn is
                                // jumped over by an angle
-  Sequence sequence;
+  probes::Sequence sequence;
   bool used = true;  // by a fit; else a channel beside it
 
   const std::string& header() const { return logged.column->header; }

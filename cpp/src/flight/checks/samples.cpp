@@ -2,6 +2,7 @@
 #include "flight/checks/samples.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,13 +68,16 @@ void note_slow(const Log& log, const SlowColumns& group, std::vector<LogNote>& n
         "small, "
         "and on average a row is {:.2g} s late",
         std::sqrt(rate), 0.5 * (rate - 1) * interval);
-    note.advice = fmt::format("keep the rows in which {} new", one ? "it is" : "they are");
+    note.advice = fmt::format("keep the rows in which {} new: --drop-repeats {}",
+                              one ? "it is" : "they are", fmt::join(group.headers, ","));
   } else {
     note.effect = fmt::format(
         "rows between count as measurements: the white standard errors are up to {:.2g} times too "
         "small, and turns between them are cut straight, which no standard error tells",
         std::sqrt(rate));
-    note.advice = fmt::format("log what was measured, or keep one row in {:.0f}", rate);
+    note.advice =
+        fmt::format("log what was measured, or keep the rows in which {}: --drop-repeats {}",
+                    one ? "it was" : "they were", fmt::join(group.headers, ","));
   }
   notes.push_back(std::move(note));
 }

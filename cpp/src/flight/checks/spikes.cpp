@@ -24,7 +24,7 @@ struct Neighbours {
 
 Neighbours compare_neighbours(const LoggedColumn& column, const Segment& stretch) {
   Neighbours all;
-  all.rows = find_new_rows(column.values, stretch);
+  all.rows = probes::find_new_rows(column.values, stretch);
   for (const std::size_t row : all.rows) all.values.push_back(column.values[row]);
   all.errors.assign(all.rows.size(), 0.0);
   const std::vector<double>& x = all.values;

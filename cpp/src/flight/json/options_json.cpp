@@ -120,7 +120,8 @@ Json write_options(const CalibrationOptions& chosen) {
   options["coloured_errors"] = fit.coloured_errors;
   if (!fit.process_noise.empty()) options["process_noise"] = fit.process_noise;
   options["threads"] = fit.threads;
-  options["drop_invalid"] = chosen.drop_invalid;
+  options["drop_invalid"] = chosen.rows.drop_invalid;
+  if (!chosen.rows.drop_repeats.empty()) options["drop_repeats"] = chosen.rows.drop_repeats;
   return options;
 }
 
@@ -159,7 +160,10 @@ CalibrationOptions read_options(const Json& options) {
     fit.process_noise = options.at("process_noise").get<std::map<std::string, double>>();
   }
   fit.threads = whole_number<int>(options.at("threads"));
-  result.drop_invalid = options.at("drop_invalid").get<bool>();
+  result.rows.drop_invalid = options.at("drop_invalid").get<bool>();
+  if (options.contains("drop_repeats")) {
+    result.rows.drop_repeats = options.at("drop_repeats").get<std::vector<std::string>>();
+  }
   return result;
 }
 

@@ -55,8 +55,8 @@ const char* still_in_tube(const RecordBuilder& builder) {
 
 }  // namespace
 
-ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities_of("pitot-static"), drop_invalid);
+ProbeRecord prepare_pitot_static(const Flight& flight, const RowChoice& rows) {
+  RecordBuilder builder(flight, quantities_of("pitot-static"), rows);
   builder.need({"time", "vn", "ve", "vd"});
   need_airspeed(builder, flight);
   builder.check_time();
@@ -73,8 +73,8 @@ ProbeRecord prepare_pitot_static(const Flight& flight, bool drop_invalid) {
   return builder.finish();
 }
 
-ProbeReadings read_pitot_static(const Flight& flight, bool drop_invalid) {
-  RecordBuilder builder(flight, quantities_of("pitot-static"), drop_invalid);
+ProbeReadings read_pitot_static(const Flight& flight, const RowChoice& rows) {
+  RecordBuilder builder(flight, quantities_of("pitot-static"), rows);
   need_airspeed(builder, flight);
   builder.keep(air_meets_tube(builder), still_in_tube(builder));
   if (has_airspeed(builder) && !offer_density(builder)) {

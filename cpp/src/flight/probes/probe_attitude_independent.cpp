@@ -42,12 +42,12 @@ class StrengthOnlyMagnetometer final : public Probe {
     return {{"field_strength", {setup_.field_strength}}, {"field_noise", {setup_.noise}}};
   }
 
-  ProbeRecord prepare(const Flight& flight, bool drop_invalid) const override {
-    return prepare_attitude_independent(flight, drop_invalid);
+  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
+    return prepare_attitude_independent(flight, rows);
   }
 
-  ProbeReadings read(const Flight& flight, bool drop_invalid) const override {
-    ProbeReadings readings = read_magnetometer(flight, drop_invalid);
+  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
+    ProbeReadings readings = read_magnetometer(flight, rows);
     readings.notes.push_back(flight.name() +
                              ": the corrected field is in body axes up to a rotation, which the "
                              "field's strength does not show");

@@ -29,12 +29,12 @@ class KnownFieldMagnetometer final : public Probe {
     return {{"field", {field_->begin(), field_->end()}}};
   }
 
-  ProbeRecord prepare(const Flight& flight, bool drop_invalid) const override {
-    return prepare_magnetometer(flight, {.field = field_, .drop_invalid = drop_invalid});
+  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
+    return prepare_magnetometer(flight, {.field = field_, .rows = rows});
   }
 
-  ProbeReadings read(const Flight& flight, bool drop_invalid) const override {
-    return read_magnetometer(flight, drop_invalid);
+  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
+    return read_magnetometer(flight, rows);
   }
 
   std::vector<std::string> corrected_headers() const override {

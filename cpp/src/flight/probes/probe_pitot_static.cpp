@@ -26,12 +26,12 @@ class PitotStaticTube final : public Probe {
   const BlockModel& model() const override { return model_; }
   std::map<std::string, std::vector<double>> settings() const override { return {}; }
 
-  ProbeRecord prepare(const Flight& flight, bool drop_invalid) const override {
-    return prepare_pitot_static(flight, drop_invalid);
+  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
+    return prepare_pitot_static(flight, rows);
   }
 
-  ProbeReadings read(const Flight& flight, bool drop_invalid) const override {
-    return read_pitot_static(flight, drop_invalid);
+  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
+    return read_pitot_static(flight, rows);
   }
 
   std::vector<std::string> corrected_headers() const override { return {"airspeed_cal_mps"}; }

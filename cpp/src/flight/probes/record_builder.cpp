@@ -11,6 +11,7 @@
 
 #include "flight/files/invalid_cells.hpp"
 #include "flight/probes/plausible_readings.hpp"
+#include "flight/probes/sampled_rows.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/option_error.hpp"
 
@@ -19,10 +20,21 @@ namespace sepcal::probes {
 constexpr std::size_t most_notes = 10;  // of one kind; more of them nobody reads
 
 RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
-                             bool drop_invalid)
-    : flight_(flight), quantities_(quantities), drop_invalid_(drop_invalid), rows_(flight.rows()) {
+                             const RowChoice& choice)
+    : flight_(flight),
+      quantities_(quantities),
+      drop_invalid_(choice.drop_invalid),
+      rows_(flight.rows()) {
   std::iota(rows_.begin(), rows_.end(), std::size_t{0});
   for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
+  if (!choice.drop_repeats.empty()) drop_repeats(choice.drop_repeats);
+}
+
+void RecordBuilder::drop_repeats(const std::vector<std::string>& columns) {
+  const std::vector<double> time = has({"time"}) ? logged("time").values() : std::vector<double>();
+  const std::vector<bool> sampled = find_sampled(flight_, columns, time);
+  keep([&](std::size_t row) { return sampled[row]; },
+       fmt::format("they lie between samples of {}", fmt::join(columns, ", ")));
 }
 
 /// An unknown unit is refused only where the quantity isn't there in a known one: beside time_s, a

@@ -28,8 +28,10 @@ class RecordBuilder {
   using RowTest = std::function<bool(std::size_t row)>;
   using RowValue = std::function<double(std::size_t row)>;
 
-  /// Throws Error for one of the quantities in an unknown unit, or in two.
-  RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities, bool drop_invalid);
+  /// Throws Error for one of the quantities in an unknown unit, or in two, and for a column of
+  /// drop_repeats that is not there.
+  RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
+                const RowChoice& choice);
 
   bool has(Names names) const;
 
@@ -87,6 +89,7 @@ class RecordBuilder {
 
  private:
   void find_quantity(const ProbeQuantity& quantity);
+  void drop_repeats(const std::vector<std::string>& columns);
   const ProbeQuantity& quantity_of(std::string_view name) const;
   std::vector<std::string> other_headers() const;
   [[noreturn]] void fail_missing(std::span<const std::string_view> names) const;

@@ -12,8 +12,17 @@ namespace sepcal {
 
 using namespace verbs;  // this room's own
 
+namespace {
+
+/// As far as it can be read: what a fit left out for its own sake is calibrated all the same.
+RowChoice every_row(const Calibration& calibration) {
+  return {.drop_invalid = calibration.options.rows.drop_invalid};
+}
+
+}  // namespace
+
 std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight& flight) {
-  ProbeReadings readings = calibration.probe->read(flight, calibration.options.drop_invalid);
+  ProbeReadings readings = calibration.probe->read(flight, every_row(calibration));
   return correct_with_effects(calibration, flight, readings);
 }
 
@@ -23,7 +32,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   check_not_input(output, file);
   OutputFile target(output);
   const Flight flight = read_csv(file, progress);
-  ProbeReadings readings = probe.read(flight, calibration.options.drop_invalid);
+  ProbeReadings readings = probe.read(flight, every_row(calibration));
   const auto columns = correct_with_effects(calibration, flight, readings);
 
   Applied applied{.output = output,

@@ -132,9 +132,16 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
 }
 
 /// Whether these options do what the note asks for.
-bool is_followed(const LogNote& note, const FitOptions& options) {
-  if (note.kind == "outliers") return options.loss != Loss::squares;
-  return note.kind == "at_rest" && !options.stage_two_segments.empty();
+bool is_followed(const LogNote& note, const CalibrationOptions& options) {
+  if (note.kind == "outliers") return options.fit.loss != Loss::squares;
+  if (note.kind == "at_rest") return !options.fit.stage_two_segments.empty();
+  const auto is_chosen = [&](const std::string& header) {
+    return std::ranges::any_of(options.rows.drop_repeats, [&](const std::string& name) {
+      return name == header || name == header.substr(0, header.rfind('_'));
+    });
+  };
+  return (note.kind == "held" || note.kind == "interpolated") &&
+         std::ranges::any_of(note.columns, is_chosen);
 }
 
 /// What a delay's reach takes from the segments' ends, where that is much.
@@ -154,9 +161,9 @@ void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOpt
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
-  const PreparedFlight prepared = prepare(*probe, flight, options.drop_invalid);
+  const PreparedFlight prepared = prepare(*probe, flight, options.rows);
   FlightCheck seen = check(*probe, flight);
-  std::erase_if(seen.notes, [&](const LogNote& note) { return is_followed(note, options.fit); });
+  std::erase_if(seen.notes, [&](const LogNote& note) { return is_followed(note, options); });
   auto notes = brief_notes(seen);
   Calibration calibration = calibrate(std::move(probe), prepared, options);
   std::ranges::move(notes, std::back_inserter(calibration.notes));

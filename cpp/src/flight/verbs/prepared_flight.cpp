@@ -11,12 +11,12 @@
 
 namespace sepcal::verbs {
 
-PreparedFlight prepare(const Probe& probe, const Flight& flight, bool drop_invalid) {
-  return {flight, probe.prepare(flight, drop_invalid)};
+PreparedFlight prepare(const Probe& probe, const Flight& flight, const RowChoice& rows) {
+  return {flight, probe.prepare(flight, rows)};
 }
 
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
-  return prepare(*calibration.probe, flight, calibration.options.drop_invalid);
+  return prepare(*calibration.probe, flight, calibration.options.rows);
 }
 
 EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFlight& prepared) {

@@ -20,7 +20,7 @@ struct PreparedFlight {
 };
 
 /// Throws Error as Probe::prepare() does.
-PreparedFlight prepare(const Probe& probe, const Flight& flight, bool drop_invalid);
+PreparedFlight prepare(const Probe& probe, const Flight& flight, const RowChoice& rows);
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight);
 
 /// As the model with the calibration's effects takes it; they mean what they meant on the flight

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "flight/checks/sequence.hpp"
+#include "flight/probes/sequence.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/gaps.hpp"
 #include "numerics/residual_curves.hpp"
 
-namespace sepcal::checks {
+namespace sepcal::probes {
 namespace {
 
 using numerics::quantile;
@@ -98,7 +99,8 @@ double find_hold(const Runs& runs, const std::vector<double>& spacings, double s
 
 /// How far rows are from the line through their neighbours, where these differ.
 struct Bends {
-  std::vector<double> bent;     // farther than a digit, ascending
+  std::vector<std::size_t> knots;  // bent rows, of some in a row the first
+  std::vector<double> bent;        // farther than a digit, ascending
   std::vector<double> between;  // rows from one to the next, of some in a row the first; ascending
   double rows = 0.0;            // that neither stand still nor at an end
 };
@@ -116,6 +118,7 @@ Bends find_bends(std::span<const double> values, const std::vector<Segment>& str
       if (moves) ++bends.rows;
       if (bent) bends.bent.push_back(bend);
       if (bent && !bent_before) {  // a bend between two rows shows in both of them
+        bends.knots.push_back(i);
         if (knot > 0) bends.between.push_back(static_cast<double>(i - knot));
         knot = i;
       }
@@ -139,16 +142,21 @@ double mean_of_usual(const std::vector<double>& values, double usual) {
   return sum / count;
 }
 
+/// How far off a line rounding puts a row.
+double find_digit(std::span<const double> values, const std::vector<double>& spacings) {
+  double widest = 0.0;
+  for (const double value : values) {
+    if (std::isfinite(value)) widest = std::max(widest, std::abs(value));
+  }
+  return std::max(1.05 * spacings.front(), 1e-12 * widest);
+}
+
 /// Interpolated where most rows stand on the line of their neighbours to the last digit, the others
 /// far off it, and these come at even distances throughout.
 double find_knot_spacing(std::span<const double> values, const std::vector<Segment>& stretches,
                          const std::vector<double>& spacings) {
   if (spacings.size() < fewest_to_tell) return 1.0;
-  double widest = 0.0;
-  for (const double value : values) {
-    if (std::isfinite(value)) widest = std::max(widest, std::abs(value));
-  }
-  const double digit = std::max(1.05 * spacings.front(), 1e-12 * widest);
+  const double digit = find_digit(values, spacings);
   const Bends bends = find_bends(values, stretches, digit);
   if (bends.between.size() < fewest_to_tell) return 1.0;
   const double usual = quantile(bends.between, 0.5);
@@ -201,4 +209,35 @@ std::vector<std::size_t> find_new_rows(std::span<const double> values, const Seg
   return rows;
 }
 
-}  // namespace sepcal::checks
+std::vector<std::size_t> find_sampled_rows(std::span<const double> values,
+                                           const std::vector<Segment>& stretches) {
+  if (find_sequence(values, stretches).knot_spacing > 1.0) {
+    return find_bends(values, stretches, find_digit(values, find_spacings(values))).knots;
+  }
+  std::vector<std::size_t> rows;
+  for (const Segment& stretch : stretches) {
+    const std::vector<std::size_t> own = find_new_rows(values, stretch);
+    rows.insert(rows.end(), own.begin(), own.end());
+  }
+  return rows;
+}
+
+std::vector<Segment> find_stretches(std::span<const double> time,
+                                    std::span<const std::string> labels) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (time[i] > time[i - 1]) intervals.push_back(time[i] - time[i - 1]);
+  }
+  const double gap = base::find_gap(std::move(intervals));
+  std::vector<Segment> stretches;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const bool goes_on = i > 0 && time[i] > time[i - 1] && time[i] - time[i - 1] <= gap &&
+                         (labels.empty() || labels[i] == labels[i - 1]);
+    if (!goes_on) stretches.push_back({"", i, i});
+    stretches.back().last = i + 1;
+  }
+  std::erase_if(stretches, [](const Segment& stretch) { return stretch.rows() < 2; });
+  return stretches;
+}
+
+}  // namespace sepcal::probes

@@ -5,12 +5,13 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 
-namespace sepcal::checks {
+namespace sepcal::probes {
 
 struct Sequence {
   double step = not_a_number;  // that values stand apart by; NaN where they lie on no steps
@@ -23,10 +24,19 @@ struct Sequence {
   double rows_per_sample() const { return hold > knot_spacing ? hold : knot_spacing; }
 };
 
+/// Rows in which time goes on by at least one interval and no gap, under one label; two or more.
+std::vector<Segment> find_stretches(std::span<const double> time,
+                                    std::span<const std::string> labels);
+
 /// `values` may hold NaN; `stretches`: rows one after another in time.
 Sequence find_sequence(std::span<const double> values, const std::vector<Segment>& stretches);
 
 /// The rows of a stretch that begin a run of equal values, what is no number left out.
 std::vector<std::size_t> find_new_rows(std::span<const double> values, const Segment& stretch);
 
-}  // namespace sepcal::checks
+/// The rows of the stretches in which a slow column was sampled: where straight lines between
+/// samples bend, or, of any other column, where another value begins.
+std::vector<std::size_t> find_sampled_rows(std::span<const double> values,
+                                           const std::vector<Segment>& stretches);
+
+}  // namespace sepcal::probes

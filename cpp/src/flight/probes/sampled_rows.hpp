@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rows in which slow columns were sampled; in those between them the log holds or interpolates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sepcal/flight/flight.hpp"
+
+namespace sepcal::probes {
+
+/// A row each: whether any of the columns was sampled there. `columns`: quantities ("airspeed") or
+/// whole headers; `time` [s] a row each, or none. Throws Error for a column that is not there.
+std::vector<bool> find_sampled(const Flight& flight, const std::vector<std::string>& columns,
+                               const std::vector<double>& time);
+
+}  // namespace sepcal::probes
