@@ -80,6 +80,7 @@ class CommandLine {
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
         ->type_name("C.json");
     instrument.add_probe_options(*check_);
+    add_row_choice(*check_, typed_.drop_invalid, typed_.drop_repeats);
     add_json(*check_);
 
     add_flight(*fit_);

@@ -98,11 +98,15 @@ void FitArguments::add_to(CLI::App& fit) {
       ->type_name("T")
       ->capture_default_str();
   add_whole_number(fit, "--threads", engine.threads, "threads; 0: one a core", most_threads);
-  fit.add_flag("--drop-invalid", options_.rows.drop_invalid,
-               "drops rows with a cell that is no number instead of refusing the file");
-  fit.add_option("--drop-repeats", options_.rows.drop_repeats,
-                 "drops the rows between the samples of slow columns that the log holds or "
-                 "interpolates, e.g. airspeed")
+  add_row_choice(fit, options_.rows.drop_invalid, options_.rows.drop_repeats);
+}
+
+void add_row_choice(CLI::App& verb, bool& drop_invalid, std::vector<std::string>& drop_repeats) {
+  verb.add_flag("--drop-invalid", drop_invalid,
+                "drops rows with a cell that is no number instead of refusing the file");
+  verb.add_option("--drop-repeats", drop_repeats,
+                  "drops the rows between the samples of slow columns that the log holds or "
+                  "interpolates, e.g. airspeed; of several the slowest counts")
       ->type_name("COLUMN[,COLUMN...]")
       ->delimiter(',');
 }

@@ -10,6 +10,9 @@
 
 namespace sepcal::app {
 
+/// Adds the options that choose a flight's rows.
+void add_row_choice(CLI::App& verb, bool& drop_invalid, std::vector<std::string>& drop_repeats);
+
 class FitArguments {
  public:
   /// Adds the options to `fit`; they fill this object, which must outlive the parsing.

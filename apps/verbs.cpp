@@ -9,6 +9,7 @@
 #include "delivery.hpp"
 #include "flight/files/text_file.hpp"
 #include "progress.hpp"
+#include "running.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
@@ -62,7 +63,9 @@ int Verbs::fit(CalibrationOptions options) const {
 int Verbs::check() const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
   const Flight flight = read_flight();
-  const FlightCheck check = sepcal::check(*instrument_.probe(flight), flight);
+  const FlightCheck check = sepcal::check(
+      *instrument_.probe(flight), flight,
+      {.drop_invalid = arguments_.drop_invalid, .drop_repeats = arguments_.drop_repeats}, as_typed);
   delivery.deliver(to_json(check), to_text(check));
   return 0;
 }

@@ -21,7 +21,8 @@ struct Arguments {
   std::vector<std::string> parameters;
   bool json = false;
   bool explain = false;       // the whole message of the fit
-  bool drop_invalid = false;  // of a later verb: whatever the calibration says
+  bool drop_invalid = false;  // of check, and of a later verb whatever the calibration says
+  std::vector<std::string> drop_repeats = {};  // of check
 };
 
 /// Each returns the exit code: 0, or what the fit's status (4 not identifiable, 5 not converged) or

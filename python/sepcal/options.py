@@ -71,7 +71,8 @@ class FitOptions(TypedDict, total=False):
         free: For flights: parameters freed that the probe holds by default [none].
         drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
         drop_repeats: For flights: slow columns, e.g. ["airspeed"]; rows between their samples,
-            which the log holds or interpolates, are dropped [none].
+            which the log holds or interpolates, are dropped; of several the slowest counts
+            [none].
     """
 
     effects: Sequence[str | Effect] | None

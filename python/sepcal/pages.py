@@ -56,8 +56,8 @@ class Page:
         """The same as a pandas.DataFrame, with every number. Raises ImportError without pandas."""
         try:
             pandas = importlib.import_module("pandas")
-        except ImportError as error:
-            raise ImportError("to_frame() needs pandas: pip install pandas") from error
+        except ImportError:
+            raise ImportError("to_frame() needs pandas: pip install pandas") from None
         frame = pandas.DataFrame([dict(row) for row in self._rows()])
         return frame.set_index("name") if "name" in frame.columns else frame
 

@@ -55,6 +55,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "threads": 2,
         "free": ("w_n",),
         "drop_invalid": True,
+        "drop_repeats": ("vn_mps",),
     }
     of_states = {"process_noise"}  # tests/python/test_aircraft.py
     assert set(options) == set(sepcal.FitOptions.__annotations__) - of_states

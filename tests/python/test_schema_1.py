@@ -25,6 +25,10 @@ NEW_WORDS = {" known ": " prior ", "far from what is known of it": "far from its
 SCALE_BOUNDS = re.compile(r" +\[(?:-0\.95|0\.05), inf\]$", re.MULTILINE)  # there were none
 
 
+# RMSE by output; of the noise, which was always told, only what is another is told now.
+OUTPUTS = re.compile(r"^output +rmse.*(?:\n\S.*)+", re.MULTILINE)
+
+
 STATUS = re.compile(r"^(status: \w+)((?:\n  \S.*)+)", re.MULTILINE)
 
 
@@ -42,6 +46,7 @@ def without_errors(page: str) -> str:
     R settles in fewer turns since, at the same numbers, which are compared beside the page.
     """
     page = re.sub(r"\d+ iterations?, R settled in \d+", "R settled", page)
+    page = OUTPUTS.sub(lambda at: re.sub(r"^(\S+ +\S+).*$", r"\1", at[0], flags=re.M), page)
     lines = re.sub(r"^(status: \w+):.*$", r"\1", page, flags=re.MULTILINE).splitlines()
     header = next(at for at, line in enumerate(lines) if line.startswith("parameter"))
     error = slice(lines[header].index("value") + 5, lines[header].index("white") - 4)

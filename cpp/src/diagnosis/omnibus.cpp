@@ -204,10 +204,12 @@ std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& ki
       part.array().colwise() *= ramp.array();
     }
     null.whiten(columns);
-    columns = remove_span(null.white_basis, columns);
+    const MatrixXd beyond = remove_span(null.white_basis, columns);
+    constexpr double unseen = 1e-6;  // of a column: rounding
     double size = 0.0;
     for (Index k = 0; k < columns.cols(); ++k) {
-      size = std::max(size, sigmas / columns.col(k).norm());
+      const double left = beyond.col(k).norm();
+      size = std::max(size, left > unseen * columns.col(k).norm() ? sigmas / left : infinity);
     }
     limits.push_back({port.name, port.unit, size});
   }

@@ -10,6 +10,7 @@ import shlex
 from html import escape
 
 from sepcal import _core
+from sepcal.diagnosis import EffectFinding
 from sepcal.reporting import tables
 from sepcal.reporting.gather import Material
 from sepcal.reporting.words import number, with_unit
@@ -110,12 +111,19 @@ def list_limits(material: Material) -> str:
     return f"<h3>How small an effect this flight could show</h3>{tables.table(head, rows)}"
 
 
+def advised(material: Material) -> EffectFinding | None:
+    """The effect to add next, which a fit bears out."""
+    name = material.diagnosis.advice["effect"]
+    return material.diagnosis[name] if name else None
+
+
 def next_command(material: Material, file: str) -> str:
-    """The shell command that adds the first effect found; empty where none was."""
-    if not material.diagnosis.found or not file or not material.flight.sha256:
+    """The shell command that adds the effect that is advised; empty where none is."""
+    effect = advised(material)
+    if effect is None or not file or not material.flight.sha256:
         return ""
     app = "sepcal-mag" if material.model.startswith("magnetometer") else "sepcal-pitot"
-    words = [app, "add", material.flight.name, file, material.diagnosis.found[0].name]
+    words = [app, "add", material.flight.name, file, effect.name]
     return f"{shlex.join(words)} -o NEXT.json"
 
 

@@ -56,8 +56,7 @@ def show_verdict(material: Material) -> str:
         (words.with_unit(found.rmse, unit), "RMSE left, all outputs"),
         (words.with_unit(found.noise_floor, unit), "noise floor"),
     ]
-    if found.found:
-        best = found.found[0]
+    if best := advice.advised(material):
         facts += [
             (words.percent(best.predicted_drop), f"less with {escape(best.name)}"),
             (words.percent(best.held_out_gain), "less on rows held out"),
@@ -110,10 +109,11 @@ def show_waterfall(material: Material) -> Section:
     if not steps:
         held = found[0].held_out_before if found else None
         steps.append(Step("this model", material.diagnosis.rmse, held, None))
-    if found and material.diagnosis.rmse is not None and found[0].predicted_drop is not None:
-        promised = material.diagnosis.rmse * (1 - found[0].predicted_drop)
-        label = f"next: + {found[0].name}"
-        steps.append(Step(label, promised, found[0].held_out_after, None, is_next=True))
+    best = advice.advised(material)
+    if best and material.diagnosis.rmse is not None and best.predicted_drop is not None:
+        promised = material.diagnosis.rmse * (1 - best.predicted_drop)
+        label = f"next: + {best.name}"
+        steps.append(Step(label, promised, best.held_out_after, None, is_next=True))
     blocks: list[str | Figure | Grid] = [
         draw_waterfall(steps, material.diagnosis.noise_floor, unit)
     ]

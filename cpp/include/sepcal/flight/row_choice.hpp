@@ -13,8 +13,8 @@ struct RowChoice {
   bool drop_invalid = false;
 
   /// Slow columns, by quantity ("airspeed") or whole header ("airspeed_kt"): of the rows between
-  /// their samples, held or interpolated, none is taken. Where there are several, a row counts in
-  /// which any of them was sampled.
+  /// their samples, held or interpolated, none is taken. Of several columns the slowest counts;
+  /// where some are about as slow, a row in which any of these was sampled.
   std::vector<std::string> drop_repeats = {};
 
   bool operator==(const RowChoice&) const = default;

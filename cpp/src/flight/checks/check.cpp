@@ -10,6 +10,7 @@
 #include "flight/checks/samples.hpp"
 #include "flight/checks/spikes.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -45,11 +46,15 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
 }
 
 /// What a fit would make of the flight.
-void describe_use(const Probe& probe, const Flight& flight, FlightCheck& check) {
+void describe_use(const Probe& probe, const Flight& flight, const RowChoice& rows,
+                  const std::function<std::string(const std::string& name)>& spell,
+                  FlightCheck& check) {
   try {
-    const ProbeRecord prepared = probe.prepare(flight, {});
+    const ProbeRecord prepared = probe.prepare(flight, rows);
     check.rows_used = prepared.rows_used();
     check.segments = prepared.record.segments().size();
+  } catch (const OptionError& error) {
+    check.refused = spell ? error.spelled(spell) : error.what();
   } catch (const Error& error) {
     check.refused = error.what();
   }
@@ -57,13 +62,14 @@ void describe_use(const Probe& probe, const Flight& flight, FlightCheck& check) 
 
 }  // namespace
 
-FlightCheck check(const Probe& probe, const Flight& flight) {
+FlightCheck check(const Probe& probe, const Flight& flight, const RowChoice& rows,
+                  const std::function<std::string(const std::string& name)>& spell) {
   FlightCheck check{.model = std::string(probe.name()),
                     .app = std::string(probe.app()),
                     .file = flight.name(),
                     .sha256 = flight.sha256(),
                     .rows = flight.rows()};
-  describe_use(probe, flight, check);
+  describe_use(probe, flight, rows, spell, check);
   const Log log(probe.name(), flight);
   check.rate = 1 / log.interval();
   if (std::isfinite(check.rate)) {

@@ -116,7 +116,10 @@ void note_sphere(const Log& log, const FieldRows& field, std::vector<LogNote>& n
                            attitude ? "by the attitude" : "by the readings about their middle");
   note.effect = attitude ? "soft iron and misalignment are hard to tell from hard iron"
                          : "hard iron, scale errors and soft iron are hard to tell apart";
-  note.advice = "turn it all round, upside down too; or hold the soft iron with --fix";
+  note.advice =
+      "turn it all round, upside down too; or hold the soft iron: --fix alpha_xy=0 --fix "
+      "alpha_xz=0 "
+      "--fix alpha_yz=0, or what it is known to be";
   notes.push_back(std::move(note));
 }
 

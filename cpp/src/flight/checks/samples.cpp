@@ -47,7 +47,18 @@ std::vector<SlowColumns> find_slow(const Log& log) {
   return groups;
 }
 
-void note_slow(const Log& log, const SlowColumns& group, std::vector<LogNote>& notes) {
+/// Takes a row to a sample of the slowest columns that a fit uses.
+std::string drop_repeats(const std::vector<SlowColumns>& groups) {
+  const SlowColumns* slowest = nullptr;
+  for (const SlowColumns& group : groups) {
+    if (!group.used) continue;
+    if (slowest == nullptr || group.rows_per_sample > slowest->rows_per_sample) slowest = &group;
+  }
+  return fmt::format("--drop-repeats {}", fmt::join(slowest->headers, ","));
+}
+
+void note_slow(const Log& log, const SlowColumns& group, const std::vector<SlowColumns>& groups,
+               std::vector<LogNote>& notes) {
   const double interval = log.interval();
   const double rate = group.rows_per_sample;
   const bool one = group.headers.size() == 1;
@@ -68,16 +79,14 @@ void note_slow(const Log& log, const SlowColumns& group, std::vector<LogNote>& n
         "small, "
         "and on average a row is {:.2g} s late",
         std::sqrt(rate), 0.5 * (rate - 1) * interval);
-    note.advice = fmt::format("keep the rows in which {} new: --drop-repeats {}",
-                              one ? "it is" : "they are", fmt::join(group.headers, ","));
+    note.advice = "take the rows in which the slowest is new: " + drop_repeats(groups);
   } else {
     note.effect = fmt::format(
         "rows between count as measurements: the white standard errors are up to {:.2g} times too "
         "small, and turns between them are cut straight, which no standard error tells",
         std::sqrt(rate));
     note.advice =
-        fmt::format("log what was measured, or keep the rows in which {}: --drop-repeats {}",
-                    one ? "it was" : "they were", fmt::join(group.headers, ","));
+        "log what was measured, or take the rows in which the slowest was: " + drop_repeats(groups);
   }
   notes.push_back(std::move(note));
 }
@@ -98,7 +107,8 @@ void note_coarse(const Log& log, const LoggedColumn& column, std::vector<LogNote
 }  // namespace
 
 void check_samples(const Log& log, std::vector<LogNote>& notes) {
-  for (const SlowColumns& group : find_slow(log)) note_slow(log, group, notes);
+  const std::vector<SlowColumns> groups = find_slow(log);
+  for (const SlowColumns& group : groups) note_slow(log, group, groups, notes);
   for (const LoggedColumn& column : log.columns()) {
     if (column.used && column.sequence.coarse) note_coarse(log, column, notes);
   }

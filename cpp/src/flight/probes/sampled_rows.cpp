@@ -11,6 +11,8 @@
 namespace sepcal::probes {
 namespace {
 
+constexpr double about_as_slow = 1.1;  // samples over the slowest column's
+
 /// The whole header first; else the only one that is this name and a unit.
 const Flight::Column& find_column(const Flight& flight, const std::string& name) {
   if (const Flight::Column* column = flight.find(name)) return *column;
@@ -30,11 +32,16 @@ std::vector<bool> find_sampled(const Flight& flight, const std::vector<std::stri
                                const std::vector<double>& time) {
   std::vector<Segment> stretches{{"", 0, flight.rows()}};
   if (!time.empty()) stretches = find_stretches(time, flight.maneuvers());
-  std::vector<bool> sampled(flight.rows(), false);
+  std::vector<std::vector<std::size_t>> samples;
+  std::size_t fewest = flight.rows();
   for (const std::string& name : columns) {
-    for (const std::size_t row : find_sampled_rows(find_column(flight, name).values, stretches)) {
-      sampled[row] = true;
-    }
+    samples.push_back(find_sampled_rows(find_column(flight, name).values, stretches));
+    fewest = std::min(fewest, samples.back().size());
+  }
+  std::vector<bool> sampled(flight.rows(), false);
+  for (const std::vector<std::size_t>& own : samples) {
+    if (static_cast<double>(own.size()) > about_as_slow * static_cast<double>(fewest)) continue;
+    for (const std::size_t row : own) sampled[row] = true;
   }
   return sampled;
 }

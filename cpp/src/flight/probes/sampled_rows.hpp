@@ -9,7 +9,8 @@
 
 namespace sepcal::probes {
 
-/// A row each: whether any of the columns was sampled there. `columns`: quantities ("airspeed") or
+/// A row each: whether the slowest of the columns was sampled there, or another one that is about
+/// as slow. `columns`: quantities ("airspeed") or
 /// whole headers; `time` [s] a row each, or none. Throws Error for a column that is not there.
 std::vector<bool> find_sampled(const Flight& flight, const std::vector<std::string>& columns,
                                const std::vector<double>& time);

@@ -48,9 +48,11 @@ std::string estimates(const EffectFinding& effect) {
     const std::string component = coefficient.name.substr(coefficient.name.rfind('.') + 1);
     text += fmt::format("{}{} {:.3g} +- {:.1g}", k == 0 ? "" : ", ", component,
                         coefficient.estimate, coefficient.standard_error);
+    const bool is_last = k + 1 == std::min(most, effect.coefficients.size());
+    const bool unit_changes = !is_last && effect.coefficients[k + 1].unit != coefficient.unit;
+    if ((is_last || unit_changes) && coefficient.unit != "1") text += " " + coefficient.unit;
   }
   if (effect.coefficients.size() > most) text += ", ...";
-  text += " " + effect.coefficients.front().unit;
   constexpr double told = 0.95;
   if (effect.share_after_selection < told) {
     text += fmt::format(" (chosen among many: more likely {:.2g} of that)",

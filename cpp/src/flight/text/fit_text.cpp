@@ -73,6 +73,23 @@ std::string error_columns(const Estimate& estimate, Detail detail) {
                             defined(estimate.standard_error_blocks, "{:.2g}"));
 }
 
+/// The RMSE of each output, and the noise that it was weighed by where that is another: the RMSE
+/// says nothing of the sensor's noise, and would if it stood there twice.
+std::string output_table(const Fit& fit) {
+  const auto is_same = [](const OutputValue& rmse, const OutputValue& noise) {
+    return std::abs(noise.value - rmse.value) <= 1e-3 * rmse.value;
+  };
+  const bool same = std::ranges::equal(fit.rmse, fit.noise, is_same);
+  std::string text =
+      fmt::format("\n{:<14} {:>13}{}\n", "output", "rmse", same ? "" : "   weighed by");
+  for (std::size_t j = 0; j < fit.rmse.size(); ++j) {
+    text += fmt::format("{:<14} {:>13.4g}", fit.rmse[j].name, fit.rmse[j].value);
+    if (!same) text += fmt::format(" {:>12.4g}", fit.noise[j].value);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
@@ -103,12 +120,7 @@ std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
     add_row(quantity.name, fmt::format("{:.6g}", quantity.value), error_columns(quantity, detail),
             quantity.unit, "derived");
   }
-  text += fmt::format("\n{:<14} {:>13} {:>12}\n", "output", "rmse", "noise");
-  for (std::size_t j = 0; j < fit.rmse.size(); ++j) {
-    text += fmt::format("{:<14} {:>13.4g} {:>12.4g}\n", fit.rmse[j].name, fit.rmse[j].value,
-                        fit.noise[j].value);
-  }
-  return text + "\n" + stage_line(fit, options);
+  return text + output_table(fit) + "\n" + stage_line(fit, options);
 }
 
 std::string to_text(const Fit& fit, const CalibrationOptions& options, Detail detail) {

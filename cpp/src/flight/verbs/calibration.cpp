@@ -131,17 +131,24 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
           flight.prepared.notes};
 }
 
-/// Whether these options do what the note asks for.
-bool is_followed(const LogNote& note, const CalibrationOptions& options) {
+/// Whether these options do what the note asks for; `rows`: those of the flight that are fitted.
+bool is_followed(const LogNote& note, const CalibrationOptions& options, const Flight& flight,
+                 const std::vector<std::size_t>& rows) {
   if (note.kind == "outliers") return options.fit.loss != Loss::squares;
   if (note.kind == "at_rest") return !options.fit.stage_two_segments.empty();
+  if (options.rows.drop_repeats.empty()) return false;
+  if (note.kind == "held") {  // few of the rows that are left repeat the one before
+    const std::span<const double> values = flight.find(note.columns.front())->values;
+    std::size_t repeats = 0;
+    for (std::size_t i = 1; i < rows.size(); ++i) repeats += values[rows[i]] == values[rows[i - 1]];
+    return 10 * repeats < rows.size();
+  }
   const auto is_chosen = [&](const std::string& header) {
     return std::ranges::any_of(options.rows.drop_repeats, [&](const std::string& name) {
       return name == header || name == header.substr(0, header.rfind('_'));
     });
   };
-  return (note.kind == "held" || note.kind == "interpolated") &&
-         std::ranges::any_of(note.columns, is_chosen);
+  return note.kind == "interpolated" && std::ranges::any_of(note.columns, is_chosen);
 }
 
 /// What a delay's reach takes from the segments' ends, where that is much.
@@ -163,7 +170,9 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   const PreparedFlight prepared = prepare(*probe, flight, options.rows);
   FlightCheck seen = check(*probe, flight);
-  std::erase_if(seen.notes, [&](const LogNote& note) { return is_followed(note, options); });
+  std::erase_if(seen.notes, [&](const LogNote& note) {
+    return is_followed(note, options, flight, prepared.readings.flight_rows);
+  });
   auto notes = brief_notes(seen);
   Calibration calibration = calibrate(std::move(probe), prepared, options);
   std::ranges::move(notes, std::back_inserter(calibration.notes));

@@ -246,6 +246,14 @@ std::string describe(const UnloggedCause& cause) {
   return text;
 }
 
+/// Why what stands first is not advised.
+std::string reason_against(const Diagnosis& found, const std::string& name) {
+  for (const std::string& withheld : found.advice.withheld) {
+    if (withheld.starts_with(name + ": ")) return withheld.substr(name.size() + 2);
+  }
+  return "no fit with it was made";
+}
+
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const Diagnosis& found = diagnosis.diagnosis;
   if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
@@ -282,10 +290,10 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const EffectFinding& best = found.effects.front();
   if (found.advice.effect != best.name && !diagnosis.injection) {
     return fmt::format(
-        "{} ({}): {}; one step promises {:.0f} % less on rows held out, but a real fit doesn't "
-        "bear "
-        "it out: it is not to be added.",
-        best.name, diagnosis.sentences.front(), left, 100.0 * best.held_out_gain);
+        "{} ({}): {}; one step promises {:.0f} % less on rows held out, but it is not to be added: "
+        "{}.",
+        best.name, diagnosis.sentences.front(), left, 100.0 * best.held_out_gain,
+        reason_against(found, best.name));
   }
   return fmt::format(
       "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less on rows held out, "
