@@ -23,6 +23,7 @@ using sepcal::estimation::describe_flat_directions;
 using sepcal::estimation::describe_other_minima;
 using sepcal::estimation::find_minima;
 using sepcal::estimation::half_widths;
+using sepcal::estimation::IsKnown;
 using sepcal::estimation::Problem;
 using sepcal::test::FormulaObjective;
 using sepcal::test::Unasked;
@@ -66,10 +67,10 @@ struct DoubleWell {
     VectorXd trace(samples.cols());
     for (Index s = 0; s < trace.size(); ++s) trace[s] = square(samples(0, s));
     return find_minima(objective, problem, samples, trace, MatrixXd(1, 0), measurements,
-                       [&](const VectorXd& x) {
+                       [&](const VectorXd& x, const IsKnown&) {
                          const bool goes_left = sign() * x[0] < sign() * pass();
                          const VectorXd end = number((goes_left ? left() : right()) + 1e-3);
-                         return Descent{end, square(end[0]), true, 1};
+                         return Descent{end, square(end[0]), true, false, 1};
                        });
   }
 };
@@ -128,7 +129,9 @@ TEST_CASE("a descent that ends at no finite cost is no minimum") {
   const FitOptions options = one_parameter();
   const Problem problem(wells.unasked.model(), options);
   const MatrixXd samples = RowVectorXd::LinSpaced(5, -2.0, 2.0);
-  const auto lost = [](const VectorXd& x) { return Descent{x, infinity, false, 0}; };
+  const auto lost = [](const VectorXd& x, const IsKnown&) {
+    return Descent{x, infinity, false, false, 0};
+  };
   CHECK(find_minima(objective, problem, samples, VectorXd::Ones(5), MatrixXd(1, 0), 100, lost)
             .empty());
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sepcal/eigen.hpp"
+#include "sepcal/lane_kernel.hpp"
 #include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 
@@ -70,6 +71,16 @@ class BlockModel {
   virtual void evaluate_points(const Block& block, const Eigen::MatrixXd& points,
                                std::span<const std::unique_ptr<Carry>> carries,
                                Eigen::MatrixXd& scratch, const VisitRows& visit) const;
+
+  /// Lanes of evaluate_lanes(); 0 where points can't be evaluated side by side.
+  virtual std::size_t lane_width() const { return 0; }
+
+  /// What evaluate() without xi1 gives at many points, z - b in the place of b: `visit` sees tile
+  /// after tile as TileVisit does. Returns whether all that was left out is zero. `scratch`,
+  /// aligned to 64 bytes, has room for a tile of [A | b] without anything left out.
+  using VisitTile = std::function<void(std::size_t tile, double* rows)>;
+  virtual bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
+                              const VisitTile& visit) const;
 
   /// Fills `columns`, (n_z * block.rows) x inputs.size(), with d(A xi1 + b)/du_i of the chosen
   /// inputs, by their index in tables().inputs: what an effect that corrects an input needs. Unless

@@ -2,9 +2,8 @@
 // Attitude: the 3-2-1 Euler sequence from body axes (forward, right, down) to north-east-down.
 #pragma once
 
-#include <cmath>
-
 #include "sepcal/eigen.hpp"
+#include "sepcal/lanewise.hpp"
 
 namespace sepcal {
 
@@ -12,14 +11,9 @@ namespace sepcal {
 /// cos(psi)).
 template <class T>
 Eigen::Matrix<T, 3, 3> body_to_ned(const T& roll, const T& pitch, const T& yaw) {
-  using std::cos;
-  using std::sin;
-  const T cr = cos(roll);
-  const T sr = sin(roll);
-  const T cp = cos(pitch);
-  const T sp = sin(pitch);
-  const T cy = cos(yaw);
-  const T sy = sin(yaw);
+  const auto [cr, sr] = cos_sin(roll);
+  const auto [cp, sp] = cos_sin(pitch);
+  const auto [cy, sy] = cos_sin(yaw);
   Eigen::Matrix<T, 3, 3> C;
   C << cp * cy, sr * sp * cy - cr * sy, cr * sp * cy + sr * sy,  //
       cp * sy, sr * sp * sy + cr * cy, cr * sp * sy - sr * cy,   //

@@ -49,10 +49,40 @@ class StaticModel final : public BlockModel {
 
   void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* /*carry*/,
                 Eigen::Ref<Eigen::MatrixXd> rows) const override {
-    if constexpr (n_2 > 0) {
-      if (xi1 != nullptr) return fill_tangent(block, xi2, xi1, rows);
+    const bool tangent = n_2 > 0 && xi1 != nullptr;
+    if constexpr (has_lanes<M>()) {
+      const LaneKernel& kernel = lane_kernel<M>();
+      const auto stride = static_cast<std::size_t>(rows.outerStride());
+      const double* const* inputs = block.inputs.data();
+      if (tangent) {
+        kernel.fill_tangent(&model_, inputs, block.rows, xi2, xi1, rows.data(), stride);
+      } else {
+        kernel.fill_values(&model_, inputs, block.rows, xi2, rows.data(), stride);
+      }
+    } else {
+      if constexpr (n_2 > 0) {
+        if (tangent) return fill_tangent(block, xi2, xi1, rows);
+      }
+      fill_values(block, xi2, rows);
     }
-    fill_values(block, xi2, rows);
+  }
+
+  std::size_t lane_width() const override {
+    if constexpr (has_lanes<M>()) return lane_kernel<M>().width;
+    return 0;
+  }
+
+  bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
+                      const VisitTile& visit) const override {
+    if constexpr (has_lanes<M>()) {
+      const auto call = [](void* visitor, std::size_t tile, double* rows) {
+        (*static_cast<const VisitTile*>(visitor))(tile, rows);
+      };
+      VisitTile visitor = visit;
+      return lane_kernel<M>().evaluate(&model_, block, points, scratch, call, &visitor);
+    } else {
+      return BlockModel::evaluate_lanes(block, points, scratch, visit);
+    }
   }
 
   void input_tangent(const Block& block, const double* xi2, const double* xi1,

@@ -21,6 +21,9 @@ class ThreadPool {
   ThreadPool& operator=(const ThreadPool&) = delete;
   ~ThreadPool();
 
+  /// The caller's included.
+  int threads() const { return threads_; }
+
   /// Runs task(0) ... task(count - 1) and returns when all are done. The first exception of a task
   /// is thrown again here; the tasks not yet begun are then skipped.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& task);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "effects/composed_model.hpp"
 
+#include <algorithm>
+
+#include "effects/composed_lanes.hpp"
 #include "effects/composed_rows.hpp"
 #include "effects/composed_tables.hpp"
 #include "sepcal/error.hpp"
@@ -36,6 +39,24 @@ void ComposedModel::evaluate(const Block& block, const double* xi2, const double
     evaluate_at(node, block, xi2, xi1, carry, at_node);
     rows += node.weight * at_node;
   }
+}
+
+std::size_t ComposedModel::lane_width() const {
+  const bool plain =
+      parts_.terms.empty() && parts_.corrections.empty() && parts_.delays.empty() &&
+      std::ranges::all_of(parts_.varying, [](const VaryingPart& part) { return part.shape < 0; });
+  return plain ? model_->lane_width() : 0;
+}
+
+bool ComposedModel::evaluate_lanes(const LaneBlock& block, const PointTiles& points,
+                                   double* scratch, const VisitTile& visit) const {
+  const ComposedLanes composed(*model_, tables(), parts_, block);
+  base::AlignedDoubles own(composed.own_size());
+  return model_->evaluate_lanes(composed.own_block(), points, own.data(),
+                                [&](std::size_t tile, const double* rows) {
+                                  composed.fill(rows, scratch);
+                                  visit(tile, scratch);
+                                });
 }
 
 void ComposedModel::input_tangent(const Block& block, const double* xi2, const double* xi1,

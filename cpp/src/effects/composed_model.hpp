@@ -24,6 +24,12 @@ class ComposedModel final : public BlockModel {
   void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
                 Eigen::Ref<Eigen::MatrixXd> rows) const override;
 
+  /// Lanes of the model itself, where effects only vary parameters by drivers without a shape: what
+  /// they add is then the model's own columns times what the record says.
+  std::size_t lane_width() const override;
+  bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
+                      const VisitTile& visit) const override;
+
   /// Throws Error for an input that drives an effect and where an effect acts in time.
   void input_tangent(const Block& block, const double* xi2, const double* xi1,
                      std::span<const int> inputs,

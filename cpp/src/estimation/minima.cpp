@@ -52,6 +52,29 @@ double slope(Objective& objective, const VectorXd& x, const numerics::Box& box,
   return gradient.stableNorm();
 }
 
+/// The neighbourhood of a minimum, in which the cost is what its linearisation there says.
+class Neighbourhood {
+ public:
+  Neighbourhood(Objective& objective, const Descent& minimum) : x_(minimum.x) {
+    known_ = objective.linearise(x_, residual_, jacobian_);
+  }
+
+  /// `rise`: what the record can't tell from none.
+  bool holds(const VectorXd& x, double square, double rise) const {
+    constexpr double alike = 0.1;
+    if (!known_) return false;
+    const double predicted = (residual_ + jacobian_ * (x - x_)).squaredNorm();
+    const double above = predicted - residual_.squaredNorm();
+    return std::abs(square - predicted) <= alike * above + rise;
+  }
+
+ private:
+  VectorXd x_;
+  VectorXd residual_;
+  MatrixXd jacobian_;
+  bool known_ = false;
+};
+
 /// Refined, unless that leads away: where residuals are as large as at a minor minimum, steps that
 /// take the curvature from the Jacobian alone may grow before they are seen to.
 VectorXd last_digits(Objective& objective, const VectorXd& x, const numerics::Box& box,
@@ -86,25 +109,40 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
   std::vector<numerics::Basin> basins =
       numerics::find_basins(scaled, trace_r.array().log().matrix());  // depth as a ratio
   basins.resize(std::min(basins.size(), static_cast<std::size_t>(problem.options().descents)));
+  const auto n = static_cast<double>(problem.parameters().size());
   std::vector<VectorXd> starts;
   for (const numerics::Basin& basin : basins) starts.emplace_back(samples.col(basin.lowest));
   for (const auto guess : guesses.colwise()) {
     if (std::isfinite(objective.square(guess))) starts.emplace_back(guess);
   }
   std::vector<Descent> minima;
+  std::vector<Neighbourhood> neighbourhoods;  // theirs
   for (const VectorXd& start : starts) {
-    Descent descent = descend(start);
-    if (!std::isfinite(descent.square)) continue;
+    // By chance a point far away may lie as high as a linearisation says, two in a row hardly.
+    std::vector<int> held(neighbourhoods.size(), 0);
+    const IsKnown is_known = [&](const VectorXd& x, double square) {
+      const double rise = noticeable_rise(square, measurements, n);
+      bool known = false;
+      for (std::size_t i = 0; i < held.size(); ++i) {
+        held[i] = neighbourhoods[i].holds(x, square, rise) ? held[i] + 1 : 0;
+        known = known || held[i] == 2;
+      }
+      return known;
+    };
+    Descent descent = descend(start, is_known);
+    if (descent.left_off || !std::isfinite(descent.square)) continue;
     descent.x = last_digits(objective, descent.x, problem.nonlinear_box(), widths);
     descent.square = objective.square(descent.x);
-    const auto n = static_cast<double>(problem.parameters().size());
     const auto same = std::ranges::find_if(minima, [&](const Descent& other) {
       const double lower = std::min(descent.square, other.square);
       return joined(objective, descent, other, widths, noticeable_rise(lower, measurements, n));
     });
     if (same == minima.end()) {
+      neighbourhoods.emplace_back(objective, descent);
       minima.push_back(std::move(descent));
     } else if (descent.square < same->square) {
+      neighbourhoods[static_cast<std::size_t>(same - minima.begin())] =
+          Neighbourhood(objective, descent);
       *same = std::move(descent);
     }
   }

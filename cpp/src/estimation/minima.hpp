@@ -19,8 +19,9 @@ namespace sepcal::estimation {
 /// of an unbounded parameter's sampling distribution.
 Eigen::VectorXd half_widths(const Problem& problem);
 
-/// From a start (n_2) to where the cost is lowest nearby, within the bounds.
-using Descend = std::function<Descent(const Eigen::VectorXd& start)>;
+/// From a start (n_2) to where the cost is lowest nearby, within the bounds; may leave off where
+/// `is_known` says so.
+using Descend = std::function<Descent(const Eigen::VectorXd& start, const IsKnown& is_known)>;
 
 /// Lowest first; of options.descents at most, and of one from each of the model's `guesses` (n_2 x
 /// any number). `samples` is n_2 x S, `trace_r` (S) is Tr[R] there, infinite where no descent may

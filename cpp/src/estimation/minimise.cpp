@@ -2,6 +2,7 @@
 #include "estimation/minimise.hpp"
 
 #include <ceres/cost_function.h>
+#include <ceres/iteration_callback.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <glog/logging.h>
@@ -56,6 +57,25 @@ class CompressedCost final : public ceres::CostFunction {
   mutable double square_ = 0.0;
 };
 
+/// Leaves off where the descent's end is known already.
+class LeaveOff final : public ceres::IterationCallback {
+ public:
+  LeaveOff(const IsKnown& is_known, const VectorXd& x) : is_known_(is_known), x_(x) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (!summary.step_is_successful || summary.iteration == 0) return ceres::SOLVER_CONTINUE;
+    left_off_ = is_known_(x_, 2.0 * summary.cost);
+    return left_off_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+  bool left_off() const { return left_off_; }
+
+ private:
+  const IsKnown& is_known_;
+  const VectorXd& x_;
+  bool left_off_ = false;
+};
+
 void set_bounds(ceres::Problem& problem, double* x, const numerics::Box& box) {
   for (Index k = 0; k < box.lower.size(); ++k) {
     const int index = static_cast<int>(k);
@@ -93,11 +113,17 @@ Descent estimation::minimise(Objective& objective, const VectorXd& start, const 
   solver.gradient_tolerance = 0.0;
   solver.parameter_tolerance = 1e-14;
   solver.line_search_interpolation_type = ceres::QUADRATIC;  // CUBIC asks trials for a gradient
+  LeaveOff leave_off(options.is_known, descent.x);
+  if (options.is_known) {
+    solver.callbacks.push_back(&leave_off);
+    solver.update_state_every_iteration = true;
+  }
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 
   descent.square = 2.0 * summary.final_cost;
   descent.converged = summary.termination_type == ceres::CONVERGENCE;
+  descent.left_off = leave_off.left_off();
   descent.iterations = static_cast<int>(summary.iterations.size());
   return descent;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "estimation/objective.hpp"
 #include "numerics/box.hpp"
@@ -13,8 +14,12 @@ struct Descent {
   Eigen::VectorXd x;
   double square = 0.0;  // sum of whitened squares at x
   bool converged = false;
+  bool left_off = false;  // as is_known() said
   int iterations = 0;
 };
+
+/// Whether a descent at x (n), the sum of squares there, needs no end of its own.
+using IsKnown = std::function<bool(const Eigen::VectorXd& x, double square)>;
 
 struct DescentOptions {
   int iterations = 200;  // at most; more: not converged
@@ -23,6 +28,7 @@ struct DescentOptions {
   /// Levenberg-Marquardt's first radius. Large: the first step is Gauss-Newton's. Below 1: it is a
   /// fraction of that, so that a descent ends in the basin that it began in.
   double first_radius = 1e4;
+  IsKnown is_known = {};  // asked after each step
 };
 
 /// x stays within the box; the start is clipped to it.

@@ -24,8 +24,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr DescentOptions within_the_basin{.iterations = 50, .first_radius = 0.1};
-
 /// Hears the fraction of stage one that is done.
 std::function<void(double)> progress_of(const FitOptions& options) {
   if (!options.progress) return {};
@@ -179,9 +177,10 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
     // Step 4: how many minima there are, and whether they are points.
     const double count = rows * static_cast<double>(n_z);
     const numerics::Box linear = problem.linear_box();
-    const Descend from_start = [&](const VectorXd& start) {
-      return global ? descend(objective, start, problem.nonlinear_box(), half_widths(problem))
-                    : minimise(objective, start, problem.nonlinear_box(), within_the_basin);
+    const Descend from_start = [&](const VectorXd& start, const IsKnown& is_known) {
+      if (global) return descend(objective, start, problem.nonlinear_box(), half_widths(problem));
+      const DescentOptions gently{.iterations = 50, .first_radius = 0.1, .is_known = is_known};
+      return minimise(objective, start, problem.nonlinear_box(), gently);
     };
     for (const Descent& minimum :
          find_minima(objective, problem, result.samples, usable,

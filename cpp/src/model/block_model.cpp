@@ -28,6 +28,11 @@ void BlockModel::evaluate_points(const Block& block, const MatrixXd& points,
   }
 }
 
+bool BlockModel::evaluate_lanes(const LaneBlock& /*block*/, const PointTiles& /*points*/,
+                                double* /*scratch*/, const VisitTile& /*visit*/) const {
+  throw Error("the model has no lanes");
+}
+
 void BlockModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                std::span<const int> inputs,
                                // NOLINTNEXTLINE(performance-unnecessary-value-param): an output

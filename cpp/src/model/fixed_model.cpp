@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/fixed_model.hpp"
 
+#include <algorithm>
+
 namespace sepcal::model {
 namespace {
 
@@ -79,6 +81,70 @@ void FixedModel::evaluate_points(const Block& block, const MatrixXd& points,
     take_free(rows, false, free);
     visit(s, free);
   });
+}
+
+bool FixedModel::evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
+                                const VisitTile& visit) const {
+  const std::size_t width = lane_width();
+  const auto n_2 = static_cast<std::size_t>(xi2_.size());
+  base::AlignedDoubles whole;
+  whole.reserve(points.tiles * n_2 * width);
+  const double* free = points.xi2;
+  for (std::size_t t = 0; t < points.tiles; ++t) {
+    auto next = free_2_.begin();
+    for (Index k = 0; k < xi2_.size(); ++k) {
+      if (next != free_2_.end() && *next == k) {
+        whole.insert(whole.end(), free, free + width);
+        free += width;
+        ++next;
+      } else {
+        whole.insert(whole.end(), width, xi2_[k]);
+      }
+    }
+  }
+  const Index n_1 = xi1_.size();
+  std::vector<unsigned char> zero(static_cast<std::size_t>(n_1 * tables().n_z()), 0);
+  const auto given = static_cast<Index>(free_1_.size());
+  for (Index j = 0; j < tables().n_z() && block.zero != nullptr; ++j) {
+    for (Index k = 0; k < given; ++k) {
+      zero[static_cast<std::size_t>(j * n_1 + free_1_[static_cast<std::size_t>(k)])] =
+          block.zero[j * given + k];
+    }
+  }
+  LaneBlock of_whole = block;
+  of_whole.zero = zero.data();
+  base::AlignedDoubles rows(static_cast<std::size_t>((n_1 + 1) * tables().n_z()) * block.rows *
+                            width);
+  base::AlignedDoubles held(block.rows * width);
+  return model_.evaluate_lanes(of_whole, {whole.data(), points.tiles}, rows.data(),
+                               [&](std::size_t tile, double* values) {
+                                 take_free(of_whole, values, scratch, held);
+                                 visit(tile, scratch);
+                               });
+}
+
+void FixedModel::take_free(const LaneBlock& whole, const double* rows, double* to,
+                           base::AlignedDoubles& held) const {
+  const std::size_t size = held.size();
+  const Index n_1 = xi1_.size();
+  for (Index j = 0; j < tables().n_z(); ++j) {
+    std::ranges::fill(held, 0.0);
+    auto next = free_1_.begin();
+    for (Index k = 0; k < n_1; ++k) {
+      const bool is_free = next != free_1_.end() && *next == k;
+      if (is_free) ++next;
+      if (whole.zero[j * n_1 + k] != 0) continue;
+      if (is_free) {
+        to = std::copy_n(rows, size, to);
+      } else {
+        for (std::size_t i = 0; i < size; ++i) held[i] += xi1_[k] * rows[i];
+      }
+      rows += size;
+    }
+    for (std::size_t i = 0; i < size; ++i) to[i] = rows[i] - held[i];
+    rows += size;
+    to += size;
+  }
 }
 
 void FixedModel::input_tangent(const Block& block, const double* xi2, const double* xi1,

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "base/aligned_doubles.hpp"
 #include "sepcal/block_model.hpp"
 
 namespace sepcal::model {
@@ -22,6 +23,10 @@ class FixedModel final : public BlockModel {
   void evaluate_points(const Block& block, const Eigen::MatrixXd& points,
                        std::span<const std::unique_ptr<Carry>> carries, Eigen::MatrixXd& scratch,
                        const VisitRows& visit) const override;
+
+  std::size_t lane_width() const override { return model_.lane_width(); }
+  bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
+                      const VisitTile& visit) const override;
 
   void input_tangent(const Block& block, const double* xi2, const double* xi1,
                      std::span<const int> inputs,
@@ -40,6 +45,10 @@ class FixedModel final : public BlockModel {
   /// The rows [A | b] or [A | D | b] of the whole model without what is fixed.
   void take_free(const Eigen::MatrixXd& whole, bool tangent,
                  Eigen::Ref<Eigen::MatrixXd> rows) const;
+
+  /// A tile of the whole model, `rows`, to that of what is free; `held` is scratch.
+  void take_free(const LaneBlock& whole, const double* rows, double* to,
+                 base::AlignedDoubles& held) const;
 
   const BlockModel& model_;
   Eigen::VectorXd xi1_;  // n_1 and n_2 of the whole model: fixed values, zero where free

@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
+#include <utility>
+
+#include "model/point_lanes.hpp"
+#include "model/row_lanes.hpp"
 
 namespace sepcal::model {
 namespace {
@@ -17,7 +22,8 @@ using Factors = std::vector<TriangularFactor>;
 Index rows_of(const Measurements::Range& range) { return static_cast<Index>(range.rows); }
 
 /// One factor an output, from rows stacked output by output.
-void absorb_by_output(Ref<MatrixXd> rows, Index block_rows, Factors& factors) {
+template <class Factor>
+void absorb_by_output(Ref<MatrixXd> rows, Index block_rows, std::vector<Factor>& factors) {
   for (std::size_t j = 0; j < factors.size(); ++j) {
     factors[j].absorb(rows.middleRows(static_cast<Index>(j) * block_rows, block_rows));
   }
@@ -70,31 +76,52 @@ void Sweep::for_each_block(const Visit& visit) const {
   });
 }
 
-std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
-  const int columns = tables().n_1() + 1;
+Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
   const int n_z = tables().n_z();
-  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
+  const std::size_t chunks = measurements_.chunks().size();
+  if (RowLanes::take(columns)) {
+    std::vector<std::vector<RowLanes>> lanes(
+        chunks, std::vector<RowLanes>(static_cast<std::size_t>(n_z), RowLanes(columns)));
+    for_each_block(
+        [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+          rows.resize(n_z * rows_of(range), columns);
+          fill(block, range, carry, rows);
+          absorb_by_output(rows, rows_of(range), lanes[c]);
+        });
+    std::vector<Factors> parts(chunks);
+    bool safe = true;
+    for (std::size_t c = 0; c < chunks; ++c) {
+      for (const RowLanes& own : lanes[c]) {
+        safe = safe && own.is_safe();
+        parts[c].push_back(own.merge());
+      }
+    }
+    if (safe) return merge_in_order(parts, n_z, columns);
+  }
+  std::vector<Factors> parts = empty_factors(chunks, n_z, columns);
   for_each_block(
       [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
         rows.resize(n_z * rows_of(range), columns);
-        fill_linear(block, range, xi2.data(), carry, rows);
+        fill(block, range, carry, rows);
         absorb_by_output(rows, rows_of(range), parts[c]);
       });
   return merge_in_order(parts, n_z, columns);
 }
 
+std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
+  return factor_blocks(tables().n_1() + 1, [&](const Block& block, const Measurements::Range& range,
+                                               Carry* carry, Ref<MatrixXd> rows) {
+    fill_linear(block, range, xi2.data(), carry, rows);
+  });
+}
+
 std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
                                                      const VectorXd& xi2) const {
-  const int columns = tables().n_1() + tables().n_2() + 1;
-  const int n_z = tables().n_z();
-  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
-  for_each_block(
-      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-        rows.resize(n_z * rows_of(range), columns);
+  return factor_blocks(
+      tables().n_1() + tables().n_2() + 1,
+      [&](const Block& block, const Measurements::Range& range, Carry* carry, Ref<MatrixXd> rows) {
         fill_tangent(block, range, xi1, xi2, carry, rows);
-        absorb_by_output(rows, rows_of(range), parts[c]);
       });
-  return merge_in_order(parts, n_z, columns);
 }
 
 std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, const VectorXd& xi2,
@@ -250,22 +277,89 @@ MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
   return all;
 }
 
+namespace {
+
+/// The fraction done, said from any thread.
+class Progress {
+ public:
+  Progress(const std::function<void(double)>& on_progress, std::size_t steps)
+      : on_progress_(on_progress), steps_(static_cast<double>(steps)) {}
+
+  void step() {
+    if (!on_progress_) return;
+    const std::lock_guard lock(mutex_);
+    on_progress_(++done_ / steps_);
+  }
+
+ private:
+  const std::function<void(double)>& on_progress_;
+  std::mutex mutex_;
+  double done_ = 0.0;
+  double steps_;
+};
+
+/// `count` samples among as many groups as threads, in whole tiles of `width`.
+std::vector<std::pair<Index, Index>> split(Index count, Index threads, Index width) {
+  const Index tiles = (count + width - 1) / width;
+  const Index groups = std::clamp<Index>(tiles, 1, threads);
+  std::vector<std::pair<Index, Index>> parts;  // the first sample and how many
+  for (Index g = 0; g < groups; ++g) {
+    const Index first = g * tiles / groups * width;
+    const Index last = std::min(count, (g + 1) * tiles / groups * width);
+    parts.emplace_back(first, last - first);
+  }
+  return parts;
+}
+
+}  // namespace
+
 std::vector<TriangularFactor> Sweep::sample_factors(
     const MatrixXd& samples, const std::function<void(double)>& on_progress) const {
-  constexpr Index tile = 25;  // samples that share a block while it is in the cache
-  const int columns = tables().n_1() + 1;
-  Factors factors(static_cast<std::size_t>(samples.cols()), TriangularFactor(columns));
-  const Index tiles = (samples.cols() + tile - 1) / tile;
+  const PointLanes lanes(model_, measurements_, samples);
+  Factors factors(static_cast<std::size_t>(samples.cols()), TriangularFactor(tables().n_1() + 1));
+  if (lanes.width() == 0) {
+    std::vector<Index> all(factors.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    sample_one_by_one(samples, all, factors, on_progress);
+    return factors;
+  }
+  const auto parts = split(samples.cols(), pool_.threads(), static_cast<Index>(lanes.width()));
+  Progress progress(on_progress, parts.size() * measurements_.chunks().size());
+  std::vector<std::vector<Index>> unclear(parts.size());
+  pool_.for_each(parts.size(), [&](std::size_t p) {
+    const auto [first, count] = parts[p];
+    auto found = lanes.factor(samples.middleCols(first, count), [&] { progress.step(); });
+    for (Index s = 0; s < count; ++s) {
+      auto& factor = found[static_cast<std::size_t>(s)];
+      if (factor) {
+        factors[static_cast<std::size_t>(first + s)] = std::move(*factor);
+      } else {
+        unclear[p].push_back(first + s);
+      }
+    }
+  });
+  std::vector<Index> rest;
+  for (const auto& part : unclear) rest.insert(rest.end(), part.begin(), part.end());
+  sample_one_by_one(samples, rest, factors, {});
+  return factors;
+}
+
+void Sweep::sample_one_by_one(const MatrixXd& samples, const std::vector<Index>& chosen,
+                              Factors& factors,
+                              const std::function<void(double)>& on_progress) const {
+  constexpr std::size_t tile = 25;  // samples that share a block while it is in the cache
+  const std::size_t tiles = (chosen.size() + tile - 1) / tile;
   const auto& chunks = measurements_.chunks();
-  std::mutex mutex;
-  std::size_t done = 0;
-  const auto total = static_cast<double>(tiles) * static_cast<double>(chunks.size());
-  pool_.for_each(static_cast<std::size_t>(tiles), [&](std::size_t t) {
-    const Index first = static_cast<Index>(t) * tile;
-    const Index count = std::min(tile, samples.cols() - first);
+  Progress progress(on_progress, tiles * chunks.size());
+  pool_.for_each(tiles, [&](std::size_t t) {
+    const std::size_t first = t * tile;
+    const std::size_t count = std::min(tile, chosen.size() - first);
     std::vector<std::unique_ptr<Carry>> carries;
-    for (Index s = 0; s < count; ++s) carries.push_back(model_.new_carry());
-    const MatrixXd points = samples.middleCols(first, count);
+    MatrixXd points(samples.rows(), static_cast<Index>(count));
+    for (std::size_t s = 0; s < count; ++s) {
+      carries.push_back(model_.new_carry());
+      points.col(static_cast<Index>(s)) = samples.col(chosen[first + s]);
+    }
     std::vector<const double*> pointers;
     MatrixXd scratch;
     for (const auto& chunk : chunks) {
@@ -273,16 +367,13 @@ std::vector<TriangularFactor> Sweep::sample_factors(
         const Block block = measurements_.block(range, pointers);
         model_.evaluate_points(block, points, carries, scratch, [&](Index s, MatrixXd& rows) {
           subtract_from_outputs(range, rows.rightCols<1>().col(0));
-          factors[static_cast<std::size_t>(first + s)].absorb(rows);
+          const Index sample = chosen[first + static_cast<std::size_t>(s)];
+          factors[static_cast<std::size_t>(sample)].absorb(rows);
         });
       }
-      if (on_progress) {
-        const std::lock_guard lock(mutex);
-        on_progress(static_cast<double>(++done) / total);
-      }
+      progress.step();
     }
   });
-  return factors;
 }
 
 }  // namespace sepcal::model

@@ -87,6 +87,16 @@ class Sweep {
       const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
       const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& of_block) const;
 
+  /// One factor an output of the rows that `fill` makes of every block.
+  using FillRows = std::function<void(const Block& block, const Measurements::Range& range,
+                                      Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows)>;
+  std::vector<TriangularFactor> factor_blocks(int columns, const FillRows& fill) const;
+
+  /// What sample_factors() gives of the chosen samples, each evaluated by itself.
+  void sample_one_by_one(const Eigen::MatrixXd& samples, const std::vector<Eigen::Index>& chosen,
+                         std::vector<TriangularFactor>& factors,
+                         const std::function<void(double)>& on_progress) const;
+
   /// A block's rows, (n_z * rows) x (n_1 + 1): [A | z - b].
   void fill_linear(const Block& block, const Measurements::Range& range, const double* xi2,
                    Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows) const;

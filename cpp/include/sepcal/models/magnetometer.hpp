@@ -28,15 +28,31 @@ struct Magnetometer {
       Quantity{"alpha_xz", "1", -0.5, 0.5}, Quantity{"alpha_yz", "1", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  using lanes_of = Magnetometer;
+
+  template <class U>
+  static Vec<U, 3> prepare(const Vec<U, 3>& h) {
+    return h;
+  }
+
+  /// What depends on xi2 alone.
+  template <class X>
+  static Eigen::Matrix<X, 3, 3> settle(const Vec<X, 6>& xi2) {
+    return soft_iron_and_misalignment(xi2);
+  }
 
   template <class U, class X>
-  Affine<X, 3, 6> at(const Vec<U, 3>& h, const Vec<X, 6>& xi2) const {
-    const Eigen::Matrix<X, 3, 3> CC = soft_iron_and_misalignment(xi2);
+  static Affine<X, 3, 6> combine(const Vec<U, 3>& h, const Eigen::Matrix<X, 3, 3>& CC) {
     Affine<X, 3, 6> z;
     for (int i = 0; i < 3; ++i) z.A.col(i) = CC.col(i) * h[i];
     z.A.template rightCols<3>() = Eigen::Matrix<X, 3, 3>::Identity();
     z.b = CC * h;
     return z;
+  }
+
+  template <class U, class X>
+  Affine<X, 3, 6> at(const Vec<U, 3>& h, const Vec<X, 6>& xi2) const {
+    return combine<U, X>(h, settle<X>(xi2));
   }
 
   /// xi2 of the linear fit m = C h + n, a column: within wide bounds, or from few rows, descents
@@ -52,6 +68,8 @@ struct Magnetometer {
   }
 };
 
+template <>
+const LaneKernel& lane_kernel<Magnetometer>();
 extern template class StaticModel<Magnetometer>;
 
 }  // namespace sepcal

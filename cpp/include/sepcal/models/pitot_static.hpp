@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
 #include "sepcal/static_model.hpp"
@@ -32,6 +33,7 @@ struct PitotStatic {
                                         Quantity{"w_d", "m/s", -100, 100}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  using lanes_of = PitotStatic;
 
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 7>& u, const Vec<X, 3>& wind) const {
@@ -61,11 +63,13 @@ struct PitotStatic {
   static X root(const X& square) {
     using std::sqrt;
     constexpr double floor = 1e-6;  // [m/s]
-    if (square < 0.0) return X(floor);
-    return sqrt(square + floor * floor);
+    return where(square < 0.0, X(floor),
+                 X(sqrt(where(square < 0.0, X(0.0), square) + floor * floor)));
   }
 };
 
+template <>
+const LaneKernel& lane_kernel<PitotStatic>();
 extern template class StaticModel<PitotStatic>;
 
 }  // namespace sepcal

@@ -84,7 +84,8 @@ class FiveHole final : public Probe {
       const double read =
           std::sqrt(std::max(0.0, 2.0 * (pressure + effects.at("pressure_offset.s", i)) / rho[i])) *
           (1.0 + effects.at("reading_scale.s", i));
-      const auto air = FiveHoleProbe::air_direction<double>(angles[0], angles[1], xi2[4]);
+      const auto air = FiveHoleProbe::air_direction<double>(angles[0], angles[1],
+                                                            FiveHoleProbe::settle<double>(xi2));
       columns[0].values[i] = (1.0 + values[0] + effects.at("airspeed_scale.s", i)) * read +
                              values[1] + effects.at("airspeed_bias.s", i);
       columns[1].values[i] = std::atan2(air[2], air[0]);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stage one asks a model for the same rows at hundreds of points of xi2. A kernel evaluates several
+// points side by side, each in a lane of the processor's registers; what depends on a row's u alone
+// is computed once for all of them. Raw pointers alone: what is compiled for one instruction set
+// must not exchange types with what is compiled for another.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+namespace sepcal {
+
+/// Points of xi2, as many as lanes to a tile: tile t's k-th parameter stands in the `width` values
+/// from (t * n_2 + k) * width on.
+struct PointTiles {
+  const double* xi2 = nullptr;
+  std::size_t tiles = 0;
+};
+
+/// Rows one after another, few enough that a tile of them stays in the cache.
+struct LaneBlock {
+  const double* const* inputs = nullptr;   // n_u columns of `rows` values
+  const double* const* outputs = nullptr;  // z, n_z columns
+  std::size_t rows = 0;                    // most_lane_rows at most
+  std::size_t first = 0;                   // the record's row at which the block begins
+  /// n_z x n_1, 1: that entry of A is zero in every row of the record, and is left out.
+  const unsigned char* zero = nullptr;
+};
+
+inline constexpr std::size_t most_lane_rows = 32;
+
+/// Called with a tile's [A | z - b]: output after output those columns that are not left out, one
+/// below the other. A column's row i stands in the `width` values from i * width on.
+using TileVisit = void (*)(void* visitor, std::size_t tile, double* rows);
+
+/// How one model is evaluated in lanes. `evaluate` returns whether all that was left out is zero;
+/// `model` is what the kernel is for, `scratch`, aligned to 64 bytes, has room for a tile.
+struct LaneKernel {
+  std::size_t width = 0;
+  bool (*evaluate)(const void* model, const LaneBlock& block, const PointTiles& points,
+                   double* scratch, TileVisit visit, void* visitor) = nullptr;
+  /// What BlockModel::evaluate() gives at one point, rows in the lanes: [A | b], or with xi1
+  /// [A | D | b], column after column, `stride` values from one to the next.
+  void (*fill_values)(const void* model, const double* const* inputs, std::size_t rows,
+                      const double* xi2, double* to, std::size_t stride) = nullptr;
+  void (*fill_tangent)(const void* model, const double* const* inputs, std::size_t rows,
+                       const double* xi2, const double* xi1, double* to,
+                       std::size_t stride) = nullptr;
+};
+
+/// A model M whose at() takes several numbers side by side, too, says `using lanes_of = M`: it
+/// chooses between two values by where() and never by if, as one lane may need the one and its
+/// neighbour the other (sepcal/lanewise.hpp). What derives from it has no lanes, unless it says so
+/// itself.
+template <class M>
+constexpr bool has_lanes() {
+  if constexpr (requires { typename M::lanes_of; }) {
+    return std::same_as<typename M::lanes_of, M>;
+  }
+  return false;
+}
+
+/// The kernel of a model that has lanes: of those that sepcal brings, the widest that the processor
+/// takes; of another one, what its program is compiled for (sepcal/lanes.hpp makes it).
+template <class M>
+const LaneKernel& lane_kernel();
+
+}  // namespace sepcal

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A model's kernel for the instruction set that a program is compiled for. Needs xsimd's headers;
+// who fits a model of their own that has lanes includes this beside it.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <utility>
+#include <xsimd/xsimd.hpp>
+
+#include "sepcal/lane_dual.hpp"
+#include "sepcal/lane_kernel.hpp"
+#include "sepcal/lanewise.hpp"
+#include "sepcal/model.hpp"
+
+namespace sepcal {
+
+/// As many numbers as the instruction set `Arch` takes at once.
+template <class Arch>
+using Batch = xsimd::batch<double, Arch>;
+
+template <class Arch>
+struct Lanewise<xsimd::batch<double, Arch>> {
+  using T = xsimd::batch<double, Arch>;
+  static T where(const xsimd::batch_bool<double, Arch>& condition, const T& yes, const T& no) {
+    return xsimd::select(condition, yes, no);
+  }
+  static std::pair<T, T> cos_sin(const T& x) {
+    const auto [sine, cosine] = xsimd::sincos(x);
+    return {cosine, sine};
+  }
+};
+
+}  // namespace sepcal
+
+namespace Eigen {
+
+template <class Arch>
+struct NumTraits<xsimd::batch<double, Arch>> : GenericNumTraits<double> {
+  using Real = xsimd::batch<double, Arch>;
+  using NonInteger = Real;
+  using Nested = Real;
+  using Literal = double;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
+};
+
+template <class Arch, class Operation>
+struct ScalarBinaryOpTraits<xsimd::batch<double, Arch>, double, Operation> {
+  using ReturnType = xsimd::batch<double, Arch>;
+};
+
+template <class Arch, class Operation>
+struct ScalarBinaryOpTraits<double, xsimd::batch<double, Arch>, Operation> {
+  using ReturnType = xsimd::batch<double, Arch>;
+};
+
+}  // namespace Eigen
+
+namespace sepcal::lanes {
+
+/// A model that tells what of it depends on u alone, prepare(u), and on xi2 alone, settle(xi2),
+/// from which combine() makes what at() gives.
+template <class M>
+concept HoistedModel = requires(const M& model, const Vec<double, Sizes<M>::n_u>& u,
+                                const Vec<double, Sizes<M>::n_2>& xi2) {
+  model.combine(model.prepare(u), model.settle(xi2));
+};
+
+template <class M, class U>
+auto prepare(const M& model, const Vec<U, Sizes<M>::n_u>& u) {
+  if constexpr (HoistedModel<M>) {
+    return model.prepare(u);
+  } else {
+    return u;
+  }
+}
+
+template <class M, class X>
+auto settle(const M& model, const Vec<X, Sizes<M>::n_2>& xi2) {
+  if constexpr (HoistedModel<M>) {
+    return model.settle(xi2);
+  } else {
+    return xi2;
+  }
+}
+
+template <class M, class Prepared, class Settled>
+auto combine(const M& model, const Prepared& prepared, const Settled& settled) {
+  if constexpr (HoistedModel<M>) {
+    return model.combine(prepared, settled);
+  } else {
+    return model.at(prepared, settled);
+  }
+}
+
+/// As LaneKernel::evaluate.
+template <class Arch, class M>
+bool evaluate_points(const void* of_model, const LaneBlock& block, const PointTiles& points,
+                     double* scratch, TileVisit visit, void* visitor) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  constexpr int n_u = Sizes<M>::n_u;
+  constexpr int n_z = Sizes<M>::n_z;
+  constexpr int n_1 = Sizes<M>::n_1;
+  constexpr int n_2 = Sizes<M>::n_2;
+  const M& model = *static_cast<const M*>(of_model);
+  decltype(prepare(model, Vec<double, n_u>())) prepared[most_lane_rows];
+  for (std::size_t i = 0; i < block.rows; ++i) {
+    Vec<double, n_u> u;
+    for (int k = 0; k < n_u; ++k) u[k] = block.inputs[k][i];
+    prepared[i] = prepare(model, u);
+  }
+  Batch<Arch> left_out(0.0);
+  const std::size_t stride = block.rows * width;
+  for (std::size_t t = 0; t < points.tiles; ++t) {
+    Vec<Batch<Arch>, n_2> xi2;
+    for (int k = 0; k < n_2; ++k) {
+      const std::size_t at = (t * n_2 + static_cast<std::size_t>(k)) * width;
+      xi2[k] = Batch<Arch>::load_unaligned(points.xi2 + at);
+    }
+    const auto settled = settle(model, xi2);
+    for (std::size_t i = 0; i < block.rows; ++i) {
+      const auto z = combine(model, prepared[i], settled);
+      double* to = scratch + i * width;
+      for (int j = 0; j < n_z; ++j) {
+        for (int c = 0; c < n_1; ++c) {
+          if (block.zero != nullptr && block.zero[j * n_1 + c] != 0) {
+            left_out = xsimd::max(left_out, xsimd::abs(z.A(j, c)));
+          } else {
+            z.A(j, c).store_aligned(to);
+            to += stride;
+          }
+        }
+        (Batch<Arch>(block.outputs[j][i]) - z.b[j]).store_aligned(to);
+        to += stride;
+      }
+    }
+    visit(visitor, t, scratch);
+  }
+  return xsimd::all(left_out == Batch<Arch>(0.0));
+}
+
+/// The inputs of the `count` rows from `row` on, no more than lanes; the last one fills up the
+/// rest.
+template <class Arch, int n_u>
+Vec<Batch<Arch>, n_u> load_rows(const double* const* inputs, std::size_t row, std::size_t count) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  Vec<Batch<Arch>, n_u> u;
+  for (int k = 0; k < n_u; ++k) {
+    if (count == width) {
+      u[k] = Batch<Arch>::load_unaligned(inputs[k] + row);
+      continue;
+    }
+    alignas(Arch::alignment()) double padded[width];
+    for (std::size_t i = 0; i < width; ++i) {
+      padded[i] = inputs[k][row + (i < count ? i : count - 1)];
+    }
+    u[k] = Batch<Arch>::load_aligned(padded);
+  }
+  return u;
+}
+
+template <class Arch>
+void store_rows(const Batch<Arch>& values, std::size_t count, double* to) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  if (count == width) {
+    values.store_unaligned(to);
+    return;
+  }
+  alignas(Arch::alignment()) double all[width];
+  values.store_aligned(all);
+  for (std::size_t i = 0; i < count; ++i) to[i] = all[i];
+}
+
+/// As LaneKernel::fill_values.
+template <class Arch, class M>
+void fill_values(const void* of_model, const double* const* inputs, std::size_t rows,
+                 const double* xi2, double* to, std::size_t stride) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  constexpr int n_z = Sizes<M>::n_z;
+  constexpr int n_1 = Sizes<M>::n_1;
+  const M& model = *static_cast<const M*>(of_model);
+  Vec<Batch<Arch>, Sizes<M>::n_2> x;
+  for (int k = 0; k < Sizes<M>::n_2; ++k) x[k] = Batch<Arch>(xi2[k]);
+  const auto settled = settle(model, x);
+  for (std::size_t row = 0; row < rows; row += width) {
+    const std::size_t count = std::min(width, rows - row);
+    const auto z =
+        combine(model, prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)), settled);
+    for (int j = 0; j < n_z; ++j) {
+      double* const own = to + static_cast<std::size_t>(j) * rows + row;
+      for (int c = 0; c < n_1; ++c) {
+        store_rows<Arch>(z.A(j, c), count, own + static_cast<std::size_t>(c) * stride);
+      }
+      store_rows<Arch>(z.b[j], count, own + n_1 * stride);
+    }
+  }
+}
+
+/// As LaneKernel::fill_tangent.
+template <class Arch, class M>
+void fill_tangent(const void* of_model, const double* const* inputs, std::size_t rows,
+                  const double* xi2, const double* xi1, double* to, std::size_t stride) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  constexpr int n_z = Sizes<M>::n_z;
+  constexpr int n_1 = Sizes<M>::n_1;
+  constexpr int n_2 = Sizes<M>::n_2;
+  using Dual = LaneDual<Arch, n_2>;
+  const M& model = *static_cast<const M*>(of_model);
+  Vec<Dual, n_2> x;
+  for (int k = 0; k < n_2; ++k) x[k] = Dual(Batch<Arch>(xi2[k]), k);
+  const auto settled = settle(model, x);
+  for (std::size_t row = 0; row < rows; row += width) {
+    const std::size_t count = std::min(width, rows - row);
+    const auto z =
+        combine(model, prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)), settled);
+    for (int j = 0; j < n_z; ++j) {
+      double* own = to + static_cast<std::size_t>(j) * rows + row;
+      auto slopes = z.b[j].v;
+      for (int c = 0; c < n_1; ++c, own += stride) {
+        store_rows<Arch>(z.A(j, c).a, count, own);
+        for (std::size_t i = 0; i < slopes.size(); ++i) {
+          slopes[i] = xsimd::fma(Batch<Arch>(xi1[c]), z.A(j, c).v[i], slopes[i]);
+        }
+      }
+      for (std::size_t i = 0; i < slopes.size(); ++i, own += stride) {
+        store_rows<Arch>(slopes[i], count, own);
+      }
+      store_rows<Arch>(z.b[j].a, count, own);
+    }
+  }
+}
+
+template <class Arch, class M>
+inline constexpr LaneKernel kernel_for{Batch<Arch>::size, &evaluate_points<Arch, M>,
+                                       &fill_values<Arch, M>, &fill_tangent<Arch, M>};
+
+}  // namespace sepcal::lanes
+
+namespace sepcal {
+
+template <class M>
+const LaneKernel& lane_kernel() {
+  return lanes::kernel_for<xsimd::default_arch, M>;
+}
+
+}  // namespace sepcal

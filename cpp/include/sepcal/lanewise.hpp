@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a model asks of its numbers besides arithmetic, so that they may be several side by side.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+namespace sepcal {
+
+/// Of numbers of one kind; specialised where they have lanes (sepcal/lanes.hpp).
+template <class T>
+struct Lanewise {
+  static T where(bool condition, const T& yes, const T& no) { return condition ? yes : no; }
+  static std::pair<T, T> cos_sin(const T& x) {
+    using std::cos;
+    using std::sin;
+    return {cos(x), sin(x)};
+  }
+};
+
+/// `yes` where the condition holds, else `no`: each lane by itself.
+template <class Condition, class T>
+T where(const Condition& condition, const T& yes, const T& no) {
+  return Lanewise<T>::where(condition, yes, no);
+}
+
+/// [cos x, sin x].
+template <class T>
+std::pair<T, T> cos_sin(const T& x) {
+  return Lanewise<T>::cos_sin(x);
+}
+
+}  // namespace sepcal

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is compiled once for every instruction set: the kernels of the models that sepcal brings,
+// and factors in lanes. One kit is chosen as the program starts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "sepcal/lane_kernel.hpp"
+
+namespace sepcal::lanes {
+
+inline constexpr int most_columns = 13;  // of a factor
+
+enum class ShippedModel { five_hole, magnetometer, pitot_static, scalar_1, scalar_2 };
+inline constexpr std::size_t shipped_models = 5;
+
+struct LaneKit {
+  const char* name;  // "avx2"
+  std::size_t width;
+  std::array<LaneKernel, shipped_models> models;
+  /// By columns, as LaneFactor::absorb().
+  std::array<bool (*)(double* T, double* rows, std::size_t m, std::size_t stride), most_columns + 1>
+      absorb;
+};
+
+/// The kit that SEPCAL_ISA names ("baseline", "avx2", "avx512"), else the widest that the processor
+/// takes. Throws Error for a name that is unknown or that the processor can't run.
+const LaneKit& lane_kit();
+
+/// One of that many lanes which the processor takes; nullptr where there is none.
+const LaneKit* lane_kit_of(std::size_t width);
+
+}  // namespace sepcal::lanes

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One output's factor of many rows, the rows dealt to lanes: each lane has a triangle of its own,
+// and at the end these are merged.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/aligned_doubles.hpp"
+#include "model/lane_kit.hpp"
+#include "sepcal/triangular_factor.hpp"
+
+namespace sepcal::model {
+
+class RowLanes {
+ public:
+  /// Whether lanes take that many columns.
+  static bool take(int columns) { return columns <= lanes::most_columns; }
+
+  explicit RowLanes(int columns);
+
+  /// As TriangularFactor::absorb(). Rows that are no whole number of lanes, or lie where registers
+  /// don't load them, go to a factor beside the lanes.
+  void absorb(Eigen::Ref<Eigen::MatrixXd> rows);
+
+  /// False: a square has underflowed or overflowed, and the rows must be absorbed without lanes.
+  bool is_safe() const { return safe_; }
+
+  TriangularFactor merge() const;
+
+ private:
+  const lanes::LaneKit& kit_;
+  base::AlignedDoubles triangles_;
+  TriangularFactor beside_;
+  bool used_ = false;
+  bool safe_ = true;
+};
+
+}  // namespace sepcal::model
