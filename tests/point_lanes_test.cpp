@@ -170,7 +170,7 @@ struct Wave {
   static constexpr std::array outputs{sepcal::Quantity{"z", "1"}};
   static constexpr std::array linear{sepcal::Quantity{"a", "1"}, sepcal::Quantity{"b", "1"}};
   static constexpr std::array nonlinear{sepcal::Quantity{"w", "rad/s", 0.5, 1.5}};
-  using lanes_of = Wave;
+  using LanesOf = Wave;
 
   template <class U, class X>
   sepcal::Affine<X, 1, 2> at(const sepcal::Vec<U, 1>& u, const sepcal::Vec<X, 1>& xi2) const {

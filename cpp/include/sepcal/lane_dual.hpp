@@ -132,6 +132,7 @@ struct NumTraits<sepcal::LaneDual<Arch, N>> : GenericNumTraits<double> {
   using NonInteger = Real;
   using Nested = Real;
   using Literal = Real;
+  // NOLINTBEGIN(readability-identifier-naming): as Eigen calls them
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -141,6 +142,7 @@ struct NumTraits<sepcal::LaneDual<Arch, N>> : GenericNumTraits<double> {
     AddCost = 1,
     MulCost = 3
   };
+  // NOLINTEND(readability-identifier-naming)
 };
 
 template <class Arch, int N, class Operation>

@@ -48,14 +48,14 @@ struct LaneKernel {
                        std::size_t stride) = nullptr;
 };
 
-/// A model M whose at() takes several numbers side by side, too, says `using lanes_of = M`: it
+/// A model M whose at() takes several numbers side by side, too, says `using LanesOf = M`: it
 /// chooses between two values by where() and never by if, as one lane may need the one and its
 /// neighbour the other (sepcal/lanewise.hpp). What derives from it has no lanes, unless it says so
 /// itself.
 template <class M>
 constexpr bool has_lanes() {
-  if constexpr (requires { typename M::lanes_of; }) {
-    return std::same_as<typename M::lanes_of, M>;
+  if constexpr (requires { typename M::LanesOf; }) {
+    return std::same_as<typename M::LanesOf, M>;
   }
   return false;
 }

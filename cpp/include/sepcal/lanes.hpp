@@ -41,6 +41,7 @@ struct NumTraits<xsimd::batch<double, Arch>> : GenericNumTraits<double> {
   using NonInteger = Real;
   using Nested = Real;
   using Literal = double;
+  // NOLINTBEGIN(readability-identifier-naming): as Eigen calls them
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -50,6 +51,7 @@ struct NumTraits<xsimd::batch<double, Arch>> : GenericNumTraits<double> {
     AddCost = 1,
     MulCost = 1
   };
+  // NOLINTEND(readability-identifier-naming)
 };
 
 template <class Arch, class Operation>

@@ -55,9 +55,8 @@ double slope(Objective& objective, const VectorXd& x, const numerics::Box& box,
 /// The neighbourhood of a minimum, in which the cost is what its linearisation there says.
 class Neighbourhood {
  public:
-  Neighbourhood(Objective& objective, const Descent& minimum) : x_(minimum.x) {
-    known_ = objective.linearise(x_, residual_, jacobian_);
-  }
+  Neighbourhood(Objective& objective, const Descent& minimum)
+      : x_(minimum.x), known_(objective.linearise(x_, residual_, jacobian_)) {}
 
   /// `rise`: what the record can't tell from none.
   bool holds(const VectorXd& x, double square, double rise) const {

@@ -39,7 +39,8 @@ class LaneFactor {
   static B at(const double* values, std::size_t i) { return B::load_aligned(values + i * width); }
 
   static constexpr std::size_t place(int row, int column) {
-    return static_cast<std::size_t>(row * n + column);
+    constexpr std::size_t columns = n;
+    return static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
   }
 
   /// dots[j] = x_k . x_j of the rows' columns, j >= k.

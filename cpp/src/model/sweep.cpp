@@ -109,19 +109,16 @@ Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
 }
 
 std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
-  return factor_blocks(tables().n_1() + 1, [&](const Block& block, const Measurements::Range& range,
-                                               Carry* carry, Ref<MatrixXd> rows) {
-    fill_linear(block, range, xi2.data(), carry, rows);
-  });
+  return factor_blocks(tables().n_1() + 1,
+                       [&](const Block& block, const Measurements::Range& range, Carry* carry,
+                           MatrixXd& rows) { fill_linear(block, range, xi2.data(), carry, rows); });
 }
 
 std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
                                                      const VectorXd& xi2) const {
-  return factor_blocks(
-      tables().n_1() + tables().n_2() + 1,
-      [&](const Block& block, const Measurements::Range& range, Carry* carry, Ref<MatrixXd> rows) {
-        fill_tangent(block, range, xi1, xi2, carry, rows);
-      });
+  return factor_blocks(tables().n_1() + tables().n_2() + 1,
+                       [&](const Block& block, const Measurements::Range& range, Carry* carry,
+                           MatrixXd& rows) { fill_tangent(block, range, xi1, xi2, carry, rows); });
 }
 
 std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, const VectorXd& xi2,

@@ -89,7 +89,7 @@ class Sweep {
 
   /// One factor an output of the rows that `fill` makes of every block.
   using FillRows = std::function<void(const Block& block, const Measurements::Range& range,
-                                      Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows)>;
+                                      Carry* carry, Eigen::MatrixXd& rows)>;
   std::vector<TriangularFactor> factor_blocks(int columns, const FillRows& fill) const;
 
   /// What sample_factors() gives of the chosen samples, each evaluated by itself.

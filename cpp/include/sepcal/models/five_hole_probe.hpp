@@ -41,7 +41,7 @@ struct FiveHoleProbe {
                                         Quantity{"eps_phi", "rad", -0.2618, 0.2618}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
-  using lanes_of = FiveHoleProbe;
+  using LanesOf = FiveHoleProbe;
 
   double k_alpha;
   double k_beta;

@@ -28,7 +28,7 @@ struct Magnetometer {
       Quantity{"alpha_xz", "1", -0.5, 0.5}, Quantity{"alpha_yz", "1", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
-  using lanes_of = Magnetometer;
+  using LanesOf = Magnetometer;
 
   template <class U>
   static Vec<U, 3> prepare(const Vec<U, 3>& h) {

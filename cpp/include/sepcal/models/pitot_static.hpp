@@ -33,7 +33,7 @@ struct PitotStatic {
                                         Quantity{"w_d", "m/s", -100, 100}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
-  using lanes_of = PitotStatic;
+  using LanesOf = PitotStatic;
 
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 7>& u, const Vec<X, 3>& wind) const {

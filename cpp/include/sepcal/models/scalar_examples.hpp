@@ -18,7 +18,7 @@ struct ScalarExample1 {
   static constexpr std::array nonlinear{Quantity{"b", "rad", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
-  using lanes_of = ScalarExample1;
+  using LanesOf = ScalarExample1;
 
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 1>& u, const Vec<X, 1>& xi2) const {
@@ -41,7 +41,7 @@ struct ScalarExample2 {
                                         Quantity{"c", "rad", -1.0, 1.0}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
-  using lanes_of = ScalarExample2;
+  using LanesOf = ScalarExample2;
 
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 1>& u, const Vec<X, 2>& xi2) const {
