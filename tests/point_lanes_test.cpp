@@ -43,7 +43,7 @@ using AlignedDoubles = std::vector<double, Eigen::aligned_allocator<double>>;
 
 std::vector<const LaneKit*> all_kits() {
   std::vector<const LaneKit*> kits;
-  for (const std::size_t width : {2, 4, 8}) {
+  for (const std::size_t width : {2U, 4U, 8U}) {
     if (const LaneKit* kit = sepcal::lanes::lane_kit_of(width)) kits.push_back(kit);
   }
   return kits;

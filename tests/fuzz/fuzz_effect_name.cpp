@@ -53,7 +53,7 @@ void check_list(std::string_view text, std::vector<std::string>& names) {
 void make_effects(const std::shared_ptr<const Probe>& probe,
                   const std::vector<std::string>& names) {
   const Flight& flight = flight_for(*probe);
-  const ProbeRecord prepared = probe->prepare(flight, false);
+  const ProbeRecord prepared = probe->prepare(flight, {});
   std::vector<EffectSetting> settings;
   for (const std::string& name : names) settings.push_back({.name = name});
   const EffectiveFlight first = with_effects(*probe, flight, prepared, settings, {});
