@@ -13,6 +13,22 @@
 
 namespace sepcal {
 
+/// What Eigen asks of numbers with lanes besides their types; a product costs so many sums.
+template <int product_cost>
+struct LaneTraits : Eigen::GenericNumTraits<double> {
+  // NOLINTBEGIN(readability-identifier-naming): as Eigen calls them
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = product_cost
+  };
+  // NOLINTEND(readability-identifier-naming)
+};
+
 template <class Arch, int N>
 struct LaneDual {
   using B = xsimd::batch<double, Arch>;
@@ -127,22 +143,11 @@ struct Lanewise<LaneDual<Arch, N>> {
 namespace Eigen {
 
 template <class Arch, int N>
-struct NumTraits<sepcal::LaneDual<Arch, N>> : GenericNumTraits<double> {
+struct NumTraits<sepcal::LaneDual<Arch, N>> : sepcal::LaneTraits<3> {
   using Real = sepcal::LaneDual<Arch, N>;
   using NonInteger = Real;
   using Nested = Real;
   using Literal = Real;
-  // NOLINTBEGIN(readability-identifier-naming): as Eigen calls them
-  enum {
-    IsComplex = 0,
-    IsInteger = 0,
-    IsSigned = 1,
-    RequireInitialization = 1,
-    ReadCost = 1,
-    AddCost = 1,
-    MulCost = 3
-  };
-  // NOLINTEND(readability-identifier-naming)
 };
 
 template <class Arch, int N, class Operation>

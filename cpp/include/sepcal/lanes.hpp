@@ -36,22 +36,11 @@ struct Lanewise<xsimd::batch<double, Arch>> {
 namespace Eigen {
 
 template <class Arch>
-struct NumTraits<xsimd::batch<double, Arch>> : GenericNumTraits<double> {
+struct NumTraits<xsimd::batch<double, Arch>> : sepcal::LaneTraits<1> {
   using Real = xsimd::batch<double, Arch>;
   using NonInteger = Real;
   using Nested = Real;
   using Literal = double;
-  // NOLINTBEGIN(readability-identifier-naming): as Eigen calls them
-  enum {
-    IsComplex = 0,
-    IsInteger = 0,
-    IsSigned = 1,
-    RequireInitialization = 1,
-    ReadCost = 1,
-    AddCost = 1,
-    MulCost = 1
-  };
-  // NOLINTEND(readability-identifier-naming)
 };
 
 template <class Arch, class Operation>

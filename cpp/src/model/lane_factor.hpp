@@ -7,11 +7,9 @@
 #include <cstddef>
 #include <xsimd/xsimd.hpp>
 
-namespace sepcal::lanes {
+#include "numerics/safe_squares.hpp"
 
-// Squared lengths outside this range have lost digits to underflow or are about to overflow.
-inline constexpr double smallest_safe_square = 1e-200;
-inline constexpr double largest_safe_square = 1e200;
+namespace sepcal::lanes {
 
 /// T (n x n, upper; row i, column j in the lanes from (i * n + j) * width on) becomes the factor of
 /// [T; rows]; rows: column c, row i (of m) in the lanes from c * stride + i * width on, left
@@ -50,9 +48,9 @@ class LaneFactor {
     for (int j = k; j < n; ++j) row[j] = at(T, place(k, j));
     const B tail = dots[k];
     const auto none = tail == B(0.0);
-    const bool safe =
-        xsimd::all(none || (tail > B(smallest_safe_square) && tail < B(largest_safe_square))) &&
-        (!xsimd::any(none) || is_zero(rows + k * stride, m, none));
+    const bool safe = xsimd::all(none || (tail > B(numerics::smallest_safe_square) &&
+                                          tail < B(numerics::largest_safe_square))) &&
+                      (!xsimd::any(none) || is_zero(rows + k * stride, m, none));
     const B length = xsimd::sqrt(xsimd::fma(row[k], row[k], tail));
     const B reflected = xsimd::select(row[k] > B(0.0), -length, length);
     const B v0 = row[k] - reflected;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/safe_squares.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -16,14 +17,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Squared lengths outside this range have lost digits to underflow or are about to overflow.
-constexpr double smallest_safe_square = 1e-200;
-constexpr double largest_safe_square = 1e200;
-
 double length_of(const Eigen::Ref<const VectorXd>& x) {
   const double square = x.squaredNorm();
   if (std::isnan(square)) return square;  // stableNorm() drops some NaNs
-  const bool safe = square > smallest_safe_square && square < largest_safe_square;
+  const bool safe =
+      square > numerics::smallest_safe_square && square < numerics::largest_safe_square;
   return safe ? std::sqrt(square) : x.stableNorm();
 }
 

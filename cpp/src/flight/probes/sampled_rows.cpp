@@ -17,7 +17,7 @@ constexpr double about_as_slow = 1.1;  // samples over the slowest column's
 const Flight::Column& find_column(const Flight& flight, const std::string& name) {
   if (const Flight::Column* column = flight.find(name)) return *column;
   const auto is_named = [&](const Flight::Column& column) {
-    return column.header.substr(0, column.header.rfind('_')) == name;
+    return is_called(column.header, name);
   };
   const auto found = std::ranges::find_if(flight.columns(), is_named);
   if (found != flight.columns().end()) return *found;
@@ -27,6 +27,10 @@ const Flight::Column& find_column(const Flight& flight, const std::string& name)
 }
 
 }  // namespace
+
+bool is_called(const std::string& header, const std::string& name) {
+  return name == header || name == header.substr(0, header.rfind('_'));
+}
 
 std::vector<bool> find_sampled(const Flight& flight, const std::vector<std::string>& columns,
                                const std::vector<double>& time) {

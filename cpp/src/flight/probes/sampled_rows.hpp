@@ -9,6 +9,9 @@
 
 namespace sepcal::probes {
 
+/// Whether a column is called so: by its whole header, or by that without its unit.
+bool is_called(const std::string& header, const std::string& name);
+
 /// A row each: whether the slowest of the columns was sampled there, or another one that is about
 /// as slow. `columns`: quantities ("airspeed") or
 /// whole headers; `time` [s] a row each, or none. Throws Error for a column that is not there.

@@ -13,6 +13,7 @@
 #include "base/parameter_values.hpp"
 #include "base/sentences.hpp"
 #include "estimation/step_times.hpp"
+#include "flight/probes/sampled_rows.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
@@ -145,7 +146,7 @@ bool is_followed(const LogNote& note, const CalibrationOptions& options, const F
   }
   const auto is_chosen = [&](const std::string& header) {
     return std::ranges::any_of(options.rows.drop_repeats, [&](const std::string& name) {
-      return name == header || name == header.substr(0, header.rfind('_'));
+      return probes::is_called(header, name);
     });
   };
   return note.kind == "interpolated" && std::ranges::any_of(note.columns, is_chosen);
