@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <span>
+#include <utility>
+
+#include "numerics/nearest_points.hpp"
 
 namespace sepcal::numerics {
 namespace {
@@ -14,27 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Indices = std::vector<Index>;
 
-/// The 4 n nearest neighbours of every point, made mutual: fewer leave a narrow valley in pieces.
-std::vector<Indices> neighbours_of(const MatrixXd& points) {
-  const Index count = points.cols();
-  const Index near = std::min<Index>(4 * points.rows(), count - 1);
-  std::vector<Indices> neighbours(static_cast<std::size_t>(count));
-  Indices order(static_cast<std::size_t>(count));
-  for (Index s = 0; s < count; ++s) {
-    const VectorXd distance = (points.colwise() - points.col(s)).colwise().squaredNorm();
-    std::iota(order.begin(), order.end(), Index{0});
-    std::ranges::nth_element(order, order.begin() + near, {}, [&](Index i) { return distance[i]; });
-    for (Index i = 0; i <= near; ++i) {
-      const Index other = order[static_cast<std::size_t>(i)];
-      if (other == s) continue;
-      neighbours[static_cast<std::size_t>(s)].push_back(other);
-      neighbours[static_cast<std::size_t>(other)].push_back(s);
-    }
-  }
-  return neighbours;
-}
-
-/// Sets of flooded samples; each is known by its lowest.
+/// Sets of samples; each is known by one of them, which `pour` says.
 class Pools {
  public:
   explicit Pools(Index count) : parent_(static_cast<std::size_t>(count)) {
@@ -54,10 +39,83 @@ class Pools {
   Indices parent_;
 };
 
+/// Who is whose neighbour, point after point.
+class Neighbours {
+ public:
+  /// The 4 n nearest of every point, made mutual: fewer leave a narrow valley in pieces. What
+  /// chance crowded together, apart from all others, is joined to the nearest of these.
+  explicit Neighbours(const MatrixXd& points) : tree_(points), count_(points.cols()) {
+    const Index near = std::min(4 * points.rows(), count_ - 1);
+    Pools pools(count_);
+    for (Index s = 0; s < count_; ++s) {
+      tree_.find(s, near, found_);
+      for (const Index other : found_) join(s, other, pools);
+    }
+    for (Index far = 2 * near; join_crowds(std::min(far, count_ - 1), pools); far *= 2) {
+    }
+    sort_pairs();
+  }
+
+  std::span<const Index> of(Index s) const {
+    const std::size_t first = begins_[static_cast<std::size_t>(s)];
+    return {all_.data() + first, begins_[static_cast<std::size_t>(s) + 1] - first};
+  }
+
+ private:
+  void join(Index s, Index other, Pools& pools) {
+    pairs_.emplace_back(s, other);
+    pools.pour(pools.lowest(s), pools.lowest(other));
+  }
+
+  /// Joins every crowd to the nearest point outside of it among the `far` nearest of its points.
+  /// Whether there were several.
+  bool join_crowds(Index far, Pools& pools) {
+    std::map<Index, std::vector<Index>> crowds;
+    for (Index s = 0; s < count_; ++s) crowds[pools.lowest(s)].push_back(s);
+    if (crowds.size() <= 1) return false;
+    for (const auto& [name, crowd] : crowds) {
+      double least = std::numeric_limits<double>::infinity();
+      std::pair<Index, Index> nearest{-1, -1};
+      for (const Index s : crowd) {
+        tree_.find(s, far, found_);
+        const auto outside = std::ranges::find_if(
+            found_, [&](Index other) { return pools.lowest(other) != pools.lowest(s); });
+        if (outside == found_.end() || !(tree_.square_between(s, *outside) < least)) continue;
+        least = tree_.square_between(s, *outside);
+        nearest = {s, *outside};
+      }
+      if (nearest.first >= 0) join(nearest.first, nearest.second, pools);
+    }
+    return true;
+  }
+
+  void sort_pairs() {
+    begins_.assign(static_cast<std::size_t>(count_) + 1, 0);
+    for (const auto& [s, other] : pairs_) {
+      ++begins_[static_cast<std::size_t>(s)];
+      ++begins_[static_cast<std::size_t>(other)];
+    }
+    std::exclusive_scan(begins_.begin(), begins_.end(), begins_.begin(), std::size_t{0});
+    all_.resize(begins_.back());
+    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+    for (const auto& [s, other] : pairs_) {
+      all_[next[static_cast<std::size_t>(s)]++] = other;
+      all_[next[static_cast<std::size_t>(other)]++] = s;
+    }
+  }
+
+  NearestPoints tree_;
+  Index count_;
+  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<std::size_t> begins_;
+  Indices all_;
+  Indices found_;
+};
+
 }  // namespace
 
 std::vector<Basin> find_basins(const MatrixXd& points, const VectorXd& values) {
-  const auto neighbours = neighbours_of(points);
+  const Neighbours neighbours(points);
   Indices rising(static_cast<std::size_t>(values.size()));
   std::iota(rising.begin(), rising.end(), Index{0});
   std::erase_if(rising, [&](Index s) { return !std::isfinite(values[s]); });
@@ -71,7 +129,7 @@ std::vector<Basin> find_basins(const MatrixXd& points, const VectorXd& values) {
   std::vector<Basin> basins;
   for (const Index s : rising) {
     flooded[static_cast<std::size_t>(s)] = true;
-    for (const Index other : neighbours[static_cast<std::size_t>(s)]) {
+    for (const Index other : neighbours.of(s)) {
       if (!flooded[static_cast<std::size_t>(other)]) continue;
       Index a = pools.lowest(s);
       Index b = pools.lowest(other);
