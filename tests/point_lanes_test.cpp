@@ -12,10 +12,14 @@
 #include "model/fixed_model.hpp"
 #include "model/lane_kit.hpp"
 #include "model/sweep.hpp"
+#include "sepcal/effects/air_data.hpp"
+#include "sepcal/effects/magnetic.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/lanes.hpp"
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
+#include "sepcal/static_composition.hpp"
 #include "simulated_records.hpp"
 
 namespace point_lanes_test {
@@ -32,6 +36,7 @@ using sepcal::base::ThreadPool;
 using sepcal::lanes::LaneKit;
 using sepcal::lanes::ShippedModel;
 using sepcal::model::Measurements;
+using sepcal::model::PointFactors;
 using sepcal::model::PointLanes;
 using sepcal::model::Sweep;
 using sepcal::test::Draws;
@@ -152,6 +157,35 @@ double largest_row_difference(const sepcal::LaneKernel& kernel, const void* of_m
   return largest;
 }
 
+/// A kernel's derivatives by the inputs against input_tangent()'s, relative to the largest of a
+/// column.
+double largest_slope_difference(const sepcal::LaneKernel& kernel, const void* of_model,
+                                const BlockModel& model, const VectorXd& xi2, Draws& draws) {
+  constexpr Index rows = 29;
+  const Index n_z = model.tables().n_z();
+  const VectorXd xi1 = draws.normal_matrix(model.tables().n_1(), 1);
+  const MatrixXd u = 20.0 * MatrixXd::Ones(rows, model.tables().n_u()) +
+                     draws.normal_matrix(rows, model.tables().n_u());
+  std::vector<const double*> inputs;
+  for (const auto column : u.colwise()) inputs.push_back(column.data());
+  double largest = 0.0;
+  for (int i = 0; i < model.tables().n_u(); ++i) {
+    const std::vector<int> which{i, 0};
+    MatrixXd expected(n_z * rows, 2);
+    MatrixXd got(n_z * rows, 2);
+    model.input_tangent({inputs, rows, 0, true}, xi2.data(), sepcal::values_of(xi1), which,
+                        expected);
+    kernel.fill_input_tangent(of_model, inputs.data(), rows, xi2.data(), sepcal::values_of(xi1),
+                              which.data(), 2, got.data(), static_cast<std::size_t>(n_z * rows));
+    for (const Index c : {0, 1}) {
+      const double scale = std::max(1.0, expected.col(c).cwiseAbs().maxCoeff());
+      const double off = (got.col(c) - expected.col(c)).cwiseAbs().maxCoeff() / scale;
+      largest = std::isnan(off) ? sepcal::infinity : std::max(largest, off);
+    }
+  }
+  return largest;
+}
+
 template <class M>
 void check_kernel(const LaneKit& kit, ShippedModel which, const M& model) {
   CAPTURE(kit.name);
@@ -162,6 +196,7 @@ void check_kernel(const LaneKit& kit, ShippedModel which, const M& model) {
   const auto& kernel = kit.models[static_cast<std::size_t>(which)];
   CHECK(largest_difference(kernel, &model, *scalar, points, draws) < 1e-13);
   CHECK(largest_row_difference(kernel, &model, *scalar, points.col(0), draws) < 1e-13);
+  CHECK(largest_slope_difference(kernel, &model, *scalar, points.col(0), draws) < 1e-12);
 }
 
 /// A user's own: lanes for the instruction set that this file is compiled for.
@@ -192,7 +227,7 @@ double largest_difference(const BlockModel& model, const Record& record, const M
   const Sweep sweep(model, measurements, pool);
   double largest = 0.0;
   for (Index s = 0; s < points.cols(); ++s) {
-    const auto& factor = factors[static_cast<std::size_t>(s)];
+    const auto factor = factors.factor(static_cast<std::size_t>(s));
     REQUIRE(factor);
     const MatrixXd expected =
         combine(sweep.linear_factors(points.col(s)), VectorXd::Ones(model.tables().n_z())).matrix();
@@ -202,8 +237,7 @@ double largest_difference(const BlockModel& model, const Record& record, const M
 }
 
 /// Factors of [A | z - b] at the points, by lanes where there are some.
-std::vector<std::optional<TriangularFactor>> factors_in_lanes(const Simulated& flight,
-                                                              const MatrixXd& points) {
+PointFactors factors_in_lanes(const Simulated& flight, const MatrixXd& points) {
   const Measurements measurements(*flight.model, flight.record);
   const PointLanes lanes(*flight.model, measurements, points);
   REQUIRE(lanes.width() > 1);
@@ -246,6 +280,8 @@ TEST_CASE("a kernel of any width gives what the model gives") {
     check_kernel(*kit, ShippedModel::five_hole,
                  sepcal::FiveHoleProbe{4.5, 4.2, Eigen::Vector3d(0.35, 0.1, -0.02)});
     check_kernel(*kit, ShippedModel::magnetometer, sepcal::Magnetometer{});
+    check_kernel(*kit, ShippedModel::attitude_independent,
+                 sepcal::AttitudeIndependentMagnetometer{50.0, 0.3});
     check_kernel(*kit, ShippedModel::pitot_static, sepcal::PitotStatic{});
     check_kernel(*kit, ShippedModel::scalar_1, sepcal::ScalarExample1{});
     check_kernel(*kit, ShippedModel::scalar_2, sepcal::ScalarExample2{});
@@ -274,7 +310,11 @@ TEST_CASE("a factor in a lane is TriangularFactor's, down to a condition of 1e8"
           }
           expected[lane].absorb(own);
         }
-        CHECK(kit->absorb[static_cast<std::size_t>(n)](T.data(), rows.data(), m, m * kit->width));
+        std::vector<double*> columns;
+        for (std::size_t c = 0; c < static_cast<std::size_t>(n); ++c) {
+          columns.push_back(rows.data() + c * m * kit->width);
+        }
+        CHECK(kit->absorb[static_cast<std::size_t>(n)](T.data(), columns.data(), m));
       }
       for (std::size_t lane = 0; lane < kit->width; ++lane) {
         MatrixXd own = MatrixXd::Zero(n, n);
@@ -297,9 +337,12 @@ TEST_CASE("a record's factors by lanes are those of each point") {
     const MatrixXd points = 0.1 * draws.normal_matrix(flight.xi2.size(), 21);  // no whole tiles
     const auto factors = factors_in_lanes(flight, points);
     for (Index s = 0; s < points.cols(); ++s) {
-      REQUIRE(factors[static_cast<std::size_t>(s)]);
-      CHECK(off(*factors[static_cast<std::size_t>(s)], scalar_factor(flight, points.col(s))) <
-            1e-13);
+      const auto factor = factors.factor(static_cast<std::size_t>(s));
+      REQUIRE(factor);
+      const TriangularFactor expected = scalar_factor(flight, points.col(s));
+      CHECK(off(*factor, expected) < 1e-13);
+      CHECK(factors.remaining_square(static_cast<std::size_t>(s)) ==
+            doctest::Approx(remaining_square(expected)).epsilon(1e-12));
     }
   }
 }
@@ -309,16 +352,17 @@ TEST_CASE("what lanes can't tell is left to the scalar way: squares that underfl
   const MatrixXd points = MatrixXd::Constant(1, 5, 0.1);
   const auto tiny = with_column(flight, "z", [](double z, std::size_t) { return 1e-120 * z; });
   const auto huge = with_column(flight, "z", [](double z, std::size_t) { return 1e120 * z; });
-  CHECK(factors_in_lanes(huge, points)[4] == std::nullopt);
-  CHECK(factors_in_lanes(flight, points)[4] != std::nullopt);
+  CHECK(factors_in_lanes(huge, points).factor(4) == std::nullopt);
+  CHECK(factors_in_lanes(flight, points).factor(4) != std::nullopt);
   MatrixXd broken = points;
   broken(0, 2) = sepcal::not_a_number;
-  CHECK(factors_in_lanes(flight, broken)[2] == std::nullopt);
+  CHECK(factors_in_lanes(flight, broken).factor(2) == std::nullopt);
 
   const Measurements measurements(*tiny.model, tiny.record);
   ThreadPool pool(1);
-  const auto all = Sweep(*tiny.model, measurements, pool).sample_factors(points, {});
-  CHECK(off(all[3], scalar_factor(tiny, points.col(3))) < 1e-13);
+  const VectorXd all = Sweep(*tiny.model, measurements, pool).sample_squares(points, {});
+  const double expected = remaining_square(scalar_factor(tiny, points.col(3)));
+  CHECK(all[3] == doctest::Approx(expected).epsilon(1e-12));
 }
 
 TEST_CASE("an entry of A that is zero where it was looked for, and not everywhere") {
@@ -327,12 +371,13 @@ TEST_CASE("an entry of A that is zero where it was looked for, and not everywher
       with_column(flight, "hx", [](double hx, std::size_t row) { return row == 100 ? hx : 0.0; });
   Draws draws(74);
   const MatrixXd points = 0.05 * draws.normal_matrix(6, 9);
-  CHECK(factors_in_lanes(one_row, points)[0] == std::nullopt);
+  CHECK(factors_in_lanes(one_row, points).factor(0) == std::nullopt);
   const Measurements measurements(*one_row.model, one_row.record);
   ThreadPool pool(2);
-  const auto all = Sweep(*one_row.model, measurements, pool).sample_factors(points, {});
+  const VectorXd all = Sweep(*one_row.model, measurements, pool).sample_squares(points, {});
   for (const Index s : {0, 8}) {
-    CHECK(off(all[static_cast<std::size_t>(s)], scalar_factor(one_row, points.col(s))) < 1e-13);
+    const double expected = remaining_square(scalar_factor(one_row, points.col(s)));
+    CHECK(all[s] == doctest::Approx(expected).epsilon(1e-12));
   }
 }
 
@@ -350,6 +395,29 @@ TEST_CASE("effects that vary parameters keep the lanes") {
   };
   CHECK(lanes_with("magnetometer", {"bias[temp_degc]", "scale[current_a]"}) < 1e-13);
   CHECK(lanes_with("five-hole", {"wind[spline(time,6)]", "airspeed_bias[throttle]"}) < 1e-13);
+}
+
+/// A model with an effect, in lanes and number by number.
+template <class M>
+void check_in_lanes(const M& model, std::uint64_t seed) {
+  Draws draws(seed);
+  const auto in_lanes = sepcal::in_lanes(model);
+  const auto scalar = sepcal::block_model(model);
+  const auto& kernel = sepcal::lane_kernel<sepcal::InLanes<M>>();
+  CHECK(scalar->lane_width() == 0);
+  CHECK(sepcal::block_model(in_lanes)->lane_width() == kernel.width);
+  const MatrixXd points = 0.1 * draws.normal_matrix(scalar->tables().n_2(), 16);
+  CHECK(largest_difference(kernel, &in_lanes, *scalar, points, draws) < 1e-13);
+  CHECK(largest_row_difference(kernel, &in_lanes, *scalar, points.col(0), draws) < 1e-13);
+}
+
+TEST_CASE("a model composed with effects at compile time has lanes where its user asks for them") {
+  const sepcal::FiveHoleProbe probe{4.5, 4.2, Eigen::Vector3d(0.35, 0.1, -0.02)};
+  check_in_lanes(probe + sepcal::effects::LeverArm{}, 78);     // a term
+  check_in_lanes(probe + sepcal::effects::HeadingBias{}, 79);  // a correction
+  check_in_lanes(probe + sepcal::effects::LeverArm{} + sepcal::effects::HeadingBias{}, 80);
+  check_in_lanes(sepcal::Magnetometer{} + sepcal::effects::CubicNonlinearity{}, 81);
+  static_assert(sepcal::HoistedModel<decltype(probe + sepcal::effects::LeverArm{})>);
 }
 
 TEST_CASE("held parameters keep the lanes") {

@@ -136,6 +136,7 @@ struct Lanewise<LaneDual<Arch, N>> {
     const auto [sine, cosine] = xsimd::sincos(x.a);
     return {T::chain(cosine, -sine, x), T::chain(sine, cosine, x)};
   }
+  static bool vanishes(const T& /*x*/) { return false; }
 };
 
 }  // namespace sepcal

@@ -27,7 +27,10 @@ struct LaneBlock {
   const unsigned char* zero = nullptr;
 };
 
-inline constexpr std::size_t most_lane_rows = 32;
+inline constexpr std::size_t most_lane_rows = 48;
+
+/// Inputs that are differentiated at a time: an effect corrects few of a model's many.
+inline constexpr int inputs_at_a_time = 4;
 
 /// Called with a tile's [A | z - b]: output after output those columns that are not left out, one
 /// below the other. A column's row i stands in the `width` values from i * width on.
@@ -46,6 +49,11 @@ struct LaneKernel {
   void (*fill_tangent)(const void* model, const double* const* inputs, std::size_t rows,
                        const double* xi2, const double* xi1, double* to,
                        std::size_t stride) = nullptr;
+  /// What BlockModel::input_tangent() gives of `count` inputs, inputs_at_a_time at most; nullptr
+  /// where the model isn't differentiated by its inputs.
+  void (*fill_input_tangent)(const void* model, const double* const* inputs, std::size_t rows,
+                             const double* xi2, const double* xi1, const int* which,
+                             std::size_t count, double* to, std::size_t stride) = nullptr;
 };
 
 /// A model M whose at() takes several numbers side by side, too, says `using LanesOf = M`: it

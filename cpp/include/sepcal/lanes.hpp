@@ -8,6 +8,7 @@
 #include <utility>
 #include <xsimd/xsimd.hpp>
 
+#include "sepcal/hoisted_model.hpp"
 #include "sepcal/lane_dual.hpp"
 #include "sepcal/lane_kernel.hpp"
 #include "sepcal/lanewise.hpp"
@@ -29,6 +30,7 @@ struct Lanewise<xsimd::batch<double, Arch>> {
     const auto [sine, cosine] = xsimd::sincos(x);
     return {cosine, sine};
   }
+  static bool vanishes(const T& x) { return xsimd::all(x == T(0.0)); }
 };
 
 }  // namespace sepcal
@@ -57,41 +59,6 @@ struct ScalarBinaryOpTraits<double, xsimd::batch<double, Arch>, Operation> {
 
 namespace sepcal::lanes {
 
-/// A model that tells what of it depends on u alone, prepare(u), and on xi2 alone, settle(xi2),
-/// from which combine() makes what at() gives.
-template <class M>
-concept HoistedModel = requires(const M& model, const Vec<double, Sizes<M>::n_u>& u,
-                                const Vec<double, Sizes<M>::n_2>& xi2) {
-  model.combine(model.prepare(u), model.settle(xi2));
-};
-
-template <class M, class U>
-auto prepare(const M& model, const Vec<U, Sizes<M>::n_u>& u) {
-  if constexpr (HoistedModel<M>) {
-    return model.prepare(u);
-  } else {
-    return u;
-  }
-}
-
-template <class M, class X>
-auto settle(const M& model, const Vec<X, Sizes<M>::n_2>& xi2) {
-  if constexpr (HoistedModel<M>) {
-    return model.settle(xi2);
-  } else {
-    return xi2;
-  }
-}
-
-template <class M, class Prepared, class Settled>
-auto combine(const M& model, const Prepared& prepared, const Settled& settled) {
-  if constexpr (HoistedModel<M>) {
-    return model.combine(prepared, settled);
-  } else {
-    return model.at(prepared, settled);
-  }
-}
-
 /// As LaneKernel::evaluate.
 template <class Arch, class M>
 bool evaluate_points(const void* of_model, const LaneBlock& block, const PointTiles& points,
@@ -102,13 +69,13 @@ bool evaluate_points(const void* of_model, const LaneBlock& block, const PointTi
   constexpr int n_1 = Sizes<M>::n_1;
   constexpr int n_2 = Sizes<M>::n_2;
   const M& model = *static_cast<const M*>(of_model);
-  decltype(prepare(model, Vec<double, n_u>())) prepared[most_lane_rows];
+  decltype(hoisting::prepare(model, Vec<double, n_u>())) prepared[most_lane_rows];
   for (std::size_t i = 0; i < block.rows; ++i) {
     Vec<double, n_u> u;
     for (int k = 0; k < n_u; ++k) u[k] = block.inputs[k][i];
-    prepared[i] = prepare(model, u);
+    prepared[i] = hoisting::prepare(model, u);
   }
-  Batch<Arch> left_out(0.0);
+  xsimd::batch_bool<double, Arch> left_out_holds(true);  // of a zero; NaN is none
   const std::size_t stride = block.rows * width;
   for (std::size_t t = 0; t < points.tiles; ++t) {
     Vec<Batch<Arch>, n_2> xi2;
@@ -116,14 +83,14 @@ bool evaluate_points(const void* of_model, const LaneBlock& block, const PointTi
       const std::size_t at = (t * n_2 + static_cast<std::size_t>(k)) * width;
       xi2[k] = Batch<Arch>::load_unaligned(points.xi2 + at);
     }
-    const auto settled = settle(model, xi2);
+    const auto settled = hoisting::settle(model, xi2);
     for (std::size_t i = 0; i < block.rows; ++i) {
-      const auto z = combine(model, prepared[i], settled);
+      const auto z = hoisting::combine(model, prepared[i], settled);
       double* to = scratch + i * width;
       for (int j = 0; j < n_z; ++j) {
         for (int c = 0; c < n_1; ++c) {
           if (block.zero != nullptr && block.zero[j * n_1 + c] != 0) {
-            left_out = xsimd::max(left_out, xsimd::abs(z.A(j, c)));
+            left_out_holds = left_out_holds && z.A(j, c) == Batch<Arch>(0.0);
           } else {
             z.A(j, c).store_aligned(to);
             to += stride;
@@ -135,7 +102,7 @@ bool evaluate_points(const void* of_model, const LaneBlock& block, const PointTi
     }
     visit(visitor, t, scratch);
   }
-  return xsimd::all(left_out == Batch<Arch>(0.0));
+  return xsimd::all(left_out_holds);
 }
 
 /// The inputs of the `count` rows from `row` on, no more than lanes; the last one fills up the
@@ -180,11 +147,12 @@ void fill_values(const void* of_model, const double* const* inputs, std::size_t 
   const M& model = *static_cast<const M*>(of_model);
   Vec<Batch<Arch>, Sizes<M>::n_2> x;
   for (int k = 0; k < Sizes<M>::n_2; ++k) x[k] = Batch<Arch>(xi2[k]);
-  const auto settled = settle(model, x);
+  const auto settled = hoisting::settle(model, x);
   for (std::size_t row = 0; row < rows; row += width) {
     const std::size_t count = std::min(width, rows - row);
-    const auto z =
-        combine(model, prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)), settled);
+    const auto z = hoisting::combine(
+        model, hoisting::prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)),
+        settled);
     for (int j = 0; j < n_z; ++j) {
       double* const own = to + static_cast<std::size_t>(j) * rows + row;
       for (int c = 0; c < n_1; ++c) {
@@ -207,11 +175,12 @@ void fill_tangent(const void* of_model, const double* const* inputs, std::size_t
   const M& model = *static_cast<const M*>(of_model);
   Vec<Dual, n_2> x;
   for (int k = 0; k < n_2; ++k) x[k] = Dual(Batch<Arch>(xi2[k]), k);
-  const auto settled = settle(model, x);
+  const auto settled = hoisting::settle(model, x);
   for (std::size_t row = 0; row < rows; row += width) {
     const std::size_t count = std::min(width, rows - row);
-    const auto z =
-        combine(model, prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)), settled);
+    const auto z = hoisting::combine(
+        model, hoisting::prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)),
+        settled);
     for (int j = 0; j < n_z; ++j) {
       double* own = to + static_cast<std::size_t>(j) * rows + row;
       auto slopes = z.b[j].v;
@@ -229,9 +198,53 @@ void fill_tangent(const void* of_model, const double* const* inputs, std::size_t
   }
 }
 
+/// As LaneKernel::fill_input_tangent.
 template <class Arch, class M>
-inline constexpr LaneKernel kernel_for{Batch<Arch>::size, &evaluate_points<Arch, M>,
-                                       &fill_values<Arch, M>, &fill_tangent<Arch, M>};
+void fill_input_tangent(const void* of_model, const double* const* inputs, std::size_t rows,
+                        const double* xi2, const double* xi1, const int* which, std::size_t moving,
+                        double* to, std::size_t stride) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  constexpr int n_u = Sizes<M>::n_u;
+  constexpr int n_2 = Sizes<M>::n_2;
+  using Dual = LaneDual<Arch, inputs_at_a_time>;
+  const M& model = *static_cast<const M*>(of_model);
+  Vec<Dual, n_2> x;
+  for (int k = 0; k < n_2; ++k) x[k] = Dual(xi2[k]);
+  const auto settled = hoisting::settle(model, x);
+  for (std::size_t row = 0; row < rows; row += width) {
+    const std::size_t count = std::min(width, rows - row);
+    const Vec<Batch<Arch>, n_u> values = load_rows<Arch, n_u>(inputs, row, count);
+    Vec<Dual, n_u> u;
+    for (int k = 0; k < n_u; ++k) u[k] = Dual(values[k]);
+    for (std::size_t i = 0; i < moving; ++i) u[which[i]].v[i] = Batch<Arch>(1.0);
+    const auto z = hoisting::combine(model, hoisting::prepare(model, u), settled);
+    for (int j = 0; j < Sizes<M>::n_z; ++j) {
+      auto slopes = z.b[j].v;
+      for (int c = 0; c < Sizes<M>::n_1; ++c) {
+        for (std::size_t i = 0; i < moving; ++i) {
+          slopes[i] = xsimd::fma(Batch<Arch>(xi1[c]), z.A(j, c).v[i], slopes[i]);
+        }
+      }
+      double* const own = to + static_cast<std::size_t>(j) * rows + row;
+      for (std::size_t i = 0; i < moving; ++i) {
+        store_rows<Arch>(slopes[i], count, own + i * stride);
+      }
+    }
+  }
+}
+
+template <class Arch, class M>
+constexpr LaneKernel make_kernel() {
+  LaneKernel kernel{Batch<Arch>::size, &evaluate_points<Arch, M>, &fill_values<Arch, M>,
+                    &fill_tangent<Arch, M>};
+  if constexpr (Sizes<M>::n_u > 0 && has_dual_inputs<M>()) {
+    kernel.fill_input_tangent = &fill_input_tangent<Arch, M>;
+  }
+  return kernel;
+}
+
+template <class Arch, class M>
+inline constexpr LaneKernel kernel_for = make_kernel<Arch, M>();
 
 }  // namespace sepcal::lanes
 
@@ -240,6 +253,18 @@ namespace sepcal {
 template <class M>
 const LaneKernel& lane_kernel() {
   return lanes::kernel_for<xsimd::default_arch, M>;
+}
+
+/// A model that doesn't say so itself, such as one with effects, as one that has lanes. Its at(),
+/// and what it takes of others, chooses by where().
+template <SeparableModel M>
+struct InLanes : M {
+  using LanesOf = InLanes;
+};
+
+template <SeparableModel M>
+InLanes<M> in_lanes(M model) {
+  return {std::move(model)};
 }
 
 }  // namespace sepcal

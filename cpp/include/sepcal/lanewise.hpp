@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <utility>
 
 namespace sepcal {
@@ -16,12 +17,23 @@ struct Lanewise {
     using std::sin;
     return {cos(x), sin(x)};
   }
+  /// Of a dual number never: it may have a derivative.
+  static bool vanishes(const T& x) {
+    if constexpr (std::floating_point<T>) return x == T(0);
+    return false;
+  }
 };
 
 /// `yes` where the condition holds, else `no`: each lane by itself.
 template <class Condition, class T>
 T where(const Condition& condition, const T& yes, const T& no) {
   return Lanewise<T>::where(condition, yes, no);
+}
+
+/// Whether x is zero, in every lane, and has no derivative: what it adds may be left out.
+template <class T>
+bool vanishes(const T& x) {
+  return Lanewise<T>::vanishes(x);
 }
 
 /// [cos x, sin x].

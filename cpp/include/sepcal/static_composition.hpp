@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "sepcal/hoisted_model.hpp"
 #include "sepcal/joined_tables.hpp"
 #include "sepcal/static_effect.hpp"
 
@@ -109,26 +110,60 @@ struct Composed {
       for (int c = 0; c < E::corrected; ++c) corrected[position<E>(c)] = values[c];
       return model.at(select<M>(corrected), of_model);
     } else {
-      const auto [A, b] = model.at(select<M>(u), of_model);
-      Affine<X, Sizes<Composed>::n_z, Sizes<Composed>::n_1> z;
-      z.A.template leftCols<Sizes<M>::n_1>() = A;
-      if constexpr (VaryingTerm<E>) {
-        for (int c = 0; c < Sizes<Composed>::n_1 - Sizes<M>::n_1; ++c) {
-          z.A.col(Sizes<M>::n_1 + c) = A.col(target(c)) * effect.factor(select<E>(u), of_effect);
-        }
-      } else {
-        z.A.template rightCols<Sizes<Composed>::n_1 - Sizes<M>::n_1>() =
-            effect.columns(select<E>(u), of_effect).template cast<X>();
-      }
-      z.b = b;
-      return z;
+      return join<U, X>(model.at(select<M>(u), of_model), u, of_effect);
     }
+  }
+
+  /// What a model tells of itself it still tells beside an effect that leaves its inputs alone
+  /// (sepcal/hoisted_model.hpp).
+  template <class U>
+  auto prepare(const Vec<U, static_cast<int>(inputs.size())>& u) const
+    requires(HoistedModel<M> && !InputCorrection<E>)
+  {
+    return std::pair(model.prepare(select<M>(u)), u);
+  }
+
+  template <class X>
+  auto settle(const Vec<X, static_cast<int>(nonlinear.size())>& xi2) const
+    requires(HoistedModel<M> && !InputCorrection<E>)
+  {
+    const Vec<X, n_2m> of_model = xi2.template head<n_2m>();
+    const Vec<X, n_2e> of_effect = xi2.template tail<n_2e>();
+    return std::pair(model.settle(of_model), of_effect);
+  }
+
+  template <class Prepared, class Settled, class U, class X>
+  Affine<X, Sizes<Composed>::n_z, Sizes<Composed>::n_1> combine(
+      const std::pair<Prepared, Vec<U, static_cast<int>(inputs.size())>>& row,
+      const std::pair<Settled, Vec<X, static_cast<int>(E::nonlinear.size())>>& settled) const
+    requires(HoistedModel<M> && !InputCorrection<E>)
+  {
+    return join<U, X>(model.combine(row.first, settled.first), row.second, settled.second);
   }
 
  private:
   static constexpr int n_u = static_cast<int>(inputs.size());
   static constexpr int n_2m = static_cast<int>(M::nonlinear.size());
   static constexpr int n_2e = static_cast<int>(E::nonlinear.size());
+
+  /// The model's columns and, beside them, the effect's.
+  template <class U, class X>
+  auto join(const Affine<X, Sizes<M>::n_z, Sizes<M>::n_1>& of_model, const Vec<U, n_u>& u,
+            const Vec<X, n_2e>& of_effect) const {
+    Affine<X, Sizes<Composed>::n_z, Sizes<Composed>::n_1> z;
+    z.A.template leftCols<Sizes<M>::n_1>() = of_model.A;
+    if constexpr (VaryingTerm<E>) {
+      for (int c = 0; c < Sizes<Composed>::n_1 - Sizes<M>::n_1; ++c) {
+        z.A.col(Sizes<M>::n_1 + c) =
+            of_model.A.col(target(c)) * effect.factor(select<E>(u), of_effect);
+      }
+    } else {
+      z.A.template rightCols<Sizes<Composed>::n_1 - Sizes<M>::n_1>() =
+          effect.columns(select<E>(u), of_effect).template cast<X>();
+    }
+    z.b = of_model.b;
+    return z;
+  }
 
   template <class Part>
   static constexpr int position(int i) {

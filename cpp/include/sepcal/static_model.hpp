@@ -36,9 +36,6 @@ concept DifferentiableModel =
       } -> std::same_as<typename Sizes<M>::template Result<ceres::Jet<double, Sizes<M>::n_2>>>;
     };
 
-/// Inputs that are differentiated at a time: an effect corrects few of a model's many.
-inline constexpr int inputs_at_a_time = 4;
-
 template <SeparableModel M>
 class StaticModel final : public BlockModel {
   static_assert(Sizes<M>::n_2 == 0 || DifferentiableModel<M>,
@@ -76,10 +73,11 @@ class StaticModel final : public BlockModel {
                       const VisitTile& visit) const override {
     if constexpr (has_lanes<M>()) {
       const auto call = [](void* visitor, std::size_t tile, double* rows) {
-        (*static_cast<const VisitTile*>(visitor))(tile, rows);
+        (*static_cast<const VisitTile* const*>(visitor))->operator()(tile, rows);
       };
-      VisitTile visitor = visit;
-      return lane_kernel<M>().evaluate(&model_, block, points, scratch, call, &visitor);
+      const VisitTile* visitor = &visit;
+      return lane_kernel<M>().evaluate(&model_, block, points, scratch, call,
+                                       static_cast<void*>(&visitor));
     } else {
       return BlockModel::evaluate_lanes(block, points, scratch, visit);
     }
@@ -91,9 +89,17 @@ class StaticModel final : public BlockModel {
     if constexpr (n_u > 0 && has_dual_inputs<M>()) {
       for (std::size_t first = 0; first < inputs.size(); first += inputs_at_a_time) {
         const std::size_t count = std::min<std::size_t>(inputs_at_a_time, inputs.size() - first);
-        fill_input_tangent(
-            block, xi2, xi1, inputs.subspan(first, count),
-            columns.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)));
+        const std::span<const int> some = inputs.subspan(first, count);
+        if constexpr (has_lanes<M>()) {
+          lane_kernel<M>().fill_input_tangent(&model_, block.inputs.data(), block.rows, xi2, xi1,
+                                              some.data(), count,
+                                              columns.col(static_cast<Eigen::Index>(first)).data(),
+                                              static_cast<std::size_t>(columns.outerStride()));
+        } else {
+          fill_input_tangent(block, xi2, xi1, some,
+                             columns.middleCols(static_cast<Eigen::Index>(first),
+                                                static_cast<Eigen::Index>(count)));
+        }
       }
     } else {
       BlockModel::input_tangent(block, xi2, xi1, inputs, columns);
@@ -130,7 +136,9 @@ class StaticModel final : public BlockModel {
     return u;
   }
 
-  void fill_values(const Block& block, const double* xi2, Eigen::Ref<Eigen::MatrixXd> rows) const {
+  void fill_values(const Block& block, const double* xi2, Eigen::Ref<Eigen::MatrixXd> rows) const
+    requires(!has_lanes<M>())
+  {
     const Vec<double, n_2> x = Eigen::Map<const Vec<double, n_2>>(xi2);
     for (std::size_t row = 0; row < block.rows; ++row) {
       const auto [A, b] = model_.at(sample(block, row), x);
@@ -143,7 +151,9 @@ class StaticModel final : public BlockModel {
   }
 
   void fill_tangent(const Block& block, const double* xi2, const double* xi1,
-                    Eigen::Ref<Eigen::MatrixXd> rows) const {
+                    Eigen::Ref<Eigen::MatrixXd> rows) const
+    requires(!has_lanes<M>())
+  {
     using Dual = ceres::Jet<double, n_2>;
     Vec<Dual, n_2> x;
     for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[i], i);
@@ -180,7 +190,9 @@ class StaticModel final : public BlockModel {
   }
 
   void fill_input_tangent(const Block& block, const double* xi2, const double* xi1,
-                          std::span<const int> inputs, Eigen::Ref<Eigen::MatrixXd> columns) const {
+                          std::span<const int> inputs, Eigen::Ref<Eigen::MatrixXd> columns) const
+    requires(!has_lanes<M>())
+  {
     using Dual = ceres::Jet<double, inputs_at_a_time>;
     Vec<Dual, n_2> x;
     for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[i]);

@@ -5,6 +5,7 @@
 #include "model/lane_factor.hpp"
 #include "model/lane_kit.hpp"
 #include "sepcal/lanes.hpp"
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
@@ -20,7 +21,7 @@ using Arch = xsimd::default_arch;
 
 template <int... n>
 constexpr auto absorbers(std::integer_sequence<int, n...> /*columns*/) {
-  return std::array<bool (*)(double*, double*, std::size_t, std::size_t), sizeof...(n) + 1>{
+  return std::array<bool (*)(double*, double* const*, std::size_t), sizeof...(n) + 1>{
       nullptr, &LaneFactor<Arch, n + 1>::absorb...};
 }
 
@@ -30,7 +31,8 @@ extern const LaneKit SEPCAL_KIT;
 constinit const LaneKit SEPCAL_KIT{
     SEPCAL_TEXT(SEPCAL_KIT),
     Batch<Arch>::size,
-    {kernel_for<Arch, FiveHoleProbe>, kernel_for<Arch, Magnetometer>, kernel_for<Arch, PitotStatic>,
+    {kernel_for<Arch, AttitudeIndependentMagnetometer>, kernel_for<Arch, FiveHoleProbe>,
+     kernel_for<Arch, Magnetometer>, kernel_for<Arch, PitotStatic>,
      kernel_for<Arch, ScalarExample1>, kernel_for<Arch, ScalarExample2>},
     absorbers(std::make_integer_sequence<int, most_columns>())};
 

@@ -12,7 +12,7 @@
 namespace sepcal::lanes {
 
 /// T (n x n, upper; row i, column j in the lanes from (i * n + j) * width on) becomes the factor of
-/// [T; rows]; rows: column c, row i (of m) in the lanes from c * stride + i * width on, left
+/// [T; rows]; rows: column c, row i (of m) in the lanes from columns[c] + i * width on, left
 /// destroyed.
 template <class Arch, int n>
 class LaneFactor {
@@ -21,16 +21,14 @@ class LaneFactor {
 
  public:
   /// Whether every lane was safe.
-  static bool absorb(double* T, double* rows, std::size_t m, std::size_t stride) {
+  static bool absorb(double* T, double* const* columns, std::size_t m) {
     B dots[n];
     for (B& dot : dots) dot = B(0.0);
     for (std::size_t i = 0; i < m; ++i) {
-      const B x = at(rows, i);
-      for (int j = 0; j < n; ++j) {
-        dots[j] = xsimd::fma(x, at(rows + static_cast<std::size_t>(j) * stride, i), dots[j]);
-      }
+      const B x = at(columns[0], i);
+      for (int j = 0; j < n; ++j) dots[j] = xsimd::fma(x, at(columns[j], i), dots[j]);
     }
-    return step<0>(T, rows, m, stride, dots);
+    return step<0>(T, columns, m, dots);
   }
 
  private:
@@ -43,19 +41,21 @@ class LaneFactor {
 
   /// dots[j] = x_k . x_j of the rows' columns, j >= k.
   template <int k>
-  static bool step(double* T, double* rows, std::size_t m, std::size_t stride, const B* dots) {
+  static bool step(double* T, double* const* columns, std::size_t m, const B* dots) {
     B row[n];
     for (int j = k; j < n; ++j) row[j] = at(T, place(k, j));
     const B tail = dots[k];
     const auto none = tail == B(0.0);
     const bool safe = xsimd::all(none || (tail > B(numerics::smallest_safe_square) &&
                                           tail < B(numerics::largest_safe_square))) &&
-                      (!xsimd::any(none) || is_zero(rows + k * stride, m, none));
+                      (!xsimd::any(none) || is_zero(columns[k], m, none));
     const B length = xsimd::sqrt(xsimd::fma(row[k], row[k], tail));
     const B reflected = xsimd::select(row[k] > B(0.0), -length, length);
     const B v0 = row[k] - reflected;
-    const B inverse = xsimd::select(none, B(0.0), B(1.0) / v0);
-    const B tau = xsimd::select(none, B(0.0), -v0 / reflected);
+    // One division for 1 / v0 and v0 / reflected: a panel's steps wait for each.
+    const B shared = xsimd::select(none, B(0.0), B(1.0) / (v0 * reflected));
+    const B inverse = shared * reflected;
+    const B tau = -v0 * v0 * shared;
     xsimd::select(none, row[k], reflected).store_aligned(T + place(k, k) * width);
     if constexpr (k + 1 == n) {
       return safe;
@@ -69,16 +69,16 @@ class LaneFactor {
       B next[n];
       for (int j = k + 1; j < n; ++j) next[j] = B(0.0);
       for (std::size_t i = 0; i < m; ++i) {
-        const B x = at(rows + k * stride, i);
+        const B x = at(columns[k], i);
         B y[n];
         for (int j = k + 1; j < n; ++j) {
-          double* const to = rows + static_cast<std::size_t>(j) * stride + i * width;
+          double* const to = columns[j] + i * width;
           y[j] = xsimd::fnma(x, w[j], B::load_aligned(to));
           y[j].store_aligned(to);
         }
         for (int j = k + 1; j < n; ++j) next[j] = xsimd::fma(y[k + 1], y[j], next[j]);
       }
-      return step<k + 1>(T, rows, m, stride, next) && safe;
+      return step<k + 1>(T, columns, m, next) && safe;
     }
   }
 

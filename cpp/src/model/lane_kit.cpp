@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sepcal/error.hpp"
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
@@ -89,6 +90,11 @@ const LaneKernel& kernel_of(ShippedModel model) {
 }  // namespace lanes
 
 using lanes::ShippedModel;
+
+template <>
+const LaneKernel& lane_kernel<AttitudeIndependentMagnetometer>() {
+  return lanes::kernel_of(ShippedModel::attitude_independent);
+}
 
 template <>
 const LaneKernel& lane_kernel<FiveHoleProbe>() {

@@ -13,16 +13,22 @@ namespace sepcal::lanes {
 
 inline constexpr int most_columns = 13;  // of a factor
 
-enum class ShippedModel { five_hole, magnetometer, pitot_static, scalar_1, scalar_2 };
-inline constexpr std::size_t shipped_models = 5;
+enum class ShippedModel {
+  attitude_independent,
+  five_hole,
+  magnetometer,
+  pitot_static,
+  scalar_1,
+  scalar_2
+};
+inline constexpr std::size_t shipped_models = 6;
 
 struct LaneKit {
   const char* name;  // "avx2"
   std::size_t width;
   std::array<LaneKernel, shipped_models> models;
   /// By columns, as LaneFactor::absorb().
-  std::array<bool (*)(double* T, double* rows, std::size_t m, std::size_t stride), most_columns + 1>
-      absorb;
+  std::array<bool (*)(double* T, double* const* columns, std::size_t m), most_columns + 1> absorb;
 };
 
 /// The kit that SEPCAL_ISA names ("baseline", "avx2", "avx512"), else the widest that the processor

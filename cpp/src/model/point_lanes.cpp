@@ -2,6 +2,9 @@
 #include "model/point_lanes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 #include "base/aligned_doubles.hpp"
 
@@ -94,59 +97,115 @@ void PointLanes::find_zeros(const MatrixXd& points) {
   }
 }
 
-std::vector<std::optional<TriangularFactor>> PointLanes::factor(
-    const MatrixXd& points, const std::function<void()>& after_chunk) const {
+bool PointLanes::absorb(std::size_t columns, double* T, double* rows, std::size_t m) const {
+  std::array<double*, lanes::most_columns> begins{};
+  for (std::size_t c = 0; c < columns; ++c) begins[c] = rows + c * m * width_;
+  return kit_->absorb[columns](T, begins.data(), m);
+}
+
+bool PointLanes::merge(const double* by_output, double* merged) const {
+  const auto columns = static_cast<std::size_t>(model_.tables().n_1()) + 1;
+  bool safe = true;
+  AlignedDoubles rows;
+  std::vector<TriangularFactor> wide(columns > lanes::most_columns ? width_ : 0,
+                                     TriangularFactor(static_cast<int>(columns)));
+  for (const auto& kept : kept_) {
+    const std::size_t n = kept.size();
+    rows.assign(columns * n * width_, 0.0);
+    for (std::size_t c = 0; c < n; ++c) {
+      double* const column = rows.data() + static_cast<std::size_t>(kept[c]) * n * width_;
+      for (std::size_t i = 0; i <= c; ++i) {
+        std::copy_n(by_output + (i * n + c) * width_, width_, column + i * width_);
+      }
+    }
+    by_output += n * n * width_;
+    if (wide.empty()) {
+      safe = absorb(columns, merged, rows.data(), n) && safe;
+      continue;
+    }
+    using Strided = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
+    const auto step = static_cast<Index>(width_);
+    const auto m = static_cast<Index>(n);
+    for (std::size_t lane = 0; lane < width_; ++lane) {
+      MatrixXd own = Eigen::Map<const MatrixXd, 0, Strided>(
+          rows.data() + lane, m, static_cast<Index>(columns), Strided(m * step, step));
+      wide[lane].absorb(own);
+    }
+  }
+  for (std::size_t lane = 0; lane < wide.size(); ++lane) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      for (std::size_t c = 0; c < columns; ++c) {
+        merged[(i * columns + c) * width_ + lane] =
+            wide[lane].matrix()(static_cast<Index>(i), static_cast<Index>(c));
+      }
+    }
+  }
+  return safe;
+}
+
+PointFactors PointLanes::factor(const MatrixXd& points,
+                                const std::function<void()>& after_chunk) const {
   const std::size_t outputs = kept_.size();
-  const Index columns = model_.tables().n_1() + 1;
+  const auto columns = static_cast<std::size_t>(model_.tables().n_1()) + 1;
   const auto count = static_cast<std::size_t>(points.cols());
   const std::size_t tiles = (count + width_ - 1) / width_;
   const AlignedDoubles packed = pack(points, tiles, width_);
-  AlignedDoubles scratch(outputs * static_cast<std::size_t>(columns) * most_lane_rows * width_);
+  AlignedDoubles scratch(outputs * columns * most_lane_rows * width_);
   std::vector<std::size_t> begins{0};  // of each output's factor, within a tile's
   for (const auto& kept : kept_)
     begins.push_back(begins.back() + kept.size() * kept.size() * width_);
   AlignedDoubles factors(tiles * begins.back(), 0.0);
-  std::vector<bool> safe(tiles, true);
+  std::vector<bool> clear(tiles, true);
   bool zeros_hold = true;
   for (const auto& chunk : measurements_.chunks()) {
     for (const Measurements::Range& range : chunk) {
       for_each_lane_block(measurements_, range, outputs, [&](LaneBlock block) {
         block.zero = zero_.data();
-        const auto absorb = [&](std::size_t tile, double* rows) {
+        const auto absorb_tile = [&](std::size_t tile, double* rows) {
           for (std::size_t j = 0; j < outputs; ++j) {
             double* T = factors.data() + tile * begins.back() + begins[j];
-            if (!kit_->absorb[kept_[j].size()](T, rows, block.rows, block.rows * width_))
-              safe[tile] = false;
+            if (!absorb(kept_[j].size(), T, rows, block.rows)) clear[tile] = false;
             rows += kept_[j].size() * block.rows * width_;
           }
         };
-        if (!model_.evaluate_lanes(block, {packed.data(), tiles}, scratch.data(), absorb)) {
+        if (!model_.evaluate_lanes(block, {packed.data(), tiles}, scratch.data(), absorb_tile)) {
           zeros_hold = false;
         }
       });
     }
     after_chunk();
   }
-  std::vector<std::optional<TriangularFactor>> result(count);
-  for (std::size_t point = 0; point < count; ++point) {
-    const std::size_t tile = point / width_;
-    if (!zeros_hold || !safe[tile]) continue;
-    TriangularFactor whole(static_cast<int>(columns));
-    for (std::size_t j = 0; j < outputs; ++j) {
-      const auto n = static_cast<Index>(kept_[j].size());
-      const double* T = factors.data() + tile * begins.back() + begins[j] + point % width_;
-      MatrixXd rows = MatrixXd::Zero(n, columns);
-      for (Index i = 0; i < n; ++i) {
-        for (Index c = i; c < n; ++c) {
-          rows(i, kept_[j][static_cast<std::size_t>(c)]) =
-              T[static_cast<std::size_t>(i * n + c) * width_];
-        }
-      }
-      whole.absorb(rows);
-    }
-    if (whole.all_finite()) result[point] = std::move(whole);
+  AlignedDoubles merged(tiles * columns * columns * width_, 0.0);
+  for (std::size_t t = 0; t < tiles; ++t) {
+    double* const T = merged.data() + t * columns * columns * width_;
+    if (!zeros_hold || !merge(factors.data() + t * begins.back(), T)) clear[t] = false;
   }
-  return result;
+  return {std::move(merged), std::move(clear), static_cast<int>(columns), width_};
+}
+
+std::optional<TriangularFactor> PointFactors::factor(std::size_t point) const {
+  if (!clear_[point / width_]) return {};
+  MatrixXd rows = MatrixXd::Zero(n_, n_);
+  for (int i = 0; i < n_; ++i) {
+    for (int c = i; c < n_; ++c) rows(i, c) = entry(point, i, c);
+  }
+  TriangularFactor factor(n_);
+  factor.absorb(rows);
+  if (!factor.all_finite()) return {};
+  return factor;
+}
+
+double PointFactors::remaining_square(std::size_t point) const {
+  constexpr double smallest_plain_pivot = 1e-7;
+  if (!clear_[point / width_]) return not_a_number;
+  for (int c = 0; c + 1 < n_; ++c) {
+    double square = 0.0;
+    for (int i = 0; i <= c; ++i) square += entry(point, i, c) * entry(point, i, c);
+    const double pivot = std::abs(entry(point, c, c));
+    if (!(pivot > smallest_plain_pivot * std::sqrt(square))) return not_a_number;
+  }
+  const double last = entry(point, n_ - 1, n_ - 1);
+  return last * last;
 }
 
 }  // namespace sepcal::model

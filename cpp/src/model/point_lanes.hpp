@@ -10,12 +10,42 @@
 #include <optional>
 #include <vector>
 
+#include "base/aligned_doubles.hpp"
 #include "model/lane_kit.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::model {
+
+/// One factor of [A | z - b] over all outputs for each of many points.
+class PointFactors {
+ public:
+  /// Triangles by tile, `width` to a tile, n x n as LaneFactor has them; whether each tile is
+  /// right.
+  PointFactors(base::AlignedDoubles triangles, std::vector<bool> clear, int columns,
+               std::size_t width)
+      : triangles_(std::move(triangles)), clear_(std::move(clear)), n_(columns), width_(width) {}
+
+  /// None where lanes can't tell: a number that is not finite, a square that underflows, an entry
+  /// of A that was taken for zero and is not.
+  std::optional<TriangularFactor> factor(std::size_t point) const;
+
+  /// What factor() has as remaining_square(); NaN where lanes can't tell, or where A is so near to
+  /// singular that it takes more than a look at the diagonal.
+  double remaining_square(std::size_t point) const;
+
+ private:
+  double entry(std::size_t point, int row, int column) const {
+    const int place = (static_cast<int>(point / width_) * n_ + row) * n_ + column;
+    return triangles_[static_cast<std::size_t>(place) * width_ + point % width_];
+  }
+
+  base::AlignedDoubles triangles_;
+  std::vector<bool> clear_;
+  int n_;
+  std::size_t width_;
+};
 
 class PointLanes {
  public:
@@ -26,14 +56,19 @@ class PointLanes {
   /// 0: the model has no lanes, or more columns than a factor in lanes takes.
   std::size_t width() const { return width_; }
 
-  /// One factor of [A | z - b] over all outputs for each of the points (n_2 x any number). None
-  /// where lanes can't tell: a number that is not finite, a square that underflows, an entry of A
-  /// that was taken for zero and is not. `after_chunk` follows each of the measurements' chunks.
-  std::vector<std::optional<TriangularFactor>> factor(
-      const Eigen::MatrixXd& points, const std::function<void()>& after_chunk) const;
+  /// Of the points (n_2 x any number). `after_chunk` follows each of the measurements' chunks.
+  PointFactors factor(const Eigen::MatrixXd& points,
+                      const std::function<void()>& after_chunk) const;
 
  private:
   void find_zeros(const Eigen::MatrixXd& points);
+
+  /// Columns of m rows, one below the other, behind a tile's factor T. Whether every lane was safe.
+  bool absorb(std::size_t columns, double* T, double* rows, std::size_t m) const;
+
+  /// The factors of a tile's outputs, each of its own columns, as one of all columns, to `merged`.
+  /// Returns whether every lane was safe.
+  bool merge(const double* by_output, double* merged) const;
 
   const BlockModel& model_;
   const Measurements& measurements_;

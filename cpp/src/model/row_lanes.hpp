@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One output's factor of many rows, the rows dealt to lanes: each lane has a triangle of its own,
-// and at the end these are merged.
+// and at the end these are merged. A column that is zero in every row costs nothing.
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "base/aligned_doubles.hpp"
 #include "model/lane_kit.hpp"
@@ -28,8 +29,15 @@ class RowLanes {
   TriangularFactor merge() const;
 
  private:
+  /// Whether every column that is left out is zero here, too.
+  bool fits(const Eigen::Ref<Eigen::MatrixXd>& rows) const;
+  /// Leaves out the columns that are zero, behind what lanes have seen so far.
+  void begin_anew(const Eigen::Ref<Eigen::MatrixXd>& rows);
+
   const lanes::LaneKit& kit_;
-  base::AlignedDoubles triangles_;
+  base::AlignedDoubles triangles_;  // of the columns that are kept
+  std::vector<Eigen::Index> kept_;
+  std::vector<Eigen::Index> left_out_;
   TriangularFactor beside_;
   bool used_ = false;
   bool safe_ = true;

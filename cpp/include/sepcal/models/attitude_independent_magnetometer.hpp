@@ -10,6 +10,8 @@
 #include <cmath>
 
 #include "sepcal/eigen.hpp"
+#include "sepcal/lane_kernel.hpp"
+#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/static_model.hpp"
 
@@ -36,30 +38,55 @@ struct AttitudeIndependentMagnetometer {
                                         Quantity{"n_z", "uT"}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  using LanesOf = AttitudeIndependentMagnetometer;
 
   double field_strength;
   double noise = 0.0;
 
+  /// What of a row depends on its inputs alone.
+  template <class U>
+  struct Prepared {
+    Vec<U, 3> m;
+    Vec<U, 3> scale;  // the ports', beside lambda
+    bool plain;       // no port is driven
+  };
+
+  template <class U>
+  static Prepared<U> prepare(const Vec<U, 7>& u) {
+    enum { mx, my, mz, scale, axis_scale };
+    const Vec<U, 3> joined(u[scale] + u[axis_scale], u[scale] + u[axis_scale + 1],
+                           u[scale] + u[axis_scale + 2]);
+    return {Vec<U, 3>(u[mx], u[my], u[mz]), joined,
+            vanishes(joined[0]) && vanishes(joined[1]) && vanishes(joined[2])};
+  }
+
+  /// What depends on xi2 alone.
+  template <class X>
+  struct Settled {
+    Eigen::Matrix<X, 3, 3> C;
+    Vec<X, 3> n;
+    Eigen::Matrix<X, 3, 3> W;  // C^-T C^-1: |y|^2 = r' W r, |y| C^-T u = W r, r = m - n
+    X trace;                   // of M and of W
+  };
+
+  template <class X>
+  static Settled<X> settle(const Vec<X, 9>& xi2) {
+    return settle<X>(soft_iron_and_scale<X>(xi2), xi2.template tail<3>());
+  }
+
+  template <class U, class X>
+  Affine<X, 1, 0> combine(const Prepared<U>& row, const Settled<X>& settled) const {
+    const Vec<X, 3> r(row.m[0] - settled.n[0], row.m[1] - settled.n[1], row.m[2] - settled.n[2]);
+    if (row.plain) return see(r, settled.W, settled.trace);
+    Eigen::Matrix<X, 3, 3> C = settled.C;
+    for (int i = 0; i < 3; ++i) C(i, i) += X(row.scale[i]);
+    const Settled<X> scaled = settle<X>(C, settled.n);
+    return see(r, scaled.W, scaled.trace);
+  }
+
   template <class U, class X>
   Affine<X, 1, 0> at(const Vec<U, 7>& u, const Vec<X, 9>& xi2) const {
-    using std::sqrt;
-    enum { mx, my, mz, scale, axis_scale };
-    Eigen::Matrix<X, 3, 3> C = soft_iron_and_scale<X>(xi2);
-    for (int i = 0; i < 3; ++i) C(i, i) += X(u[scale] + u[axis_scale + i]);
-    const Eigen::Matrix<X, 3, 3> G = C.inverse();
-    const Vec<X, 3> reading(u[mx] - xi2[6], u[my] - xi2[7], u[mz] - xi2[8]);
-    const Vec<X, 3> y = G * reading;
-    const Vec<X, 3> slope = G.transpose() * y;  // |y| C^-T u
-
-    // A reading of n itself has no direction: the floor keeps its derivative finite.
-    const double floor = 1e-9 * field_strength;
-    const X square = y.squaredNorm() + floor * floor;
-    const X slope_square = slope.squaredNorm() + floor * floor;
-    const X length = sqrt(square);
-    const X mu = noise * noise / (2.0 * field_strength) * (G.squaredNorm() - slope_square / square);
-    Affine<X, 1, 0> z;
-    z.b[0] = -(length - field_strength - mu) * length / sqrt(slope_square);
-    return z;
+    return combine<U, X>(prepare<U>(u), settle<X>(xi2));
   }
 
   /// C = C_alpha C_lambda (3 x 3): C_alpha symmetric with a unit diagonal, C_lambda = I +
@@ -74,8 +101,34 @@ struct AttitudeIndependentMagnetometer {
     for (int i = 0; i < 3; ++i) C.col(i) *= one + xi2[i];
     return C;
   }
+
+ private:
+  template <class X>
+  static Settled<X> settle(const Eigen::Matrix<X, 3, 3>& C, const Vec<X, 3>& n) {
+    const Eigen::Matrix<X, 3, 3> G = C.inverse();
+    const Eigen::Matrix<X, 3, 3> W = G.transpose() * G;
+    return {C, n, W, W.trace()};
+  }
+
+  /// r = m - n.
+  template <class X>
+  Affine<X, 1, 0> see(const Vec<X, 3>& r, const Eigen::Matrix<X, 3, 3>& W, const X& trace) const {
+    using std::sqrt;
+    const Vec<X, 3> slope = W * r;
+    // A reading of n itself has no direction: the floor keeps its derivative finite.
+    const double floor = 1e-9 * field_strength;
+    const X square = r.dot(slope) + floor * floor;
+    const X slope_square = slope.squaredNorm() + floor * floor;
+    const X length = sqrt(square);
+    const X mu = noise * noise / (2.0 * field_strength) * (trace - slope_square / square);
+    Affine<X, 1, 0> z;
+    z.b[0] = -(length - field_strength - mu) * length / sqrt(slope_square);
+    return z;
+  }
 };
 
+template <>
+const LaneKernel& lane_kernel<AttitudeIndependentMagnetometer>();
 extern template class StaticModel<AttitudeIndependentMagnetometer>;
 
 }  // namespace sepcal
