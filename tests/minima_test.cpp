@@ -67,7 +67,7 @@ struct DoubleWell {
     VectorXd trace(samples.cols());
     for (Index s = 0; s < trace.size(); ++s) trace[s] = square(samples(0, s));
     return find_minima(objective, problem, samples, trace, MatrixXd(1, 0), measurements,
-                       [&](const VectorXd& x, const IsKnown&) {
+                       [&](const VectorXd& x, const IsKnown&, double) {
                          const bool goes_left = sign() * x[0] < sign() * pass();
                          const VectorXd end = number((goes_left ? left() : right()) + 1e-3);
                          return Descent{end, square(end[0]), true, false, 1};
@@ -129,7 +129,7 @@ TEST_CASE("a descent that ends at no finite cost is no minimum") {
   const FitOptions options = one_parameter();
   const Problem problem(wells.unasked.model(), options);
   const MatrixXd samples = RowVectorXd::LinSpaced(5, -2.0, 2.0);
-  const auto lost = [](const VectorXd& x, const IsKnown&) {
+  const auto lost = [](const VectorXd& x, const IsKnown&, double) {
     return Descent{x, infinity, false, false, 0};
   };
   CHECK(find_minima(objective, problem, samples, VectorXd::Ones(5), MatrixXd(1, 0), 100, lost)

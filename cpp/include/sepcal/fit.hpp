@@ -15,6 +15,7 @@
 #include "sepcal/identifiability.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/options.hpp"
+#include "sepcal/passes.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/stage_one.hpp"
 
@@ -80,6 +81,8 @@ struct Fit {
   int iterations = 0;                       // of stage two's minimisations
   int noise_iterations = 0;                 // of R against the parameters
   std::size_t rows = 0;                     // that stage two used
+  Passes stage_two_passes;                  // StageOne::passes has stage one's
+  Passes last_passes;                       // for covariance, noise of the residuals and status
 
   /// Throws Error for a name that is not a parameter.
   const Parameter& operator[](std::string_view name) const;

@@ -11,6 +11,7 @@
 #include "sepcal/block_model.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/options.hpp"
+#include "sepcal/passes.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {
@@ -61,6 +62,8 @@ struct StageOne {
   Eigen::VectorXd xi1;    // n_1, linear least squares at xi2 with R = I
   Eigen::VectorXd xi2;    // n_2, the lowest minimum
   Eigen::VectorXd noise;  // n_z, root mean square residual there by output
+
+  Passes passes;  // of the descents and of what tells minima apart
 };
 
 /// Throws Error for misuse: unknown names in `options`, a parameter that can't be sampled, fewer

@@ -125,6 +125,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   result.iterations = two.iterations;
   result.noise_iterations = two.noise_iterations;
   result.rows = measurements.rows();
+  result.stage_two_passes = two.passes;
   std::vector<std::string> sentences = two.sentences;
   sentences.push_back(result.identifiability.message());
   sentences.push_back(describe_other_minima(problem, result.stage_one.minima));
@@ -136,6 +137,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   std::ranges::move(judge_priors(result.parameters, problem.options()),
                     std::back_inserter(sentences));
   result.message = base::join_sentences(sentences);
+  result.last_passes = sweep.passes();
   result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
                   : two.converged()                            ? FitStatus::converged
                                                                : FitStatus::not_converged;

@@ -73,9 +73,9 @@ StageTwo Likelihood::descend(StageTwo at, double first_radius) const {
   return at;
 }
 
-StageTwo Likelihood::refine(StageTwo at) const {
+StageTwo Likelihood::refine(StageTwo at, double share) const {
   JointObjective objective = joint_objective(at);
-  const Refinement refinement = estimation::refine(objective, at.x, box_, at.scale);
+  const Refinement refinement = estimation::refine(objective, at.x, box_, at.scale, share);
   return take(std::move(at), refinement, objective);
 }
 

@@ -34,8 +34,9 @@ class Likelihood {
   /// linear parameter meets a bound, which the inner problem does not know.
   StageTwo descend(StageTwo at, double first_radius) const;
 
-  /// x to the last digit; not `refined`, with x as it was, where no minimum is near.
-  StageTwo refine(StageTwo at) const;
+  /// x to the last digit, or until steps are as short as a `share` of the first; not `refined`,
+  /// with x as it was, where no minimum is near.
+  StageTwo refine(StageTwo at, double share = 0.0) const;
 
   /// The same in a few passes, and only to what lies lower: nothing for all but a near minimum.
   std::optional<StageTwo> refine_downhill(const StageTwo& at) const;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/sentences.hpp"
 #include "base/short_number.hpp"
 #include "estimation/refine.hpp"
 #include "numerics/basins.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/nearest_points.hpp"
 #include "sepcal/identifiability.hpp"
 
 namespace sepcal::estimation {
@@ -58,9 +60,9 @@ class Neighbourhood {
   Neighbourhood(Objective& objective, const Descent& minimum)
       : x_(minimum.x), known_(objective.linearise(x_, residual_, jacobian_)) {}
 
-  /// `rise`: what the record can't tell from none.
-  bool holds(const VectorXd& x, double square, double rise) const {
-    constexpr double alike = 0.1;
+  /// Up to the part `alike` of what x lies above the minimum, and `rise`, which the record can't
+  /// tell from none.
+  bool holds(const VectorXd& x, double square, double rise, double alike) const {
     if (!known_) return false;
     const double predicted = (residual_ + jacobian_ * (x - x_)).squaredNorm();
     const double above = predicted - residual_.squaredNorm();
@@ -74,13 +76,62 @@ class Neighbourhood {
   bool known_ = false;
 };
 
-/// Refined, unless that leads away: where residuals are as large as at a minor minimum, steps that
-/// take the curvature from the Jacobian alone may grow before they are seen to.
-VectorXd last_digits(Objective& objective, const VectorXd& x, const numerics::Box& box,
-                     const VectorXd& widths) {
-  const VectorXd refined = refine(objective, x, box, widths).x;
-  return slope(objective, refined, box, widths) <= slope(objective, x, box, widths) ? refined : x;
+/// A descent, then its last digits. What the record can't see of the way down, a refinement walks
+/// in a step or two; where it finds no minimum, the descent goes on as far as costs can be told
+/// apart.
+Descent descend_to_last_digits(Objective& objective, const VectorXd& start,
+                               const numerics::Box& box, const VectorXd& widths,
+                               double measurements, const Descend& descend,
+                               const IsKnown& is_known) {
+  const double unseen = 0.1 / measurements;  // of the sum of squares
+  constexpr double finest = 1e-12;
+  Descent descent = descend(start, is_known, std::max(unseen, finest));
+  if (descent.left_off || !std::isfinite(descent.square)) return descent;
+  Refinement refined = refine(objective, descent.x, box, widths);
+  if (!refined.converged && unseen > finest) {
+    descent = descend(descent.x, is_known, finest);
+    if (descent.left_off || !std::isfinite(descent.square)) return descent;
+    refined = refine(objective, descent.x, box, widths);
+  }
+  // Where residuals are as large as at a minor minimum, steps that take the curvature from the
+  // Jacobian alone may lead away before they are seen to grow.
+  if (slope(objective, refined.x, box, widths) <= slope(objective, descent.x, box, widths)) {
+    descent.x = refined.x;
+  }
+  descent.square = objective.square(descent.x);
+  return descent;
 }
+
+/// The samples around each, by which a descent that would end in a known minimum needn't begin.
+class SampledSlopes {
+ public:
+  /// `scaled`: the samples in coordinates of comparable length.
+  SampledSlopes(const MatrixXd& samples, const MatrixXd& scaled, const VectorXd& squares)
+      : samples_(samples), scaled_(scaled), squares_(squares) {}
+
+  /// Whether a sample and all around it lie about as high as the neighbourhood's linearisation
+  /// says. By chance one far away may, not as many as it takes to tell a slope from another.
+  bool lead_to(const Neighbourhood& known, Index sample, double measurements, double parameters) {
+    constexpr double alike = 0.4;  // samples lie far apart
+    const auto holds = [&](Index s) {
+      return std::isfinite(squares_[s]) &&
+             known.holds(samples_.col(s), squares_[s],
+                         noticeable_rise(squares_[s], measurements, parameters), alike);
+    };
+    const Index count = std::min<Index>(2 * samples_.rows() + 2, samples_.cols() - 1);
+    if (!holds(sample)) return false;
+    if (!tree_) tree_.emplace(scaled_);
+    tree_->find(sample, count, around_);
+    return std::ranges::all_of(around_, holds);
+  }
+
+ private:
+  const MatrixXd& samples_;
+  const MatrixXd& scaled_;
+  const VectorXd& squares_;
+  std::optional<numerics::NearestPoints> tree_ = {};  // most fits ask for none
+  std::vector<Index> around_ = {};
+};
 
 }  // namespace
 
@@ -100,38 +151,33 @@ VectorXd half_widths(const Problem& problem) {
 }
 
 std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
-                                 const MatrixXd& samples, const VectorXd& trace_r,
+                                 const MatrixXd& samples, const VectorXd& squares,
                                  const MatrixXd& guesses, double measurements,
                                  const Descend& descend) {
   const VectorXd widths = half_widths(problem);
   const MatrixXd scaled = widths.cwiseInverse().asDiagonal() * samples;
   std::vector<numerics::Basin> basins =
-      numerics::find_basins(scaled, trace_r.array().log().matrix());  // depth as a ratio
+      numerics::find_basins(scaled, squares.array().log().matrix());  // depth as a ratio
   basins.resize(std::min(basins.size(), static_cast<std::size_t>(problem.options().descents)));
   const auto n = static_cast<double>(problem.parameters().size());
-  std::vector<VectorXd> starts;
-  for (const numerics::Basin& basin : basins) starts.emplace_back(samples.col(basin.lowest));
-  for (const auto guess : guesses.colwise()) {
-    if (std::isfinite(objective.square(guess))) starts.emplace_back(guess);
-  }
+  SampledSlopes slopes(samples, scaled, squares);
   std::vector<Descent> minima;
   std::vector<Neighbourhood> neighbourhoods;  // theirs
-  for (const VectorXd& start : starts) {
+  const auto descend_from = [&](const VectorXd& start) {
     // By chance a point far away may lie as high as a linearisation says, two in a row hardly.
     std::vector<int> held(neighbourhoods.size(), 0);
     const IsKnown is_known = [&](const VectorXd& x, double square) {
       const double rise = noticeable_rise(square, measurements, n);
       bool known = false;
       for (std::size_t i = 0; i < held.size(); ++i) {
-        held[i] = neighbourhoods[i].holds(x, square, rise) ? held[i] + 1 : 0;
+        held[i] = neighbourhoods[i].holds(x, square, rise, 0.1) ? held[i] + 1 : 0;
         known = known || held[i] == 2;
       }
       return known;
     };
-    Descent descent = descend(start, is_known);
-    if (descent.left_off || !std::isfinite(descent.square)) continue;
-    descent.x = last_digits(objective, descent.x, problem.nonlinear_box(), widths);
-    descent.square = objective.square(descent.x);
+    Descent descent = descend_to_last_digits(objective, start, problem.nonlinear_box(), widths,
+                                             measurements, descend, is_known);
+    if (descent.left_off || !std::isfinite(descent.square)) return;
     const auto same = std::ranges::find_if(minima, [&](const Descent& other) {
       const double lower = std::min(descent.square, other.square);
       return joined(objective, descent, other, widths, noticeable_rise(lower, measurements, n));
@@ -144,6 +190,15 @@ std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
           Neighbourhood(objective, descent);
       *same = std::move(descent);
     }
+  };
+  for (const numerics::Basin& basin : basins) {
+    const bool known = std::ranges::any_of(neighbourhoods, [&](const Neighbourhood& neighbourhood) {
+      return slopes.lead_to(neighbourhood, basin.lowest, measurements, n);
+    });
+    if (!known) descend_from(samples.col(basin.lowest));
+  }
+  for (const auto guess : guesses.colwise()) {
+    if (std::isfinite(objective.square(guess))) descend_from(guess);
   }
   std::ranges::stable_sort(minima, {}, &Descent::square);
   return minima;

@@ -20,15 +20,18 @@ namespace sepcal::estimation {
 Eigen::VectorXd half_widths(const Problem& problem);
 
 /// From a start (n_2) to where the cost is lowest nearby, within the bounds; may leave off where
-/// `is_known` says so.
-using Descend = std::function<Descent(const Eigen::VectorXd& start, const IsKnown& is_known)>;
+/// `is_known` says so, and ends where a step changes the sum of squares by less than `tolerance` of
+/// it.
+using Descend =
+    std::function<Descent(const Eigen::VectorXd& start, const IsKnown& is_known, double tolerance)>;
 
 /// Lowest first; of options.descents at most, and of one from each of the model's `guesses` (n_2 x
-/// any number). `samples` is n_2 x S, `trace_r` (S) is Tr[R] there, infinite where no descent may
-/// begin. Ends of descents are refined, and two of them are
-/// one where the record can't tell them apart. `measurements`: rows x outputs.
+/// any number). `samples` is n_2 x S, `squares` (S): the sum of squares there, infinite where no
+/// descent may begin. No descent begins where samples show the neighbourhood of a minimum that is
+/// known. Ends are refined, and two of them are one where the record can't tell them apart.
+/// `measurements`: rows x outputs.
 std::vector<Descent> find_minima(Objective& objective, const Problem& problem,
-                                 const Eigen::MatrixXd& samples, const Eigen::VectorXd& trace_r,
+                                 const Eigen::MatrixXd& samples, const Eigen::VectorXd& squares,
                                  const Eigen::MatrixXd& guesses, double measurements,
                                  const Descend& descend);
 

@@ -48,11 +48,12 @@ MatrixXd hessian(Objective& objective, const VectorXd& x, const VectorXd& gradie
 /// Newton's steps, for a minimum so curved that Gauss-Newton's don't contract there. The parameters
 /// that bounds hold stay where they are.
 bool refine_by_curvature(Objective& objective, Refinement& result, const numerics::Box& box,
-                         const VectorXd& scale) {
+                         const VectorXd& scale, double share) {
   constexpr int most_newton_steps = 15;
   VectorXd residual;
   MatrixXd jacobian;
   if (!objective.linearise(result.x, residual, jacobian)) return false;
+  double first = infinity;
   double before = infinity;
   for (int i = 0; i < most_newton_steps; ++i, ++result.iterations) {
     const VectorXd gradient = jacobian.transpose() * residual;
@@ -70,7 +71,11 @@ bool refine_by_curvature(Objective& objective, Refinement& result, const numeric
     step(free) = inner;
     const VectorXd next = box.clip(result.x + step);
     const StepLength length((jacobian * step).stableNorm(), step, scale, residual.stableNorm());
-    if (length.is_last_digit() || (length.is_passable() && length.size >= before)) return true;
+    if (i == 0) first = length.size;
+    if (length.is_last_digit() || (i > 0 && length.size <= share * first) ||
+        (length.is_passable() && length.size >= before)) {
+      return true;
+    }
     if (!(length.size < before)) return false;
     before = length.size;
     result.x = next;
@@ -87,9 +92,10 @@ struct Squares {
 
 /// Gauss-Newton's steps while they contract. Unless they do to the end, x is left on the way.
 bool refine_by_gauss_newton(Objective& objective, Refinement& result, const numerics::Box& box,
-                            const VectorXd& scale, Squares& squares) {
+                            const VectorXd& scale, double share, Squares& squares) {
   VectorXd residual;
   MatrixXd jacobian;
+  double first = infinity;
   double before = infinity;
   for (; result.iterations < most_steps; ++result.iterations) {
     if (!objective.linearise(result.x, residual, jacobian)) return false;
@@ -98,7 +104,9 @@ bool refine_by_gauss_newton(Objective& objective, Refinement& result, const nume
     const numerics::BoundedSolution step =
         numerics::solve_bounded(-jacobian, residual, {box.lower - result.x, box.upper - result.x});
     const StepLength length((jacobian * step.x).stableNorm(), step.x, scale, residual.stableNorm());
-    if (length.is_last_digit() || (length.is_passable() && length.size >= before)) {
+    if (result.iterations == 0) first = length.size;
+    if (length.is_last_digit() || (result.iterations > 0 && length.size <= share * first) ||
+        (length.is_passable() && length.size >= before)) {
       result.at_bound = step.active;
       for (Index k = 0; k < result.x.size(); ++k) {
         if (step.active[static_cast<std::size_t>(k)]) result.x[k] += step.x[k];  // onto its bound
@@ -121,14 +129,14 @@ Refinement begin(const VectorXd& start, const numerics::Box& box) {
 }  // namespace
 
 Refinement refine(Objective& objective, const VectorXd& start, const numerics::Box& box,
-                  const VectorXd& scale) {
+                  const VectorXd& scale, double share) {
   Refinement result = begin(start, box);
   Squares squares;
-  if (refine_by_gauss_newton(objective, result, box, scale, squares)) return result;
+  if (refine_by_gauss_newton(objective, result, box, scale, share, squares)) return result;
   result.x = box.clip(start);
   VectorXd residual;
   MatrixXd jacobian;
-  if (refine_by_curvature(objective, result, box, scale) &&
+  if (refine_by_curvature(objective, result, box, scale, share) &&
       objective.linearise(result.x, residual, jacobian)) {
     result.converged = true;
     return result;
@@ -145,7 +153,7 @@ Refinement refine_downhill(Objective& objective, const VectorXd& start, const nu
   constexpr double rounding = 1e-9;  // of the sum
   Refinement result = begin(start, box);
   Squares squares;
-  result.converged = refine_by_gauss_newton(objective, result, box, scale, squares) &&
+  result.converged = refine_by_gauss_newton(objective, result, box, scale, 0.0, squares) &&
                      squares.last <= (1.0 + rounding) * squares.first;
   return result;
 }

@@ -38,10 +38,11 @@ struct StepLength {
 /// Steps until one is shorter than 1e-12 (1 + |r|) standard errors, r the whitened residual, or
 /// than 1e-14 of `scale`, the parameters' plausible lengths (without noise, standard errors are as
 /// small as rounding). Where rounding stops the steps from shrinking before that, 1e-3 standard
-/// errors or 1e-9 of `scale` still pass. Else not converged, and x is `start`: there is no minimum
-/// near, or the model is not finite. The objective was linearised last at x.
+/// errors or 1e-9 of `scale` still pass, and so does a step that is no longer than `share` of the
+/// first. Else not converged, and x is `start`: there is no minimum near, or the model is not
+/// finite. The objective was linearised last at x.
 Refinement refine(Objective& objective, const Eigen::VectorXd& start, const numerics::Box& box,
-                  const Eigen::VectorXd& scale);
+                  const Eigen::VectorXd& scale, double share = 0.0);
 
 /// The same without Newton's steps, which take a pass for each parameter, and converged only where
 /// the cost is no higher than at `start`. Unless converged, x and the objective are anywhere.

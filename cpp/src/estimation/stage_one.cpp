@@ -87,13 +87,8 @@ StageOne run_without_unsampled(const Problem& problem, const model::Measurements
 void sample(const Problem& problem, const model::Sweep& sweep, StageOne& result) {
   const FitOptions& options = problem.options();
   result.samples = draw_samples(problem.nonlinear(), options);
-  const auto factors = sweep.sample_factors(result.samples, progress_of(options));
-  result.trace_r.resize(options.samples);
-  for (Index s = 0; s < result.trace_r.size(); ++s) {
-    const TriangularFactor& factor = factors[static_cast<std::size_t>(s)];
-    result.trace_r[s] = factor.all_finite() ? remaining_square(factor) : infinity;
-  }
-  result.trace_r /= static_cast<double>(sweep.measurements().rows());
+  result.trace_r = sweep.sample_squares(result.samples, progress_of(options)) /
+                   static_cast<double>(sweep.measurements().rows());
 }
 
 /// Steps 2 and 3 by NLopt: the points that it asked for, and Tr[R] there.
@@ -177,13 +172,17 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
     // Step 4: how many minima there are, and whether they are points.
     const double count = rows * static_cast<double>(n_z);
     const numerics::Box linear = problem.linear_box();
-    const Descend from_start = [&](const VectorXd& start, const IsKnown& is_known) {
+    const Descend from_start = [&](const VectorXd& start, const IsKnown& is_known,
+                                   double tolerance) {
       if (global) return descend(objective, start, problem.nonlinear_box(), half_widths(problem));
-      const DescentOptions gently{.iterations = 50, .first_radius = 0.1, .is_known = is_known};
+      const DescentOptions gently{.iterations = 50,
+                                  .function_tolerance = tolerance,
+                                  .first_radius = 0.1,
+                                  .is_known = is_known};
       return minimise(objective, start, problem.nonlinear_box(), gently);
     };
     for (const Descent& minimum :
-         find_minima(objective, problem, result.samples, usable,
+         find_minima(objective, problem, result.samples, rows * usable,
                      guess_within(problem, measurements), count, from_start)) {
       result.minima.push_back({minimum.x, objective.square_within(minimum.x, linear) / rows});
     }
@@ -200,6 +199,7 @@ StageOne estimation::run_stage_one(const Problem& problem, const model::Measurem
   }
   result.xi1 = objective.linear_estimate(result.xi2);
   result.noise = (sweep.squared_residuals(result.xi1, result.xi2) / rows).cwiseSqrt();
+  result.passes = sweep.passes();
   if (!sampled) {
     result.best = result.xi2;
     result.best_trace_r = result.noise.squaredNorm();

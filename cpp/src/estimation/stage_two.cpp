@@ -31,22 +31,43 @@ struct Turns {
 
   bool noise_given() const { return likelihood.problem().noise().size() > 0; }
 
+  /// Of the first step to the minimum at an R: what the next R moves anyhow is not worth a pass.
+  double share() const { return noise_given() ? 0.0 : 0.01; }
+
   StageTwo find_minimum(StageTwo at) const {
     if (attempt.near) {
       if (auto there = likelihood.refine_downhill(at)) return std::move(*there);
     }
-    return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius));
+    return descend(std::move(at), share());
   }
 
   StageTwo follow_minimum(StageTwo at) const {
+    at = likelihood.refine(std::move(at), share());
+    return at.refined ? at : descend(std::move(at), share());
+  }
+
+  /// At an R that has settled.
+  StageTwo find_last_digits(StageTwo at) const {
     at = likelihood.refine(std::move(at));
-    if (at.refined) return at;
-    return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius));
+    if (!at.refined) at = descend(std::move(at), 0.0);
+    at.noise = noise_at(at);
+    return at;
+  }
+
+  StageTwo descend(StageTwo at, double share) const {
+    return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius), share);
   }
 
   Eigen::VectorXd noise_at(const StageTwo& at) const { return likelihood.noise_at(at); }
   void take_noise(StageTwo& at, Eigen::VectorXd noise) const { at.noise = std::move(noise); }
 };
+
+/// xi at R, R at xi, and so on; then xi to the last digit.
+StageTwo alternate_to_last_digits(Turns& turns, StageTwo at, const FitOptions& options) {
+  at = alternate(turns, std::move(at), options);
+  if (turns.noise_given() || !at.converged()) return at;
+  return turns.find_last_digits(std::move(at));
+}
 
 /// Step 5 in one way.
 StageTwo fit_once(const Likelihood& likelihood, const StageOne& start, const Attempt& attempt) {
@@ -57,11 +78,11 @@ StageTwo fit_once(const Likelihood& likelihood, const StageOne& start, const Att
   // 2. What the record leaves open there is held by a loose prior.
   if (attempt.hold) at = likelihood.hold_open(std::move(at), attempt.near);
   // 3. xi at R (Eqs. 6, 20, 27), R at xi (Eq. 25), and so on until R settles (Eq. 26).
-  at = alternate(turns, std::move(at), options);
+  at = alternate_to_last_digits(turns, std::move(at), options);
   // 4. A poor start may have seen less than the solution does: what holds nothing open has to go.
   if (at.hold && !likelihood.leaves_open(at)) {
     at.hold.reset();
-    at = alternate(turns, std::move(at), options);
+    at = alternate_to_last_digits(turns, std::move(at), options);
   }
   at.cost = likelihood.cost(at);
   std::ranges::move(explain(at, options), std::back_inserter(at.sentences));
@@ -110,6 +131,7 @@ StageTwo run_stage_two(const Problem& problem, const model::Measurements& measur
     if (settled) break;
   }
   best.iterations = iterations;
+  best.passes = sweep.passes();
   return best;
 }
 

@@ -30,6 +30,7 @@ struct StageTwo {
   double cost = 0.0;                        // J of Eq. 6, without its constant, with the priors
   int iterations = 0;
   int noise_iterations = 0;
+  Passes passes;                       // of all attempts
   std::vector<std::string> sentences;  // what a reader has to know
 
   bool converged() const { return refined && settled; }

@@ -3,11 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
-#include <numeric>
-#include <utility>
 
-#include "model/point_lanes.hpp"
 #include "model/row_lanes.hpp"
 
 namespace sepcal::model {
@@ -109,21 +105,34 @@ Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
 }
 
 std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
-  return factor_blocks(tables().n_1() + 1,
-                       [&](const Block& block, const Measurements::Range& range, Carry* carry,
-                           MatrixXd& rows) { fill_linear(block, range, xi2.data(), carry, rows); });
+  return linear_memory_.at(xi2, [&] {
+    ++values_passes_;
+    return factor_blocks(
+        tables().n_1() + 1,
+        [&](const Block& block, const Measurements::Range& range, Carry* carry, MatrixXd& rows) {
+          fill_linear(block, range, xi2.data(), carry, rows);
+        });
+  });
 }
 
 std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
                                                      const VectorXd& xi2) const {
-  return factor_blocks(tables().n_1() + tables().n_2() + 1,
-                       [&](const Block& block, const Measurements::Range& range, Carry* carry,
-                           MatrixXd& rows) { fill_tangent(block, range, xi1, xi2, carry, rows); });
+  VectorXd xi(xi1.size() + xi2.size());
+  xi << xi1, xi2;
+  return tangent_memory_.at(xi, [&] {
+    ++tangent_passes_;
+    return factor_blocks(
+        tables().n_1() + tables().n_2() + 1,
+        [&](const Block& block, const Measurements::Range& range, Carry* carry, MatrixXd& rows) {
+          fill_tangent(block, range, xi1, xi2, carry, rows);
+        });
+  });
 }
 
 std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, const VectorXd& xi2,
                                                        const RobustLoss& loss,
                                                        const VectorXd& weights) const {
+  ++tangent_passes_;
   const int columns = tables().n_1() + tables().n_2() + 1;
   const int n_z = tables().n_z();
   std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
@@ -157,6 +166,7 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
   const Index n_z = tables().n_z();
   std::vector<VectorXd> points{xi1, VectorXd::Zero(n_1)};
   for (Index p = 0; p < n_1; ++p) points.emplace_back(VectorXd::Unit(n_1, p));
+  tangent_passes_ += static_cast<int>(points.size());
   const auto& chunks = measurements_.chunks();
   std::vector<MatrixXd> parts(chunks.size(), MatrixXd::Zero(n_1, n_z * n_2));
   pool_.for_each(chunks.size(), [&](std::size_t c) {
@@ -195,6 +205,7 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
 template <class VisitRows>
 void Sweep::for_each_tangent(const VectorXd& xi1, const VectorXd& xi2,
                              const VisitRows& visit) const {
+  ++tangent_passes_;
   const int n_z = tables().n_z();
   for_each_block(
       [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
@@ -240,6 +251,7 @@ MatrixXd Sweep::block_residuals(const Block& block, const Measurements::Range& r
 
 VectorXd Sweep::sum_residuals(const VectorXd& xi1, const VectorXd& xi2,
                               const std::function<VectorXd(const MatrixXd&)>& of_block) const {
+  ++values_passes_;
   const auto chunks = static_cast<Index>(measurements_.chunks().size());
   MatrixXd parts = MatrixXd::Zero(tables().n_z(), chunks);
   for_each_block(
@@ -265,6 +277,7 @@ VectorXd Sweep::losses(const VectorXd& xi1, const VectorXd& xi2, const RobustLos
 }
 
 MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+  ++values_passes_;
   MatrixXd all(static_cast<Index>(measurements_.rows()), tables().n_z());
   for_each_block(
       [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
@@ -272,105 +285,6 @@ MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
             block_residuals(block, range, xi1, xi2, carry, rows);
       });
   return all;
-}
-
-namespace {
-
-/// The fraction done, said from any thread.
-class Progress {
- public:
-  Progress(const std::function<void(double)>& on_progress, std::size_t steps)
-      : on_progress_(on_progress), steps_(static_cast<double>(steps)) {}
-
-  void step() {
-    if (!on_progress_) return;
-    const std::lock_guard lock(mutex_);
-    on_progress_(++done_ / steps_);
-  }
-
- private:
-  const std::function<void(double)>& on_progress_;
-  std::mutex mutex_;
-  double done_ = 0.0;
-  double steps_;
-};
-
-/// `count` samples among as many groups as threads, in whole tiles of `width`.
-std::vector<std::pair<Index, Index>> split(Index count, Index threads, Index width) {
-  const Index tiles = (count + width - 1) / width;
-  const Index groups = std::clamp<Index>(tiles, 1, threads);
-  std::vector<std::pair<Index, Index>> parts;  // the first sample and how many
-  for (Index g = 0; g < groups; ++g) {
-    const Index first = g * tiles / groups * width;
-    const Index last = std::min(count, (g + 1) * tiles / groups * width);
-    parts.emplace_back(first, last - first);
-  }
-  return parts;
-}
-
-}  // namespace
-
-std::vector<TriangularFactor> Sweep::sample_factors(
-    const MatrixXd& samples, const std::function<void(double)>& on_progress) const {
-  const PointLanes lanes(model_, measurements_, samples);
-  Factors factors(static_cast<std::size_t>(samples.cols()), TriangularFactor(tables().n_1() + 1));
-  if (lanes.width() == 0) {
-    std::vector<Index> all(factors.size());
-    std::iota(all.begin(), all.end(), Index{0});
-    sample_one_by_one(samples, all, factors, on_progress);
-    return factors;
-  }
-  const auto parts = split(samples.cols(), pool_.threads(), static_cast<Index>(lanes.width()));
-  Progress progress(on_progress, parts.size() * measurements_.chunks().size());
-  std::vector<std::vector<Index>> unclear(parts.size());
-  pool_.for_each(parts.size(), [&](std::size_t p) {
-    const auto [first, count] = parts[p];
-    auto found = lanes.factor(samples.middleCols(first, count), [&] { progress.step(); });
-    for (Index s = 0; s < count; ++s) {
-      auto& factor = found[static_cast<std::size_t>(s)];
-      if (factor) {
-        factors[static_cast<std::size_t>(first + s)] = std::move(*factor);
-      } else {
-        unclear[p].push_back(first + s);
-      }
-    }
-  });
-  std::vector<Index> rest;
-  for (const auto& part : unclear) rest.insert(rest.end(), part.begin(), part.end());
-  sample_one_by_one(samples, rest, factors, {});
-  return factors;
-}
-
-void Sweep::sample_one_by_one(const MatrixXd& samples, const std::vector<Index>& chosen,
-                              Factors& factors,
-                              const std::function<void(double)>& on_progress) const {
-  constexpr std::size_t tile = 25;  // samples that share a block while it is in the cache
-  const std::size_t tiles = (chosen.size() + tile - 1) / tile;
-  const auto& chunks = measurements_.chunks();
-  Progress progress(on_progress, tiles * chunks.size());
-  pool_.for_each(tiles, [&](std::size_t t) {
-    const std::size_t first = t * tile;
-    const std::size_t count = std::min(tile, chosen.size() - first);
-    std::vector<std::unique_ptr<Carry>> carries;
-    MatrixXd points(samples.rows(), static_cast<Index>(count));
-    for (std::size_t s = 0; s < count; ++s) {
-      carries.push_back(model_.new_carry());
-      points.col(static_cast<Index>(s)) = samples.col(chosen[first + s]);
-    }
-    std::vector<const double*> pointers;
-    MatrixXd scratch;
-    for (const auto& chunk : chunks) {
-      for (const Measurements::Range& range : chunk) {
-        const Block block = measurements_.block(range, pointers);
-        model_.evaluate_points(block, points, carries, scratch, [&](Index s, MatrixXd& rows) {
-          subtract_from_outputs(range, rows.rightCols<1>().col(0));
-          const Index sample = chosen[first + static_cast<std::size_t>(s)];
-          factors[static_cast<std::size_t>(sample)].absorb(rows);
-        });
-      }
-      progress.step();
-    }
-  });
 }
 
 }  // namespace sepcal::model

@@ -5,13 +5,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <functional>
 #include <vector>
 
 #include "base/thread_pool.hpp"
 #include "model/loss.hpp"
 #include "model/measurements.hpp"
+#include "model/pass_memory.hpp"
 #include "sepcal/block_model.hpp"
+#include "sepcal/passes.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::model {
@@ -25,6 +28,9 @@ class Sweep {
   const Tables& tables() const { return model_.tables(); }
   const Measurements& measurements() const { return measurements_; }
   base::ThreadPool& pool() const { return pool_; }
+
+  /// Those that were made so far.
+  Passes passes() const { return {values_passes_, tangent_passes_}; }
 
   /// [A | z - b] at xi2: n_z factors of n_1 + 1 columns.
   std::vector<TriangularFactor> linear_factors(const Eigen::VectorXd& xi2) const;
@@ -64,11 +70,12 @@ class Sweep {
   /// r of every selected row, in the record's order: rows() x n_z.
   Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
 
-  /// One unweighted factor of [A | z - b] over all outputs for every column of `samples`
-  /// (n_2 x S). A block of data stays in the cache while all samples pass over it.
-  /// `on_progress` hears the fraction done, from any thread, one call at a time.
-  std::vector<TriangularFactor> sample_factors(
-      const Eigen::MatrixXd& samples, const std::function<void(double)>& on_progress) const;
+  /// The sum of squares that the best xi1 leaves, all outputs unweighted, at every column of
+  /// `samples` (n_2 x S); infinite where the model is not finite. A block of data stays in the
+  /// cache while all samples pass over it. `on_progress` hears the fraction done, from any thread,
+  /// one call at a time.
+  Eigen::VectorXd sample_squares(const Eigen::MatrixXd& samples,
+                                 const std::function<void(double)>& on_progress) const;
 
  private:
   using Visit = std::function<void(std::size_t chunk, const Measurements::Range& range,
@@ -92,9 +99,9 @@ class Sweep {
                                       Carry* carry, Eigen::MatrixXd& rows)>;
   std::vector<TriangularFactor> factor_blocks(int columns, const FillRows& fill) const;
 
-  /// What sample_factors() gives of the chosen samples, each evaluated by itself.
+  /// What sample_squares() gives of the chosen samples, each evaluated by itself.
   void sample_one_by_one(const Eigen::MatrixXd& samples, const std::vector<Eigen::Index>& chosen,
-                         std::vector<TriangularFactor>& factors,
+                         Eigen::VectorXd& squares,
                          const std::function<void(double)>& on_progress) const;
 
   /// A block's rows, (n_z * rows) x (n_1 + 1): [A | z - b].
@@ -114,6 +121,10 @@ class Sweep {
   const BlockModel& model_;
   const Measurements& measurements_;
   base::ThreadPool& pool_;
+  mutable PassMemory linear_memory_;
+  mutable PassMemory tangent_memory_;
+  mutable std::atomic<int> values_passes_ = 0;
+  mutable std::atomic<int> tangent_passes_ = 0;
 };
 
 }  // namespace sepcal::model
