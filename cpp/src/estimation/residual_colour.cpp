@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "noise/noise_autocovariance.hpp"
+#include "noise/noise_order.hpp"
+#include "noise/noise_room.hpp"
 #include "numerics/decompositions.hpp"
 #include "sepcal/quantity.hpp"
 
@@ -93,12 +95,35 @@ bool is_as_large(const VectorXd& sums, const VectorXd& rows) {
   return std::abs(ratio - 1.0) < 2.5 * std::sqrt(2.0 / count);
 }
 
+/// Whether both families are so little likelier than white that no search needs to tell: a scan's
+/// gain in -2 ln L falls short of what BIC asks by more than refining it adds.
+/// `columns`: [X | e], X orthonormal.
+bool is_plainly_white(const VectorXd& e, const MatrixXd& columns, double of_white,
+                      const std::vector<Segment>& runs) {
+  constexpr double little = 0.35;  // of what one parameter costs
+  const double cost = std::log(static_cast<double>(e.size() - columns.cols() + 1));
+  const VectorXd gains = noise::scan_gains(e, noise::find_lengths(runs));
+  for (Index order = 0; order < gains.size(); ++order) {
+    if (!(gains[order] < (static_cast<double>(order) + little) * cost)) return false;
+  }
+  return of_white - noise::scan_wandering(columns, runs) < little * cost;
+}
+
 /// find_restricted_noise() of rows that need not be summed.
 std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd& X,
                                               const std::vector<Segment>& runs) {
   constexpr std::size_t most_levels = 20;
   const auto rows = std::span(e.data(), static_cast<std::size_t>(e.size()));
   if (e.size() < fewest_rows || !(e.squaredNorm() > 0.0)) return std::nullopt;
+  if (X.cols() + fewest_rows <= e.size()) {
+    const MatrixXd basis = orthonormal(X, MatrixXd(e.size(), 0));
+    MatrixXd columns(e.size(), basis.cols() + 1);
+    columns << basis, e;
+    const noise::WanderingFit white = noise::fit_white_rows(columns);
+    if (is_plainly_white(e, columns, white.minus_two_log_likelihood, runs)) {
+      return OutputNoise{white.noise};
+    }
+  }
   NoiseModel fractional = fit_noise(rows, runs).model;
   const bool free = fractional.level_is_free();
   const MatrixXd levels =

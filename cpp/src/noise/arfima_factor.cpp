@@ -23,19 +23,16 @@ Index longest(const std::vector<Index>& lengths) {
 }  // namespace
 
 ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>& lengths)
-    : delta_(delta),
-      phi_(std::move(phi)),
-      difference_(delta, longest(lengths)),
-      // (1 - B)^-delta is itself a difference where delta <= 0, else the sum of one.
-      integral_(delta > 0.0 ? 1.0 - delta : (delta > -1.0 ? -delta : 0.0), longest(lengths)),
-      summed_(delta > 0.0) {
+    : delta_(delta), phi_(std::move(phi)), difference_(delta, longest(lengths)) {
   const Index order = phi_.size();
   const Index rows = longest(lengths);
   for (const Index length : lengths) log_variance_[std::max<Index>(0, length - order)] = 0.0;
   if (delta != 0.0 && rows > 0) {
+    constexpr Index at_once = 16;  // variances, none above 20, under one logarithm
     gain_ = VectorXd::Ones(rows);
     deviation_ = VectorXd::Ones(rows);
     double variance = fractional_variance(delta);
+    double product = 1.0;
     double log_variance = 0.0;
     auto asked = log_variance_.upper_bound(0);
     for (Index s = 0; s < rows; ++s) {
@@ -46,8 +43,12 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
         variance *= (1.0 - partial) * (1.0 + partial);
       }
       deviation_[s] = std::sqrt(variance);
-      log_variance += std::log(variance);
-      if (asked == log_variance_.end() || asked->first != s + 1) continue;
+      product *= variance;
+      const bool is_asked = asked != log_variance_.end() && asked->first == s + 1;
+      if (s % at_once != 0 && !is_asked) continue;
+      log_variance += std::log(product);
+      product = 1.0;
+      if (!is_asked) continue;
       asked->second = log_variance;
       ++asked;
     }
@@ -115,9 +116,10 @@ void ArfimaFactor::colour_fractional(Ref<VectorXd> u) const {
   const auto gain = gain_.head(u.size()).array();
   u.array() *= gain * deviation_.head(u.size()).array();
   if (delta_ > -1.0) {
-    integral_.apply(u);
+    // (1 - B)^-delta is itself a difference where delta <= 0, else the sum of one.
+    FractionalDifference(delta_ > 0.0 ? 1.0 - delta_ : -delta_, u.size()).apply(u);
     double sum = 0.0;
-    if (summed_) {
+    if (delta_ > 0.0) {
       for (double& value : u) value = sum += value;
     }
   } else {  // the inverse of a running sum

@@ -42,8 +42,6 @@ class ArfimaFactor {
   double delta_;
   Eigen::VectorXd phi_;
   FractionalDifference difference_;
-  FractionalDifference integral_;  // its inverse, but for a running sum where summed_
-  bool summed_;
   Eigen::VectorXd gain_;                         // g_s / g_0; none where delta is 0
   Eigen::VectorXd deviation_;                    // sqrt v_t
   std::map<Eigen::Index, double> log_variance_;  // sum of ln v, by a block's rows behind its head

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "noise/lanes.hpp"
+
 namespace sepcal::noise {
 
 using Eigen::Index;
@@ -32,11 +34,74 @@ bool is_stationary(const VectorXd& phi) {
   return (partial_from_phi(phi).array().abs() < 1.0).all();
 }
 
+namespace {
+
+/// Of pairs of rows, a forward one and the backward one before it.
+struct PairSums {
+  double product = 0.0;
+  double squares = 0.0;  // of both
+  double forward = 0.0;  // the forward ones' squares
+};
+
+// NOLINTBEGIN(*-pointer-arithmetic,*-constant-array-index): lanes of a register.
+
+double add_lanes(const Lanes& sum) {
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+SEPCAL_EVERY_WIDTH PairSums add_pairs(const double* forward, const double* backward, Index pairs) {
+  Lanes product = {};
+  Lanes forwards = {};
+  Lanes backwards = {};
+  Index t = 0;
+  for (; t + lane_count <= pairs; t += lane_count) {
+    Lanes f;
+    Lanes b;
+    load(forward + t, f);
+    load(backward + t, b);
+    product += f * b;
+    forwards += f * f;
+    backwards += b * b;
+  }
+  PairSums sums{add_lanes(product), add_lanes(backwards), add_lanes(forwards)};
+  for (; t < pairs; ++t) {
+    sums.product += forward[t] * backward[t];
+    sums.forward += forward[t] * forward[t];
+    sums.squares += backward[t] * backward[t];
+  }
+  sums.squares += sums.forward;
+  return sums;
+}
+
+/// Both become what the other of a pair does not predict.
+SEPCAL_EVERY_WIDTH void reflect(double r, double* forward, double* backward, Index pairs) {
+  Index t = 0;
+  for (; t + lane_count <= pairs; t += lane_count) {
+    Lanes f;
+    Lanes b;
+    load(forward + t, f);
+    load(backward + t, b);
+    const Lanes left = f - r * b;
+    const Lanes right = b - r * f;
+    store(left, forward + t);
+    store(right, backward + t);
+  }
+  for (; t < pairs; ++t) {
+    const double f = forward[t];
+    forward[t] = f - r * backward[t];
+    backward[t] = backward[t] - r * f;
+  }
+}
+
+// NOLINTEND(*-pointer-arithmetic,*-constant-array-index)
+
+}  // namespace
+
 BurgFit fit_burg(const VectorXd& y, const std::vector<Index>& lengths, int max_order) {
   BurgFit fit{VectorXd::Zero(max_order + 1), VectorXd::Zero(max_order + 1),
               VectorXd::Zero(max_order)};
   VectorXd forward = y;
-  VectorXd backward = y;
+  VectorXd backward = y;  // a row stands `order` rows before its own, that of its pair
   const auto rows = static_cast<double>(y.size());
   // The first rows of the blocks, each divided by its own variance ratio, and their log variances.
   double early = 0.0;
@@ -52,14 +117,12 @@ BurgFit fit_burg(const VectorXd& y, const std::vector<Index>& lengths, int max_o
       const Index rest = length - order;
       early_rows += static_cast<double>(std::min<Index>(length, order + 1));
       if (rest > 0) {
-        const auto f = forward.segment(first + order, rest);
-        later += f.squaredNorm();
-        starts += f[0] * f[0];
-        if (rest > 1) {
-          const auto b = backward.segment(first + order, rest - 1);
-          cross += f.tail(rest - 1).dot(b);
-          power += f.tail(rest - 1).squaredNorm() + b.squaredNorm();
-        }
+        const Index start = first + order;
+        const PairSums sums = add_pairs(&forward[start] + 1, &backward[first], rest - 1);
+        starts += forward[start] * forward[start];
+        later += forward[start] * forward[start] + sums.forward;
+        cross += sums.product;
+        power += sums.squares;
       }
       first += length;
     }
@@ -79,11 +142,8 @@ BurgFit fit_burg(const VectorXd& y, const std::vector<Index>& lengths, int max_o
     log_ratio -= early_rows * std::log(left);
     first = 0;
     for (const Index length : lengths) {
-      for (Index t = first + length - 1; t > first + order; --t) {
-        const double f = forward[t];
-        forward[t] = f - r * backward[t - 1];
-        backward[t] = backward[t - 1] - r * f;
-      }
+      const Index pairs = length - order - 1;
+      if (pairs > 0) reflect(r, &forward[first + order] + 1, &backward[first], pairs);
       first += length;
     }
   }

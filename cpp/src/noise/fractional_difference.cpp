@@ -15,6 +15,7 @@ using Eigen::VectorXd;
 
 static_assert(Exponentials::count == lane_count);
 constexpr Index near_rows = Index{2} * Exponentials::count;
+constexpr Index few_rows = 128;  // whose coefficients cost less than exponentials do
 // Trapezoids in ln(lambda) converge like e^{-pi^2 / step}: 2e-11 here.
 constexpr double step = 0.4;
 
@@ -67,13 +68,13 @@ SEPCAL_EVERY_WIDTH void filter(const double* near, const Exponentials* distant, 
 FractionalDifference::FractionalDifference(double d, Index rows)
     : d_(d < 0.0 ? d + 1.0 : d), summed_(d < 0.0) {
   if (d_ <= 0.0) return;
-  near_.resize(std::max<Index>(1, std::min(rows, near_rows)));
+  near_.resize(std::max<Index>(1, rows <= few_rows ? rows : near_rows));
   near_[0] = 1.0;
   for (Index k = 1; k < near_.size(); ++k) {
     near_[k] = near_[k - 1] * (static_cast<double>(k - 1) - d_) / static_cast<double>(k);
   }
   near_.reverseInPlace();
-  if (rows <= near_rows) return;
+  if (rows <= few_rows) return;
   constexpr double pi = std::numbers::pi;
   const double scale = std::sin(pi * d_) / pi;
   // What lies below `lowest` adds less than 1e-10 over all rows; above `highest`, e^{-45}.

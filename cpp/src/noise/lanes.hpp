@@ -20,5 +20,6 @@ inline constexpr Eigen::Index lane_count = 8;
 using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
 
 inline void load(const double* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); }
+inline void store(const Lanes& lanes, double* to) { std::memcpy(to, &lanes, sizeof lanes); }
 
 }  // namespace sepcal::noise

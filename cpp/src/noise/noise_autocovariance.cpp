@@ -20,10 +20,32 @@ double fractional_variance(double delta) {
   return std::tgamma(1.0 - 2.0 * delta) / std::pow(std::tgamma(1.0 - delta), 2);
 }
 
-NoiseMoments find_moments(double delta, const VectorXd& phi, Index lags) {
-  constexpr Index beyond = 2048;  // rows over which the recursion forgets where it began
+namespace {
+
+/// Rows over which the recursion forgets where it began: until the response of phi to a single row
+/// is lost in rounding.
+Index rows_to_forget(const VectorXd& phi) {
+  constexpr Index most = 2048;
+  constexpr double lost = 1e-18;
   const Index order = phi.size();
-  const Index last = std::max(lags, order) + (order > 0 ? beyond + order : 0);
+  const VectorXd reversed = phi.reverse();
+  VectorXd response = VectorXd::Zero(most + order);
+  response[order - 1] = 1.0;
+  Index small = 0;  // rows in a row
+  for (Index row = 0; row < most; ++row) {
+    const double value = reversed.dot(response.segment(row, order));
+    response[row + order] = value;
+    small = std::abs(value) < lost ? small + 1 : 0;
+    if (small == order) return row + 1;
+  }
+  return most;
+}
+
+}  // namespace
+
+NoiseMoments find_moments(double delta, const VectorXd& phi, Index lags) {
+  const Index order = phi.size();
+  const Index last = std::max(lags, order) + (order > 0 ? rows_to_forget(phi) + order : 0);
   VectorXd gamma(last + 1);
   gamma[0] = fractional_variance(delta);
   for (Index k = 0; k < last; ++k) {

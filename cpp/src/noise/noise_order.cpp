@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every d serves all orders. After the grid, a parabola through an order's best three d proposes
-// the next, until none promises to gain 0.05 in -2 ln L.
+// the next, until none promises to gain enough in -2 ln L.
 #include "noise/noise_order.hpp"
 
 #include <algorithm>
@@ -21,7 +21,9 @@ using Eigen::VectorXd;
 /// The d tried so far, with what Burg made of each.
 class Scan {
  public:
-  Scan(const NoiseRows& rows, int max_order) : rows_(rows), max_order_(max_order) {}
+  /// `worthwhile`: what -2 ln L must promise to fall by for another d.
+  Scan(const NoiseRows& rows, int max_order, double worthwhile)
+      : rows_(rows), max_order_(max_order), worthwhile_(worthwhile) {}
 
   void evaluate(double d) {
     const ArfimaFactor factor(rows_.free_level ? d - 1.0 : d, VectorXd(), rows_.blocks);
@@ -36,6 +38,9 @@ class Scan {
     return std::ranges::min_element(
         tried_, {}, [order](const auto& tried) { return tried.second.criterion[order]; });
   }
+
+  /// The criterion of white noise, once d = 0 was tried.
+  double white() const { return tried_.at(0.0).criterion[0]; }
 
   /// Narrows d around the best for an order.
   void refine(int order) {
@@ -53,7 +58,7 @@ class Scan {
       const double curvature = (rise - fall) / (0.5 * (a + b));
       if (!(curvature > 0.0)) return;
       const double slope = (fall * b + rise * a) / (a + b);
-      if (0.5 * slope * slope / curvature < 0.05) return;
+      if (0.5 * slope * slope / curvature < worthwhile_) return;
       const double margin = 0.02;
       evaluate(std::clamp(best->first - slope / curvature, left->first + margin * a,
                           right->first - margin * b));
@@ -64,12 +69,27 @@ class Scan {
  private:
   const NoiseRows& rows_;
   int max_order_;
+  double worthwhile_;
   std::map<double, BurgFit> tried_;
 };
 
+const std::vector<double> stationary_grid{0.0, 0.1, 0.2, 0.3, 0.4, 0.48};
+const std::vector<double> free_grid{0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 0.999};
+
+/// The highest order that rows of a free level have enough rows for.
+int highest_order(const std::vector<Index>& lengths, int most) {
+  Index rows = 0;
+  Index longest = 0;
+  for (const Index length : lengths) {
+    rows += length - 1;
+    longest = std::max(longest, length - 1);
+  }
+  return static_cast<int>(std::min<Index>({most, rows / 10, longest / 4}));
+}
+
 /// The order and d of least AIC, d from `grid` on.
 NoiseOrder choose(const NoiseRows& rows, int least, int most, const std::vector<double>& grid) {
-  Scan scan(rows, most);
+  Scan scan(rows, most, 0.05);
   for (const double d : grid) scan.evaluate(d);
   int chosen = least;
   double lowest = std::numeric_limits<double>::infinity();
@@ -98,12 +118,23 @@ std::array<NoiseOrder, 2> choose_noise_orders(const VectorXd& e, const std::vect
                                               const NoiseFitOptions& options) {
   const NoiseRows levels(e, lengths, false);
   const NoiseRows differences(e, lengths, true);
-  const Index longest = *std::ranges::max_element(differences.blocks);
-  const int most = static_cast<int>(std::min<Index>(
-      {options.order.value_or(options.max_order), differences.values.size() / 10, longest / 4}));
+  const int most = highest_order(lengths, options.order.value_or(options.max_order));
   const int least = options.order ? most : 0;
-  return {choose(levels, least, most, {0.0, 0.1, 0.2, 0.3, 0.4, 0.48}),
-          choose(differences, least, most, {0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 0.999})};
+  return {choose(levels, least, most, stationary_grid),
+          choose(differences, least, most, free_grid)};
+}
+
+VectorXd scan_gains(const VectorXd& e, const std::vector<Index>& lengths) {
+  const NoiseRows levels(e, lengths, false);
+  const int most = highest_order(lengths, NoiseFitOptions().max_order);
+  Scan scan(levels, most, 0.5);
+  for (const double d : stationary_grid) scan.evaluate(d);
+  VectorXd gains(most + 1);
+  for (int order = 0; order <= most; ++order) {
+    scan.refine(order);
+    gains[order] = scan.white() - scan.find_best(order)->second.criterion[order];
+  }
+  return gains;
 }
 
 }  // namespace sepcal::noise

@@ -26,4 +26,8 @@ std::array<NoiseOrder, 2> choose_noise_orders(const Eigen::VectorXd& e,
                                               const std::vector<Eigen::Index>& lengths,
                                               const NoiseFitOptions& options);
 
+/// By how much -2 ln L falls from white noise to the likeliest d of a scan over stationary levels,
+/// for the orders 0, ..., as high as choose_noise_orders() goes.
+Eigen::VectorXd scan_gains(const Eigen::VectorXd& e, const std::vector<Eigen::Index>& lengths);
+
 }  // namespace sepcal::noise

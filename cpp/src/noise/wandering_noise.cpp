@@ -49,19 +49,29 @@ class Filter {
     const double wandering = 1.0 - noise.white;
     ArrayXd state(columns_.cols());
     ArrayXd innovation(columns_.cols());
+    constexpr double settled = 1e-15;
     double log_determinant = 0.0;
     Index t = 0;
     for (const Index length : lengths_) {
       state.setZero();
       double P = wandering;  // variance of g as predicted
+      double F = 0.0;
+      double gain = 0.0;
+      double precision = 0.0;
+      bool moves = true;
       for (const Index last = t + length; t < last; ++t) {
-        const double F = P + noise.white;
-        const double gain = P / F;
-        log_determinant += std::log(F);
+        if (moves) {
+          F = P + noise.white;
+          gain = a * P / F;
+          precision = 1.0 / std::sqrt(F);
+          const double next = a * a * P * noise.white / F + wandering * (1.0 - a * a);
+          moves = std::abs(next - P) > settled * P;
+          log_determinant += std::log(F) * (moves ? 1.0 : static_cast<double>(last - t));
+          P = next;
+        }
         innovation = columns_.row(t).transpose().array() - state;
-        white_.row(t) = innovation.matrix().transpose() / std::sqrt(F);
-        state = a * (state + gain * innovation);
-        P = a * a * P * noise.white / F + wandering * (1.0 - a * a);
+        white_.row(t) = innovation.matrix().transpose() * precision;
+        state = a * state + gain * innovation;
       }
     }
     return restrict(white_.transpose() * white_, columns_.rows(), log_determinant);
@@ -80,7 +90,26 @@ WanderingNoise noise_at(const Point& point) {
   return {.rows = std::exp(point[0]), .white = 1.0 / (1.0 + std::exp(-point[1])), .sigma = 1.0};
 }
 
+/// Where the search of a record's noise begins.
+std::vector<Point> grid(Index rows) {
+  constexpr double apart = 2.0 * std::numbers::ln2;  // times, in their logarithm
+  std::vector<Point> points;
+  for (int i = 0; i * apart < std::log(static_cast<double>(rows)); ++i) {
+    for (const double logit : {-4.0, 0.0, 3.0}) points.push_back({i * apart, logit});
+  }
+  return points;
+}
+
 }  // namespace
+
+double scan_wandering(const MatrixXd& columns, const std::vector<Segment>& runs) {
+  Filter filter(columns, runs);
+  double lowest = infinity;
+  for (const Point& point : grid(columns.rows())) {
+    lowest = std::min(lowest, filter.evaluate(noise_at(point)).minus_two_log_likelihood);
+  }
+  return lowest;
+}
 
 MatrixXd covariance_product(const WanderingNoise& noise, const std::vector<Segment>& runs,
                             const Ref<const MatrixXd>& X) {
@@ -115,10 +144,7 @@ WanderingFit fit_wandering(const MatrixXd& columns, const std::vector<Segment>& 
     best = point;
     return true;
   };
-  constexpr double apart = 2.0 * std::numbers::ln2;  // times of the grid, in their logarithm
-  for (int i = 0; i * apart < longest; ++i) {
-    for (const double logit : {-4.0, 0.0, 3.0}) try_point({i * apart, logit});
-  }
+  for (const Point& point : grid(columns.rows())) try_point(point);
   for (Point step{std::numbers::ln2, 1.0}; step[0] > least_step;) {
     bool found = false;
     for (const Point& way : {Point{1, 0}, Point{-1, 0}, Point{0, 1}, Point{0, -1}}) {

@@ -37,7 +37,10 @@ struct WanderingFit {
 /// `columns`: [X | e], X orthonormal, of fewer columns than rows.
 WanderingFit fit_wandering(const Eigen::MatrixXd& columns, const std::vector<Segment>& runs);
 
-/// The same of white noise.
+/// The least -2 ln L on the grid that fit_wandering() starts from.
+double scan_wandering(const Eigen::MatrixXd& columns, const std::vector<Segment>& runs);
+
+/// The same as fit_wandering() of white noise.
 WanderingFit fit_white_rows(const Eigen::MatrixXd& columns);
 
 /// The restricted -2 ln L of a noise model with a distribution of its own, at its best sigma, which
