@@ -108,4 +108,83 @@ TEST_CASE("a file's faults come through, and progress ends at one") {
   CHECK(last == 1);
 }
 
+namespace {
+
+/// Some MiB of rows: numbers, a text now and then, quoted cells and labels.
+std::string long_log(std::size_t rows) {
+  std::string bytes = "a,maneuver,b,c\n";
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::string number = std::to_string(1e-3 * static_cast<double>(i));
+    bytes += number + (i / 1000 % 2 == 0 ? ",circle, -" : ",\"a, quoted\" ,") + number;
+    bytes += i % 70'000 == 69'999 ? ",n/a\n" : ",\"0." + number.substr(0, 1) + "e-7\"\r\n";
+  }
+  return bytes;
+}
+
+/// What is wrong, without the folder's name before "flight.csv".
+std::string refuse(const TemporaryFolder& folder, const std::string& bytes) {
+  try {
+    read_csv(folder.write(bytes));
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    return message.substr(message.find("flight.csv"));
+  }
+  return "nothing was refused";
+}
+
+/// Where line `number`, counted from 1, begins.
+std::size_t find_line(const std::string& bytes, std::size_t number) {
+  std::size_t at = 0;
+  while (--number > 0) at = bytes.find('\n', at) + 1;
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("all threads read what a reader of rows reads, bit for bit") {
+  const TemporaryFolder folder;
+  constexpr std::size_t rows = 200'000;
+  const std::string file = folder.write(long_log(rows));
+  for (const int threads : {1, 3}) {
+    const Flight flight = read_csv(file, {}, threads);
+    REQUIRE(flight.rows() == rows);
+    sepcal::CsvReader reader(file);
+    bool same = true;
+    for (std::size_t row = 0; reader.next(); ++row) {
+      const auto cells = reader.cells();
+      same = same && flight.maneuvers()[row] == cells[1];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double value = flight.columns()[i].values[row];
+        const auto number = sepcal::parse_number(cells[i == 0 ? 0 : i + 1]);
+        same = same && (number ? value == *number : std::isnan(value));
+      }
+    }
+    CHECK(same);
+    CHECK(flight.sha256() == reader.sha256());
+    CHECK(flight.columns()[2].first_text->row == 69'999);
+    CHECK(flight.columns()[2].first_text->text == "n/a");
+    CHECK_FALSE(flight.columns()[0].first_text);
+  }
+}
+
+TEST_CASE("a fault far down a long file has its line") {
+  const TemporaryFolder folder;
+  constexpr std::size_t rows = 150'000;
+  const std::string bytes = long_log(rows);
+  const std::size_t at = find_line(bytes, 123'457);
+  const auto with = [&](const std::string& line) { return std::string(bytes).insert(at, line); };
+  CHECK(refuse(folder, with("1,2,3\n")) ==
+        "flight.csv line 123457: 3 cells, but the header has 4 columns; complete the row or delete "
+        "it");
+  CHECK(refuse(folder, with("\n")) ==
+        "flight.csv line 123457: the line is blank, and rows follow; delete it");
+  CHECK(refuse(folder, with("1,x,\"2,3\n")) ==
+        "flight.csv line 123457: the quote of cell 3 is never closed; a quoted cell ends on its "
+        "line");
+  CHECK(refuse(folder, with("1,x\x01,2,3\n")).starts_with("flight.csv line 123457: byte 0x01"));
+  CHECK(refuse(folder, with(std::string(std::size_t{1} << 20U, '1') + "\n")) ==
+        "flight.csv line 123457: is longer than 1 MiB; is this a CSV file?");
+  CHECK(read_csv(folder.write(bytes + "\n \n\n")).rows() == rows);
+}
+
 }  // namespace flight_test

@@ -16,9 +16,12 @@ namespace sepcal {
 
 namespace files {
 class TextLines;  // the file as lines
+class RowCells;   // a line as cells
+class RowBlocks;  // many rows at once
 }  // namespace files
 
-/// Told the fraction of a file that has been read, from 0 to 1, about once a MiB. May be empty.
+/// Told the fraction of a file that has been read, from 0 to 1, about once in two MiB. May be
+/// empty.
 using Progress = std::function<void(double fraction)>;
 
 /// The finite decimal number that `text` is, the whole of it: "-1.5e3", "+2". Nothing for "",
@@ -49,7 +52,7 @@ class CsvReader {
   bool next();
 
   /// The row's cells, as many as the header has. Valid until the next call of next().
-  std::span<const std::string_view> cells() const { return cells_; }
+  std::span<const std::string_view> cells() const;
 
   /// The row, or before the first next() the header, as it stands in the file, without its line
   /// end. Valid until the next call of next().
@@ -63,18 +66,18 @@ class CsvReader {
   std::string sha256() const;
 
  private:
+  friend class files::RowBlocks;
+
   void read_header();
   void split();
-  std::size_t take_quoted(std::size_t open);
   void refuse_rows_after_blank(std::size_t blank);
   [[noreturn]] void fail(std::size_t line, const std::string& message) const;
 
   std::string file_;
   std::unique_ptr<files::TextLines> lines_;
   std::vector<std::string> header_;
-  std::vector<std::string_view> cells_;
+  std::unique_ptr<files::RowCells> cells_;
   std::string_view text_;
-  std::string unquoted_;  // cells in which doubled quotes became single ones
   std::size_t line_ = 0;
 };
 

@@ -82,7 +82,7 @@ class Flight {
 
 /// Reads a whole CSV file (csv.hpp says which). A column "maneuver" becomes the labels; every other
 /// becomes numbers, with NaN and a memory of the first such cell where one is no finite number.
-/// Throws Error as CsvReader does.
-Flight read_csv(const std::string& file, const Progress& progress = {});
+/// `threads` of them parse, the caller's included; 0: one a core. Throws Error as CsvReader does.
+Flight read_csv(const std::string& file, const Progress& progress = {}, int threads = 0);
 
 }  // namespace sepcal

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "base/thread_pool.hpp"
+#include "flight/files/row_blocks.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/quantity.hpp"
 
@@ -18,12 +20,17 @@ struct GrowingColumn {
   std::vector<double> values;
   std::optional<Flight::Cell> first_text;
 
-  void take(std::string_view cell) {
-    const auto number = parse_number(cell);
-    if (!number && !first_text) first_text = Flight::Cell{values.size(), std::string(cell)};
-    values.push_back(number.value_or(not_a_number));
+  void append(std::span<const double> rows, const std::optional<Flight::Cell>& text) {
+    if (text && !first_text) first_text = Flight::Cell{values.size() + text->row, text->text};
+    values.insert(values.end(), rows.begin(), rows.end());
   }
 };
+
+/// Gives back memory that was asked for in vain, where it is worth a copy.
+template <class T>
+void shrink(std::vector<T>& values) {
+  if (values.capacity() > values.size() + values.size() / 8) values.shrink_to_fit();
+}
 
 }  // namespace
 
@@ -93,25 +100,26 @@ void Flight::check_length(std::string_view header, std::size_t length) {
   }
 }
 
-Flight read_csv(const std::string& file, const Progress& progress) {
+Flight read_csv(const std::string& file, const Progress& progress, int threads) {
   CsvReader reader(file, progress);
+  base::ThreadPool pool(threads);
   const auto& header = reader.header();
   std::vector<GrowingColumn> columns(header.size());
   std::vector<std::string> labels;
   const auto maneuver_at =
       static_cast<std::size_t>(std::ranges::find(header, maneuver) - header.begin());
-  while (reader.next()) {
-    const auto cells = reader.cells();
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (i == maneuver_at) {
-        labels.emplace_back(cells[i]);
-      } else {
-        columns[i].take(cells[i]);
+  files::RowBlocks blocks(reader, maneuver_at, pool);
+  for (auto parts = blocks.next(); !parts.empty(); parts = blocks.next()) {
+    for (GrowingColumn& column : columns) column.values.reserve(blocks.expected_rows());
+    for (const files::RowPart& part : parts) {
+      labels.insert(labels.end(), part.labels.begin(), part.labels.end());
+      for (std::size_t i = 0; i < header.size(); ++i) {
+        columns[i].append(part.columns[i], part.first_text[i]);
       }
     }
   }
-  labels.shrink_to_fit();
-  for (GrowingColumn& column : columns) column.values.shrink_to_fit();
+  shrink(labels);
+  for (GrowingColumn& column : columns) shrink(column.values);
   Flight flight(file, reader.sha256());
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (i == maneuver_at) continue;

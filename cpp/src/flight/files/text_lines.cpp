@@ -16,7 +16,7 @@
 namespace sepcal::files {
 namespace {
 
-constexpr std::size_t chunk = std::size_t{1} << 20U;  // bytes read at a time, and the longest line
+constexpr std::size_t buffer_size = text_chunk + longest_line;
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 enum ByteClass : unsigned char { plain = 0, control = 1, multibyte = 2 };
@@ -40,10 +40,26 @@ std::size_t find_invalid_utf8(std::string_view text) {
   return text.size();
 }
 
+/// Of all bytes, together.
+unsigned char classes_of(std::string_view text) {
+  unsigned char seen = plain;
+  for (const char c : text) seen |= byte_classes[static_cast<unsigned char>(c)];
+  return seen;
+}
+
 }  // namespace
 
+bool is_text(std::string_view line) {
+  const unsigned char seen = classes_of(line);
+  if (seen == plain) return true;
+  return (seen & control) == 0 && find_invalid_utf8(line) == line.size();
+}
+
 TextLines::TextLines(const std::string& file, Progress progress)
-    : file_(file), progress_(std::move(progress)), buffer_(chunk) {
+    : file_(file),
+      progress_(std::move(progress)),
+      buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)),  // NOLINT
+      ahead_(std::make_unique_for_overwrite<char[]>(text_chunk)) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   if (status.type() == std::filesystem::file_type::not_found) {
@@ -65,18 +81,20 @@ std::optional<std::string_view> TextLines::next() {
   std::size_t searched = 0;
   const char* end = nullptr;
   for (;;) {
-    const char* from = buffer_.data() + first_ + searched;
+    const char* from = buffer_.get() + first_ + searched;
     searched = last_ - first_;
     end = static_cast<const char*>(
-        std::memchr(from, '\n', static_cast<std::size_t>(buffer_.data() + last_ - from)));
-    if (end != nullptr || stream_ended_) break;
+        std::memchr(from, '\n', static_cast<std::size_t>(buffer_.get() + last_ - from)));
+    if (end != nullptr || stream_ended_ || searched >= longest_line) break;
     fill();
   }
   if (end == nullptr && searched == 0) return std::nullopt;
 
-  const char* begin = buffer_.data() + first_;
+  const char* begin = buffer_.get() + first_;
+  const auto length = end != nullptr ? static_cast<std::size_t>(end - begin) : searched;
+  if (length >= longest_line) refuse_length();
   const std::uint64_t offset = bytes_read_ - searched;
-  std::string_view text(begin, end != nullptr ? static_cast<std::size_t>(end - begin) : searched);
+  std::string_view text(begin, length);
   first_ += text.size() + (end != nullptr ? 1 : 0);
   ++line_;
   if (text.ends_with('\r')) text.remove_suffix(1);
@@ -85,37 +103,62 @@ std::optional<std::string_view> TextLines::next() {
   return text;
 }
 
+std::string_view TextLines::peek() {
+  for (;;) {
+    const std::string_view text(buffer_.get() + first_, last_ - first_);
+    if (stream_ended_) return text;
+    if (text.size() >= text_chunk) return text.substr(0, text.rfind('\n') + 1);
+    fill();
+  }
+}
+
+void TextLines::skip(std::size_t bytes, std::size_t lines) {
+  first_ += bytes;
+  line_ += lines;
+}
+
+void TextLines::read_ahead() {
+  if (stream_ended_ || ahead_first_ < ahead_last_) return;
+  ahead_first_ = 0;
+  ahead_last_ = read(ahead_.get(), text_chunk);
+}
+
 void TextLines::fill() {
-  std::copy(buffer_.data() + first_, buffer_.data() + last_, buffer_.data());
+  std::copy(buffer_.get() + first_, buffer_.get() + last_, buffer_.get());
   last_ -= first_;
   first_ = 0;
-  if (last_ == buffer_.size()) {
-    ++line_;
-    check_text({buffer_.data(), last_}, bytes_read_ - last_);
-    fail("is longer than 1 MiB; is this a CSV file?");
-  }
-  errno = 0;
-  const std::size_t count =
-      std::fread(buffer_.data() + last_, 1, buffer_.size() - last_, stream_.get());
-  if (std::ferror(stream_.get()) != 0) {
-    throw Error(file_ + ": can't be read: " + std::strerror(errno));
-  }
-  hash_.absorb(buffer_.data() + last_, count);
+  read_ahead();
+  const std::size_t count = std::min(ahead_last_ - ahead_first_, buffer_size - last_);
+  std::copy_n(ahead_.get() + ahead_first_, count, buffer_.get() + last_);
+  ahead_first_ += count;
   last_ += count;
   bytes_read_ += count;
-  if (std::feof(stream_.get()) != 0) {
-    stream_ended_ = true;
-    digest_ = hash_.finish();
-  }
+  stream_ended_ = ahead_first_ == ahead_last_ && at_end();
   if (progress_ && bytes_total_ > 0) {
     progress_(std::min(1.0, static_cast<double>(bytes_read_) / static_cast<double>(bytes_total_)));
   }
 }
 
+std::size_t TextLines::read(char* to, std::size_t most) {
+  if (at_end()) return 0;
+  errno = 0;
+  const std::size_t count = std::fread(to, 1, most, stream_.get());
+  if (std::ferror(stream_.get()) != 0) {
+    throw Error(file_ + ": can't be read: " + std::strerror(errno));
+  }
+  hash_.absorb(to, count);
+  if (std::feof(stream_.get()) != 0) digest_ = hash_.finish();
+  return count;
+}
+
+void TextLines::refuse_length() {
+  ++line_;
+  check_text({buffer_.get() + first_, longest_line}, bytes_read_ - (last_ - first_));
+  fail("is longer than 1 MiB; is this a CSV file?");
+}
+
 void TextLines::check_text(std::string_view text, std::uint64_t offset) const {
-  unsigned char seen = plain;
-  for (const char c : text) seen |= byte_classes[static_cast<unsigned char>(c)];
-  if (seen == plain) return;
+  if (is_text(text)) return;
   const auto first_control = std::ranges::find_if(
       text, [](char c) { return byte_classes[static_cast<unsigned char>(c)] == control; });
   const auto at =

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/files/row_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sepcal::files {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+std::size_t skip_blanks(std::string_view text, std::size_t at) {
+  while (at < text.size() && is_blank(text[at])) ++at;
+  return at;
+}
+
+std::string_view drop_trailing_blanks(std::string_view text) {
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+bool is_blank(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return is_blank(c); });
+}
+
+std::string RowCells::cut(std::string_view text) {
+  cells_.clear();
+  unquoted_.clear();
+  for (std::size_t at = 0;; ++at) {
+    at = skip_blanks(text, at);
+    if (at < text.size() && text[at] == '"') {
+      at = take_quoted(text, at);
+      if (at == std::string_view::npos) return fault_;
+    } else {
+      const std::size_t comma = std::min(text.find(',', at), text.size());
+      cells_.push_back(drop_trailing_blanks(text.substr(at, comma - at)));
+      at = comma;
+    }
+    if (at == text.size()) return "";
+  }
+}
+
+std::size_t RowCells::take_quoted(std::string_view text, std::size_t open) {
+  std::size_t close = open;
+  bool doubled = false;
+  for (;;) {
+    close = text.find('"', close + 1);
+    if (close == std::string_view::npos) {
+      fault_ = fmt::format("the quote of cell {} is never closed; a quoted cell ends on its line",
+                           cells_.size() + 1);
+      return close;
+    }
+    if (close + 1 == text.size() || text[close + 1] != '"') break;
+    doubled = true;
+    ++close;
+  }
+  std::string_view cell = text.substr(open + 1, close - open - 1);
+  if (doubled) {
+    unquoted_.reserve(text.size());  // never grows beyond, so earlier views stay valid
+    const std::size_t first = unquoted_.size();
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+      unquoted_ += cell[i];
+      if (cell[i] == '"') ++i;
+    }
+    cell = std::string_view(unquoted_).substr(first);
+  }
+  const std::size_t after = skip_blanks(text, close + 1);
+  if (after < text.size() && text[after] != ',') {
+    fault_ = fmt::format(
+        "text follows the closing quote of cell {}; double a quote that belongs to the cell",
+        cells_.size() + 1);
+    return std::string_view::npos;
+  }
+  cells_.push_back(cell);
+  return after;
+}
+
+}  // namespace sepcal::files
