@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <new>
 
+#include "interrupt.hpp"
 #include "sepcal/flight/csv.hpp"
 #include "sepcal/option_error.hpp"
 #include "sepcal/solver_log.hpp"
+#include "sepcal/stop.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -72,7 +74,8 @@ int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perfor
   cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
   cli.footer(
       "Exit codes: 0 done, 2 bad input or usage, 3 an effect is missing, 4 not identifiable,\n"
-      "5 did not converge, 6 something is missing that no candidate explains.");
+      "5 did not converge, 6 something is missing that no candidate explains,\n"
+      "130 stopped by Ctrl-C.");
   try {
     cli.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -86,7 +89,11 @@ int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perfor
     return bad_usage;
   };
   try {
+    const StopScope scope = heed_interrupts(cli.get_name());
     return perform();
+  } catch (const Stopped&) {
+    fmt::print(stderr, "{}: stopped by Ctrl-C; no file was written\n", cli.get_name());
+    return interrupted;
   } catch (const std::bad_alloc&) {
     return refuse("memory ran out; take fewer --samples or --rows, or a shorter log");
   } catch (const OptionError& error) {

@@ -2,7 +2,8 @@
 """python -m sepcal COMMAND: what the package does from a terminal beside the two apps.
 
 A command is a module with add_to(commands), which registers a parser whose default `run` takes the
-arguments and returns an exit code. Bad input is one line on standard error and exit code 2.
+arguments and returns an exit code. Bad input is one line on standard error and exit code 2, Ctrl-C
+one and 130.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from sepcal.reporting import command as report
 
 COMMANDS = (report,)
 BAD_INPUT = 2
+INTERRUPTED = 130
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,6 +42,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except _core.Error as error:
         print(f"sepcal {chosen.command}: {error}", file=sys.stderr)
         return BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"sepcal {chosen.command}: stopped by Ctrl-C; no file was written", file=sys.stderr)
+        return INTERRUPTED
 
 
 if __name__ == "__main__":

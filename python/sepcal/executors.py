@@ -50,7 +50,8 @@ def stream(
     Work is lost where a worker dies with it (Dask's KilledWorker, a pool that broke, a task that
     was cancelled). It is submitted again, a batch item by item, and the last attempt is made when
     nothing else runs: an item that kills its worker takes no other with it. Where the iterator is
-    closed or an exception leaves it, what is pending is cancelled.
+    closed or an exception leaves it, what is pending is cancelled, and what runs is waited for; on
+    Ctrl-C processes of a ProcessPoolExecutor made here end at once.
 
     Args:
         function: On processes and clusters it must pickle, as must its items and results: define it
@@ -178,6 +179,12 @@ class _Pool:
         if self._make is not None:
             self.executor.shutdown(wait=True)
 
+    def interrupt(self) -> None:
+        """Ends the worker processes of what it made, whatever they are at."""
+        if self._make is not None and isinstance(self.executor, ProcessPoolExecutor):
+            for process in list((self.executor._processes or {}).values()):
+                process.terminate()
+
 
 def _stream(
     function: Callable[[Item], Result],
@@ -226,6 +233,9 @@ def _stream(
             if isinstance(error, BrokenExecutor):
                 pool.replace(executor, error)
             yield from _take_loss(task, error, work, lost)
+    except KeyboardInterrupt:
+        pool.interrupt()
+        raise
     finally:
         for future in running:
             future.cancel()

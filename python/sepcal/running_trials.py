@@ -63,8 +63,8 @@ def monte_carlo(
         Error: An argument is out of range; the truth names what the first trial that succeeds does
             not estimate; the executor broke or was shut down and can't be replaced; the trial
             can't be sent to it.
-        KeyboardInterrupt: As ever; pending trials are cancelled. stream_trials() lets one keep what
-            was done.
+        KeyboardInterrupt: As ever; pending trials are cancelled, those that threads or an executor
+            left open are at are waited for. stream_trials() lets one keep what was done.
     """
     indices = _to_indices(trials)
     records: list[TrialRecord] = []

@@ -60,5 +60,6 @@
 #include "sepcal/rotation.hpp"
 #include "sepcal/solver_log.hpp"         // Ceres and glog silenced
 #include "sepcal/eigen.hpp"              // aligned alike on both sides
+#include "sepcal/stop.hpp"               // long work that ends early
 #include "sepcal/option_error.hpp"       // misuse that an option avoids
 #include "sepcal/error.hpp"

@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/stop.hpp"
+
 namespace sepcal::base {
 
 class ThreadPool {
@@ -25,13 +27,16 @@ class ThreadPool {
   int threads() const { return threads_; }
 
   /// Runs task(0) ... task(count - 1) and returns when all are done. The first exception of a task
-  /// is thrown again here; the tasks not yet begun are then skipped.
+  /// is thrown again here; the tasks not yet begun are then skipped. So they are where the caller's
+  /// work is to stop: before each task that is asked (base/stop.hpp), and while the last run.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& task);
 
  private:
   void start_workers();
   void work();
   void run_tasks(std::unique_lock<std::mutex>& lock);
+  void wait_for_the_last(std::unique_lock<std::mutex>& lock);
+  void keep(const std::exception_ptr& failure);
 
   int threads_;
   std::vector<std::thread> workers_;
@@ -39,6 +44,7 @@ class ThreadPool {
   std::condition_variable wake_;
   std::condition_variable done_;
   const std::function<void(std::size_t)>* task_ = nullptr;
+  Stop* stop_ = nullptr;  // what the caller heeds
   std::size_t next_ = 0;
   std::size_t count_ = 0;
   std::size_t running_ = 0;

@@ -10,6 +10,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/flight/output_file.hpp"
@@ -22,7 +23,6 @@ namespace sepcal::bindings {
 namespace {
 
 using namespace py::literals;
-using WithoutGil = py::call_guard<py::gil_scoped_release>;
 using Equations = std::map<std::string, std::vector<std::string>>;
 
 /// `geometry` is an aircraft as JSON; equations are {coefficient: [regressors]}.
@@ -81,7 +81,7 @@ AppliedColumns apply_to(const AircraftFit& fitted, const Flight& flight,
                         const ProcessNoise& process_noise) {
   std::vector<std::string> notes;
   const auto run = [&] {
-    const py::gil_scoped_release release;
+    const Released released;
     return apply_aircraft(fitted, flight, process_noise, notes);
   };
   py::typing::Dict<py::str, Array> columns;
@@ -136,7 +136,7 @@ FittedSteps two_steps(const Flight& flight, const AircraftOptions& options) {
 Simulated simulate(const std::string& truth, const Hidden& hidden, const std::string& excitation,
                    const std::string& noise, std::size_t decoys, double rate, std::size_t rows,
                    std::uint64_t seed) {
-  const py::gil_scoped_release released;
+  const Released released;
   return simulated(
       simulate_aircraft(with_hidden(parse_aircraft_truth(truth, "simulate"), hidden),
                         simulation_options(excitation, noise, decoys, rate, rows, seed)));
@@ -166,7 +166,7 @@ void define_fits(py::module_& module) {
       .def("apply_to_file",
            [](const AircraftFit& self, const std::string& file, const std::string& output,
               const ProcessNoise& process_noise) {
-             const py::gil_scoped_release release;
+             const Released released;
              return apply_aircraft_to_file(self, file, output, process_noise);
            })
       .def("smooth", &smooth_aircraft, WithoutGil())

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "structs.hpp"
 
@@ -19,7 +20,7 @@ struct Checked {
 };
 
 Checked check_flight(const Model& model, const Flight& flight) {
-  const py::gil_scoped_release release;
+  const Released released;
   FlightCheck check = sepcal::check(probe_of(model), flight);
   std::string json = to_json(check);
   std::string text = without_last_end(to_text(check));

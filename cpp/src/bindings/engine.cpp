@@ -17,6 +17,7 @@
 #include "flight/verbs/held_options.hpp"
 #include "python_effect.hpp"
 #include "python_model.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
@@ -88,7 +89,7 @@ class WholeRecord {
 Eigen::MatrixXd evaluate(const Model& model, const py::dict& columns, const Eigen::VectorXd& xi2,
                          const std::optional<Eigen::VectorXd>& xi1) {
   const Record record = record_of(columns, {});
-  const py::gil_scoped_release release;
+  const Released released;
   const Tables& tables = model.block->tables();
   const WholeRecord whole(tables, record);
   const auto measurements = static_cast<Eigen::Index>(record.length()) * tables.n_z();
@@ -104,7 +105,7 @@ Eigen::MatrixXd input_tangent(const Model& model, const py::dict& columns,
                               const Eigen::VectorXd& xi2, const Eigen::VectorXd& xi1,
                               const std::vector<int>& inputs) {
   const Record record = record_of(columns, {});
-  const py::gil_scoped_release release;
+  const Released released;
   const Tables& tables = model.block->tables();
   const WholeRecord whole(tables, record);
   Eigen::MatrixXd tangent(static_cast<Eigen::Index>(record.length()) * tables.n_z(),
@@ -148,7 +149,7 @@ FittedModel fit_columns(const Model& model, const py::dict& columns,
     fit.message = base::join_sentences({fit.message, note_held(model, options, fit)});
     return fit;
   };
-  const py::gil_scoped_release release;
+  const Released released;
   Fit fit = run();
   Page page = page_of(fit, options);
   return fitted_model(std::move(fit), std::move(options.effects), std::move(page));

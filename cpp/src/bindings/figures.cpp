@@ -13,6 +13,7 @@
 #include "bindings.hpp"
 #include "numerics/residual_curves.hpp"
 #include "python_effect.hpp"
+#include "released.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/noise_model.hpp"
 
@@ -20,7 +21,6 @@ namespace sepcal::bindings {
 namespace {
 
 using Eigen::VectorXd;
-using WithoutGil = py::call_guard<py::gil_scoped_release>;
 
 /// (label, first row, row after the last)
 using Rows = std::tuple<std::string, std::size_t, std::size_t>;

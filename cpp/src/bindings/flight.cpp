@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "python_effect.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
@@ -25,7 +26,6 @@ namespace sepcal::bindings {
 namespace {
 
 using namespace py::literals;
-using WithoutGil = py::call_guard<py::gil_scoped_release>;
 
 std::vector<std::string> headers(const Flight& flight) {
   std::vector<std::string> headers;
@@ -99,7 +99,7 @@ void define_flights(py::module_& module) {
 /// With an effect added where one is named.
 Compared compare_flight(const Calibration& calibration, const Flight& flight,
                         const std::optional<std::string>& effect) {
-  const py::gil_scoped_release release;
+  const Released released;
   need_own_effects(calibration);
   return compared(effect ? compare_with(calibration, flight, *effect)
                          : compare(calibration, flight));
@@ -121,7 +121,7 @@ Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
   options.threads = calibration.options.fit.threads;
   options.simulations = simulations;
   options.seed = seed;
-  const py::gil_scoped_release release;
+  const Released released;
   need_own_effects(calibration);
   const FlightDiagnosis diagnosis = injected ? diagnose_with({injected->first, injected->second},
                                                              calibration, flight, makers, options)
@@ -132,7 +132,7 @@ Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
 /// {header: values}
 py::typing::Dict<py::str, Array> apply_to(const Calibration& calibration, const Flight& flight) {
   const auto run = [&] {
-    const py::gil_scoped_release release;
+    const Released released;
     need_own_effects(calibration);
     return apply(calibration, flight);
   };
@@ -145,7 +145,7 @@ py::typing::Dict<py::str, Array> apply_to(const Calibration& calibration, const 
 
 Applied apply_file(const Calibration& calibration, const std::string& file,
                    const std::string& output) {
-  const py::gil_scoped_release release;
+  const Released released;
   need_own_effects(calibration);
   return apply_to_file(calibration, file, output);
 }
@@ -153,13 +153,13 @@ Applied apply_file(const Calibration& calibration, const std::string& file,
 Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
                             const std::vector<PythonEffect>& own) {
   options.own_effects = own_effects(own, effect_kit(probe_of(model).name()));
-  const py::gil_scoped_release release;
+  const Released released;
   return calibrate(model.probe, flight, options);
 }
 
 FlightPrediction predict_flight(const Calibration& calibration, const Flight& flight,
                                 double level) {
-  const py::gil_scoped_release release;
+  const Released released;
   need_own_effects(calibration);
   return predict(calibration, flight, level);
 }
@@ -167,7 +167,7 @@ FlightPrediction predict_flight(const Calibration& calibration, const Flight& fl
 Calibration add_to(const Calibration& base, const Flight& flight, const std::string& effect,
                    const std::vector<PythonEffect>& own) {
   const OwnEffects makers = own_effects(own, effect_kit(base.probe->name()));
-  const py::gil_scoped_release release;
+  const Released released;
   need_own_effects(base);
   return add(base, flight, effect, makers);
 }

@@ -11,6 +11,7 @@
 #include "flight/verbs/held_options.hpp"
 #include "model/measurements.hpp"
 #include "python_effect.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/flight/intervals.hpp"
@@ -54,7 +55,7 @@ FoundIntervals profile_columns(const Model& model, const py::dict& columns,
                                double level, const std::vector<std::string>& names) {
   Record record = record_of(columns, labels);
   options.own_effects = own_effects(own, model.kit());
-  const py::gil_scoped_release release;
+  const Released released;
   record = model::with_constant_outputs(model.block->tables(), std::move(record));
   Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fitted.fit);
   if (prepared.probe) {
@@ -74,7 +75,7 @@ FlightPrediction predict_columns(const Model& model, const py::dict& columns,
                                  double level) {
   Record record = record_of(columns, labels);
   options.own_effects = own_effects(own, model.kit());
-  const py::gil_scoped_release release;
+  const Released released;
   const Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fitted.fit);
   return {
       .time = {},
@@ -85,7 +86,7 @@ FlightPrediction predict_columns(const Model& model, const py::dict& columns,
 
 FoundIntervals find_intervals(const Calibration& calibration, const Flight& flight, double level,
                               const std::vector<std::string>& names) {
-  const py::gil_scoped_release release;
+  const Released released;
   need_own_effects(calibration);
   FlightIntervals found =
       sepcal::find_intervals(calibration, flight, {.level = level, .names = names});

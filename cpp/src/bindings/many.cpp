@@ -12,6 +12,7 @@
 #include "bindings.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "model/measurements.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
@@ -23,7 +24,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using WithoutGil = py::call_guard<py::gil_scoped_release>;
 
 /// n_z factors travel as one matrix, (n_z (n + 1)) x (n + 1), one below the other.
 MatrixXd stack(const std::vector<TriangularFactor>& factors) {
@@ -98,7 +98,7 @@ PreparedFlight prepare_columns(const Model& model, const py::dict& columns,
                                const CalibrationOptions& options,
                                const std::vector<std::string>& own) {
   Record record = record_of(columns, labels);
-  const py::gil_scoped_release release;
+  const Released released;
   const ManyOptions many = many_options(model, options, own, false);
   record = model::with_constant_outputs(model.block->tables(), std::move(record));
   return {model.block, std::make_unique<FlightProblem>(*model.block, std::move(record), many)};
@@ -217,7 +217,7 @@ ManyFit fit_mapped(const Model& model, const std::vector<std::string>& names,
                    bool leave_out, const py::function& visit) {
   MappedFleet fleet(names, visit);
   const ManyOptions many = many_options(model, options, own, leave_out);
-  const py::gil_scoped_release release;
+  const Released released;
   return fit_many(*model.block, fleet, many);
 }
 

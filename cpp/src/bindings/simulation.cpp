@@ -3,6 +3,7 @@
 #include "sepcal/simulation/simulate.hpp"
 
 #include "bindings.hpp"
+#include "released.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/simulation/truth.hpp"
 #include "simulated.hpp"
@@ -35,7 +36,7 @@ void define_simulation(py::module_& module) {
       "simulate", [](const std::string& probe, const std::string& truth, const Hidden& hidden,
                      const std::string& excitation, const std::string& noise, std::size_t decoys,
                      double rate, std::size_t rows, std::uint64_t seed) {
-        const py::gil_scoped_release released;
+        const Released released;
         return simulated(simulate(probe, truth, hidden,
                                   simulation_options(excitation, noise, decoys, rate, rows, seed)));
       });

@@ -14,6 +14,7 @@
 #include "bindings.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "python_state_model.hpp"
+#include "released.hpp"
 #include "results.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/flight_path.hpp"
@@ -122,7 +123,7 @@ SmoothedRecord smooth_columns(const Model& model, const py::dict& columns,
                               const std::map<std::string, double>& start,
                               const std::optional<FittedModel>& errors) {
   const Record record = record_of(columns, labels);
-  const py::gil_scoped_release release;
+  const Released released;
   const auto* along = dynamic_cast<const StateBlockModel*>(model.block.get());
   if (along == nullptr) throw Error("the model has no state, and nothing to smooth");
   return smooth(*along, record, parameters,
@@ -154,7 +155,7 @@ Tracked track_columns(const Model& model, const py::dict& columns,
                    .initial_states = initial_states,
                    .iterations = iterations};
   const Record record = record_of(columns, labels);
-  const py::gil_scoped_release release;
+  const Released released;
   const StreamStart begin = start ? start_from_fit(start->fit)
                                   : start_of_rows(model, record, start_rows.value_or(0), options);
   const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&record) : model.block;

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "diagnosis/sign_flips.hpp"
 
 namespace sepcal::diagnosis {
@@ -106,6 +107,7 @@ CommonCause find_common_cause(const MatrixXd& white, std::uint64_t seed) {
   double draws = 1.0;  // the record is one of them
   double as_strong = 1.0;
   while (draws <= most_draws && as_strong <= enough_as_strong) {
+    base::heed_stop();
     for (Index j = 0; j < x.cols(); ++j) flip_signs(x.col(j), generator);
     if (correlate(windows, sum_steps(x, pairs), squares).abs().maxCoeff() >= most) ++as_strong;
     ++draws;

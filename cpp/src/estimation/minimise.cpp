@@ -8,6 +8,7 @@
 #include <glog/logging.h>
 
 #include <cmath>
+#include <exception>
 
 #include "sepcal/solver_log.hpp"
 
@@ -22,7 +23,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Ceres asks a trial point for its cost alone: the record's norm then stands in one residual, and
-/// no factor is built.
+/// no factor is built. An exception must not pass through Ceres: it is kept, and every evaluation
+/// fails from then on.
 class CompressedCost final : public ceres::CostFunction {
  public:
   explicit CompressedCost(Objective& objective)
@@ -33,6 +35,21 @@ class CompressedCost final : public ceres::CostFunction {
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
+    if (failure_) return false;
+    try {
+      return evaluate(parameters, residuals, jacobians);
+    } catch (...) {
+      failure_ = std::current_exception();
+      return false;
+    }
+  }
+
+  void throw_again() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  bool evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
     const VectorXd x = Eigen::Map<const VectorXd>(parameters[0], objective_.parameters());
     Eigen::Map<VectorXd> residual(residuals, objective_.residuals());
     if (jacobians == nullptr || jacobians[0] == nullptr) {
@@ -51,10 +68,10 @@ class CompressedCost final : public ceres::CostFunction {
     return true;
   }
 
- private:
   Objective& objective_;
   mutable VectorXd tried_;  // the line search and the step after it ask for one point
   mutable double square_ = 0.0;
+  mutable std::exception_ptr failure_;
 };
 
 /// Leaves off where the descent's end is known already.
@@ -120,6 +137,7 @@ Descent estimation::minimise(Objective& objective, const VectorXd& start, const 
   }
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  cost.throw_again();
 
   descent.square = 2.0 * summary.final_cost;
   descent.converged = summary.termination_type == ceres::CONVERGENCE;

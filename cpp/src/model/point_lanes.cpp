@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/aligned_doubles.hpp"
+#include "base/stop.hpp"
 
 namespace sepcal::model {
 namespace {
@@ -160,6 +161,7 @@ PointFactors PointLanes::factor(const MatrixXd& points,
   for (const auto& chunk : measurements_.chunks()) {
     for (const Measurements::Range& range : chunk) {
       for_each_lane_block(measurements_, range, outputs, [&](LaneBlock block) {
+        base::heed_stop();
         block.zero = zero_.data();
         const auto absorb_tile = [&](std::size_t tile, double* rows) {
           for (std::size_t j = 0; j < outputs; ++j) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.hpp"
 #include "model/row_lanes.hpp"
 
 namespace sepcal::model {
@@ -67,6 +68,7 @@ void Sweep::for_each_block(const Visit& visit) const {
     std::vector<const double*> pointers;
     MatrixXd rows;
     for (const Measurements::Range& range : chunks[c]) {
+      base::heed_stop();
       visit(c, range, measurements_.block(range, pointers), carry.get(), rows);
     }
   });
@@ -174,6 +176,7 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
     for (std::size_t k = 0; k < points.size(); ++k) carries.push_back(model_.new_carry());
     std::vector<const double*> pointers;
     for (const Measurements::Range& range : chunks[c]) {
+      base::heed_stop();
       const Index N = rows_of(range);
       const Block block = measurements_.block(range, pointers);
       std::vector<MatrixXd> tangents;

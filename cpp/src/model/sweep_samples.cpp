@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "model/point_lanes.hpp"
 #include "model/sweep.hpp"
 
@@ -100,6 +101,7 @@ void Sweep::sample_one_by_one(const MatrixXd& samples, const std::vector<Index>&
     MatrixXd scratch;
     for (const auto& chunk : chunks) {
       for (const Measurements::Range& range : chunk) {
+        base::heed_stop();
         const Block block = measurements_.block(range, pointers);
         model_.evaluate_points(block, points, carries, scratch, [&](Index s, MatrixXd& rows) {
           subtract_from_outputs(range, rows.rightCols<1>().col(0));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.hpp"
 #include "noise/autoregression.hpp"
 #include "noise/lanes.hpp"
 #include "noise/noise_autocovariance.hpp"
@@ -228,6 +229,7 @@ VectorXd NoiseFamilies::gather_blocks(const Fraction& fraction, const VectorXd& 
 MatrixXd NoiseFamilies::differences(const VectorXd& e) const {
   MatrixXd all = e.replicate(1, static_cast<Index>(fractions_.size()));
   for (std::size_t k = 0; k < fractions_.size(); ++k) {
+    base::heed_stop();
     difference(fractions_[k], all.col(static_cast<Index>(k)));
   }
   return all;
@@ -239,6 +241,7 @@ NoiseMember NoiseFamilies::find_fractional(const Ref<const MatrixXd>& difference
   best.minus_two_log_likelihood = infinity;
   const auto n = static_cast<double>(rows_);
   for (std::size_t k = 0; k < fractions_.size(); ++k) {
+    base::heed_stop();
     const Fraction& fraction = fractions_[k];
     const auto y = differences.col(static_cast<Index>(k));
     const VectorXd rows = gather_blocks(fraction, y);

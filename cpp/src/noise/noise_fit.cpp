@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/stop.hpp"
 #include "noise/arfima_factor.hpp"
 #include "noise/noise_order.hpp"
 #include "noise/noise_room.hpp"
@@ -49,6 +50,7 @@ class Likelihood {
 
   /// Not a number where rounding takes phi out of what is stationary.
   VectorXd evaluate(const VectorXd& theta) const {
+    base::heed_stop();
     if (!is_stationary(phi_of(theta))) return VectorXd::Constant(rows(), not_a_number);
     const ArfimaFactor factor = make_factor(theta);
     VectorXd y = rows_.values;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "base/stop.hpp"
 #include "noise/arfima_factor.hpp"
 #include "noise/autoregression.hpp"
 #include "noise/noise_room.hpp"
@@ -26,6 +27,7 @@ class Scan {
       : rows_(rows), max_order_(max_order), worthwhile_(worthwhile) {}
 
   void evaluate(double d) {
+    base::heed_stop();
     const ArfimaFactor factor(rows_.free_level ? d - 1.0 : d, VectorXd(), rows_.blocks);
     VectorXd y = rows_.values;
     factor.whiten(y, rows_.blocks);

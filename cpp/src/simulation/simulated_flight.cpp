@@ -9,6 +9,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "base/stop.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -55,6 +56,7 @@ void write_csv(const SimulatedFlight& flight, std::ostream& out) {
   for (const auto& column : flight.columns) out << column.name << ',';
   out << "maneuver\n";
   for (std::size_t row = 0; row < flight.rows() && out; ++row) {
+    base::heed_stop();
     std::string line;
     for (const auto& column : flight.columns) {
       line += format_number(column.values[row]) + ',';

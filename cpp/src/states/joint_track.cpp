@@ -7,6 +7,7 @@
 
 #include "base/name_list.hpp"
 #include "base/parameter_values.hpp"
+#include "base/stop.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
@@ -181,6 +182,7 @@ class JointStream {
       if (!seen) update(filter, row);
       seen = false;
       for (; row + 1 < segment.last; ++row) {
+        base::heed_stop();
         if (predict(filter, row) == FilterStatus::refused) ++track_.refused;
         update(filter, row + 1);
       }

@@ -5,6 +5,7 @@
 //   cov(s) <- cov(s) + B P B' + B C + C'B',   C <- C + P B',
 // and from a row to the next P <- Phi P Phi' + Gamma Q_d Gamma', C <- Phi C. One pass, nothing
 // kept.
+#include "base/stop.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/states/state_steps.hpp"
 #include "states/start_deviations.hpp"
@@ -36,6 +37,7 @@ class ScoreNoise {
     MatrixXd tangent;
     for (const std::vector<Range>& chunk : measurements_.chunks()) {
       for (const Range& range : chunk) {
+        base::heed_stop();
         fill(measurements_.block(range, inputs), *carry, tangent);
         follow(range, tangent);
       }

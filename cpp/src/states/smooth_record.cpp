@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/name_list.hpp"
+#include "base/stop.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/smoother.hpp"
@@ -172,6 +173,7 @@ class Smoothing {
     pass.reserve(segment.rows());
     MatrixXd moved = MatrixXd::Zero(filter.x().size(), axes_.cols());
     for (std::size_t row = segment.first; row < segment.last; ++row) {
+      base::heed_stop();
       update(row, filter, moved);
       pass.push_back({{filter.estimate()}, moved, moved});
       Transition<Dynamic, Dynamic>& next = pass.back().stage.next;
@@ -219,6 +221,7 @@ class Smoothing {
     MatrixXd moved = pass.back().filtered;
     keep(segment.last - 1, at, moved, MatrixXd::Zero(at.w.size(), moved.cols()));
     for (std::size_t k = pass.size() - 1; k-- > 0;) {
+      base::heed_stop();
       const auto& [stage, filtered, predicted] = pass[k];
       const auto gain = smoother_gain(stage);
       at = smooth_stage(stage, gain, at.x, at.P);

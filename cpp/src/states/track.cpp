@@ -8,6 +8,7 @@
 
 #include "base/name_list.hpp"
 #include "base/parameter_values.hpp"
+#include "base/stop.hpp"
 #include "model/fixed_model.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/error.hpp"
@@ -141,6 +142,7 @@ void track_linearised(Samples& samples, const StreamStart& start, Collected& col
   for (const auto& chunk : samples.measurements().chunks()) {
     const auto carry = samples.new_carry();
     for (const auto& range : chunk) {
+      base::heed_stop();
       const MatrixXd rows = samples.rows(range, x, carry.get());
       for (std::size_t i = 0; i < range.rows; ++i) {
         if (range.offset + i < start.rows) continue;
@@ -166,6 +168,7 @@ void track_filtered(Samples& samples, const StreamStart& start, const TrackOptio
   for (const auto& chunk : samples.measurements().chunks()) {
     for (const auto& range : chunk) {
       for (std::size_t i = 0; i < range.rows; ++i) {
+        base::heed_stop();
         if (range.offset + i < start.rows) continue;
         const model::Measurements::Range one{range.first + i, 1, range.offset + i,
                                              range.starts_segment && i == 0};

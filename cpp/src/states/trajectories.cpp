@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "base/stop.hpp"
 #include "sepcal/states/state_steps.hpp"
 #include "states/start_deviations.hpp"
 
@@ -27,6 +28,7 @@ void follow(const TrajectoryPlan& plan, const StateSteps& along, const Record& r
   VectorXd x = VectorXd::Zero(static_cast<Index>(plan.integrated().size()));
   for (const Segment& segment : record.segments()) {
     for (std::size_t row = segment.first; row + 1 < segment.last; ++row) {
+      base::heed_stop();
       const int trajectory = plan.trajectory_at(row, row == segment.first);
       if (trajectory >= 0) x = states::start_of(plan, trajectory, xi);
       const StateSteps::Step step = along.advance(row, x);

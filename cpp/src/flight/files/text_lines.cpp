@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/stop.hpp"
 #include "base/utf8.hpp"
 #include "sepcal/error.hpp"
 
@@ -139,16 +140,23 @@ void TextLines::fill() {
   }
 }
 
+/// How many bytes came. A signal that interrupts is a time to ask.
 std::size_t TextLines::read(char* to, std::size_t most) {
   if (at_end()) return 0;
-  errno = 0;
-  const std::size_t count = std::fread(to, 1, most, stream_.get());
-  if (std::ferror(stream_.get()) != 0) {
-    throw Error(file_ + ": can't be read: " + std::strerror(errno));
+  for (;;) {
+    base::heed_stop();
+    errno = 0;
+    const std::size_t count = std::fread(to, 1, most, stream_.get());
+    const int error = errno;
+    if (std::ferror(stream_.get()) != 0) {
+      if (error != EINTR) throw Error(file_ + ": can't be read: " + std::strerror(error));
+      std::clearerr(stream_.get());
+      if (count == 0) continue;
+    }
+    hash_.absorb(to, count);
+    if (std::feof(stream_.get()) != 0) digest_ = hash_.finish();
+    return count;
   }
-  hash_.absorb(to, count);
-  if (std::feof(stream_.get()) != 0) digest_ = hash_.finish();
-  return count;
 }
 
 void TextLines::refuse_length() {
