@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "base/thread_pool.hpp"
 #include "sepcal/fit.hpp"
