@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contenders that solve one problem in turns, on one core."""
+"""Contenders that solve one problem in turns, on one core, and the results of a race."""
 
 from __future__ import annotations
 
@@ -9,72 +9,148 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-PROGRAM = Path(__file__).parents[2] / "build" / "benchmarks" / "sepcal_benchmark"
+PROGRAMS = {
+    "sepcal": "sepcal_benchmark",
+    "plain": "sepcal_benchmark_peers_plain",
+    "native": "sepcal_benchmark_peers_native",
+}
+BUILD = Path(__file__).parents[2] / "build" / "benchmarks"
+Run = Callable[[], tuple[float, np.ndarray]]
 
 
 @dataclass
 class Contender:
-    """A way to solve the problem: `run` returns seconds and the answer."""
+    """A way to solve the problem: `run` returns seconds of CPU and the answer."""
 
     name: str
-    run: Callable[[], tuple[float, np.ndarray]]
+    run: Run
     seconds: list[float] = field(default_factory=list)
     answer: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
-def timed(solve: Callable[[], np.ndarray]) -> Callable[[], tuple[float, np.ndarray]]:
-    """A contender's `run` that measures a Python function."""
+def timed(solve: Callable[[], np.ndarray], repeats: int = 1) -> Run:
+    """A contender's `run` that measures a Python function: the fastest of repeats.
+
+    All threads of the process count, since some libraries compute on threads of their own.
+    """
 
     def run() -> tuple[float, np.ndarray]:
-        begin = time.perf_counter()
-        answer = solve()
-        return time.perf_counter() - begin, answer
+        fastest = float("inf")
+        for _ in range(repeats):
+            begin = time.process_time()
+            answer = solve()
+            fastest = min(fastest, time.process_time() - begin)
+        return fastest, answer
 
     return run
 
 
-def program(
-    problem: str, method: str, file: Path, repeats: int = 10
-) -> Callable[[], tuple[float, np.ndarray]]:
-    """A contender's `run` by sepcal_benchmark, which measures itself: the fastest of repeats."""
-
-    def run() -> tuple[float, np.ndarray]:
-        command = [str(PROGRAM), problem, method, str(file), str(repeats)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        numbers = np.array(done.stdout.split(), dtype=float)
-        return float(numbers[0]), numbers[1:]
-
-    return run
+def ask(program: str, *arguments: object) -> tuple[float, np.ndarray]:
+    """Seconds and answer of one of the benchmark's programs, which measure themselves."""
+    command = [str(BUILD / PROGRAMS[program]), *map(str, arguments)]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
+    numbers = np.array(done.stdout.split(), dtype=float)
+    return float(numbers[0]), numbers[1:]
 
 
-def race(contenders: list[Contender], rounds: int) -> None:
-    """Runs all in turns, so that a load of the machine falls on each alike."""
+def program(problem: str, method: str, file: Path, repeats: int = 10) -> Run:
+    """A contender's `run` by sepcal_benchmark: the fastest of repeats."""
+    return lambda: ask("sepcal", problem, method, file, repeats)
+
+
+def peer(flags: str, method: str, file: Path, repeats: int = 3) -> Run:
+    """A contender's `run` by the peers' program for `flags`, plain or native."""
+    return lambda: ask(flags, method, file, repeats)
+
+
+def race(contenders: list[Contender], rounds: int, budget: float = 20.0) -> None:
+    """Runs all in turns, so that a load of the machine falls on each alike.
+
+    Who has used `budget` seconds rests from then on: one turn of the slowest is enough.
+    """
+    spent = dict.fromkeys(range(len(contenders)), 0.0)
     for _ in range(rounds):
-        for contender in contenders:
+        for k, contender in enumerate(contenders):
+            if spent[k] > budget:
+                continue
+            begin = time.perf_counter()
             seconds, contender.answer = contender.run()
             contender.seconds.append(seconds)
+            spent[k] += time.perf_counter() - begin
 
 
-def table(
-    title: str, contenders: list[Contender], agreement: Callable[[np.ndarray], float], unit: str
-) -> str:
-    """Markdown. The first contender is what ratios are of, and what answers are held against."""
+@dataclass
+class Line:
+    """What is kept of a contender. `ratio`: median time over the first contender's."""
+
+    name: str
+    fastest: float  # s
+    median: float  # s
+    turns: int
+    ratio: float
+    off: float  # the answer's largest difference from the first's
+
+
+@dataclass
+class Result:
+    """A race that was run; the first contender is what ratios are of."""
+
+    race: str
+    title: str
+    unit: str  # of Line.off
+    lines: list[Line]
+
+    def table(self) -> str:
+        """Markdown."""
+        rows = [
+            f"**{self.title}**",
+            "",
+            f"| | fastest | median | turns | times the first | answer differs by, {self.unit} |",
+            "|---|---|---|---|---|---|",
+        ]
+        rows += [
+            f"| {one.name} | {show_time(one.fastest)} | {show_time(one.median)} | {one.turns} "
+            f"| {one.ratio:.3g} | {one.off:.1g} |"
+            for one in self.lines
+        ]
+        return "\n".join(rows)
+
+    def to_json(self) -> dict[str, Any]:
+        """Of plain values."""
+        return {
+            "race": self.race,
+            "title": self.title,
+            "unit": self.unit,
+            "contenders": [vars(one) for one in self.lines],
+        }
+
+
+def show_time(seconds: float) -> str:
+    """Three digits and a unit."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
+
+
+def judge(
+    name: str,
+    title: str,
+    contenders: list[Contender],
+    agreement: Callable[[np.ndarray], float],
+    unit: str,
+) -> Result:
+    """The race's result. The first contender is what the others are held against."""
     first = contenders[0]
-    lines = [
-        f"**{title}**",
-        "",
-        f"| | fastest | median | times the first: fastest | median | answer differs by, {unit} |",
-        "|---|---|---|---|---|---|",
-    ]
+    lines = []
     for one in contenders:
-        ratios = [s / f for s, f in zip(one.seconds, first.seconds, strict=True)]
-        best, middle = min(one.seconds), statistics.median(one.seconds)
+        together = zip(one.seconds, first.seconds, strict=False)  # within a turn
+        ratio = statistics.median(seconds / ours for seconds, ours in together)
         off = agreement(one.answer - first.answer)
-        lines.append(
-            f"| {one.name} | {1e3 * best:.3g} ms | {1e3 * middle:.3g} ms "
-            f"| {best / min(first.seconds):.2g} | {statistics.median(ratios):.2g} | {off:.1g} |"
-        )
-    return "\n".join(lines)
+        middle = statistics.median(one.seconds)
+        lines.append(Line(one.name, min(one.seconds), middle, len(one.seconds), ratio, off))
+    return Result(name, title, unit, lines)

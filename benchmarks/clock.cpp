@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "clock.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <limits>
+
+namespace benchmark {
+
+double thread_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void report(int repeats, const std::function<Answer()>& run) {
+  double fastest = std::numeric_limits<double>::infinity();
+  Answer answer;
+  for (int i = 0; i < repeats; ++i) {
+    const double begin = thread_seconds();
+    answer = run();
+    fastest = std::min(fastest, thread_seconds() - begin);
+  }
+  std::printf("%.9g", fastest);
+  for (const double number : answer) std::printf(" %.17g", number);
+  std::printf("\n");
+}
+
+std::vector<double> read_doubles(const char* name) {
+  std::ifstream file(name, std::ios::binary | std::ios::ate);
+  if (!file) {
+    std::fprintf(stderr, "%s: can't be read\n", name);
+    std::exit(2);
+  }
+  const auto bytes = static_cast<std::size_t>(file.tellg());
+  std::vector<double> numbers(bytes / sizeof(double));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(bytes));
+  return numbers;
+}
+
+}  // namespace benchmark

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The flight that five-hole races share, as a file for programs and as arrays for Python."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import sepcal
+
+from benchmarks.numpy_five_hole import HoistedProbe
+from benchmarks.race import ask
+
+K_ALPHA, K_BETA, ARM = 4.5, 4.5, (0.35, 0.0, -0.02)
+NOISE = (0.15, 0.15, 0.15)  # of vn, ve, vd [m/s]
+SAMPLES = 500
+COLUMNS = {
+    "roll": "roll_rad", "pitch": "pitch_rad", "yaw": "yaw_rad", "p": "p_radps", "q": "q_radps",
+    "r": "r_radps", "pt": "pt_pa", "ps": "ps_pa", "dpa": "dpa_pa", "dpb": "dpb_pa",
+    "rho": "rho_kgpm3", "vn": "vn_mps", "ve": "ve_mps", "vd": "vd_mps", "time": "time_s",
+    "throttle": "throttle",
+}  # fmt: skip
+HEADER = 24  # doubles, as benchmarks/five_hole_file.hpp has them
+
+
+@dataclass
+class FiveHoleFlight:
+    """A simulated flight of `rows` rows, with the start and the samples that all peers share."""
+
+    folder: Path
+    rows: int
+    noise: str = "white"
+    hide: dict[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def columns(self) -> dict[str, np.ndarray]:
+        """By the model's names."""
+        flight = sepcal.simulate(
+            "five-hole", rows=self.rows, noise=self.noise, hide=self.hide, seed=1
+        )
+        return {name: np.asarray(flight[header]) for name, header in COLUMNS.items()}
+
+    @cached_property
+    def found(self) -> np.ndarray:
+        """The best of the samples (10), its noise (3), then all samples: stage one's."""
+        return ask("sepcal", "five-hole", "start", self.write(np.zeros(13), np.empty(0)), 1)[1]
+
+    @property
+    def start(self) -> np.ndarray:
+        """Where stage two starts (10,)."""
+        return self.found[:10]
+
+    @property
+    def start_noise(self) -> np.ndarray:
+        """Root mean square residuals there (3,)."""
+        return self.found[10:13]
+
+    @property
+    def points(self) -> np.ndarray:
+        """Stage one's samples of xi2, (S, 5)."""
+        return self.found[13:].reshape(-1, 5)
+
+    @cached_property
+    def file(self) -> Path:
+        """The whole file."""
+        return self.write(self.found[:13], self.found[13:])
+
+    def write(self, start: np.ndarray, points: np.ndarray) -> Path:
+        """The flight for the programs."""
+        name = f"{self.noise}_{len(self.hide)}_{self.rows}_{len(points)}.bin"
+        header = np.zeros(HEADER)
+        header[:10] = [self.rows, len(points) // 5, K_ALPHA, K_BETA, *ARM, *NOISE]
+        header[10:23] = start
+        with (self.folder / name).open("wb") as file:
+            for part in (header, points, *self.columns.values()):
+                np.asarray(part, dtype=float).tofile(file)
+        return self.folder / name
+
+    def hoist(self) -> HoistedProbe:
+        """For NumPy and SciPy; part of what is timed."""
+        return HoistedProbe(self.columns, K_ALPHA, K_BETA, ARM)
+
+    @cached_property
+    def standard_errors(self) -> np.ndarray:
+        """White ones at the start's neighbour, the truth's noise: what agreement is measured in."""
+        probe = self.hoist()
+        probe.set_noise(np.array(NOISE))
+        J = probe.jacobian(self.start)
+        errors: np.ndarray = np.sqrt(np.diag(np.linalg.inv(J.T @ J)))
+        return errors
+
+    def in_errors(self, off: np.ndarray) -> float:
+        """The largest of differences of parameters (10,), in standard errors."""
+        return float(np.abs(off / self.standard_errors).max())

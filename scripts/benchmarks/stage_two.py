@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stage two of the five-hole probe from the best of the samples: sepcal, Ceres and SciPy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.five_hole import NOISE, FiveHoleFlight
+from benchmarks.numpy_five_hole import alternate, solve
+from benchmarks.race import Contender, Result, judge, peer, program, race, timed
+
+CERES = {
+    "a row a block": "1",
+    "a row a block, QR": "1-qr",
+    "50 rows a block": "50",
+    "50 rows a block, QR": "50-qr",
+    "50 rows a block, derivatives by hand": "50-by-hand",
+}
+
+
+def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
+    """With R known, or alternated with the parameters."""
+    method = "known-noise" if known else "stage-two"
+    repeats = 3 if flight.rows < 50_000 else 1
+    all_of_them = [Contender("sepcal", program("five-hole", method, flight.file, 3 * repeats))]
+    for name, way in CERES.items():
+        for flags in ("plain", "native"):
+            run = peer(flags, f"{method}:{way}", flight.file, repeats)
+            all_of_them.append(Contender(f"Ceres, {name}, {flags}", run))
+    for scipy in ("trf", "lm"):
+
+        def run_scipy(scipy: str = scipy) -> np.ndarray:
+            probe = flight.hoist()
+            if not known:
+                return alternate(probe, flight.start, flight.start_noise, scipy)
+            probe.set_noise(np.array(NOISE))
+            return solve(probe, flight.start, scipy)
+
+        all_of_them.append(Contender(f"SciPy {scipy}, derivatives by hand", timed(run_scipy)))
+    return all_of_them
+
+
+def run(folder: Path, rounds: int, quick: bool) -> list[Result]:
+    """Both noises, short and long."""
+    results = []
+    for rows in (500,) if quick else (5_000, 100_000):
+        flight = FiveHoleFlight(folder, rows)
+        for known in (True, False):
+            racing = contenders(flight, known)
+            race(racing, rounds)
+            title = f"Stage two alone, {rows:,} rows, R {'known' if known else 'alternated'}"
+            results.append(judge("stage-two", title, racing, flight.in_errors, "standard errors"))
+    return results
