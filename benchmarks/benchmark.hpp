@@ -6,16 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "clock.hpp"
+#include "program.hpp"
 
 namespace benchmark {
 
 /// A five-hole flight (five_hole_file.hpp). The answer: the parameters, or what a method says.
 bool run_five_hole(const std::string& method, const std::vector<double>& numbers, int repeats);
 
+/// One core's operations a second at most, for SSE2, AVX2 and AVX-512 (0 where it lacks them), and
+/// bytes a second that it reads, and moves in a[i] = b[i] + c d[i].
+bool run_limits(const std::string& method, const std::vector<double>& numbers, int repeats);
+
 /// Output error of a short period. numbers: 1000 rows of time, elevator, alpha_m, q_m, az_m. The
 /// answer: Za Ma Mq Zd Md b_alpha b_q b_az alpha_0 q_0.
 bool run_output_error(const std::string& method, const std::vector<double>& numbers, int repeats);
+
+/// Trials of scalar example 1 (trials_file.hpp). The answer: a, c, b, trial by trial.
+bool run_scalar(const std::string& method, const std::vector<double>& numbers, int repeats);
 
 /// A smoother of four states and two outputs. numbers: x0, P0, C, R; then a sample: Phi, Q_d, y.
 /// The answer: x(k|N), four numbers a sample.

@@ -4,12 +4,17 @@
 #include <cmath>
 
 #include "benchmark.hpp"
+#include "counting.hpp"
+#include "estimation/minima.hpp"
 #include "estimation/problem.hpp"
 #include "estimation/sampling.hpp"
 #include "estimation/stage_two.hpp"
 #include "five_hole_file.hpp"
 #include "model/sweep.hpp"
+#include "numerics/basins.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/fit_with_effects.hpp"
+#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 
 namespace benchmark {
@@ -43,6 +48,26 @@ Answer values_of(const Fit& fit) {
   return answer;
 }
 
+std::vector<sepcal::EffectSetting> two_effects() {
+  return {{.name = "wind[time]"}, {.name = "pressure_offset[throttle]"}};
+}
+
+Answer fit_with_two_effects(const sepcal::FiveHoleProbe& probe, const Record& record,
+                            const FitOptions& options) {
+  auto settings = two_effects();
+  const Fit fit = sepcal::fit_with_effects(
+      std::make_shared<const sepcal::StaticModel<sepcal::FiveHoleProbe>>(probe),
+      sepcal::effect_kit("five-hole"), settings, record, options);
+  Answer answer;
+  Answer of_effects;
+  for (const sepcal::Parameter& parameter : fit.parameters) {
+    const bool is_effects = parameter.name.find('[') != std::string::npos;
+    (is_effects ? of_effects : answer).push_back(parameter.value);
+  }
+  answer.insert(answer.end(), of_effects.begin(), of_effects.end());
+  return answer;
+}
+
 /// Stage two alone, from the file's start.
 Answer stage_two(const sepcal::BlockModel& model, const Record& record, const FiveHoleFile& file,
                  const FitOptions& options) {
@@ -72,9 +97,31 @@ Answer sample(const sepcal::BlockModel& model, const Record& record, const FitOp
   return {least};
 }
 
-/// The best sample with its xi1 and its noise (13), then all samples: where peers start.
+/// Stage one's samples, those that it descends from in front; their number is added to `answer`,
+/// then they are.
+void list_samples(const sepcal::BlockModel& model, const StageOne& one, const FitOptions& options,
+                  Answer& answer) {
+  const sepcal::estimation::Problem problem(model, options);
+  const Eigen::VectorXd widths = sepcal::estimation::half_widths(problem);
+  const auto basins = sepcal::numerics::find_basins(
+      widths.cwiseInverse().asDiagonal() * one.samples, one.trace_r.array().log().matrix());
+  std::vector<Eigen::Index> order;
+  for (const auto& basin : basins) order.push_back(basin.lowest);
+  order.resize(std::min(order.size(), static_cast<std::size_t>(options.descents)));
+  answer.push_back(static_cast<double>(order.size()));
+  for (Eigen::Index s = 0; s < one.samples.cols(); ++s) {
+    if (std::ranges::find(order, s) == order.end()) order.push_back(s);
+  }
+  for (const Eigen::Index s : order) {
+    const auto sample = one.samples.col(s);
+    answer.insert(answer.end(), sample.begin(), sample.end());
+  }
+}
+
+/// The best sample with its xi1 and its noise (13), then list_samples(): what peers start from.
 Answer find_start(const sepcal::BlockModel& model, const Record& record, FitOptions options) {
   const StageOne one = sepcal::stage_one(model, record, options);
+  const FitOptions asked = options;
   options.samples = 0;
   for (int k = 0; k < nonlinear; ++k) {
     const auto& parameter = sepcal::FiveHoleProbe::nonlinear[static_cast<std::size_t>(k)];
@@ -83,16 +130,47 @@ Answer find_start(const sepcal::BlockModel& model, const Record& record, FitOpti
   const StageOne there = sepcal::stage_one(model, record, options);
   Answer answer = together(there.xi1, there.xi2);
   answer.insert(answer.end(), there.noise.begin(), there.noise.end());
-  answer.insert(answer.end(), one.samples.reshaped().begin(), one.samples.reshaped().end());
+  list_samples(model, one, asked, answer);
   return answer;
+}
+
+/// What the two effects' drivers are taken about.
+Answer find_centres(const sepcal::BlockModel& model, Record record) {
+  auto settings = two_effects();
+  sepcal::make_effects(sepcal::effect_kit("five-hole"), model, settings, record);
+  Answer answer;
+  for (const auto& setting : settings) answer.push_back(setting.centre.value_or(0.0));
+  return answer;
+}
+
+/// Operations a row and sample in stage one: of the model behind what is computed once a row or
+/// once a sample, and of Householder's reflections of the columns that aren't zero.
+Answer count_operations() {
+  using Probe = sepcal::FiveHoleProbe;
+  const Probe probe{4.5, 4.5, Eigen::Vector3d(0.35, 0.0, -0.02)};
+  sepcal::Vec<double, 14> u;
+  u << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03, 101600.0, 101325.0, 60.0, 30.0, 1.2, 0.0, 0.0, 0.0;
+  sepcal::Vec<Counted, nonlinear> xi2;
+  for (Counted& x : xi2) x = 0.1;
+  const auto prepared = probe.prepare<double>(u);
+  const auto settled = Probe::settle<Counted>(xi2);
+  Counted::operations = 0;
+  const auto z = Probe::combine<double, Counted>(prepared, settled);
+  long operations = Counted::operations + outputs;  // z - b
+  for (int j = 0; j < outputs; ++j) {
+    long columns = 1;  // z - b
+    for (int c = 0; c < linear; ++c) columns += z.A(j, c).value != 0.0 ? 1 : 0;
+    operations += 2 * columns * columns;  // a row joins a triangle of `columns`
+  }
+  return {static_cast<double>(operations)};
 }
 
 }  // namespace
 
 bool run_five_hole(const std::string& method, const std::vector<double>& numbers, int repeats) {
   const FiveHoleFile file(numbers);
-  const sepcal::StaticModel model(sepcal::FiveHoleProbe{
-      file.k_alpha, file.k_beta, Eigen::Vector3d(file.arm[0], file.arm[1], file.arm[2])});
+  const sepcal::FiveHoleProbe probe{file.k_alpha, file.k_beta, Eigen::Vector3d(file.arm)};
+  const sepcal::StaticModel model(probe);
   const Record record = record_of(file);
   FitOptions options;
   options.threads = 1;
@@ -103,8 +181,14 @@ bool run_five_hole(const std::string& method, const std::vector<double>& numbers
     const StageOne one = sepcal::stage_one(model, record, options);
     return together(one.xi1, one.xi2);
   };
-  if (method == "start") {
+  if (method == "operations") {
+    report(1, count_operations);
+  } else if (method == "start") {
     report(1, [&] { return find_start(model, record, options); });
+  } else if (method == "centres") {
+    report(1, [&] { return find_centres(model, record); });
+  } else if (method == "fit-with-effects") {
+    report(repeats, [&] { return fit_with_two_effects(probe, record, options); });
   } else if (method == "sampling") {
     report(repeats, [&] { return sample(model, record, options); });
   } else if (method == "stage-one") {

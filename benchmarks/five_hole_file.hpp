@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A flight with a five-hole probe as scripts/benchmarks/five_hole.py writes it: a header, samples
 // of xi2, then columns. Parameters stand in one order throughout: lambda_va b_va w_n w_e w_d
-// (linear), lambda_alpha b_alpha lambda_beta b_beta eps_phi (nonlinear); effects follow.
+// (linear), lambda_alpha b_alpha lambda_beta b_beta eps_phi (nonlinear); then, where two effects
+// join, wind[time].n, wind[time].e and pressure_offset[throttle].s.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ inline constexpr int parameters = 10;
 
 /// A view of `numbers`, which must outlive it.
 struct FiveHoleFile {
-  static constexpr std::size_t header = 24;
+  static constexpr std::size_t header = 26;
   enum Column { roll, pitch, yaw, p, q, r, pt, ps, dpa, dpb, rho, vn, ve, vd, time, throttle };
 
   explicit FiveHoleFile(const std::vector<double>& numbers)
@@ -29,6 +30,9 @@ struct FiveHoleFile {
         noise(numbers.data() + 7),
         start(numbers.data() + 10),
         start_noise(numbers.data() + 20),
+        descents(static_cast<std::size_t>(numbers[23])),
+        time_centre(numbers[24]),
+        throttle_centre(numbers[25]),
         points(numbers.data() + header),
         columns_(points + samples * nonlinear) {}
 
@@ -44,6 +48,9 @@ struct FiveHoleFile {
   const double* noise;        // 3, known standard deviations, m/s
   const double* start;        // 10, where stage two starts
   const double* start_noise;  // 3, root mean square residuals there
+  std::size_t descents;       // stage one descends from this many of the first samples
+  double time_centre;         // s, of the effect wind[time]
+  double throttle_centre;     // of pressure_offset[throttle]
   const double* points;       // samples x 5, the samples of xi2
 
  private:

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "peers/peers.hpp"
+#include "peers/five_hole.hpp"
 
 namespace benchmark {
 namespace {
@@ -118,30 +118,25 @@ std::unique_ptr<ceres::Problem> problem_of(const std::vector<HoistedRow>& rows, 
   return problem;
 }
 
-void solve(ceres::Problem& problem, const CeresWay& way) {
+}  // namespace
+
+double solve(ceres::Problem& problem, bool qr) {
   ceres::Solver::Options options;
-  options.linear_solver_type = way.qr ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
+  options.linear_solver_type = qr ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
   options.num_threads = 1;
   options.function_tolerance = 1e-10;
   options.max_num_iterations = 100;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  return summary.final_cost;
 }
 
-}  // namespace
-
-void solve_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way, const double* noise,
-                    Answer& x) {
-  solve(*problem_of(rows, way, noise, x), way);
-}
-
-void alternate_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way,
-                        std::array<double, 3> noise, Answer& x) {
-  const auto problem = problem_of(rows, way, noise.data(), x);
+void alternate(ceres::Problem& problem, bool qr, std::array<double, 3>& noise,
+               const std::function<std::array<double, 3>()>& noise_at) {
   for (int turn = 0; turn < 20; ++turn) {
-    solve(*problem, way);
-    const std::array<double, 3> found = noise_at(rows, x);
+    solve(problem, qr);
+    const std::array<double, 3> found = noise_at();
     double change = 0.0;
     for (std::size_t j = 0; j < 3; ++j) {
       const double ratio = found[j] / noise[j];
@@ -150,6 +145,17 @@ void alternate_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way
     noise = found;
     if (change < 1e-3) break;
   }
+}
+
+double solve_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way, const double* noise,
+                      Answer& x) {
+  return solve(*problem_of(rows, way, noise, x), way.qr);
+}
+
+void alternate_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way,
+                        std::array<double, 3> noise, Answer& x) {
+  const auto problem = problem_of(rows, way, noise.data(), x);
+  alternate(*problem, way.qr, noise, [&] { return noise_at(rows, x); });
 }
 
 std::array<double, 3> noise_at(const std::vector<HoistedRow>& rows, const Answer& x) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "peers/peers.hpp"
+#include "peers/five_hole.hpp"
 
 namespace benchmark {
 namespace {
@@ -13,13 +13,18 @@ using Eigen::Index;
 
 class PivotedQr {
  public:
-  explicit PivotedQr(const std::vector<HoistedRow>& rows)
+  /// With a drift of the wind, north and east, where there is one.
+  PivotedQr(const std::vector<HoistedRow>& rows, const std::vector<double>& drift)
       : rows_(rows),
         N_(static_cast<Index>(rows.size())),
-        A_(Eigen::MatrixXd::Zero(3 * N_, linear)),
+        columns_(drift.empty() ? linear : linear + 2),
+        A_(Eigen::MatrixXd::Zero(3 * N_, columns_)),
         y_(3 * N_),
-        qr_(3 * N_, linear) {
+        qr_(3 * N_, columns_) {
     for (Index j = 0; j < 3; ++j) A_.col(2 + j).segment(j * N_, N_).setOnes();
+    for (Index j = 0; j + linear < columns_; ++j) {
+      A_.col(linear + j).segment(j * N_, N_) = Eigen::Map<const Eigen::VectorXd>(drift.data(), N_);
+    }
   }
 
   /// The sum of squares with the best xi1 at xi2.
@@ -38,20 +43,26 @@ class PivotedQr {
       }
     }
     qr_.compute(A_);
-    y_.applyOnTheLeft(qr_.householderQ().setLength(linear).adjoint());
-    return y_.tail(3 * N_ - linear).squaredNorm();
+    y_.applyOnTheLeft(qr_.householderQ().setLength(columns_).adjoint());
+    return y_.tail(3 * N_ - columns_).squaredNorm();
   }
 
-  /// xi1 at the xi2 that square() was asked for last.
-  Eigen::Matrix<double, linear, 1> estimate() const {
-    return qr_.colsPermutation() *
-           qr_.matrixR().topLeftCorner<linear, linear>().triangularView<Eigen::Upper>().solve(
-               y_.head<linear>());
+  /// (xi1, xi2, drift) at the xi2 that square() was asked for last.
+  Answer estimate(const double* xi2) const {
+    const Eigen::VectorXd xi1 = qr_.colsPermutation() * qr_.matrixR()
+                                                            .topLeftCorner(columns_, columns_)
+                                                            .triangularView<Eigen::Upper>()
+                                                            .solve(y_.head(columns_));
+    Answer x(xi1.begin(), xi1.begin() + linear);
+    x.insert(x.end(), xi2, xi2 + nonlinear);
+    x.insert(x.end(), xi1.begin() + linear, xi1.end());
+    return x;
   }
 
  private:
   const std::vector<HoistedRow>& rows_;
   Index N_;
+  Index columns_;
   Eigen::MatrixXd A_;
   Eigen::VectorXd y_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
@@ -59,27 +70,20 @@ class PivotedQr {
 
 }  // namespace
 
-Sampled sample_by_eigen(const std::vector<HoistedRow>& rows, const FiveHoleFile& file) {
-  PivotedQr qr(rows);
+Sampled sample_by_eigen(const std::vector<HoistedRow>& rows, const FiveHoleFile& file,
+                        const std::vector<double>& drift) {
+  PivotedQr qr(rows, drift);
   Sampled sampled;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < file.samples; ++s) {
     const double* xi2 = file.points + s * nonlinear;
-    sampled.squares.push_back(qr.square(xi2));
-    if (sampled.squares.back() >= least) continue;
-    least = sampled.squares.back();
-    const auto xi1 = qr.estimate();
-    sampled.best.assign(xi1.begin(), xi1.end());
-    sampled.best.insert(sampled.best.end(), xi2, xi2 + nonlinear);
+    const double square = qr.square(xi2);
+    if (s < file.descents) sampled.starts.push_back(qr.estimate(xi2));
+    if (square >= least) continue;
+    least = square;
+    sampled.best = qr.estimate(xi2);
   }
   return sampled;
-}
-
-std::array<double, 5> linear_estimate(const std::vector<HoistedRow>& rows, const double* xi2) {
-  PivotedQr qr(rows);
-  qr.square(xi2);
-  const auto xi1 = qr.estimate();
-  return {xi1[0], xi1[1], xi1[2], xi1[3], xi1[4]};
 }
 
 }  // namespace benchmark

@@ -1,44 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of the peers' program share.
+// The problems of the peers' programs.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
-#include "clock.hpp"
-#include "five_hole_file.hpp"
-#include "peers/hoisted.hpp"
+#include "program.hpp"
 
 namespace benchmark {
 
-/// How Ceres is given the flight, and by what it solves.
-struct CeresWay {
-  int samples;    // a residual block
-  bool analytic;  // derivatives by hand instead of automatic ones
-  bool qr;        // DENSE_QR instead of DENSE_NORMAL_CHOLESKY
-};
+/// A five-hole flight (five_hole_file.hpp), by METHOD:WAY; the answer, its ten parameters. Methods:
+/// sampling, stage-one, stage-two, known-noise, fit. WAY: "50-by-hand-qr" is 50 samples a residual
+/// block, derivatives by hand instead of automatic ones, DENSE_QR instead of DENSE_NORMAL_CHOLESKY.
+bool run_five_hole_peers(const std::string& method, const std::vector<double>& numbers,
+                         int repeats);
 
-/// From x (10) on: the least squares of residuals over `noise` (3).
-void solve_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way, const double* noise,
-                    Answer& x);
-
-/// The same with R and the parameters in turn (Eqs. 24-26), until no variance changes by more than
-/// a thousandth; `noise` is that of x at first.
-void alternate_by_ceres(const std::vector<HoistedRow>& rows, const CeresWay& way,
-                        std::array<double, 3> noise, Answer& x);
-
-/// Root mean square residuals at x (10).
-std::array<double, 3> noise_at(const std::vector<HoistedRow>& rows, const Answer& x);
-
-/// Stage one's samples by ColPivHouseholderQR.
-struct Sampled {
-  std::vector<double> squares;  // a sample: the sum of squares with the best xi1
-  Answer best;                  // 10
-};
-Sampled sample_by_eigen(const std::vector<HoistedRow>& rows, const FiveHoleFile& file);
-
-/// xi1 (5) by linear least squares at xi2 (5).
-std::array<double, 5> linear_estimate(const std::vector<HoistedRow>& rows, const double* xi2);
+/// Trials of scalar example 1 (trials_file.hpp), by ceres or tiny-solver; the answer: a, c, b.
+bool run_scalar_peers(const std::string& method, const std::vector<double>& numbers, int repeats);
 
 }  // namespace benchmark

@@ -7,20 +7,35 @@ import argparse
 import importlib
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 # One core, before NumPy starts threads of its own.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[variable] = "1"
 
 ROOT = Path(__file__).parents[2]
-RACES = {  # modules, each with run(folder, rounds, quick)
-    "stage-two": "stage_two",
-    "fit": "whole_fit",
-    "output-error": "output_error",
-    "smoother": "smoother",
+Run = Callable[..., Any]
+RACES = {  # functions run(folder, rounds, quick) that yield results
+    "limits": "limits.run",
+    "samples": "stage_one.run",
+    "stage-one": "stage_one.run_whole",
+    "stage-two": "stage_two.run",
+    "fit": "whole_fit.run",
+    "fit-with-effects": "whole_fit.run_with_effects",
+    "small-fits": "small_fits.run",
+    "output-error": "output_error.run",
+    "smoother": "smoother.run",
 }
+
+
+def find_run(name: str) -> Run:
+    """The race's function."""
+    module, function = RACES[name].split(".")
+    run: Run = getattr(importlib.import_module(f"benchmarks.{module}"), function)
+    return run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -30,6 +45,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("race", nargs="*", metavar="RACE", help=f"{names}; all where none is named")
     parser.add_argument("--rounds", type=int, default=9, help="turns of every contender (9)")
     parser.add_argument("--quick", action="store_true", help="short records, to see that it runs")
+    parser.add_argument(
+        "--baseline",
+        metavar="COMMIT",
+        help="race against that commit's apps; without RACE, nothing else",
+    )
     chosen = parser.parse_args(arguments)
     for name in chosen.race:
         if name not in RACES:
@@ -39,12 +59,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from benchmarks import results  # NumPy starts here
 
     target = ROOT / ("build/benchmark-quick" if chosen.quick else "benchmarks/results")
-    for name in chosen.race or RACES:
-        race = importlib.import_module(f"benchmarks.{RACES[name]}")
+    runs = {name: find_run(name) for name in chosen.race or ([] if chosen.baseline else RACES)}
+    if chosen.baseline:
+        from benchmarks import baseline
+
+        runs["baseline"] = partial(baseline.run, commit=chosen.baseline)
+    for run in runs.values():
+        found = []
         with tempfile.TemporaryDirectory() as folder:
-            found = race.run(Path(folder), max(1, chosen.rounds), chosen.quick)
-        for result in found:
-            print(result.table(), end="\n\n", flush=True)
+            for result in run(Path(folder), max(1, chosen.rounds), chosen.quick):
+                print(result.table(), end="\n\n", flush=True)
+                found.append(result)
         results.write(target, found)
     return 0
 

@@ -8,10 +8,11 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import sepcal
 
+import sepcal
+from benchmarks.limits import instruction_sets
 from benchmarks.numpy_five_hole import HoistedProbe
-from benchmarks.race import ask
+from benchmarks.race import Contender, ask, program
 
 K_ALPHA, K_BETA, ARM = 4.5, 4.5, (0.35, 0.0, -0.02)
 NOISE = (0.15, 0.15, 0.15)  # of vn, ve, vd [m/s]
@@ -22,7 +23,7 @@ COLUMNS = {
     "rho": "rho_kgpm3", "vn": "vn_mps", "ve": "ve_mps", "vd": "vd_mps", "time": "time_s",
     "throttle": "throttle",
 }  # fmt: skip
-HEADER = 24  # doubles, as benchmarks/five_hole_file.hpp has them
+HEADER = 26  # doubles, as benchmarks/five_hole_file.hpp has them
 
 
 @dataclass
@@ -44,8 +45,13 @@ class FiveHoleFlight:
 
     @cached_property
     def found(self) -> np.ndarray:
-        """The best of the samples (10), its noise (3), then all samples: stage one's."""
-        return ask("sepcal", "five-hole", "start", self.write(np.zeros(13), np.empty(0)), 1)[1]
+        """Stage one's best sample (10), its noise (3), how many descents, then all samples."""
+        return ask("sepcal", "five-hole", "start", self.bare, 1)[1]
+
+    @cached_property
+    def bare(self) -> Path:
+        """A file without what is found first."""
+        return self.write(np.zeros(16), np.empty(0))
 
     @property
     def start(self) -> np.ndarray:
@@ -58,21 +64,27 @@ class FiveHoleFlight:
         return self.found[10:13]
 
     @property
+    def descents(self) -> int:
+        """How many of the first points stage one descends from."""
+        return int(self.found[13])
+
+    @property
     def points(self) -> np.ndarray:
         """Stage one's samples of xi2, (S, 5)."""
-        return self.found[13:].reshape(-1, 5)
+        return self.found[14:].reshape(-1, 5)
 
     @cached_property
     def file(self) -> Path:
         """The whole file."""
-        return self.write(self.found[:13], self.found[13:])
+        centres = ask("sepcal", "five-hole", "centres", self.bare, 1)[1]
+        return self.write(np.concatenate([self.found[:14], centres]), self.found[14:])
 
     def write(self, start: np.ndarray, points: np.ndarray) -> Path:
         """The flight for the programs."""
         name = f"{self.noise}_{len(self.hide)}_{self.rows}_{len(points)}.bin"
         header = np.zeros(HEADER)
         header[:10] = [self.rows, len(points) // 5, K_ALPHA, K_BETA, *ARM, *NOISE]
-        header[10:23] = start
+        header[10:26] = start
         with (self.folder / name).open("wb") as file:
             for part in (header, points, *self.columns.values()):
                 np.asarray(part, dtype=float).tofile(file)
@@ -92,5 +104,16 @@ class FiveHoleFlight:
         return errors
 
     def in_errors(self, off: np.ndarray) -> float:
-        """The largest of differences of parameters (10,), in standard errors."""
-        return float(np.abs(off / self.standard_errors).max())
+        """The largest difference of the ten parameters, effects' left out, in standard errors."""
+        return float(np.abs(off[:10] / self.standard_errors).max())
+
+
+def by_sepcal(method: str, flight: FiveHoleFlight, repeats: int) -> list[Contender]:
+    """Sepcal by the widest instruction set that there is, then by each narrower one."""
+    return [
+        Contender(
+            "sepcal" if k == 0 else f"sepcal, {isa}",
+            program("five-hole", method, flight.file, repeats, isa),
+        )
+        for k, isa in enumerate(instruction_sets())
+    ]

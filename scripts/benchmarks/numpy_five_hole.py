@@ -101,7 +101,8 @@ class HoistedProbe:
         J[:, :, 8] = wV * by_beta
         J[:, :, 7] = J[:, :, 8] * self.beta
         J[:, :, 9] = wV * by_eps
-        return J.reshape(-1, 10).copy()
+        whole: Array = J.reshape(-1, 10).copy()
+        return whole
 
     def linear_fit(self, xi2: Array) -> tuple[Array, float]:
         """NumPy's least squares at xi2: xi1 (5,) and the sum of squares, R = I."""
@@ -145,7 +146,8 @@ def alternate(probe: HoistedProbe, x: Array, noise: Array, method: str) -> Array
 
 def sample(probe: HoistedProbe, points: Array) -> Array:
     """The best of the samples of xi2 (S, 5) with its xi1: (10,)."""
-    best, least = points[0], np.inf
+    best: Array = points[0]
+    least = np.inf
     for xi2 in points:
         xi1, square = probe.linear_fit(xi2)
         if square < least:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import statistics
 import subprocess
 import time
@@ -49,22 +50,26 @@ def timed(solve: Callable[[], np.ndarray], repeats: int = 1) -> Run:
     return run
 
 
-def ask(program: str, *arguments: object) -> tuple[float, np.ndarray]:
-    """Seconds and answer of one of the benchmark's programs, which measure themselves."""
+def ask(program: str, *arguments: object, isa: str = "") -> tuple[float, np.ndarray]:
+    """Seconds and answer of one of the benchmark's programs, which measure themselves.
+
+    isa: the instruction set that sepcal is to use instead of the widest.
+    """
     command = [str(BUILD / PROGRAMS[program]), *map(str, arguments)]
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
+    environment = os.environ | ({"SEPCAL_ISA": isa} if isa else {})
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, env=environment)
     numbers = np.array(done.stdout.split(), dtype=float)
     return float(numbers[0]), numbers[1:]
 
 
-def program(problem: str, method: str, file: Path, repeats: int = 10) -> Run:
+def program(problem: str, method: str, file: Path, repeats: int = 10, isa: str = "") -> Run:
     """A contender's `run` by sepcal_benchmark: the fastest of repeats."""
-    return lambda: ask("sepcal", problem, method, file, repeats)
+    return lambda: ask("sepcal", problem, method, file, repeats, isa=isa)
 
 
-def peer(flags: str, method: str, file: Path, repeats: int = 3) -> Run:
+def peer(flags: str, problem: str, method: str, file: Path, repeats: int = 3) -> Run:
     """A contender's `run` by the peers' program for `flags`, plain or native."""
-    return lambda: ask(flags, method, file, repeats)
+    return lambda: ask(flags, problem, method, file, repeats)
 
 
 def race(contenders: list[Contender], rounds: int, budget: float = 20.0) -> None:
@@ -103,6 +108,8 @@ class Result:
     title: str
     unit: str  # of Line.off
     lines: list[Line]
+    notes: list[str] = field(default_factory=list)  # sentences below the table
+    facts: dict[str, float] = field(default_factory=dict)  # numbers that they are made of
 
     def table(self) -> str:
         """Markdown."""
@@ -117,7 +124,7 @@ class Result:
             f"| {one.ratio:.3g} | {one.off:.1g} |"
             for one in self.lines
         ]
-        return "\n".join(rows)
+        return "\n".join([*rows, *(f"\n{note}" for note in self.notes)])
 
     def to_json(self) -> dict[str, Any]:
         """Of plain values."""
@@ -126,6 +133,8 @@ class Result:
             "title": self.title,
             "unit": self.unit,
             "contenders": [vars(one) for one in self.lines],
+            "notes": self.notes,
+            "facts": self.facts,
         }
 
 

@@ -46,7 +46,9 @@ def merge(old: Json, new: list[Result], of: Json) -> Json:
 def result_of(entry: Json) -> Result:
     """The inverse of Result.to_json()."""
     lines = [Line(**one) for one in entry["contenders"]]
-    return Result(entry["race"], entry["title"], entry["unit"], lines)
+    return Result(
+        entry["race"], entry["title"], entry["unit"], lines, entry["notes"], entry["facts"]
+    )
 
 
 def write(folder: Path, new: list[Result]) -> None:

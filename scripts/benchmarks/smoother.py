@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -65,7 +66,7 @@ def by_filterpy(Phi: np.ndarray, Q: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.asarray(smoothed).ravel()
 
 
-def run(folder: Path, rounds: int, quick: bool) -> list[Result]:
+def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
     """One race, short as it is."""
     Phi, Q, y = draw(1)
     samples = np.hstack([Phi.reshape(SAMPLES, -1), Q.reshape(SAMPLES, -1), y])
@@ -81,12 +82,10 @@ def run(folder: Path, rounds: int, quick: bool) -> list[Result]:
     race(contenders, rounds)
     size = float(np.abs(contenders[0].answer).max())
     title = "Filter and smoother, four states, two outputs, 2000 samples at irregular times"
-    return [
-        judge(
-            "smoother",
-            title,
-            contenders,
-            lambda off: float(np.abs(off).max()) / size,
-            "of the largest",
-        )
-    ]
+    yield judge(
+        "smoother",
+        title,
+        contenders,
+        lambda off: float(np.abs(off).max()) / size,
+        "of the largest",
+    )

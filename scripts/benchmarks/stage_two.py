@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.five_hole import NOISE, FiveHoleFlight
+from benchmarks.five_hole import NOISE, FiveHoleFlight, by_sepcal
 from benchmarks.numpy_five_hole import alternate, solve
-from benchmarks.race import Contender, Result, judge, peer, program, race, timed
+from benchmarks.python_peers import python_peers
+from benchmarks.race import Contender, Result, judge, peer, race, timed
 
 CERES = {
     "a row a block": "1",
@@ -24,10 +26,10 @@ def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
     """With R known, or alternated with the parameters."""
     method = "known-noise" if known else "stage-two"
     repeats = 3 if flight.rows < 50_000 else 1
-    all_of_them = [Contender("sepcal", program("five-hole", method, flight.file, 3 * repeats))]
+    all_of_them = by_sepcal(method, flight, 3 * repeats)
     for name, way in CERES.items():
         for flags in ("plain", "native"):
-            run = peer(flags, f"{method}:{way}", flight.file, repeats)
+            run = peer(flags, "five-hole", f"{method}:{way}", flight.file, repeats)
             all_of_them.append(Contender(f"Ceres, {name}, {flags}", run))
     for scipy in ("trf", "lm"):
 
@@ -39,17 +41,15 @@ def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
             return solve(probe, flight.start, scipy)
 
         all_of_them.append(Contender(f"SciPy {scipy}, derivatives by hand", timed(run_scipy)))
-    return all_of_them
+    return all_of_them + (python_peers(flight) if known else [])
 
 
-def run(folder: Path, rounds: int, quick: bool) -> list[Result]:
+def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
     """Both noises, short and long."""
-    results = []
     for rows in (500,) if quick else (5_000, 100_000):
         flight = FiveHoleFlight(folder, rows)
         for known in (True, False):
             racing = contenders(flight, known)
             race(racing, rounds)
             title = f"Stage two alone, {rows:,} rows, R {'known' if known else 'alternated'}"
-            results.append(judge("stage-two", title, racing, flight.in_errors, "standard errors"))
-    return results
+            yield judge("stage-two", title, racing, flight.in_errors, "standard errors")

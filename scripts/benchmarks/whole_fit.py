@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.five_hole import FiveHoleFlight
+from benchmarks.five_hole import FiveHoleFlight, by_sepcal
 from benchmarks.numpy_five_hole import alternate, sample
-from benchmarks.race import Contender, Result, judge, peer, program, race, timed
+from benchmarks.race import Contender, Result, judge, peer, race, timed
 
 
 def by_numpy_and_scipy(flight: FiveHoleFlight) -> np.ndarray:
@@ -23,11 +25,11 @@ def contenders(flight: FiveHoleFlight) -> list[Contender]:
     """The first is sepcal."""
     repeats = 3 if flight.rows < 50_000 else 1
     return [
-        Contender("sepcal", program("five-hole", "fit", flight.file, repeats)),
+        *by_sepcal("fit", flight, repeats),
         *(
             Contender(
                 f"Eigen + Ceres, {name}, {flags}",
-                peer(flags, f"fit:{way}", flight.file, repeats),
+                peer(flags, "five-hole", f"fit:{way}", flight.file, repeats),
             )
             for name, way in {"automatic": "50", "by hand": "50-by-hand"}.items()
             for flags in ("plain", "native")
@@ -36,24 +38,35 @@ def contenders(flight: FiveHoleFlight) -> list[Contender]:
     ]
 
 
-def run(folder: Path, rounds: int, quick: bool) -> list[Result]:
+def contenders_with_effects(flight: FiveHoleFlight) -> list[Contender]:
+    """Two effects join at run time: wind that drifts, a pressure that follows the throttle."""
+    repeats = 3 if flight.rows < 50_000 else 1
+    return by_sepcal("fit-with-effects", flight, repeats) + [
+        Contender(
+            f"Eigen + Ceres, automatic, {flags}",
+            peer(flags, "five-hole", "fit-with-effects", flight.file, repeats),
+        )
+        for flags in ("plain", "native")
+    ]
+
+
+def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
     """White and pink noise; a million rows of white."""
-    flights = (
-        [(500, "white")]
-        if quick
-        else [
-            (5_000, "white"),
-            (5_000, "pink"),
-            (100_000, "white"),
-            (100_000, "pink"),
-            (1_000_000, "white"),
-        ]
-    )
-    results = []
-    for rows, noise in flights:
+    flights = [(5_000, "white"), (5_000, "pink"), (100_000, "white"), (100_000, "pink")]
+    for rows, noise in [(500, "white")] if quick else [*flights, (1_000_000, "white")]:
         flight = FiveHoleFlight(folder, rows, noise)
         racing = contenders(flight)
         race(racing, rounds)
         title = f"The whole fit, {rows:,} rows, {noise} noise"
-        results.append(judge("fit", title, racing, flight.in_errors, "standard errors"))
-    return results
+        yield judge("fit", title, racing, flight.in_errors, "standard errors")
+
+
+def run_with_effects(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+    """White and pink noise."""
+    for rows, noise in [(500, "white")] if quick else product((5_000, 100_000), ("white", "pink")):
+        hidden = {"propwash": 40.0, "wind_drift": 0.01}
+        flight = FiveHoleFlight(folder, rows, noise, hidden)
+        racing = contenders_with_effects(flight)
+        race(racing, rounds)
+        title = f"The whole fit with two effects, {rows:,} rows, {noise} noise"
+        yield judge("fit-with-effects", title, racing, flight.in_errors, "standard errors")

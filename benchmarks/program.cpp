@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "clock.hpp"
+#include "program.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -40,6 +40,22 @@ std::vector<double> read_doubles(const char* name) {
   file.seekg(0);
   file.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(bytes));
   return numbers;
+}
+
+int run_problem(const std::map<std::string, RunProblem>& problems, int count, char** arguments) {
+  const auto problem = problems.find(count == 5 ? arguments[1] : "");
+  if (problem == problems.end()) {
+    std::fprintf(stderr, "usage: %s PROBLEM METHOD FILE REPEATS, PROBLEM one of", arguments[0]);
+    for (const auto& [name, run] : problems) std::fprintf(stderr, " %s", name.c_str());
+    std::fprintf(stderr, "\n");
+    return 2;
+  }
+  const std::string method = arguments[2];
+  const std::string file = arguments[3];
+  const auto numbers = file == "-" ? std::vector<double>() : read_doubles(file.c_str());
+  const bool known = problem->second(method, numbers, std::atoi(arguments[4]));
+  if (!known) std::fprintf(stderr, "%s: no method '%s'\n", arguments[0], method.c_str());
+  return known ? 0 : 2;
 }
 
 }  // namespace benchmark

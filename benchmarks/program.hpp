@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,14 @@ void report(int repeats, const std::function<Answer()>& run);
 
 /// All doubles of a binary file. Ends the program where it can't be read.
 std::vector<double> read_doubles(const char* name);
+
+/// Solves a problem by a method and reports; `numbers` are those of a file. Returns false for
+/// another method.
+using RunProblem = bool (*)(const std::string& method, const std::vector<double>& numbers,
+                            int repeats);
+
+/// A program's main(): its arguments are PROBLEM METHOD FILE REPEATS, FILE - for none. Returns the
+/// exit code.
+int run_problem(const std::map<std::string, RunProblem>& problems, int count, char** arguments);
 
 }  // namespace benchmark

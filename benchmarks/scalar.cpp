@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sepcal on many small problems: trials of scalar example 1, a fit each.
+#include "benchmark.hpp"
+#include "sepcal/fit.hpp"
+#include "sepcal/models/scalar_examples.hpp"
+#include "trials_file.hpp"
+
+namespace benchmark {
+namespace {
+
+Answer fit_each(const TrialsFile& file, const sepcal::FitOptions& options) {
+  const sepcal::StaticModel model(sepcal::ScalarExample1{});
+  Answer answer;
+  for (std::size_t trial = 0; trial < file.trials; ++trial) {
+    sepcal::Record record;
+    record.view("eta", file.eta).view("z", file.z(trial));
+    const sepcal::Fit fit = sepcal::fit(model, record, options);
+    for (const sepcal::Parameter& parameter : fit.parameters) answer.push_back(parameter.value);
+  }
+  return answer;
+}
+
+}  // namespace
+
+bool run_scalar(const std::string& method, const std::vector<double>& numbers, int repeats) {
+  const TrialsFile file(numbers);
+  sepcal::FitOptions options;
+  options.threads = 1;
+  if (method == "no-samples" || method == "no-samples-white") options.samples = 0;
+  if (method == "no-samples-white") options.coloured_errors = false;
+  if (method != "default" && options.samples != 0) return false;
+  report(repeats, [&] { return fit_each(file, options); });
+  return true;
+}
+
+}  // namespace benchmark

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many small fits: trials of scalar example 1, z = (1 + a) cos(eta + b) + c."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from benchmarks.race import Contender, Result, judge, peer, program, race, timed
+
+ROWS, NOISE = 100, 0.1
+TRUTH = (0.3, 1.0, 0.2)  # a, c, b
+
+
+def draw(trials: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Eta (N,) and z (trials, N)."""
+    eta = np.linspace(0.0, 10.0, ROWS)
+    a, c, b = TRUTH
+    noise = NOISE * np.random.default_rng(seed).standard_normal((trials, ROWS))
+    return eta, (1.0 + a) * np.cos(eta + b) + c + noise
+
+
+def by_scipy(eta: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """A fit each by MINPACK, the Jacobian by hand."""
+    answers = []
+    for reading in z:
+
+        def residuals(x: np.ndarray, reading: np.ndarray = reading) -> np.ndarray:
+            off: np.ndarray = reading - ((1.0 + x[0]) * np.cos(eta + x[2]) + x[1])
+            return off
+
+        def jacobian(x: np.ndarray) -> np.ndarray:
+            J = np.empty((ROWS, 3))
+            J[:, 0] = -np.cos(eta + x[2])
+            J[:, 1] = -1.0
+            J[:, 2] = (1.0 + x[0]) * np.sin(eta + x[2])
+            return J
+
+        found = least_squares(residuals, np.zeros(3), jac=jacobian, method="lm", ftol=1e-10)
+        answers.append(found.x)
+    return np.concatenate(answers)
+
+
+def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+    """One table: the first is the default fit."""
+    trials = 10 if quick else 200
+    eta, z = draw(trials, 1)
+    file = folder / "trials.bin"
+    np.concatenate([[trials, ROWS], eta, z.ravel()]).tofile(file)
+    racing = [
+        Contender("sepcal, default", program("scalar", "default", file, 1)),
+        Contender("sepcal, no samples", program("scalar", "no-samples", file, 1)),
+        Contender(
+            "sepcal, no samples, white noise", program("scalar", "no-samples-white", file, 3)
+        ),
+        Contender("SciPy lm, derivatives by hand", timed(lambda: by_scipy(eta, z))),
+    ]
+    racing += [
+        Contender(f"Ceres, {name}, {flags}", peer(flags, "scalar", method, file, 3))
+        for name, method in {"one block": "ceres", "TinySolver": "tiny-solver"}.items()
+        for flags in ("plain", "native")
+    ]
+    race(racing, rounds)
+    errors = NOISE / np.sqrt(ROWS)  # about
+    result = judge(
+        "small-fits",
+        f"{trials} fits of scalar example 1, {ROWS} rows each",
+        racing,
+        lambda off: float(np.abs(off).max()) / errors,
+        "standard errors",
+    )
+    for line in result.lines:
+        result.facts[f"fits a second.{line.name}"] = trials / line.median
+    told = ", ".join(f"{trials / one.median:,.0f} ({one.name})" for one in result.lines)
+    result.notes.append(f"Fits a second: {told}.")
+    yield result
