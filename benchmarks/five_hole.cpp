@@ -2,6 +2,7 @@
 // sepcal on a five-hole flight: the whole fit, and its stages by themselves.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "benchmark.hpp"
 #include "counting.hpp"
@@ -29,8 +30,8 @@ Record record_of(const FiveHoleFile& file) {
   using F = FiveHoleFile;
   Record record;
   int which = F::roll;
-  for (const char* name :
-       {"roll", "pitch", "yaw", "p", "q", "r", "pt", "ps", "dpa", "dpb", "rho", "vn", "ve", "vd"}) {
+  for (const char* name : {"roll", "pitch", "yaw", "p", "q", "r", "pt", "ps", "dpa", "dpb", "rho",
+                           "vn", "ve", "vd", "time", "throttle"}) {
     record.view(name, {file.column(static_cast<F::Column>(which++)), file.rows});
   }
   return record;
@@ -197,6 +198,9 @@ bool run_five_hole(const std::string& method, const std::vector<double>& numbers
     report(repeats, [&] { return stage_two(model, record, file, options); });
   } else if (method == "known-noise") {
     report(repeats, [&] { return stage_two(model, record, file, known); });
+  } else if (method.starts_with("wall-")) {  // and how many threads
+    options.threads = std::atoi(method.c_str() + 5);
+    report_wall([&] { return values_of(sepcal::fit(model, record, options)); });
   } else if (method == "fit") {
     report(repeats, [&] { return values_of(sepcal::fit(model, record, options)); });
   } else {

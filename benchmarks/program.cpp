@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -16,6 +17,16 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+namespace {
+
+void print(double seconds, const Answer& answer) {
+  std::printf("%.9g", seconds);
+  for (const double number : answer) std::printf(" %.17g", number);
+  std::printf("\n");
+}
+
+}  // namespace
+
 void report(int repeats, const std::function<Answer()>& run) {
   double fastest = std::numeric_limits<double>::infinity();
   Answer answer;
@@ -24,9 +35,14 @@ void report(int repeats, const std::function<Answer()>& run) {
     answer = run();
     fastest = std::min(fastest, thread_seconds() - begin);
   }
-  std::printf("%.9g", fastest);
-  for (const double number : answer) std::printf(" %.17g", number);
-  std::printf("\n");
+  print(fastest, answer);
+}
+
+void report_wall(const std::function<Answer()>& run) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer = run();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  print(took.count(), answer);
 }
 
 std::vector<double> read_doubles(const char* name) {

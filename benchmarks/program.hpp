@@ -17,6 +17,9 @@ double thread_seconds();
 /// Runs a method `repeats` times; prints the seconds of the fastest and its answer in one line.
 void report(int repeats, const std::function<Answer()>& run);
 
+/// The same once, by the clock on the wall: of what runs on several threads.
+void report_wall(const std::function<Answer()>& run);
+
 /// All doubles of a binary file. Ends the program where it can't be read.
 std::vector<double> read_doubles(const char* name);
 

@@ -7,6 +7,7 @@ int main(int count, char** arguments) {
   return benchmark::run_problem(
       {
           {"five-hole", benchmark::run_five_hole_peers},
+          {"output-error", benchmark::run_output_error_peers},
           {"scalar", benchmark::run_scalar_peers},
       },
       count, arguments);

@@ -15,6 +15,10 @@ namespace benchmark {
 bool run_five_hole_peers(const std::string& method, const std::vector<double>& numbers,
                          int repeats);
 
+/// Output error of a short period by ceres; numbers and answer as in benchmark.hpp.
+bool run_output_error_peers(const std::string& method, const std::vector<double>& numbers,
+                            int repeats);
+
 /// Trials of scalar example 1 (trials_file.hpp), by ceres or tiny-solver; the answer: a, c, b.
 bool run_scalar_peers(const std::string& method, const std::vector<double>& numbers, int repeats);
 

@@ -24,8 +24,10 @@ RACES = {  # functions run(folder, rounds, quick) that yield results
     "stage-one": "stage_one.run_whole",
     "stage-two": "stage_two.run",
     "fit": "whole_fit.run",
+    "long-fit": "whole_fit.run_long",
     "fit-with-effects": "whole_fit.run_with_effects",
     "small-fits": "small_fits.run",
+    "growth": "growth.run",
     "output-error": "output_error.run",
     "smoother": "smoother.run",
 }

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import least_squares
 
-from benchmarks.race import Contender, Result, judge, program, race, timed
+from benchmarks.race import Contender, Result, judge, peer, program, race, timed
 
 ROWS, INTERVAL, AIRSPEED = 1000, 0.02, 25.0
 NOISE = np.array([0.005, 0.01, 0.15])  # alpha [rad], q [rad/s], az [m/s^2]
@@ -135,7 +135,13 @@ def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
         Contender("sepcal from the same start", program("output-error", "start", file)),
         Contender("sepcal from no start", program("output-error", "no-start", file, 2)),
         Contender("the same, with coloured errors", program("output-error", "coloured", file, 2)),
-        Contender("Ceres, automatic derivatives", program("output-error", "ceres", file)),
+        *(
+            Contender(
+                f"Ceres, automatic derivatives, {flags}",
+                peer(flags, "output-error", "ceres", file, 10),
+            )
+            for flags in ("plain", "native")
+        ),
         Contender("SciPy, Runge-Kutta by rows", timed(lambda: by_scipy(t, u, z))),
     ]
     race(contenders, rounds)

@@ -113,6 +113,8 @@ class Result:
 
     def table(self) -> str:
         """Markdown."""
+        if not self.lines:
+            return "\n\n".join([f"**{self.title}**", *self.notes])
         rows = [
             f"**{self.title}**",
             "",

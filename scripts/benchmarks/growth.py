@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the time of a whole default fit of the five-hole probe grows: with rows, samples, threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.five_hole import FiveHoleFlight
+from benchmarks.race import Contender, Result, ask, judge, program, race
+
+ROWS = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
+MOST_ROWS = 10_000_000
+SAMPLES = (100, 200, 500, 1_000, 2_000, 5_000)
+BYTES_A_ROW = 700  # of the simulation, the file and the fit together
+
+
+def available_bytes() -> int:
+    """Memory that nobody uses."""
+    return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+def measure(title: str, contenders: list[Contender], rounds: int, counts: list[int]) -> Result:
+    """The times by what is counted, as facts too."""
+    race(contenders, rounds)
+    result = judge("growth", title, contenders, lambda off: 0.0, "not compared")
+    result.facts |= {
+        str(count): line.median for count, line in zip(counts, result.lines, strict=True)
+    }
+    return result
+
+
+def with_rows(folder: Path, rounds: int, lengths: list[int]) -> Result:
+    """500 samples each."""
+    contenders = []
+    for rows in lengths:
+        file = FiveHoleFlight(folder, rows).bare
+        contenders.append(Contender(f"{rows:,} rows", program("five-hole", "fit", file, 1)))
+    return measure("Growth with rows, 500 samples", contenders, rounds, lengths)
+
+
+def with_samples(folder: Path, rounds: int, rows: int) -> Result:
+    """One flight."""
+    flight = FiveHoleFlight(folder, rows)
+    contenders = []
+    for count in SAMPLES:
+        file = flight.write(np.zeros(16), np.zeros(5 * count))
+        contenders.append(Contender(f"{count:,} samples", program("five-hole", "fit", file, 1)))
+    title = f"Growth with samples, {rows:,} rows"
+    return measure(title, contenders, rounds, list(SAMPLES))
+
+
+def with_threads(folder: Path, rounds: int, rows: int) -> Result:
+    """Wall time, of the cores that there are."""
+    file = FiveHoleFlight(folder, rows).bare
+    cores = set(range(os.cpu_count() or 1))
+    counts = [count for count in (1, 2, 4, 8, 16) if count <= len(cores)]
+    pinned = os.sched_getaffinity(0)
+    contenders = [
+        Contender(
+            f"{count} thread{'s' if count > 1 else ''}",
+            lambda count=count: ask("sepcal", "five-hole", f"wall-{count}", file, 1),  # type: ignore[misc]
+        )
+        for count in counts
+    ]
+    os.sched_setaffinity(0, cores)
+    try:
+        result = measure(f"Wall time by threads, {rows:,} rows", contenders, rounds, counts)
+    finally:
+        os.sched_setaffinity(0, pinned)
+    return replace(result, notes=["Of the clock on the wall, so that other load counts too."])
+
+
+def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+    """Three tables."""
+    lengths = [500, 1_000] if quick else list(ROWS)
+    if not quick and available_bytes() > MOST_ROWS * BYTES_A_ROW:
+        lengths += [3_000_000, MOST_ROWS]
+    yield with_rows(folder, rounds, lengths)
+    yield with_samples(folder, rounds, 500 if quick else 5_000)
+    if hasattr(os, "sched_setaffinity"):
+        yield with_threads(folder, rounds, 500 if quick else 100_000)
