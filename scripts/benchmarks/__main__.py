@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -18,7 +19,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 ROOT = Path(__file__).parents[2]
 Run = Callable[..., Any]
-RACES = {  # functions run(folder, rounds, quick) that yield results
+RACES = {  # functions run(folder, rounds, longest) that yield results
     "limits": "limits.run",
     "samples": "stage_one.run",
     "stage-one": "stage_one.run_whole",
@@ -47,6 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("race", nargs="*", metavar="RACE", help=f"{names}; all where none is named")
     parser.add_argument("--rounds", type=int, default=9, help="turns of every contender (9)")
     parser.add_argument("--quick", action="store_true", help="short records, to see that it runs")
+    parser.add_argument("--longest", type=int, metavar="ROWS", help="leaves out longer records")
     parser.add_argument(
         "--baseline",
         metavar="COMMIT",
@@ -59,7 +61,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     from benchmarks import results  # NumPy starts here
+    from benchmarks.race import QUICK
 
+    longest = QUICK if chosen.quick else chosen.longest or sys.maxsize
     target = ROOT / ("build/benchmark-quick" if chosen.quick else "benchmarks/results")
     runs = {name: find_run(name) for name in chosen.race or ([] if chosen.baseline else RACES)}
     if chosen.baseline:
@@ -69,10 +73,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for run in runs.values():
         found = []
         with tempfile.TemporaryDirectory() as folder:
-            for result in run(Path(folder), max(1, chosen.rounds), chosen.quick):
+            for result in run(Path(folder), max(1, chosen.rounds), longest):
                 print(result.table(), end="\n\n", flush=True)
                 found.append(result)
-        results.write(target, found)
+                results.write(target, found)
     return 0
 
 

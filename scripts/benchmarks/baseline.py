@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.race import Contender, Result, judge, race
+from benchmarks.race import Contender, Result, judge, lengths_within, race
 
 ROOT = Path(__file__).parents[2]
 NOW = ROOT / "build" / "apps"
@@ -35,7 +35,8 @@ def spend(command: list[str]) -> Spent:
     """Runs to the end; raises where it says that its input is bad."""
     child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     assert child.stderr
-    told = child.stderr.read().decode()
+    with child.stderr as pipe:
+        told = pipe.read().decode()
     _, status, usage = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)
     if child.returncode not in FINDS:
@@ -95,16 +96,16 @@ def race_task(task: Task, folder: Path, older: dict[str, Path], rounds: int) -> 
     return result
 
 
-def tasks(folder: Path, quick: bool) -> Iterator[Task]:
+def tasks(folder: Path, longest: int) -> Iterator[Task]:
     """Their files are simulated by this checkout."""
     pitot, mag = str(NOW / "sepcal-pitot"), str(NOW / "sepcal-mag")
-    lengths = (500, 1_000) if quick else (5_000, 100_000)
+    lengths = lengths_within(longest, (5_000, 100_000))
     for rows in lengths:
         log = str(folder / f"{rows}.csv")
         spend([pitot, "simulate", "-o", log, "--rows", str(rows), "--seed", "1"])
         fit = ["fit", log, *PROBE, "--threads", "1", "-o", "{out}"]
         yield Task(f"sepcal-pitot fit, {rows:,} rows", "sepcal-pitot", fit, of_parameters)
-    rows = 1_000 if quick else 37_000
+    rows = lengths_within(longest, (37_000,))[0]
     log = str(folder / "turns.csv")
     spend([mag, "simulate", "-o", log, "--rows", str(rows), "--seed", "1"])
     fit = ["fit", log, "--field-strength", str(FIELD), "--threads", "1", "-o", "{out}"]
@@ -120,8 +121,8 @@ def tasks(folder: Path, quick: bool) -> Iterator[Task]:
     yield Task(title, "sepcal-pitot", diagnose, of_effects)
 
 
-def run(folder: Path, rounds: int, quick: bool, commit: str) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int, commit: str) -> Iterator[Result]:
     """`commit`, whose apps scripts/benchmark has built; the shares of reading a file are in all."""
     older = {commit: ROOT / "build" / f"baseline-{commit}" / "apps"}
-    for task in tasks(folder, quick):
+    for task in tasks(folder, longest):
         yield race_task(task, folder, older, rounds)

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.five_hole import FiveHoleFlight
-from benchmarks.race import Contender, Result, ask, judge, program, race
+from benchmarks.race import Contender, Result, ask, judge, lengths_within, program, race
 
-ROWS = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
-MOST_ROWS = 10_000_000
+ROWS = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000)
+ALWAYS_ROWS = 1_000_000  # longer ones only where there is memory for them
 SAMPLES = (100, 200, 500, 1_000, 2_000, 5_000)
 BYTES_A_ROW = 700  # of the simulation, the file and the fit together
 
@@ -75,12 +75,14 @@ def with_threads(folder: Path, rounds: int, rows: int) -> Result:
     return replace(result, notes=["Of the clock on the wall, so that other load counts too."])
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """Three tables."""
-    lengths = [500, 1_000] if quick else list(ROWS)
-    if not quick and available_bytes() > MOST_ROWS * BYTES_A_ROW:
-        lengths += [3_000_000, MOST_ROWS]
+    lengths = [
+        rows
+        for rows in lengths_within(longest, ROWS)
+        if rows <= ALWAYS_ROWS or available_bytes() > rows * BYTES_A_ROW
+    ]
     yield with_rows(folder, rounds, lengths)
-    yield with_samples(folder, rounds, 500 if quick else 5_000)
+    yield with_samples(folder, rounds, lengths_within(longest, (5_000,))[0])
     if hasattr(os, "sched_setaffinity"):
-        yield with_threads(folder, rounds, 500 if quick else 100_000)
+        yield with_threads(folder, rounds, lengths_within(longest, (100_000,))[0])

@@ -35,7 +35,7 @@ def instruction_sets() -> list[str]:
     return list(reversed(measure().operations))
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """No race: numbers alone."""
     limits = measure()
     gigas = {name: peak / 1e9 for name, peak in limits.operations.items()}

@@ -126,7 +126,7 @@ def by_scipy(t: np.ndarray, u: np.ndarray, z: np.ndarray) -> np.ndarray:
     return np.asarray(found.x)
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """One race, short as it is."""
     t, u, z = fly(1)
     file = folder / "short_period.bin"

@@ -20,7 +20,13 @@ PROGRAMS = {
     "native": "sepcal_benchmark_peers_native",
 }
 BUILD = Path(__file__).parents[2] / "build" / "benchmarks"
+QUICK = 500  # rows, with which everything is over in a minute
 Run = Callable[[], tuple[float, np.ndarray]]
+
+
+def lengths_within(longest: int, lengths: tuple[int, ...]) -> list[int]:
+    """Those that are not too long; where all are, one that is short enough to be quick."""
+    return [one for one in lengths if one <= longest] or [QUICK]
 
 
 @dataclass

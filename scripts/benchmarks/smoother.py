@@ -66,7 +66,7 @@ def by_filterpy(Phi: np.ndarray, Q: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.asarray(smoothed).ravel()
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """One race, short as it is."""
     Phi, Q, y = draw(1)
     samples = np.hstack([Phi.reshape(SAMPLES, -1), Q.reshape(SAMPLES, -1), y])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from benchmarks.five_hole import FiveHoleFlight, by_sepcal
 from benchmarks.limits import instruction_sets, measure
 from benchmarks.numpy_five_hole import sample
-from benchmarks.race import Contender, Result, ask, judge, peer, race, timed
+from benchmarks.race import Contender, Result, ask, judge, lengths_within, peer, race, timed
 
 LENGTHS = (5_000, 100_000)
 
@@ -75,16 +76,15 @@ def race_stage_one(flight: FiveHoleFlight, rounds: int) -> Result:
     return judge("stage-one", title, racing, flight.in_errors, "standard errors")
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """Samples alone."""
-    for rows in (500,) if quick else LENGTHS:
+    for rows in lengths_within(longest, LENGTHS):
         yield race_samples(FiveHoleFlight(folder, rows), rounds)
 
 
-def run_whole(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run_whole(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """Samples and descents, white noise and pink."""
-    for rows in (500,) if quick else LENGTHS:
-        for noise in ("white",) if quick else ("white", "pink"):
-            result = race_stage_one(FiveHoleFlight(folder, rows, noise), rounds)
-            result.title += f", {noise} noise"
-            yield result
+    for rows, noise in product(lengths_within(longest, LENGTHS), ("white", "pink")):
+        result = race_stage_one(FiveHoleFlight(folder, rows, noise), rounds)
+        result.title += f", {noise} noise"
+        yield result

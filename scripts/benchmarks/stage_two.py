@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.five_hole import NOISE, FiveHoleFlight, by_sepcal
 from benchmarks.numpy_five_hole import alternate, solve
 from benchmarks.python_peers import python_peers
-from benchmarks.race import Contender, Result, judge, peer, race, timed
+from benchmarks.race import Contender, Result, judge, lengths_within, peer, race, timed
 
 CERES = {
     "a row a block": "1",
@@ -44,9 +44,9 @@ def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
     return all_of_them + (python_peers(flight) if known else [])
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """Both noises, short and long."""
-    for rows in (500,) if quick else (5_000, 100_000):
+    for rows in lengths_within(longest, (5_000, 100_000)):
         flight = FiveHoleFlight(folder, rows)
         for known in (True, False):
             racing = contenders(flight, known)

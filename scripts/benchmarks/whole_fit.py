@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.five_hole import FiveHoleFlight, by_sepcal
 from benchmarks.numpy_five_hole import alternate, sample
-from benchmarks.race import Contender, Result, judge, peer, race, timed
+from benchmarks.race import Contender, Result, judge, lengths_within, peer, race, timed
 
 BRIEF = ("sepcal", "Eigen + Ceres, by hand, native", "NumPy + SciPy")
 
@@ -60,24 +60,24 @@ def race_fit(flight: FiveHoleFlight, racing: list[Contender], rounds: int) -> Re
     return judge("fit", title, racing, flight.in_errors, "standard errors")
 
 
-def run(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """White and pink noise."""
-    for rows, noise in [(500, "white")] if quick else product((5_000, 100_000), ("white", "pink")):
+    for rows, noise in product(lengths_within(longest, (5_000, 100_000)), ("white", "pink")):
         flight = FiveHoleFlight(folder, rows, noise)
         yield race_fit(flight, contenders(flight), rounds)
 
 
-def run_long(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run_long(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """A million rows of white noise; of each kind of peer the fastest there."""
-    flight = FiveHoleFlight(folder, 1_000 if quick else 1_000_000)
+    flight = FiveHoleFlight(folder, lengths_within(longest, (1_000_000,))[0])
     brief = [one for one in contenders(flight) if one.name in BRIEF]
     result = race_fit(flight, brief, rounds)
     yield replace(result, race="long-fit")
 
 
-def run_with_effects(folder: Path, rounds: int, quick: bool) -> Iterator[Result]:
+def run_with_effects(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """White and pink noise."""
-    for rows, noise in [(500, "white")] if quick else product((5_000, 100_000), ("white", "pink")):
+    for rows, noise in product(lengths_within(longest, (5_000, 100_000)), ("white", "pink")):
         hidden = {"propwash": 40.0, "wind_drift": 0.01}
         flight = FiveHoleFlight(folder, rows, noise, hidden)
         racing = contenders_with_effects(flight)

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks import baseline, pages, results
 from benchmarks.numpy_five_hole import HoistedProbe
-from benchmarks.race import Contender, Line, Result, judge, race, show_time
+from benchmarks.race import Contender, Line, Result, judge, lengths_within, race, show_time
 from benchmarks.small_fits import by_least_squares, by_leastsq, draw, fit_each
 
 
@@ -163,3 +163,8 @@ def test_answers_of_apps_are_in_standard_errors():
     ]
     assert list(baseline.of_parameters({"parameters": {"x": parameter}})) == [2.0]
     assert list(baseline.of_effects({"effects": effects})) == [0.25, 2.0]
+
+
+def test_records_that_are_too_long_are_left_out():
+    assert lengths_within(10_000, (5_000, 100_000)) == [5_000]
+    assert lengths_within(10, (5_000, 100_000)) == [500]
