@@ -51,11 +51,12 @@ def of_parameters(calibration: dict[str, Any]) -> np.ndarray:
 
 
 def of_effects(diagnosis: dict[str, Any]) -> np.ndarray:
-    """Coefficients over their standard errors, effects by name."""
+    """Coefficients over their standard errors, effects by name; NaN where one can't be seen."""
     ratios = []
     for effect in sorted(diagnosis["effects"], key=lambda one: str(one["name"])):
-        for name, value in (effect["estimate"] or {}).items():
-            ratios.append(value / effect["standard_error"][name])
+        for name, value in effect["estimate"].items():
+            error = effect["standard_error"][name]
+            ratios.append(float("nan") if value is None else value / error)
     return np.array(ratios)
 
 

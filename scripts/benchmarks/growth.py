@@ -27,7 +27,7 @@ def available_bytes() -> int:
 def measure(title: str, contenders: list[Contender], rounds: int, counts: list[int]) -> Result:
     """The times by what is counted, as facts too."""
     race(contenders, rounds)
-    result = judge("growth", title, contenders, lambda off: 0.0, "not compared")
+    result = judge("growth", title, contenders, lambda off: 0.0, "")
     result.facts |= {
         str(count): line.median for count, line in zip(counts, result.lines, strict=True)
     }

@@ -31,7 +31,7 @@ def test_contenders_run_in_turns():
 
 def test_who_has_used_the_budget_rests():
     contender = Contender("slow", scripted(1.0, 1.0, 1.0))
-    race([contender], 3, budget=0.0)
+    race([contender], 3, budget=-1.0)
     assert contender.seconds == [1.0]
 
 
@@ -65,6 +65,14 @@ def test_a_result_is_read_back_from_json():
 
 def test_a_table_ends_with_its_notes():
     assert result("r").table().splitlines()[-1] == "a note."
+
+
+def test_answers_that_are_not_compared_have_no_column():
+    compared = result("r")
+    assert "| answer differs by, m |" in compared.table()
+    assert "| ours | 500 ms | 1 s | 3 | 1 | 0 |" in compared.table()
+    compared.unit = ""
+    assert "| ours | 500 ms | 1 s | 3 | 1 |\n" in compared.table()
 
 
 def test_races_that_were_not_run_keep_their_results(tmp_path):
@@ -160,9 +168,11 @@ def test_answers_of_apps_are_in_standard_errors():
     effects = [
         {"name": "b", "estimate": {"b.s": 4.0}, "standard_error": {"b.s": 2.0}},
         {"name": "a", "estimate": {"a.s": 1.0}, "standard_error": {"a.s": 4.0}},
+        {"name": "c", "estimate": {"c.s": None}, "standard_error": {"c.s": None}},
     ]
     assert list(baseline.of_parameters({"parameters": {"x": parameter}})) == [2.0]
-    assert list(baseline.of_effects({"effects": effects})) == [0.25, 2.0]
+    found = baseline.of_effects({"effects": effects})
+    np.testing.assert_array_equal(found, [0.25, 2.0, np.nan])
 
 
 def test_records_that_are_too_long_are_left_out():
