@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "base/aligned_doubles.hpp"
 #include "base/thread_pool.hpp"
 #include "flights_with_effects.hpp"
 #include "model/fixed_model.hpp"
@@ -44,7 +45,7 @@ using sepcal::test::Simulated;
 
 namespace {
 
-using AlignedDoubles = std::vector<double, Eigen::aligned_allocator<double>>;
+using sepcal::base::AlignedDoubles;
 
 std::vector<const LaneKit*> all_kits() {
   std::vector<const LaneKit*> kits;

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "model/sweep.hpp"
 #include "simulated_records.hpp"
 
 namespace row_lanes_test {
@@ -20,8 +21,10 @@ constexpr Index columns = 6;
 double off(const std::vector<MatrixXd>& blocks) {
   RowLanes lanes(columns);
   TriangularFactor expected(columns);
+  sepcal::model::RowScratch scratch;
   for (const MatrixXd& block : blocks) {
-    MatrixXd by_lanes = block;
+    auto by_lanes = scratch.shape(block.rows(), columns);
+    by_lanes = block;
     MatrixXd by_rows = block;
     lanes.absorb(by_lanes);
     expected.absorb(by_rows);
@@ -56,7 +59,9 @@ TEST_CASE("a column may be zero in all rows, or in the first of them only, or fr
 
 TEST_CASE("a number that is not finite is seen wherever it stands") {
   sepcal::test::Draws draws(93);
-  MatrixXd rows = draws.normal_matrix(64, columns);
+  sepcal::model::RowScratch scratch;
+  auto rows = scratch.shape(64, columns);
+  rows = draws.normal_matrix(64, columns);
   rows.col(2).setZero();
   rows(40, 2) = sepcal::not_a_number;
   RowLanes lanes(columns);

@@ -2,11 +2,30 @@
 // Doubles that registers of any width load and store.
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
+#include <new>
 #include <vector>
 
 namespace sepcal::base {
 
-using AlignedDoubles = std::vector<double, Eigen::aligned_allocator<double>>;
+template <class T>
+struct WidestAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t alignment{64};
+
+  WidestAllocator() = default;
+  template <class U>
+  WidestAllocator(const WidestAllocator<U>& /*other*/) {}  // NOLINT: as containers ask for it
+
+  T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new(count * sizeof(T), alignment));
+  }
+  void deallocate(T* values, std::size_t /*count*/) noexcept {
+    ::operator delete(values, alignment);
+  }
+  friend bool operator==(const WidestAllocator&, const WidestAllocator&) { return true; }
+};
+
+using AlignedDoubles = std::vector<double, WidestAllocator<double>>;
 
 }  // namespace sepcal::base

@@ -66,10 +66,10 @@ void Sweep::for_each_block(const Visit& visit) const {
   pool_.for_each(chunks.size(), [&](std::size_t c) {
     const auto carry = model_.new_carry();
     std::vector<const double*> pointers;
-    MatrixXd rows;
+    RowScratch scratch;
     for (const Measurements::Range& range : chunks[c]) {
       base::heed_stop();
-      visit(c, range, measurements_.block(range, pointers), carry.get(), rows);
+      visit(c, range, measurements_.block(range, pointers), carry.get(), scratch);
     }
   });
 }
@@ -80,12 +80,12 @@ Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
   if (RowLanes::take(columns)) {
     std::vector<std::vector<RowLanes>> lanes(
         chunks, std::vector<RowLanes>(static_cast<std::size_t>(n_z), RowLanes(columns)));
-    for_each_block(
-        [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-          rows.resize(n_z * rows_of(range), columns);
-          fill(block, range, carry, rows);
-          absorb_by_output(rows, rows_of(range), lanes[c]);
-        });
+    for_each_block([&](std::size_t c, const auto& range, const Block& block, Carry* carry,
+                       RowScratch& scratch) {
+      auto rows = scratch.shape(n_z * rows_of(range), columns);
+      fill(block, range, carry, rows);
+      absorb_by_output(rows, rows_of(range), lanes[c]);
+    });
     std::vector<Factors> parts(chunks);
     bool safe = true;
     for (std::size_t c = 0; c < chunks; ++c) {
@@ -98,8 +98,8 @@ Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
   }
   std::vector<Factors> parts = empty_factors(chunks, n_z, columns);
   for_each_block(
-      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-        rows.resize(n_z * rows_of(range), columns);
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
+        auto rows = scratch.shape(n_z * rows_of(range), columns);
         fill(block, range, carry, rows);
         absorb_by_output(rows, rows_of(range), parts[c]);
       });
@@ -111,9 +111,8 @@ std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
     ++values_passes_;
     return factor_blocks(
         tables().n_1() + 1,
-        [&](const Block& block, const Measurements::Range& range, Carry* carry, MatrixXd& rows) {
-          fill_linear(block, range, xi2.data(), carry, rows);
-        });
+        [&](const Block& block, const Measurements::Range& range, Carry* carry,
+            Ref<MatrixXd> rows) { fill_linear(block, range, xi2.data(), carry, rows); });
   });
 }
 
@@ -125,9 +124,8 @@ std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
     ++tangent_passes_;
     return factor_blocks(
         tables().n_1() + tables().n_2() + 1,
-        [&](const Block& block, const Measurements::Range& range, Carry* carry, MatrixXd& rows) {
-          fill_tangent(block, range, xi1, xi2, carry, rows);
-        });
+        [&](const Block& block, const Measurements::Range& range, Carry* carry,
+            Ref<MatrixXd> rows) { fill_tangent(block, range, xi1, xi2, carry, rows); });
   });
 }
 
@@ -140,9 +138,9 @@ std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, cons
   std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
   MatrixXd excesses = MatrixXd::Zero(n_z, static_cast<Index>(parts.size()));
   for_each_block(
-      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
         const Index N = rows_of(range);
-        rows.resize(n_z * N, columns);
+        auto rows = scratch.shape(n_z * N, columns);
         fill_tangent(block, range, xi1, xi2, carry, rows);
         for (Index row = 0; row < rows.rows(); ++row) {
           const Index j = row / N;
@@ -211,8 +209,8 @@ void Sweep::for_each_tangent(const VectorXd& xi1, const VectorXd& xi2,
   ++tangent_passes_;
   const int n_z = tables().n_z();
   for_each_block(
-      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
-        rows.resize(n_z * rows_of(range), tables().n_1() + tables().n_2() + 1);
+      [&](std::size_t, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
+        auto rows = scratch.shape(n_z * rows_of(range), tables().n_1() + tables().n_2() + 1);
         fill_tangent(block, range, xi1, xi2, carry, rows);
         for (int j = 0; j < n_z; ++j) {
           visit(j, static_cast<Index>(range.offset),
@@ -243,9 +241,9 @@ MatrixXd Sweep::tangent_columns(const VectorXd& xi1, const VectorXd& xi2,
 
 MatrixXd Sweep::block_residuals(const Block& block, const Measurements::Range& range,
                                 const VectorXd& xi1, const VectorXd& xi2, Carry* carry,
-                                MatrixXd& rows) const {
+                                RowScratch& scratch) const {
   const int n_1 = tables().n_1();
-  rows.resize(tables().n_z() * rows_of(range), n_1 + 1);
+  auto rows = scratch.shape(tables().n_z() * rows_of(range), n_1 + 1);
   fill_linear(block, range, xi2.data(), carry, rows);
   VectorXd r = rows.col(n_1);
   r.noalias() -= rows.leftCols(n_1) * xi1;
@@ -258,9 +256,9 @@ VectorXd Sweep::sum_residuals(const VectorXd& xi1, const VectorXd& xi2,
   const auto chunks = static_cast<Index>(measurements_.chunks().size());
   MatrixXd parts = MatrixXd::Zero(tables().n_z(), chunks);
   for_each_block(
-      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
         parts.col(static_cast<Index>(c)) +=
-            of_block(block_residuals(block, range, xi1, xi2, carry, rows));
+            of_block(block_residuals(block, range, xi1, xi2, carry, scratch));
       });
   return parts.rowwise().sum();
 }
@@ -283,9 +281,9 @@ MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
   ++values_passes_;
   MatrixXd all(static_cast<Index>(measurements_.rows()), tables().n_z());
   for_each_block(
-      [&](std::size_t, const auto& range, const Block& block, Carry* carry, MatrixXd& rows) {
+      [&](std::size_t, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
         all.middleRows(static_cast<Index>(range.offset), rows_of(range)) =
-            block_residuals(block, range, xi1, xi2, carry, rows);
+            block_residuals(block, range, xi1, xi2, carry, scratch);
       });
   return all;
 }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/aligned_doubles.hpp"
 #include "base/thread_pool.hpp"
 #include "model/loss.hpp"
 #include "model/measurements.hpp"
@@ -18,6 +19,18 @@
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::model {
+
+/// Rows of a block, where registers of any width load them.
+class RowScratch {
+ public:
+  Eigen::Map<Eigen::MatrixXd> shape(Eigen::Index rows, Eigen::Index columns) {
+    values_.resize(static_cast<std::size_t>(rows * columns));
+    return {values_.data(), rows, columns};
+  }
+
+ private:
+  base::AlignedDoubles values_;
+};
 
 class Sweep {
  public:
@@ -79,9 +92,9 @@ class Sweep {
 
  private:
   using Visit = std::function<void(std::size_t chunk, const Measurements::Range& range,
-                                   const Block& block, Carry* carry, Eigen::MatrixXd& rows)>;
+                                   const Block& block, Carry* carry, RowScratch& scratch)>;
 
-  /// Visits every block, a chunk's blocks in order; `rows` is scratch of the chunk's own.
+  /// Visits every block, a chunk's blocks in order; `scratch` is the chunk's own.
   void for_each_block(const Visit& visit) const;
 
   /// visit(j, offset, rows): [A | D | r] of output j in the rows of a block, `offset` rows before.
@@ -96,7 +109,7 @@ class Sweep {
 
   /// One factor an output of the rows that `fill` makes of every block.
   using FillRows = std::function<void(const Block& block, const Measurements::Range& range,
-                                      Carry* carry, Eigen::MatrixXd& rows)>;
+                                      Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows)>;
   std::vector<TriangularFactor> factor_blocks(int columns, const FillRows& fill) const;
 
   /// What sample_squares() gives of the chosen samples, each evaluated by itself.
@@ -104,13 +117,20 @@ class Sweep {
                          Eigen::VectorXd& squares,
                          const std::function<void(double)>& on_progress) const;
 
+  /// The same of a few points, behind one another over each block.
+  Eigen::VectorXd squares_one_by_one(const Eigen::MatrixXd& points,
+                                     const std::function<void()>& after_chunk) const;
+  template <class Factor>
+  void absorb_samples(const Eigen::MatrixXd& points, std::vector<Factor>& factors,
+                      const std::function<void()>& after_chunk) const;
+
   /// A block's rows, (n_z * rows) x (n_1 + 1): [A | z - b].
   void fill_linear(const Block& block, const Measurements::Range& range, const double* xi2,
                    Carry* carry, Eigen::Ref<Eigen::MatrixXd> rows) const;
-  /// r of a block, its rows x n_z; `rows` is scratch.
+  /// r of a block, its rows x n_z.
   Eigen::MatrixXd block_residuals(const Block& block, const Measurements::Range& range,
                                   const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
-                                  Carry* carry, Eigen::MatrixXd& rows) const;
+                                  Carry* carry, RowScratch& scratch) const;
   /// A block's rows, (n_z * rows) x (n_1 + n_2 + 1): [A | D | r].
   void fill_tangent(const Block& block, const Measurements::Range& range,
                     const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2, Carry* carry,

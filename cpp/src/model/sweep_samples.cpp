@@ -4,10 +4,12 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "base/stop.hpp"
 #include "model/point_lanes.hpp"
+#include "model/row_lanes.hpp"
 #include "model/sweep.hpp"
 
 namespace sepcal::model {
@@ -80,40 +82,70 @@ VectorXd Sweep::sample_squares(const MatrixXd& samples,
   return squares;
 }
 
+template <class Factor>
+void Sweep::absorb_samples(const MatrixXd& points, std::vector<Factor>& factors,
+                           const std::function<void()>& after_chunk) const {
+  std::vector<std::unique_ptr<Carry>> carries;
+  for (Index s = 0; s < points.cols(); ++s) carries.push_back(model_.new_carry());
+  std::vector<const double*> pointers;
+  MatrixXd given;
+  RowScratch scratch;
+  for (const auto& chunk : measurements_.chunks()) {
+    for (const Measurements::Range& range : chunk) {
+      base::heed_stop();
+      const Block block = measurements_.block(range, pointers);
+      model_.evaluate_points(block, points, carries, given, [&](Index s, const MatrixXd& values) {
+        auto rows = scratch.shape(values.rows(), values.cols());
+        rows = values;
+        subtract_from_outputs(range, rows.rightCols<1>().col(0));
+        factors[static_cast<std::size_t>(s)].absorb(rows);
+      });
+    }
+    after_chunk();
+  }
+}
+
+VectorXd Sweep::squares_one_by_one(const MatrixXd& points,
+                                   const std::function<void()>& after_chunk) const {
+  const int columns = tables().n_1() + 1;
+  std::vector<TriangularFactor> factors(static_cast<std::size_t>(points.cols()),
+                                        TriangularFactor(columns));
+  bool safe = RowLanes::take(columns);
+  if (safe) {
+    std::vector<RowLanes> lanes(factors.size(), RowLanes(columns));
+    absorb_samples(points, lanes, after_chunk);
+    for (std::size_t s = 0; s < factors.size(); ++s) {
+      safe = safe && lanes[s].is_safe();
+      factors[s] = lanes[s].merge();
+    }
+  }
+  if (!safe) {
+    factors.assign(factors.size(), TriangularFactor(columns));
+    absorb_samples(points, factors,
+                   RowLanes::take(columns) ? std::function<void()>([] {}) : after_chunk);
+  }
+  VectorXd squares(points.cols());
+  for (Index s = 0; s < squares.size(); ++s) {
+    const TriangularFactor& factor = factors[static_cast<std::size_t>(s)];
+    squares[s] = factor.all_finite() ? remaining_square(factor) : infinity;
+  }
+  return squares;
+}
+
 void Sweep::sample_one_by_one(const MatrixXd& samples, const std::vector<Index>& chosen,
                               VectorXd& squares,
                               const std::function<void(double)>& on_progress) const {
-  constexpr std::size_t tile = 25;  // samples that share a block while it is in the cache
-  const std::size_t tiles = (chosen.size() + tile - 1) / tile;
-  const auto& chunks = measurements_.chunks();
-  Progress progress(on_progress, tiles * chunks.size());
-  pool_.for_each(tiles, [&](std::size_t t) {
-    const std::size_t first = t * tile;
-    const std::size_t count = std::min(tile, chosen.size() - first);
-    std::vector<std::unique_ptr<Carry>> carries;
-    std::vector<TriangularFactor> factors(count, TriangularFactor(tables().n_1() + 1));
-    MatrixXd points(samples.rows(), static_cast<Index>(count));
-    for (std::size_t s = 0; s < count; ++s) {
-      carries.push_back(model_.new_carry());
-      points.col(static_cast<Index>(s)) = samples.col(chosen[first + s]);
-    }
-    std::vector<const double*> pointers;
-    MatrixXd scratch;
-    for (const auto& chunk : chunks) {
-      for (const Measurements::Range& range : chunk) {
-        base::heed_stop();
-        const Block block = measurements_.block(range, pointers);
-        model_.evaluate_points(block, points, carries, scratch, [&](Index s, MatrixXd& rows) {
-          subtract_from_outputs(range, rows.rightCols<1>().col(0));
-          factors[static_cast<std::size_t>(s)].absorb(rows);
-        });
-      }
-      progress.step();
-    }
-    for (std::size_t s = 0; s < count; ++s) {
-      squares[chosen[first + s]] =
-          factors[s].all_finite() ? remaining_square(factors[s]) : infinity;
-    }
+  constexpr Index tile = 25;  // samples that share a block while it is in the cache
+  const auto count = static_cast<Index>(chosen.size());
+  const Index tiles = (count + tile - 1) / tile;
+  Progress progress(on_progress, static_cast<std::size_t>(tiles) * measurements_.chunks().size());
+  pool_.for_each(static_cast<std::size_t>(tiles), [&](std::size_t t) {
+    const auto first = static_cast<Index>(t) * tile;
+    const auto own = std::span(chosen).subspan(
+        static_cast<std::size_t>(first), static_cast<std::size_t>(std::min(tile, count - first)));
+    const MatrixXd points = samples(Eigen::all, std::vector<Index>(own.begin(), own.end()));
+    const VectorXd found = squares_one_by_one(points, [&] { progress.step(); });
+    for (std::size_t s = 0; s < own.size(); ++s) squares[own[s]] = found[static_cast<Index>(s)];
   });
 }
 
