@@ -82,6 +82,16 @@ class BlockModel {
   virtual bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
                               const VisitTile& visit) const;
 
+  /// Bytes that prepare_rows() writes of a row; 0 where fill_trials() can't be asked. There its
+  /// lanes are lane_width().
+  virtual std::size_t prepared_bytes() const { return 0; }
+
+  /// What of a block depends on u alone, to `to`, aligned to 64 bytes.
+  virtual void prepare_rows(const Block& block, void* to) const;
+
+  /// [A | D | z - A xi1 - b] of many trials side by side, as LaneKernel::fill_trials gives it.
+  virtual void fill_trials(const TrialRows& trials, double* to) const;
+
   /// Fills `columns`, (n_z * block.rows) x inputs.size(), with d(A xi1 + b)/du_i of the chosen
   /// inputs, by their index in tables().inputs: what an effect that corrects an input needs. Unless
   /// overridden by fourth-order differences. Throws Error where the model can't be differentiated

@@ -36,6 +36,17 @@ inline constexpr int inputs_at_a_time = 4;
 /// below the other. A column's row i stands in the `width` values from i * width on.
 using TileVisit = void (*)(void* visitor, std::size_t tile, double* rows);
 
+/// The same rows for many trials, one in each lane, with parameters and measurements of its own: an
+/// entry of a lane stands in the `width` values from its place times width on.
+struct TrialRows {
+  const void* prepared = nullptr;  // what prepare() made of the rows
+  std::size_t rows = 0;
+  const double* xi1 = nullptr;  // n_1 entries
+  const double* xi2 = nullptr;  // n_2
+  const double* z = nullptr;    // output j's row i is entry j * z_stride + i
+  std::size_t z_stride = 0;
+};
+
 /// How one model is evaluated in lanes. `evaluate` returns whether all that was left out is zero;
 /// `model` is what the kernel is for, `scratch`, aligned to 64 bytes, has room for a tile.
 struct LaneKernel {
@@ -54,6 +65,13 @@ struct LaneKernel {
   void (*fill_input_tangent)(const void* model, const double* const* inputs, std::size_t rows,
                              const double* xi2, const double* xi1, const int* which,
                              std::size_t count, double* to, std::size_t stride) = nullptr;
+  /// Bytes that `prepare` writes of a row, aligned to 64 at the first; 0: trials have no lanes.
+  std::size_t prepared_bytes = 0;
+  void (*prepare)(const void* model, const double* const* inputs, std::size_t rows,
+                  void* to) = nullptr;
+  /// [A | D | r] of every trial, r = z - A xi1 - b: output after output, column after column,
+  /// `rows` entries each.
+  void (*fill_trials)(const void* model, const TrialRows& trials, double* to) = nullptr;
 };
 
 /// A model M whose at() takes several numbers side by side, too, says `using LanesOf = M`: it

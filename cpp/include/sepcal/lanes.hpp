@@ -5,6 +5,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
+#include <new>
+#include <type_traits>
 #include <utility>
 #include <xsimd/xsimd.hpp>
 
@@ -233,6 +236,70 @@ void fill_input_tangent(const void* of_model, const double* const* inputs, std::
   }
 }
 
+/// What prepare() gives of a row.
+template <class M>
+using Prepared =
+    decltype(hoisting::prepare(std::declval<const M&>(), Vec<double, Sizes<M>::n_u>()));
+
+/// Prepared rows are bytes to those that keep them: one that owns something can't be kept so.
+template <class M>
+constexpr std::size_t prepared_bytes() {
+  return std::is_trivially_destructible_v<Prepared<M>> ? sizeof(Prepared<M>) : 0;
+}
+
+/// As LaneKernel::prepare.
+template <class M>
+void prepare_rows(const void* of_model, const double* const* inputs, std::size_t rows, void* to) {
+  constexpr int n_u = Sizes<M>::n_u;
+  const M& model = *static_cast<const M*>(of_model);
+  for (std::size_t i = 0; i < rows; ++i) {
+    Vec<double, n_u> u;
+    for (int k = 0; k < n_u; ++k) u[k] = inputs[k][i];
+    ::new (static_cast<void*>(static_cast<std::byte*>(to) + i * sizeof(Prepared<M>)))
+        Prepared<M>(hoisting::prepare(model, u));
+  }
+}
+
+/// As LaneKernel::fill_trials.
+template <class Arch, class M>
+void fill_trials(const void* of_model, const TrialRows& trials, double* to) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  constexpr int n_z = Sizes<M>::n_z;
+  constexpr int n_1 = Sizes<M>::n_1;
+  constexpr int n_2 = Sizes<M>::n_2;
+  using Dual = LaneDual<Arch, n_2>;
+  const M& model = *static_cast<const M*>(of_model);
+  const auto entry = [](const double* of, std::size_t place) {
+    return Batch<Arch>::load_aligned(of + place * width);
+  };
+  Vec<Batch<Arch>, n_1> xi1;
+  for (int k = 0; k < n_1; ++k) xi1[k] = entry(trials.xi1, static_cast<std::size_t>(k));
+  Vec<Dual, n_2> xi2;
+  for (int k = 0; k < n_2; ++k) xi2[k] = Dual(entry(trials.xi2, static_cast<std::size_t>(k)), k);
+  const auto settled = hoisting::settle(model, xi2);
+  const auto* const prepared = static_cast<const Prepared<M>*>(trials.prepared);
+  const std::size_t stride = trials.rows * width;
+  for (std::size_t row = 0; row < trials.rows; ++row) {
+    const auto z = hoisting::combine(model, prepared[row], settled);
+    double* own = to + row * width;
+    for (int j = 0; j < n_z; ++j) {
+      Batch<Arch> value = z.b[j].a;
+      auto slopes = z.b[j].v;
+      for (int c = 0; c < n_1; ++c, own += stride) {
+        z.A(j, c).a.store_aligned(own);
+        value = xsimd::fma(xi1[c], z.A(j, c).a, value);
+        for (std::size_t i = 0; i < slopes.size(); ++i) {
+          slopes[i] = xsimd::fma(xi1[c], z.A(j, c).v[i], slopes[i]);
+        }
+      }
+      for (std::size_t i = 0; i < slopes.size(); ++i, own += stride) slopes[i].store_aligned(own);
+      const std::size_t measured = static_cast<std::size_t>(j) * trials.z_stride + row;
+      (entry(trials.z, measured) - value).store_aligned(own);
+      own += stride;
+    }
+  }
+}
+
 template <class Arch, class M>
 constexpr LaneKernel make_kernel() {
   LaneKernel kernel{Batch<Arch>::size, &evaluate_points<Arch, M>, &fill_values<Arch, M>,
@@ -240,6 +307,9 @@ constexpr LaneKernel make_kernel() {
   if constexpr (Sizes<M>::n_u > 0 && has_dual_inputs<M>()) {
     kernel.fill_input_tangent = &fill_input_tangent<Arch, M>;
   }
+  kernel.prepared_bytes = prepared_bytes<M>();
+  kernel.prepare = &prepare_rows<M>;
+  kernel.fill_trials = &fill_trials<Arch, M>;
   return kernel;
 }
 

@@ -10,6 +10,7 @@
 #include "sepcal/choices.hpp"            // what options choose among, by name
 #include "sepcal/options.hpp"            // every choice of a fit
 #include "sepcal/fit_many.hpp"           // many flights, jointly
+#include "sepcal/fit_trials.hpp"         // many trials of one design
 #include "sepcal/stage_one.hpp"          // sampling xi2
 #include "sepcal/identifiability.hpp"    // what a record does not determine
 #include "sepcal/profile.hpp"            // intervals where standard errors mislead

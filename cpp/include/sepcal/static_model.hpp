@@ -83,6 +83,27 @@ class StaticModel final : public BlockModel {
     }
   }
 
+  std::size_t prepared_bytes() const override {
+    if constexpr (has_lanes<M>()) return lane_kernel<M>().prepared_bytes;
+    return 0;
+  }
+
+  void prepare_rows(const Block& block, void* to) const override {
+    if constexpr (has_lanes<M>()) {
+      lane_kernel<M>().prepare(&model_, block.inputs.data(), block.rows, to);
+    } else {
+      BlockModel::prepare_rows(block, to);
+    }
+  }
+
+  void fill_trials(const TrialRows& trials, double* to) const override {
+    if constexpr (has_lanes<M>()) {
+      lane_kernel<M>().fill_trials(&model_, trials, to);
+    } else {
+      BlockModel::fill_trials(trials, to);
+    }
+  }
+
   void input_tangent(const Block& block, const double* xi2, const double* xi1,
                      std::span<const int> inputs,
                      Eigen::Ref<Eigen::MatrixXd> columns) const override {

@@ -33,6 +33,14 @@ bool BlockModel::evaluate_lanes(const LaneBlock& /*block*/, const PointTiles& /*
   throw Error("the model has no lanes");
 }
 
+void BlockModel::prepare_rows(const Block& /*block*/, void* /*to*/) const {
+  throw Error("the model has no lanes for trials");
+}
+
+void BlockModel::fill_trials(const TrialRows& /*trials*/, double* /*to*/) const {
+  throw Error("the model has no lanes for trials");
+}
+
 void BlockModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                std::span<const int> inputs,
                                // NOLINTNEXTLINE(performance-unnecessary-value-param): an output

@@ -147,6 +147,44 @@ void FixedModel::take_free(const LaneBlock& whole, const double* rows, double* t
   }
 }
 
+void FixedModel::fill_trials(const TrialRows& trials, double* to) const {
+  const std::size_t width = lane_width();
+  const auto n_z = static_cast<std::size_t>(tables().n_z());
+  const Index n_1 = xi1_.size();
+  const Index n = n_1 + xi2_.size();
+  const auto size = static_cast<std::size_t>(trials.rows) * width;
+  // Uninitialised, and aligned for registers of any width.
+  Eigen::ArrayXd scratch(static_cast<Index>(width) * n + static_cast<Index>(n_z * size) * (n + 1));
+  const auto lay_out = [&](const VectorXd& held, const std::vector<Index>& free,
+                           const double* values, double* whole) {
+    auto next = free.begin();
+    for (Index k = 0; k < held.size(); ++k, whole += width) {
+      if (next != free.end() && *next == k) {
+        std::copy_n(values, width, whole);
+        values += width;
+        ++next;
+      } else {
+        std::fill_n(whole, width, held[k]);
+      }
+    }
+    return whole;
+  };
+  TrialRows of_whole = trials;
+  of_whole.xi1 = scratch.data();
+  double* const xi2 = lay_out(xi1_, free_1_, trials.xi1, scratch.data());
+  of_whole.xi2 = xi2;
+  double* const rows = lay_out(xi2_, free_2_, trials.xi2, xi2);
+  model_.fill_trials(of_whole, rows);
+  const auto column = [&](std::size_t j, Index k) {
+    return rows + (j * static_cast<std::size_t>(n + 1) + static_cast<std::size_t>(k)) * size;
+  };
+  for (std::size_t j = 0; j < n_z; ++j) {
+    for (const Index k : free_1_) to = std::copy_n(column(j, k), size, to);
+    for (const Index k : free_2_) to = std::copy_n(column(j, n_1 + k), size, to);
+    to = std::copy_n(column(j, n), size, to);
+  }
+}
+
 void FixedModel::input_tangent(const Block& block, const double* xi2, const double* xi1,
                                std::span<const int> inputs, Eigen::Ref<MatrixXd> columns) const {
   const VectorXd whole_1 = fill_in(xi1_, free_1_, xi1);

@@ -28,6 +28,10 @@ class FixedModel final : public BlockModel {
   bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
                       const VisitTile& visit) const override;
 
+  std::size_t prepared_bytes() const override { return model_.prepared_bytes(); }
+  void prepare_rows(const Block& block, void* to) const override { model_.prepare_rows(block, to); }
+  void fill_trials(const TrialRows& trials, double* to) const override;
+
   void input_tangent(const Block& block, const double* xi2, const double* xi1,
                      std::span<const int> inputs,
                      Eigen::Ref<Eigen::MatrixXd> columns) const override;
