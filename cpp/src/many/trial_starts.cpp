@@ -91,8 +91,9 @@ class Samples {
       }
       if (best < 0) continue;
       const Sample& sample = samples_[static_cast<std::size_t>(best)];
-      starts.col(t).head(n_1_) =
-          sample.to_xi1 * (products.col(t).segment(best * (n_1_ + 1), n_1_) - sample.Qb);
+      // By a product of its own: the large one's last digits depend on the trials beside this one.
+      const VectorXd Qz = columns_.middleCols(best * (n_1_ + 1), n_1_).transpose() * z.col(t);
+      starts.col(t).head(n_1_) = sample.to_xi1 * (Qz - sample.Qb);
       starts.col(t).tail(points_.rows()) = points_.col(best);
     }
   }
