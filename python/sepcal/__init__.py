@@ -41,6 +41,7 @@ from sepcal.calibration import Calibration, load
 from sepcal.catalogue import effects
 from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
+from sepcal.design_trial import DesignTrial
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.filters import Filter, RecursiveLeastSquares
 from sepcal.fitting import fit
@@ -70,6 +71,7 @@ from sepcal.simulation import SimulatedFlight, simulate
 from sepcal.smoothing import Smoothed, smooth
 from sepcal.tracking import Track, track
 from sepcal.trajectories import FlightPath, ShortPeriod, TrajectoryModel, TrajectoryOptions
+from sepcal.trial_fits import TrialFits, fit_trials
 from sepcal.trials import Estimates, Failure, TrialRecord
 
 __all__ = [
@@ -86,6 +88,7 @@ __all__ = [
     "Comparison",
     "Departure",
     "Derived",
+    "DesignTrial",
     "Diagnosis",
     "Effect",
     "EffectFinding",
@@ -134,6 +137,7 @@ __all__ = [
     "Trajectory",
     "TrajectoryModel",
     "TrajectoryOptions",
+    "TrialFits",
     "TrialRecord",
     "TwoSteps",
     "Window",
@@ -142,6 +146,7 @@ __all__ = [
     "effects",
     "fit",
     "fit_many",
+    "fit_trials",
     "load",
     "monte_carlo",
     "predict",

@@ -55,6 +55,7 @@ __all__: list[str] = [
     "effects",
     "fit",
     "fit_many",
+    "fit_trials",
     "five_hole_probe",
     "gather_figures",
     "magnetometer",
@@ -1979,6 +1980,26 @@ def fit_many(
     arg4: bool,
     arg5: collections.abc.Callable,
 ) -> ManyFit: ...
+def fit_trials(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: collections.abc.Sequence[
+        tuple[str, typing.Annotated[numpy.typing.ArrayLike, numpy.float64]]
+    ],
+    arg4: Options,
+) -> tuple[
+    list[str],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    list[str],
+    list[bool],
+    int,
+    int,
+    dict[int, str],
+    dict[int, str],
+]: ...
 def five_hole_probe(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
     arg1: typing.SupportsFloat | typing.SupportsIndex,

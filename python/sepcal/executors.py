@@ -55,9 +55,10 @@ def stream(
 
     Args:
         function: On processes and clusters it must pickle, as must its items and results: define it
-            with def at the top of a module. It is sent with every task.
+            with def at the top of a module. It is sent with every task. Where it has a method
+            together(items), which raises nothing, a task is one call of that.
         items: Finite or not, N of them.
-        executor: None: here, one item after the other. A function that makes an executor, as
+        executor: None: here, one task after the other. A function that makes an executor, as
             ProcessPoolExecutor does, is called for one, and again where a dying worker broke it;
             what it made is shut down at the end. An Executor is left open.
         batch: Items a task.
@@ -80,9 +81,21 @@ def stream(
             "function that makes one, or None (Dask: client.get_executor())"
         )
     if executor is None:
-        return ((index, function(item)) for index, item in enumerate(items))
+        return _here(function, items, batch)
     work = _Work(items, batch, attempts)
     return _stream(function, work, _Pool(executor), pending, lost)
+
+
+def _here(
+    function: Callable[[Item], Result], items: Iterable[Item], batch: int
+) -> Generator[tuple[int, Result], None, None]:
+    if (together := getattr(function, "together", None)) is None:
+        yield from ((index, function(item)) for index, item in enumerate(items))
+        return
+    numbered = enumerate(items)
+    while task := list(islice(numbered, batch)):
+        results = together([item for _, item in task])
+        yield from zip((index for index, _ in task), results, strict=True)
 
 
 def gather(

@@ -16,9 +16,19 @@ from sepcal._core import Error
 from sepcal.executors import Executors, stream
 from sepcal.monte_carlo_results import MonteCarlo, check_truth
 from sepcal.progress import progress_bar
-from sepcal.trials import TrialFunction, TrialRecord, TrialRun, takes_index, unseal
+from sepcal.trials import (
+    TogetherRun,
+    TrialFunction,
+    TrialRecord,
+    TrialRun,
+    TrialTogether,
+    takes_index,
+    unseal,
+)
 
 Progress = Callable[[int, int], None]
+
+TOGETHER = 512  # trials that fill the lanes, and are done at once
 
 
 def monte_carlo(
@@ -29,7 +39,7 @@ def monte_carlo(
     truth: Mapping[str, float] | None = None,
     executor: Executors = None,
     progress: bool | Progress | None = None,
-    batch: int = 1,
+    batch: int | None = None,
     keep_fits: bool = False,
 ) -> MonteCarlo:
     """Runs a trial many times and gathers what came of it.
@@ -54,6 +64,7 @@ def monte_carlo(
         progress: A bar on standard error, None: where that is a terminal; or a function of the
             numbers of trials done and in all.
         batch: Trials a task; more than one where a trial takes less than some ten milliseconds.
+            None: one, or 512 of a DesignTrial whose trials are fitted side by side.
         keep_fits: The records hold whole fits, with covariance and samples, instead of Estimates.
 
     Returns:
@@ -88,7 +99,7 @@ def stream_trials(
     *,
     seed: int = 0,
     executor: Executors = None,
-    batch: int = 1,
+    batch: int | None = None,
     keep_fits: bool = False,
 ) -> Generator[TrialRecord, None, None]:
     """Yields the records of monte_carlo() as the trials complete, in any order.
@@ -104,6 +115,10 @@ def stream_trials(
     if not callable(trial):
         raise Error(f"the trial is a {type(trial).__name__}; give a function, trial(rng)")
     run = TrialRun(trial, takes_index(trial), seed, keep_fits)
+    if isinstance(trial, TrialTogether) and trial.goes_together and not keep_fits:
+        run = TogetherRun(trial, False, seed, keep_fits)
+        batch = TOGETHER if batch is None else batch
+    batch = 1 if batch is None else batch
     return _records(stream(run, indices, executor, batch=batch, lost=run.lost))
 
 

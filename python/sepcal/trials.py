@@ -10,9 +10,10 @@ import pickle
 import time
 import traceback
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.random import Generator, SeedSequence, default_rng
@@ -20,6 +21,22 @@ from numpy.random import Generator, SeedSequence, default_rng
 from sepcal.columns import Array
 from sepcal.executors import describe
 from sepcal.results import Fit
+
+
+@runtime_checkable
+class TrialTogether(Protocol):
+    """A trial of which several are done at once faster than one by one."""
+
+    @property
+    def goes_together(self) -> bool:
+        """Whether they are, as this trial is."""
+
+    def __call__(self, rng: Generator, /) -> Any:  # noqa: ANN401
+        """One trial by itself."""
+
+    def together(self, rngs: Sequence[Generator], /) -> Sequence[object | None]:
+        """What a study keeps of the trial of each generator; None where it is to run by itself."""
+
 
 TrialFunction: TypeAlias = Callable[[Generator], Any] | Callable[[Generator, int], Any]
 
@@ -112,13 +129,35 @@ class TrialRun:
         except (Exception, SystemExit) as error:
             failure = Failure(_name(error), str(error), traceback.format_exc())
             return TrialRecord(index, self.seed, None, failure, time.perf_counter() - begun)
-        record = TrialRecord(index, self.seed, kept, None, time.perf_counter() - begun)
+        return self._record(index, kept, time.perf_counter() - begun)
+
+    def _record(self, index: int, kept: object, seconds: float) -> TrialRecord:
+        record = TrialRecord(index, self.seed, kept, None, seconds)
         return record if self.home == _this_process() else _seal(record)
 
     def lost(self, index: int, error: BaseException) -> TrialRecord:
         """Stands for a trial whose workers died."""
         message = f"its worker died in every attempt; the last: {describe(error)}"
         return TrialRecord(index, self.seed, None, Failure(_name(error), message, ""), 0.0)
+
+
+@dataclass(frozen=True)
+class TogetherRun(TrialRun):
+    """The same of a TrialTogether, several indices at a time."""
+
+    trial: TrialTogether
+
+    def together(self, indices: Sequence[int]) -> list[TrialRecord]:
+        """Runs the trials; one that fails is run by itself, so that its record says why."""
+        begun = time.perf_counter()
+        values: Sequence[object | None] = [None] * len(indices)
+        with suppress(Exception):
+            values = self.trial.together([spawn(self.seed, index) for index in indices])
+        seconds = (time.perf_counter() - begun) / len(indices)
+        return [
+            self(index) if value is None else self._record(index, value, seconds)
+            for index, value in zip(indices, values, strict=True)
+        ]
 
 
 def unseal(record: TrialRecord) -> TrialRecord:

@@ -58,6 +58,7 @@ void define_intervals(py::module_& module);
 void define_many(py::module_& module);
 void define_simulation(py::module_& module);
 void define_state_results(py::module_& module);
+void define_trials(py::module_& module);
 
 // Of sepcal._states.
 void define_aircraft(py::module_& module);

@@ -37,6 +37,7 @@ PYBIND11_MODULE(_core, module) {
   define_check(module);
   define_figures(module);
   define_many(module);
+  define_trials(module);
   define_simulation(module);
   define_state_results(module);
 }

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many trials of one design, fitted side by side: the same inputs, other measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sepcal import _core
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
+from sepcal.options import FitOptions, refuse_row_choice, spelled_out, to_core
+from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+
+
+@dataclass(frozen=True, eq=False)
+class TrialFits:
+    """The fits of K trials."""
+
+    names: tuple[str, ...]  # n parameters, linear, then nonlinear
+    estimates: Array  # (K, n); NaN where a trial could not be fitted
+    standard_errors: Array  # (K, n); NaN where undefined
+    squared_residuals: Array  # (K, n_z), sums over the rows
+    statuses: tuple[str, ...]  # K: "converged", "not_converged", "not_identifiable"
+    in_lanes: NDArray[np.bool_]  # (K,); False: fitted one by one
+    estimated: int  # of the n parameters, those that are not fixed
+    rows: int  # of each fit
+    messages: Mapping[int, str]  # by trial, where there is something to say
+    failures: Mapping[int, str]  # why a trial could not be fitted
+
+
+@spelled_out(without=["effects"])
+def fit_trials(
+    model: AnyModel,
+    design: Columns,
+    measurements: Mapping[str, ArrayLike],
+    **options: Unpack[FitOptions],
+) -> TrialFits:
+    """Fits a model to many records that share their inputs.
+
+    With coloured_errors=False the trials of sepcal's own models are fitted side by side, one in
+    each lane of the processor's registers: from a start, with samples=0 from the middle of the
+    bounds, or with descents=1 from the best of the samples. All else is fitted one by one, with the
+    same result.
+
+    Args:
+        model: As fit() takes it.
+        design: The inputs by name, each of shape (N,), and "time" [s] and "maneuver" as fit() takes
+            them; outputs in it are ignored.
+        measurements: The outputs by name, each of shape (K, N): a row is a trial's.
+        **options: FitOptions.
+
+    Returns:
+        TrialFits. What is wrong with one trial alone is in its failures.
+
+    Raises:
+        Error: Bad input or misuse: one line that names the culprit and the way out.
+    """
+    model = as_model(model)
+    if runs_in_python(model):
+        options["threads"] = options.get("threads") or 1
+    refuse_row_choice(options)
+    design = by_name(design)
+    needed = [*model._columns_in(design), *({"time"} & set(design))]
+    columns = take_columns(model._owner, design, dict.fromkeys(needed))
+    labels = labels_in(design)
+    laid = model._core.along(columns, labels)
+    measured = [(name, _to_trials(name, values)) for name, values in measurements.items()]
+    names, estimates, errors, squares, statuses, in_lanes, estimated, rows, messages, failures = (
+        _core.fit_trials(laid, columns, labels, measured, to_core(options))
+    )
+    return TrialFits(
+        tuple(names),
+        np.ascontiguousarray(estimates),
+        np.ascontiguousarray(errors),
+        squares,
+        tuple(statuses),
+        np.array(in_lanes, dtype=np.bool_),
+        estimated,
+        rows,
+        messages,
+        failures,
+    )
+
+
+def _to_trials(name: str, values: ArrayLike) -> Array:
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim != 2:
+        raise _core.Error(
+            f"the measurements of '{name}' have the shape {array.shape}; give a row a trial, (K, N)"
+        )
+    return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
