@@ -24,7 +24,7 @@ TrialTile::TrialTile(const estimation::Problem& problem, const TrialDesign& desi
       n_(n_1_ + to_size(design.model().tables().n_2())),
       n_z_(design.outputs()),
       columns_(n_ + 1),
-      absorb_(lanes::lane_kit_of(width_)->absorb[columns_]),
+      kit_(*lanes::lane_kit_of(width_)),
       given_noise_(problem.noise()),
       z_squares_(width_, 0.0) {
   const std::size_t a_row = columns_ * width_ * sizeof(double);  // of one output
@@ -62,8 +62,8 @@ void TrialTile::factor() {
     const std::size_t stride = trials.rows * width_;
     for (std::size_t j = 0; j < n_z_; ++j) {
       // Whether lanes were safe, is_sound() tells of each by itself.
-      absorb_(next_.data() + j * place(columns_, 0), rows_.data() + j * columns_ * stride,
-              trials.rows, stride);
+      absorb(next_.data() + j * place(columns_, 0), rows_.data() + j * columns_ * stride,
+             trials.rows);
     }
   }
 }
@@ -135,7 +135,7 @@ void TrialTile::whiten() {
         }
       }
     }
-    if (j > 0) absorb_(whole_.data(), rows_.data(), columns_, stride);
+    if (j > 0) absorb(whole_.data(), rows_.data(), columns_);
   }
 }
 
@@ -152,7 +152,7 @@ const double* TrialTile::damp(const std::vector<double>& damping) {
       rows_[k * stride + k * width_ + lane] = std::sqrt(damping[lane] * square);
     }
   }
-  absorb_(damped_.data(), rows_.data(), n_, stride);
+  absorb(damped_.data(), rows_.data(), n_);
   return damped_.data();
 }
 

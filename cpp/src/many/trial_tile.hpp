@@ -70,6 +70,10 @@ class TrialTile {
  private:
   bool take_noise(std::size_t lane);
   const double* damp(const std::vector<double>& damping);
+  /// Returns whether every lane was safe.
+  bool absorb(double* T, double* panel, std::size_t m) const {
+    return lanes::absorb_panel(kit_, columns_, T, panel, m);
+  }
 
   std::size_t place(std::size_t row, std::size_t column) const {
     return (row * columns_ + column) * width_;
@@ -81,7 +85,7 @@ class TrialTile {
   std::size_t n_;
   std::size_t n_z_;
   std::size_t columns_;  // n + 1
-  bool (*absorb_)(double* T, double* rows, std::size_t m, std::size_t stride);
+  const lanes::LaneKit& kit_;
   std::size_t panel_;            // rows at a time
   Eigen::VectorXd given_noise_;  // n_z, or empty
 

@@ -69,6 +69,13 @@ const LaneKit& choose() {
 
 }  // namespace
 
+bool absorb_panel(const LaneKit& kit, std::size_t columns, double* T, double* panel,
+                  std::size_t m) {
+  std::array<double*, most_columns> begins{};
+  for (std::size_t c = 0; c < columns; ++c) begins[c] = panel + c * m * kit.width;
+  return kit.absorb[columns](T, begins.data(), m);
+}
+
 const LaneKit& lane_kit() {
   static const LaneKit& chosen = choose();
   return chosen;

@@ -31,6 +31,9 @@ struct LaneKit {
   std::array<bool (*)(double* T, double* const* columns, std::size_t m), most_columns + 1> absorb;
 };
 
+/// Absorbs a panel of m rows, its columns one below the other, behind the factor T.
+bool absorb_panel(const LaneKit& kit, std::size_t columns, double* T, double* panel, std::size_t m);
+
 /// The kit that SEPCAL_ISA names ("baseline", "avx2", "avx512"), else the widest that the processor
 /// takes. Throws Error for a name that is unknown or that the processor can't run.
 const LaneKit& lane_kit();

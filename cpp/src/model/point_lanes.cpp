@@ -2,7 +2,6 @@
 #include "model/point_lanes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -98,12 +97,6 @@ void PointLanes::find_zeros(const MatrixXd& points) {
   }
 }
 
-bool PointLanes::absorb(std::size_t columns, double* T, double* rows, std::size_t m) const {
-  std::array<double*, lanes::most_columns> begins{};
-  for (std::size_t c = 0; c < columns; ++c) begins[c] = rows + c * m * width_;
-  return kit_->absorb[columns](T, begins.data(), m);
-}
-
 bool PointLanes::merge(const double* by_output, double* merged) const {
   const auto columns = static_cast<std::size_t>(model_.tables().n_1()) + 1;
   bool safe = true;
@@ -121,7 +114,7 @@ bool PointLanes::merge(const double* by_output, double* merged) const {
     }
     by_output += n * n * width_;
     if (wide.empty()) {
-      safe = absorb(columns, merged, rows.data(), n) && safe;
+      safe = lanes::absorb_panel(*kit_, columns, merged, rows.data(), n) && safe;
       continue;
     }
     using Strided = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
@@ -163,14 +156,15 @@ PointFactors PointLanes::factor(const MatrixXd& points,
       for_each_lane_block(measurements_, range, outputs, [&](LaneBlock block) {
         base::heed_stop();
         block.zero = zero_.data();
-        const auto absorb_tile = [&](std::size_t tile, double* rows) {
+        const auto absorb = [&](std::size_t tile, double* rows) {
           for (std::size_t j = 0; j < outputs; ++j) {
             double* T = factors.data() + tile * begins.back() + begins[j];
-            if (!absorb(kept_[j].size(), T, rows, block.rows)) clear[tile] = false;
+            if (!lanes::absorb_panel(*kit_, kept_[j].size(), T, rows, block.rows))
+              clear[tile] = false;
             rows += kept_[j].size() * block.rows * width_;
           }
         };
-        if (!model_.evaluate_lanes(block, {packed.data(), tiles}, scratch.data(), absorb_tile)) {
+        if (!model_.evaluate_lanes(block, {packed.data(), tiles}, scratch.data(), absorb)) {
           zeros_hold = false;
         }
       });

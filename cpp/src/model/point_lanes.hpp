@@ -63,9 +63,6 @@ class PointLanes {
  private:
   void find_zeros(const Eigen::MatrixXd& points);
 
-  /// Columns of m rows, one below the other, behind a tile's factor T. Whether every lane was safe.
-  bool absorb(std::size_t columns, double* T, double* rows, std::size_t m) const;
-
   /// The factors of a tile's outputs, each of its own columns, as one of all columns, to `merged`.
   /// Returns whether every lane was safe.
   bool merge(const double* by_output, double* merged) const;
