@@ -319,7 +319,7 @@ TEST_CASE("what lanes don't do, fit() does") {
   }
 }
 
-TEST_CASE("trials are the same on any number of threads") {
+TEST_CASE("trials are the same on any number of threads and beside any others") {
   const Simulated wave = sepcal::test::simulate_scalar_1(30);
   const Study study = repeat(wave, 1100, 4.0);
   FitOptions options = plainly();
@@ -332,6 +332,11 @@ TEST_CASE("trials are the same on any number of threads") {
   CHECK(one.estimates == three.estimates);
   CHECK(one.squared_residuals == three.squared_residuals);
   CHECK(one.in_lanes == three.in_lanes);
+  const MatrixXd later = study.z[0].rightCols(37);
+  const TrialFits some =
+      fit_trials(*wave.model, study.design,
+                 {{"z", {later.data(), static_cast<std::size_t>(later.size())}}}, options);
+  CHECK(some.estimates == one.estimates.bottomRows(37));
 }
 
 TEST_CASE("what is wrong with trials is said") {
