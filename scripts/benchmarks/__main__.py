@@ -4,41 +4,20 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 # One core, before NumPy starts threads of its own.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[variable] = "1"
 
+from benchmarks.races import BASELINE, RACES, find_run  # noqa: E402
+
 ROOT = Path(__file__).parents[2]
-Run = Callable[..., Any]
-RACES = {  # functions run(folder, rounds, longest) that yield results
-    "limits": "limits.run",
-    "samples": "stage_one.run",
-    "stage-one": "stage_one.run_whole",
-    "stage-two": "stage_two.run",
-    "fit": "whole_fit.run",
-    "long-fit": "whole_fit.run_long",
-    "fit-with-effects": "whole_fit.run_with_effects",
-    "small-fits": "small_fits.run",
-    "growth": "growth.run",
-    "output-error": "output_error.run",
-    "smoother": "smoother.run",
-}
-
-
-def find_run(name: str) -> Run:
-    """The race's function."""
-    module, function = RACES[name].split(".")
-    run: Run = getattr(importlib.import_module(f"benchmarks.{module}"), function)
-    return run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -69,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if chosen.baseline:
         from benchmarks import baseline
 
-        runs["baseline"] = partial(baseline.run, commit=chosen.baseline)
+        runs[BASELINE] = partial(baseline.run, commit=chosen.baseline)
     for run in runs.values():
         found = []
         with tempfile.TemporaryDirectory() as folder:

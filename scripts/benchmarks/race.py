@@ -86,7 +86,7 @@ def race(contenders: list[Contender], rounds: int, budget: float = 20.0) -> None
     spent = dict.fromkeys(range(len(contenders)), 0.0)
     for _ in range(rounds):
         for k, contender in enumerate(contenders):
-            if spent[k] > budget:
+            if contender.seconds and spent[k] > budget:
                 continue
             begin = sum(os.times()[:4])  # children's too
             seconds, contender.answer = contender.run()

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.race import Line, Result
+from benchmarks.races import BASELINE, RACES
 
 Json = dict[str, Any]
 
@@ -39,8 +40,10 @@ def commit() -> str:
 def merge(old: Json, new: list[Result], of: Json) -> Json:
     """The races of `new` replace those of their names; others stay as they were measured."""
     raced = {result.race for result in new}
-    kept = [entry for entry in old.get("races", []) if entry["race"] not in raced]
-    return {"races": kept + [result.to_json() | of for result in new]}
+    entries = [entry for entry in old.get("races", []) if entry["race"] not in raced]
+    entries += [result.to_json() | of for result in new]
+    order = [*RACES, BASELINE]
+    return {"races": sorted(entries, key=lambda entry: order.index(entry["race"]))}
 
 
 def result_of(entry: Json) -> Result:

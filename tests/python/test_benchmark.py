@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from benchmarks import baseline, pages, results
+from benchmarks import baseline, pages, races, results
 from benchmarks.numpy_five_hole import HoistedProbe
 from benchmarks.race import Contender, Line, Result, judge, lengths_within, race, show_time
 from benchmarks.small_fits import by_least_squares, by_leastsq, draw, fit_each
@@ -76,10 +76,12 @@ def test_answers_that_are_not_compared_have_no_column():
 
 
 def test_races_that_were_not_run_keep_their_results(tmp_path):
-    results.write(tmp_path, [result("one"), result("two")])
-    results.write(tmp_path, [result("one", "again")])
+    results.write(tmp_path, [result("fit")])
+    results.write(tmp_path, [result("smoother"), result("stage-two")])
+    results.write(tmp_path, [result("stage-two", "again")])
     held = json.loads((tmp_path / "latest.json").read_text())["races"]
-    assert [(entry["race"], entry["title"]) for entry in held] == [("two", "t"), ("one", "again")]
+    shown = [(entry["race"], entry["title"]) for entry in held]
+    assert shown == [("stage-two", "again"), ("fit", "t"), ("smoother", "t")]
     assert "**again**" in (tmp_path / "latest.md").read_text()
 
 
@@ -122,6 +124,11 @@ def test_the_linear_fit_leaves_the_least_sum_of_squares():
 def test_small_fits_find_the_truth(solve):
     found = fit_each(*draw(3, 1), solve).reshape(3, 3)
     np.testing.assert_allclose(found, np.tile([0.3, 1.0, 0.2], (3, 1)), atol=0.08)
+
+
+@pytest.mark.parametrize("name", races.RACES)
+def test_every_race_is_there(name):
+    assert callable(races.find_run(name))
 
 
 PAGE = "Before.\n\n<!-- results -->\n\nold\n\n<!-- end of results -->\n\nAfter.\n"
