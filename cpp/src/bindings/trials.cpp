@@ -12,6 +12,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "flight/verbs/held_options.hpp"
+#include "released.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_trials.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -76,7 +77,7 @@ Fits fit_all(const Model& model, const py::dict& columns, const std::vector<std:
   for (const auto& [name, array] : measured) {
     outputs.push_back({name, {array.data(), static_cast<std::size_t>(array.size())}});
   }
-  const py::gil_scoped_release release;
+  const Released released;
   TrialFits fits = fit_trials(*model.block, design, outputs, trial_options(model, options, design));
   if (model.probe != nullptr) judge(*model.probe, fits);
   std::vector<std::string> statuses;
