@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/projection.hpp"
 #include "diagnosis/refits.hpp"
 #include "linearisations.hpp"
 #include "noises.hpp"
@@ -96,6 +97,11 @@ void check_is_refit(const Flight& flight, const diagnosis::Folds& folds) {
   CHECK(found.after == Approx(expected.after).epsilon(1e-10));
   CHECK(found.gain == Approx(1.0 - expected.after / expected.before).epsilon(1e-9));
   CHECK(found.passed == expected.passed);
+  diagnosis::LinearisedFit in_basis = flight.fit;
+  diagnosis::orthonormalise(in_basis);
+  const diagnosis::HeldOut again = diagnosis::hold_out(in_basis, flight.G, folds);
+  CHECK(again.before == Approx(found.before).epsilon(1e-10));
+  CHECK(again.after == Approx(found.after).epsilon(1e-10));
 }
 
 /// Blocks one after another over all rows, none of them empty.

@@ -71,6 +71,27 @@ struct Problem {
 
 }  // namespace
 
+TEST_CASE("a basis in the tangent's place leaves what is explained and what is beyond") {
+  const Problem problem;
+  MatrixXd J(rows, 6);  // of rank five
+  J << problem.J, problem.J.col(0) - 2.0 * problem.J.col(3);
+  const diagnosis::LinearisedFit fit{
+      test::make_layout({{"", rows}}, {1.0}), {}, J, VectorXd::Zero(rows)};
+  diagnosis::LinearisedFit in_basis = fit;
+  diagnosis::orthonormalise(in_basis);
+  const MatrixXd& Q = in_basis.tangent;
+  REQUIRE(Q.cols() == 5);
+  CHECK(worst(Q.transpose() * Q - MatrixXd::Identity(5, 5)) < 1e-14);
+  CHECK(worst(J * in_basis.weights - Q) < 1e-12);
+  CHECK(worst(Q * in_basis.coordinates - J) < 1e-12);
+  const diagnosis::TangentBasis tangent(fit);
+  const diagnosis::TangentBasis basis(in_basis);
+  CHECK(worst(basis.columns().dense(fit.layout) - Q) == 0.0);
+  CHECK(worst(J * explained_by(basis, problem.G) - J * explained_by(tangent, problem.G)) < 1e-11);
+  CHECK(worst(remove_tangent(basis, problem.G).dense(fit.layout) -
+              remove_tangent(tangent, problem.G).dense(fit.layout)) < 1e-11);
+}
+
 TEST_CASE("an orthonormal basis spans the columns, of whatever size, in their numerical rank") {
   Problem problem;
   MatrixXd columns(rows, 7);

@@ -25,6 +25,7 @@ Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::
     : fitted_(fitted), options_(options), pool_(pool), room_(fitted, pool) {
   if (is_exact()) return;
   room_.add_wandering();
+  room_.orthonormalise();
   null_ = find_null(room_.fit());
 }
 

@@ -12,6 +12,7 @@
 #include "base/thread_pool.hpp"
 #include "diagnosis/columns.hpp"
 #include "diagnosis/linearisation.hpp"
+#include "diagnosis/projection.hpp"
 #include "sepcal/diagnosis.hpp"
 
 namespace sepcal::diagnosis {
@@ -48,6 +49,9 @@ class CandidateRoom {
 
   /// Adds to fit() what corrections of inputs that may wander do to the outputs.
   void add_wandering();
+
+  /// Keeps an orthonormal basis in the tangent's place, after add_wandering() that needs it.
+  void orthonormalise() { diagnosis::orthonormalise(linearisation_); }
 
   const LinearisedFit& fit() const { return linearisation_; }
   const Record& record() const { return record_; }

@@ -60,6 +60,20 @@ void for_each_panel(const RowLayout& layout, const Visit& visit) {
   }
 }
 
+/// Columns that a tall matrix is multiplied by one by one: packing it for a product of matrices
+/// costs more.
+inline constexpr Eigen::Index few_columns = 6;
+
+/// sum += A'B.
+template <class A, class B>
+void add_transposed_product(const A& a, const B& b, Eigen::MatrixXd& sum) {
+  if (b.cols() > few_columns) {
+    sum.noalias() += a.transpose() * b;
+    return;
+  }
+  for (Eigen::Index k = 0; k < b.cols(); ++k) sum.col(k).noalias() += a.transpose() * b.col(k);
+}
+
 /// X'y.
 Eigen::VectorXd multiply_transposed(const RowLayout& layout, const Columns& X,
                                     const Eigen::VectorXd& y);

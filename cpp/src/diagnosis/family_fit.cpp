@@ -17,32 +17,42 @@ using noise::NoiseFamilies;
 using noise::NoiseFamily;
 using noise::NoiseMember;
 
+/// The coefficients for the members, where these were found last.
+template <class Problem>
+void finish(const Problem& problem, FamilyFit& fit) {
+  if (fit.is_finished()) return;
+  const Index k = fit.coefficients.size();
+  const MatrixXd products = problem.products(fit.noise);
+  fit.covariance = pseudo_inverse(products.topLeftCorner(k, k));
+  fit.coefficients = fit.covariance * products.col(k).head(k);
+}
+
 /// Members for coefficients and coefficients for members, in turn until that gains little.
 /// `problem`:
 ///   NoiseMembers find_members(coefficients)  the likeliest for what these leave
 ///   MatrixXd products(members)               [X e]' [X e] in their noise, of k columns
+/// The coefficients for the last members are left for finish().
 template <class Problem>
-FamilyFit maximise(const Problem& problem, VectorXd coefficients) {
+FamilyFit maximise(const Problem& problem, const VectorXd& start) {
   constexpr int most_rounds = 5;
   constexpr double least_gain = 0.05;
-  const Index k = coefficients.size();
   FamilyFit best;
   best.minus_two_log_likelihood = infinity;
+  best.coefficients = start;
   for (int round = 0; round < most_rounds; ++round) {
-    NoiseMembers members = problem.find_members(coefficients);
+    NoiseMembers members = problem.find_members(best.coefficients);
     double value = 0.0;
     for (NoiseMember& member : members) {
       value += member.minus_two_log_likelihood;
       member.sigma = std::max(member.sigma, least_sigma);
     }
     const double gain = best.minus_two_log_likelihood - value;
-    if (!(gain > 0.0)) break;
-    const MatrixXd products = problem.products(members);
-    best.covariance = pseudo_inverse(products.topLeftCorner(k, k));
-    best.coefficients = coefficients = best.covariance * products.col(k).head(k);
+    if (!(gain > 0.0)) break;  // the coefficients are those for the members before
     best.noise = std::move(members);
     best.minus_two_log_likelihood = value;
-    if (gain < least_gain) break;
+    best.covariance = {};
+    if (gain < least_gain || round + 1 == most_rounds) break;
+    finish(problem, best);
   }
   return best;
 }
@@ -83,6 +93,12 @@ std::array<FamilyFit, 2> fit_families(const NoiseFamilies& families, const RowLa
     fits[k] = maximise(OneResidual{families, layout, family, columns, residual, orders}, start);
   }
   return fits;
+}
+
+void finish_fit(const NoiseFamilies& families, const RowLayout& layout, const Columns& columns,
+                const VectorXd& residual, FamilyFit& fit) {
+  const std::vector<int> none;
+  finish(OneResidual{families, layout, fit.noise.front().family, columns, residual, none}, fit);
 }
 
 MatrixXd family_products(const NoiseFamilies& families, const RowLayout& layout,
@@ -210,8 +226,16 @@ struct FamilyRegression::Residual::InFamily {
 };
 
 FamilyFit FamilyRegression::Residual::fit(NoiseFamily family, Index count) const {
+  const InFamily problem{*regression_, *this, family, count};
   const VectorXd start = regression_->columns_.leftCols(count).transpose() * e_;
-  return maximise(InFamily{*regression_, *this, family, count}, start);
+  FamilyFit fit = maximise(problem, start);
+  finish(problem, fit);
+  return fit;
+}
+
+double FamilyRegression::Residual::minus_two_log_likelihood(NoiseFamily family, Index count) const {
+  const VectorXd start = regression_->columns_.leftCols(count).transpose() * e_;
+  return maximise(InFamily{*regression_, *this, family, count}, start).minus_two_log_likelihood;
 }
 
 }  // namespace sepcal::diagnosis

@@ -20,13 +20,21 @@ struct FamilyFit {
   double minus_two_log_likelihood = 0.0;
   Eigen::VectorXd coefficients = {};  // of the columns
   Eigen::MatrixXd covariance = {};
+
+  /// Whether the coefficients are those for the noise, not for the one of the round before.
+  bool is_finished() const { return covariance.size() > 0 || coefficients.size() == 0; }
 };
 
-/// The fit of orthonormal columns to a residual in each of noise::noise_families. `orders`: of each
-/// output's autoregression in the fractional one.
+/// The fit of orthonormal columns to a residual in each of noise::noise_families, as far as the
+/// likelihoods need it: finish_fit() does the rest. `orders`: of each output's autoregression in
+/// the fractional one.
 std::array<FamilyFit, 2> fit_families(const noise::NoiseFamilies& families, const RowLayout& layout,
                                       const Columns& columns, const Eigen::VectorXd& residual,
                                       const std::vector<int>& orders);
+
+/// The coefficients and their covariance in the noise that was found.
+void finish_fit(const noise::NoiseFamilies& families, const RowLayout& layout,
+                const Columns& columns, const Eigen::VectorXd& residual, FamilyFit& fit);
 
 /// [X e]' [X e] of columns X and a residual e, white in these noises.
 Eigen::MatrixXd family_products(const noise::NoiseFamilies& families, const RowLayout& layout,
@@ -52,6 +60,7 @@ class FamilyRegression {
    public:
     /// In this family, of the first `count` columns.
     FamilyFit fit(noise::NoiseFamily family, Eigen::Index count) const;
+    double minus_two_log_likelihood(noise::NoiseFamily family, Eigen::Index count) const;
 
    private:
     friend class FamilyRegression;

@@ -30,14 +30,34 @@ std::vector<TriangularFactor> factor_by_fold(const RowLayout& layout, const Colu
   return factors;
 }
 
-/// The least-squares estimate from all folds but one.
-VectorXd estimate_without(const std::vector<TriangularFactor>& factors, int left_out) {
+/// The same factor of [J ...] from that of [Q ...], J = Q coordinates.
+TriangularFactor by_parameters(const MatrixXd& R, const MatrixXd& coordinates) {
+  const Index others = R.cols() - coordinates.rows();
+  MatrixXd rows(R.rows(), coordinates.cols() + others);
+  rows << R.leftCols(coordinates.rows()) * coordinates, R.rightCols(others);
+  TriangularFactor factor(static_cast<int>(rows.cols()));
+  factor.absorb(rows);
+  return factor;
+}
+
+/// The least-squares estimate from all folds but one. What these leave undetermined is a matter of
+/// the parameters, not of a basis in their place.
+VectorXd estimate_without(const LinearisedFit& fit, const std::vector<TriangularFactor>& factors,
+                          int left_out) {
   TriangularFactor others(factors.front().columns());
   for (std::size_t f = 0; f < factors.size(); ++f) {
     if (static_cast<int>(f) != left_out) others.merge(factors[f]);
   }
+  const MatrixXd& coordinates = fit.coordinates;
+  if (coordinates.size() > 0) others = by_parameters(others.matrix(), coordinates);
   const Index n = others.columns() - 1;
-  return solve_triangular(others.matrix().topLeftCorner(n, n), others.matrix().col(n).head(n)).x;
+  VectorXd estimate =
+      solve_triangular(others.matrix().topLeftCorner(n, n), others.matrix().col(n).head(n)).x;
+  if (coordinates.size() == 0) return estimate;
+  const Index behind = n - coordinates.cols();
+  VectorXd of_basis(coordinates.rows() + behind);
+  of_basis << coordinates * estimate.head(coordinates.cols()), estimate.tail(behind);
+  return of_basis;
 }
 
 /// Squared error of a block in the outputs' unit.
@@ -194,8 +214,8 @@ HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds)
   std::vector<VectorXd> estimates_without;
   std::vector<VectorXd> estimates_with;
   for (int f = 0; f < folds.count; ++f) {
-    estimates_without.push_back(estimate_without(factors_without, f));
-    estimates_with.push_back(estimate_without(factors_with, f));
+    estimates_without.push_back(estimate_without(fit, factors_without, f));
+    estimates_with.push_back(estimate_without(fit, factors_with, f));
   }
   std::vector<double> before;
   std::vector<double> after;

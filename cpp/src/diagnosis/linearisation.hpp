@@ -36,10 +36,13 @@ struct RowLayout {
 struct LinearisedFit {
   RowLayout layout;
   std::vector<std::string> parameters;  // estimated and not at a bound: the columns of `tangent`
-  Eigen::MatrixXd tangent;              // count() x parameters
+  Eigen::MatrixXd tangent;              // count() x parameters, or a basis in its place
   Eigen::VectorXd residual;             // count(), z - model
   Eigen::MatrixXd wandering = {};       // count() x corrections that may wander, of unit size
   std::vector<double> times = {};       // of the N rows [s]; none where nothing wanders
+  // Of an orthonormal basis in the tangent's place, else empty:
+  Eigen::MatrixXd weights = {};      // parameters x rank, it is the tangent times these
+  Eigen::MatrixXd coordinates = {};  // rank x parameters, the tangent is it times these
 };
 
 }  // namespace sepcal::diagnosis

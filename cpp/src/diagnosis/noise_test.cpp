@@ -117,17 +117,22 @@ NoiseTest::NoiseTest(const TangentBasis& tangent, std::vector<int> orders)
       orders_(std::move(orders)),
       families_(fit_.layout.runs),
       nulls_(fit_families(families_, fit_.layout, basis_, fit_.residual, orders_)),
-      inputs_(tangent) {}
+      inputs_(tangent) {
+  for (FamilyFit& null : nulls_) {
+    finish_fit(families_, fit_.layout, basis_, fit_.residual, null);
+  }
+}
 
 NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
-  const auto with =
-      fit_families(families_, fit_.layout, join(basis_, added), fit_.residual, orders_);
+  const Columns columns = join(basis_, added);
+  const auto with = fit_families(families_, fit_.layout, columns, fit_.residual, orders_);
   Ratios ratios;
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
     ratios.own[k] =
         std::max(0.0, nulls_[k].minus_two_log_likelihood - with[k].minus_two_log_likelihood);
   }
   ratios.with = likeliest(with);
+  finish_fit(families_, fit_.layout, columns, fit_.residual, ratios.with);
   double null = likeliest(nulls_).minus_two_log_likelihood;
   double least_with = ratios.with.minus_two_log_likelihood;
   if (!inputs_.is_empty()) {
@@ -186,7 +191,7 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     pool.for_each(residuals.size(), [&](std::size_t i) {
       const FamilyRegression::Residual drawn_residual = regression.take(residuals[i]);
       const auto likelihood = [&](NoiseFamily family, Index count) {
-        return drawn_residual.fit(family, count).minus_two_log_likelihood;
+        return drawn_residual.minus_two_log_likelihood(family, count);
       };
       if (which < 2) {
         const NoiseFamily family = noise::noise_families[which];

@@ -71,10 +71,24 @@ MatrixXd remove_span(const MatrixXd& basis, const MatrixXd& columns) {
   return left;
 }
 
-TangentBasis::TangentBasis(const LinearisedFit& fit)
-    : fit_(&fit), weights_(orthonormal_weights(factor_of(fit.tangent))) {}
+void orthonormalise(LinearisedFit& fit) {
+  const MatrixXd R = factor_of(fit.tangent);
+  fit.weights = orthonormal_weights(R);
+  multiply_in_place(fit.tangent, fit.weights);
+  const MatrixXd left = inverse_of(factor_of(fit.tangent));  // by rounding
+  multiply_in_place(fit.tangent, left);
+  fit.weights *= left;
+  fit.coordinates = (R * fit.weights).transpose() * R;
+}
+
+TangentBasis::TangentBasis(const LinearisedFit& fit) : fit_(&fit) {
+  const Index rank = fit.tangent.cols();
+  weights_ = fit.weights.size() > 0 ? MatrixXd(MatrixXd::Identity(rank, rank))
+                                    : orthonormal_weights(factor_of(fit.tangent));
+}
 
 Columns TangentBasis::columns() const {
+  if (fit_->weights.size() > 0) return view(fit_->tangent);
   return {rank(), [&J = fit_->tangent, C = weights_](Index first, Eigen::Ref<MatrixXd> rows) {
             rows.noalias() = J.middleRows(first, rows.rows()) * C;
           }};
@@ -88,24 +102,35 @@ VectorXd TangentBasis::remove_from(VectorXd column) const {
   return column;
 }
 
-MatrixXd explained_by(const TangentBasis& tangent, const Columns& G) {
+namespace {
+
+/// C of J C by the tangent's columns or the basis in their place.
+MatrixXd explained_on(const TangentBasis& tangent, const Columns& G) {
   const LinearisedFit& fit = tangent.fit();
   MatrixXd products = MatrixXd::Zero(fit.tangent.cols(), G.cols());
   for_each_panel(fit.layout, [&](Index first, Index rows) {
-    products.noalias() += fit.tangent.middleRows(first, rows).transpose() * G.rows(first, rows);
+    add_transposed_product(fit.tangent.middleRows(first, rows), G.rows(first, rows), products);
   });
   return tangent.weights() * (tangent.weights().transpose() * products);
 }
 
-namespace {
+MatrixXd in_parameters(const TangentBasis& tangent, const MatrixXd& C) {
+  const MatrixXd& weights = tangent.fit().weights;
+  return weights.size() > 0 ? MatrixXd(weights * C) : C;
+}
 
 /// (G - J C) W.
 Columns subtract_tangent(const TangentBasis& tangent, const Columns& G, const MatrixXd& C,
                          const MatrixXd& W) {
   return {W.cols(), [&J = tangent.fit().tangent, G, W, CW = MatrixXd(C * W)](
                         Index first, Eigen::Ref<MatrixXd> rows) {
+            const auto own = J.middleRows(first, rows.rows());
             rows.noalias() = G.rows(first, rows.rows()) * W;
-            rows.noalias() -= J.middleRows(first, rows.rows()) * CW;
+            if (CW.cols() > few_columns) {
+              rows.noalias() -= own * CW;
+              return;
+            }
+            for (Index k = 0; k < CW.cols(); ++k) rows.col(k).noalias() -= own * CW.col(k);
           }};
 }
 
@@ -120,40 +145,56 @@ MatrixXd factor_of(const RowLayout& layout, const Columns& columns) {
 
 }  // namespace
 
+MatrixXd explained_by(const TangentBasis& tangent, const Columns& G) {
+  return in_parameters(tangent, explained_on(tangent, G));
+}
+
 Columns remove_tangent(const TangentBasis& tangent, const Columns& G) {
-  return subtract_tangent(tangent, G, explained_by(tangent, G),
+  return subtract_tangent(tangent, G, explained_on(tangent, G),
                           MatrixXd::Identity(G.cols(), G.cols()));
 }
 
 Columns span_beyond(const TangentBasis& tangent, const Columns& G) {
-  const MatrixXd C = explained_by(tangent, G);
+  const MatrixXd C = explained_on(tangent, G);
   const MatrixXd whole = MatrixXd::Identity(G.cols(), G.cols());
   const MatrixXd R = factor_of(tangent.fit().layout, subtract_tangent(tangent, G, C, whole));
   return subtract_tangent(tangent, G, C, orthonormal_weights(R));
 }
 
-Projection project(const TangentBasis& tangent, const Columns& G, const Columns& whole,
-                   double least_visibility) {
+BeyondTangent measure_beyond(const TangentBasis& tangent, const Columns& G, const Columns& whole) {
   constexpr double deficient = 1e-10;  // singular value of columns of unit length
   const RowLayout& layout = tangent.fit().layout;
-  Projection projection;
+  BeyondTangent beyond;
   const Index q = G.cols();
-  if (layout.count() < q) return projection;
+  if (layout.count() < q) return beyond;
   MatrixXd R = factor_of(layout, whole);
   const VectorXd norms = scale_to_unit(R);
-  if (!(Eigen::JacobiSVD<MatrixXd>(R).singularValues()[q - 1] > deficient)) return projection;
-  const MatrixXd to_coefficients = norms.cwiseInverse().asDiagonal() * inverse_of(R);
-  projection.absorbed = explained_by(tangent, G);
-  const MatrixXd& C = projection.absorbed;
-  const Eigen::JacobiSVD<MatrixXd> svd(
-      factor_of(layout, subtract_tangent(tangent, G, C, to_coefficients)),
-      Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (!(Eigen::JacobiSVD<MatrixXd>(R).singularValues()[q - 1] > deficient)) return beyond;
+  beyond.to_coefficients = norms.cwiseInverse().asDiagonal() * inverse_of(R);
+  beyond.shares = explained_on(tangent, G);
+  beyond.absorbed = in_parameters(tangent, beyond.shares);
+  beyond.columns = subtract_tangent(tangent, G, beyond.shares, beyond.to_coefficients);
+  return beyond;
+}
+
+SeenDirections find_seen_directions(const MatrixXd& R, double least_visibility) {
+  if (R.size() == 0) return {};
+  const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const VectorXd& sines = svd.singularValues();
-  projection.visibility = std::min(1.0, sines[q - 1]);
   const Index visible = (sines.array() >= least_visibility).count();
-  projection.to_effect = to_coefficients * svd.matrixV().leftCols(visible) *
-                         sines.head(visible).cwiseInverse().asDiagonal();
-  projection.basis = subtract_tangent(tangent, G, C, projection.to_effect);
+  return {std::min(1.0, sines[sines.size() - 1]),
+          svd.matrixV().leftCols(visible) * sines.head(visible).cwiseInverse().asDiagonal()};
+}
+
+Projection project(const TangentBasis& tangent, const Columns& G, const Columns& whole,
+                   double least_visibility) {
+  const BeyondTangent beyond = measure_beyond(tangent, G, whole);
+  const auto [visibility, directions] =
+      find_seen_directions(factor_of(tangent.fit().layout, beyond.columns), least_visibility);
+  Projection projection{.absorbed = beyond.absorbed, .visibility = visibility};
+  if (beyond.columns.cols() == 0) return projection;
+  projection.to_effect = beyond.to_coefficients * directions;
+  projection.basis = subtract_tangent(tangent, G, beyond.shares, projection.to_effect);
   return projection;
 }
 

@@ -19,7 +19,11 @@ Eigen::MatrixXd remove_span(const Eigen::MatrixXd& basis, const Eigen::MatrixXd&
 /// rank: columns x rank.
 Eigen::MatrixXd orthonormal_weights(Eigen::MatrixXd R);
 
-/// The tangent with what makes an orthonormal basis of it, Q = tangent * weights: Q is not kept.
+/// An orthonormal basis takes the tangent's place, whose columns are not needed any more.
+void orthonormalise(LinearisedFit& fit);
+
+/// The tangent with what makes an orthonormal basis of it, Q = tangent * weights. Q is kept where
+/// it has the tangent's place alone.
 class TangentBasis {
  public:
   TangentBasis() = default;
@@ -39,7 +43,7 @@ class TangentBasis {
   Eigen::MatrixXd weights_ = {};
 };
 
-/// C of J C, what the tangent J explains of G: tangent's columns x G's.
+/// C of J C, what the tangent J explains of G: parameters x G's columns.
 Eigen::MatrixXd explained_by(const TangentBasis& tangent, const Columns& G);
 
 /// What of G is orthogonal to the tangent, whose fit must outlive it.
@@ -53,11 +57,28 @@ Columns span_beyond(const TangentBasis& tangent, const Columns& G);
 struct Projection {
   Columns basis = {};              // orthonormal, of the visible part of G_perp
   Eigen::MatrixXd to_effect = {};  // q x visible: the coefficients of G behind those of the basis
-  Eigen::MatrixXd absorbed = {};   // tangent's columns x q: least squares of G on the tangent
+  Eigen::MatrixXd absorbed = {};   // parameters x q: least squares of G on the tangent
   double visibility = 0.0;  // smallest singular value of G_perp relative to `whole`, at most 1
 
   Eigen::Index visible() const { return basis.cols(); }
 };
+
+/// G_perp in units of `whole`, where these have full rank: then there are q columns.
+struct BeyondTangent {
+  Columns columns = {};                  // G_perp * to_coefficients
+  Eigen::MatrixXd to_coefficients = {};  // makes `whole` orthonormal
+  Eigen::MatrixXd shares = {};           // of the tangent's columns in G
+  Eigen::MatrixXd absorbed = {};         // as a projection's
+};
+BeyondTangent measure_beyond(const TangentBasis& tangent, const Columns& G, const Columns& whole);
+
+/// The directions of those columns, whose triangular factor is R, that can be seen: the basis is
+/// the columns times `directions`.
+struct SeenDirections {
+  double visibility = 0.0;
+  Eigen::MatrixXd directions = {};  // q x visible
+};
+SeenDirections find_seen_directions(const Eigen::MatrixXd& R, double least_visibility);
 
 /// `whole`: the columns that G_perp is measured against, G itself or the part of it that varies. A
 /// direction is visible from `least_visibility` on; none is where `whole` is deficient. The

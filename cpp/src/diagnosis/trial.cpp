@@ -7,6 +7,7 @@
 
 #include "diagnosis/refits.hpp"
 #include "numerics/tails.hpp"
+#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
 namespace {
@@ -74,32 +75,75 @@ Projection project_columns(const NullHypothesis& null, const Trial& trial,
   return project(null.basis, columns.whole, columns.varying, trial.least_visibility);
 }
 
-/// X'X and X'e of columns whitened beyond the tangent, e the null's residual.
-std::pair<MatrixXd, VectorXd> whiten_products(const NullHypothesis& null, const Columns& columns) {
-  const RowLayout& layout = null.fit().layout;
-  const Index q = columns.cols();
-  MatrixXd square = MatrixXd::Zero(q, q);
-  MatrixXd shares = MatrixXd::Zero(null.white_basis.cols(), q);
-  VectorXd product = VectorXd::Zero(q);
-  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    MatrixXd white = columns.rows(layout.first(j), layout.rows);
-    null.whiteners[j].apply(white);
-    square.noalias() += white.transpose() * white;
-    shares.noalias() +=
-        null.white_basis.middleRows(layout.first(j), layout.rows).transpose() * white;
-    product.noalias() +=
-        white.transpose() * null.white_residual.segment(layout.first(j), layout.rows);
+/// What the screen needs of columns X beyond the tangent, in one pass; e is the null's residual.
+struct ScreenProducts {
+  MatrixXd R = {};                   // their triangular factor
+  std::vector<MatrixXd> plain = {};  // [X e]' [X e] of each output
+  MatrixXd white_square = {};        // X'X, whitened and beyond the whitened tangent
+  VectorXd white_product = {};       // X'e likewise
+
+  VectorXd product() const {
+    const Index q = R.cols();
+    VectorXd sum = VectorXd::Zero(q);
+    for (const MatrixXd& of_output : plain) sum += of_output.col(q).head(q);
+    return sum;
   }
-  return {square - shares.transpose() * shares, product};
+};
+
+ScreenProducts multiply_for_screen(const NullHypothesis& null, const Columns& X) {
+  const RowLayout& layout = null.fit().layout;
+  const Index q = X.cols();
+  TriangularFactor factor(static_cast<int>(q));
+  ScreenProducts products{.white_square = MatrixXd::Zero(q, q), .white_product = VectorXd::Zero(q)};
+  MatrixXd shares = MatrixXd::Zero(null.white_basis.cols(), q);
+  MatrixXd columns(layout.rows, q);
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const Index first = layout.first(j);
+    MatrixXd plain = MatrixXd::Zero(q + 1, q + 1);
+    for (Index row = 0; row < layout.rows; row += panel_rows) {
+      auto part = columns.middleRows(row, std::min(panel_rows, layout.rows - row));
+      X.fill(first + row, part);
+      MatrixXd panel(part.rows(), q + 1);
+      panel << part, null.residual.segment(first + row, part.rows());
+      plain.noalias() += panel.transpose() * panel;
+      panel.conservativeResize(Eigen::NoChange, q);
+      factor.absorb(panel);
+    }
+    products.plain.push_back(std::move(plain));
+    null.whiteners[j].apply(columns);
+    add_transposed_product(columns, columns, products.white_square);
+    add_transposed_product(null.white_basis.middleRows(first, layout.rows), columns, shares);
+    products.white_product.noalias() +=
+        columns.transpose() * null.white_residual.segment(first, layout.rows);
+  }
+  products.R = factor.matrix();
+  products.white_square -= shares.transpose() * shares;
+  return products;
+}
+
+/// predict_drop() of X times `directions`.
+double predict_drop(const NullHypothesis& null, const ScreenProducts& products,
+                    const MatrixXd& directions) {
+  const RowLayout& layout = null.fit().layout;
+  const Index q = directions.rows();
+  VectorXd change(q + 1);  // of the residual, [X e] times this
+  change << -directions * (directions.transpose() * products.product()), 1.0;
+  double square = 0.0;
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    const double scale = layout.outputs[j].scale;
+    square += scale * scale * change.dot(products.plain[j] * change);
+  }
+  return 1.0 - std::sqrt(std::max(0.0, square) / static_cast<double>(layout.count())) /
+                   total_rmse(layout, null.fit().residual);
 }
 
 /// The estimate of the effect from that of its basis.
-void keep_estimate(const Projection& added, const VectorXd& of_basis, const MatrixXd& covariance,
-                   Trial& trial) {
-  trial.estimate = added.to_effect * of_basis;
-  trial.absorbed = added.absorbed * trial.estimate;
-  trial.covariance = added.to_effect * covariance * added.to_effect.transpose();
-  trial.freedom = static_cast<int>(added.visible());
+void keep_estimate(const MatrixXd& to_effect, const MatrixXd& absorbed, const VectorXd& of_basis,
+                   const MatrixXd& covariance, Trial& trial) {
+  trial.estimate = to_effect * of_basis;
+  trial.absorbed = absorbed * trial.estimate;
+  trial.covariance = to_effect * covariance * to_effect.transpose();
+  trial.freedom = static_cast<int>(to_effect.cols());
 }
 
 void set_tails(const NoiseTails& tails, Trial& trial) {
@@ -118,18 +162,22 @@ Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, 
 double log10_scan(const Trial& trial) { return std::log10(trial.candidate.shape.tried); }
 
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
-  const RowLayout& layout = room.fit().layout;
   if (!trial.candidate.stepping_port.empty()) add_step_rows(room, null, trial.candidate);
   double best_white = 1.0;  // log10 of the tail
   double best_plain = 1.0;
   for (const double shape : trial.candidate.shape.values) {
-    const Projection added = project_trial(room, null, trial, shape);
-    trial.visibility = std::max(trial.visibility, added.visibility);
-    if (added.visible() == 0) continue;
-    ShapeScore score{.shape = shape, .freedom = static_cast<int>(added.visible())};
-    score.plain = multiply_transposed(layout, added.basis, room.fit().residual).squaredNorm();
-    const auto [square, product] = whiten_products(null, added.basis);
-    const MatrixXd covariance = pseudo_inverse(square);
+    const CandidateColumns columns = room.columns(trial.candidate, shape);
+    const BeyondTangent beyond = measure_beyond(null.basis, columns.whole, columns.varying);
+    if (beyond.columns.cols() == 0) continue;
+    const ScreenProducts products = multiply_for_screen(null, beyond.columns);
+    const auto [visibility, directions] = find_seen_directions(products.R, trial.least_visibility);
+    trial.visibility = std::max(trial.visibility, visibility);
+    if (directions.cols() == 0) continue;
+    ShapeScore score{.shape = shape, .freedom = static_cast<int>(directions.cols())};
+    score.plain = (directions.transpose() * products.product()).squaredNorm();
+    const VectorXd product = directions.transpose() * products.white_product;
+    const MatrixXd covariance =
+        pseudo_inverse(directions.transpose() * products.white_square * directions);
     const VectorXd step = covariance * product;
     score.white = product.dot(step);
     score.white = numerics::log10_chi_squared_tail(score.white, score.freedom);
@@ -139,8 +187,8 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     if (!(score.white < best_white)) continue;
     best_white = score.white;
     trial.shape = shape;
-    keep_estimate(added, step, covariance, trial);
-    trial.predicted_drop = predict_drop(null, added.basis);
+    keep_estimate(beyond.to_coefficients * directions, beyond.absorbed, step, covariance, trial);
+    trial.predicted_drop = predict_drop(null, products, directions);
   }
   trial.visible = !trial.scores.empty();
   if (!trial.visible) return;
@@ -155,8 +203,8 @@ void estimate_plainly(const RowLayout& layout, const Projection& added, const Ve
   trial.visible = added.visible() > 0;
   trial.visibility = added.visibility;
   const Index q = added.visible();
-  keep_estimate(added, multiply_transposed(layout, added.basis, residual), MatrixXd::Identity(q, q),
-                trial);
+  keep_estimate(added.to_effect, added.absorbed, multiply_transposed(layout, added.basis, residual),
+                MatrixXd::Identity(q, q), trial);
 }
 
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
@@ -176,7 +224,7 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
     trial.ratios = ratios;
     trial.floor = null.test->floor(ratios.with.noise);
     trial.shape = shape;
-    keep_estimate(added, ratios.with.coefficients.tail(q),
+    keep_estimate(added.to_effect, added.absorbed, ratios.with.coefficients.tail(q),
                   ratios.with.covariance.bottomRightCorner(q, q), trial);
     trial.predicted_drop = predict_drop(null, added.basis);
   }

@@ -59,6 +59,12 @@ WanderingInputs::WanderingInputs(const TangentBasis& tangent) : fit_(tangent.fit
   find_loudness();
   basis_ = by_loudness(tangent.columns());
   residual_ = by_loudness(view(fit_.residual)).dense(fit_.layout);
+  const Index rank = basis_.cols();
+  basis_squares_ = MatrixXd::Zero(rank, rank);
+  for_each_panel(fit_.layout, [&](Index first, Index rows) {
+    const MatrixXd panel = basis_.rows(first, rows);
+    basis_squares_.noalias() += panel.transpose() * panel;
+  });
   scale_ = std::sqrt(static_cast<double>(fit_.wandering.rows()) / square_sum);
   const auto [first, last] = std::ranges::minmax(fit_.times);
   first_ = first;
@@ -119,11 +125,14 @@ WanderingInputs::Fixed WanderingInputs::fix(const Columns& added) const {
   const Columns quiet = by_loudness(added);
   Fixed fixed{.columns = join(quiet, basis_), .gathered = gather(quiet)};
   const Index count = fixed.columns.cols();
-  fixed.squares = MatrixXd::Zero(count, count);
+  const Index more = quiet.cols();
+  MatrixXd shares = MatrixXd::Zero(more, count);
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
     const MatrixXd panel = fixed.columns.rows(first, rows);
-    fixed.squares.noalias() += panel.transpose() * panel;
+    shares.noalias() += panel.leftCols(more).transpose() * panel;
   });
+  fixed.squares.resize(count, count);
+  fixed.squares << shares, shares.rightCols(count - more).transpose(), basis_squares_;
   return fixed;
 }
 
@@ -219,14 +228,27 @@ void WanderingInputs::weigh(Index row, Weights& weights) const {
 }
 
 MatrixXd WanderingInputs::gather(const Columns& columns) const {
+  const Index sizes = 2 * corrections();  // of two knots
   MatrixXd sums = MatrixXd::Zero(knots * corrections(), columns.cols());
+  MatrixXd weights(sizes, panel_rows);
   Weights at;
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
     const MatrixXd panel = columns.rows(first, rows);
+    Index begin = 0;  // of the rows between the same knots
+    Index knot = 0;   // the first of their sizes
+    const auto add = [&](Index end) {
+      const Index count = end - begin;
+      sums.middleRows(knot, sizes).noalias() +=
+          weights.leftCols(count) * panel.middleRows(begin, count);
+      begin = end;
+    };
     for (Index row = 0; row < rows; ++row) {
       weigh(first + row, at);
-      sums.middleRows(at.first, at.of.size()).noalias() += at.of * panel.row(row);
+      if (at.first != knot && row > begin) add(row);
+      knot = at.first;
+      weights.col(row - begin) = at.of;
     }
+    add(rows);
   });
   return sums;
 }

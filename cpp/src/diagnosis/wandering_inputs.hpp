@@ -90,8 +90,9 @@ class WanderingInputs {
   Eigen::VectorXd draw(const Member& member, std::mt19937_64& generator) const;
 
   const LinearisedFit& fit_;
-  Eigen::VectorXd loudness_;  // of each output's white noise; their geometric mean is one
-  Columns basis_;             // over the loudness, as what follows
+  Eigen::VectorXd loudness_;       // of each output's white noise; their geometric mean is one
+  Columns basis_;                  // over the loudness, as what follows
+  Eigen::MatrixXd basis_squares_;  // basis'basis
   Eigen::VectorXd residual_;
   double scale_ = 1.0;  // makes all slopes' mean square one
   double first_ = 0.0;  // [s]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "noise/autoregression.hpp"
 #include "noise/noise_autocovariance.hpp"
 #include "numerics/decompositions.hpp"
 
@@ -38,7 +39,7 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
     for (Index s = 0; s < rows; ++s) {
       const auto at = static_cast<double>(s);
       if (s > 0) {
-        gain_[s] = gain_[s - 1] * (at - delta) / at;
+        gain_[s] = gain_[s - 1] * (1.0 - delta / at);  // no division waits for another
         const double partial = delta / (at - delta);
         variance *= (1.0 - partial) * (1.0 + partial);
       }
@@ -136,8 +137,7 @@ void ArfimaFactor::whiten(Ref<VectorXd> x) const {
   }
   if (x.size() == 0) return;
   const Index head = std::min(order, x.size());
-  const VectorXd reversed = phi_.reverse();
-  for (Index t = x.size() - 1; t >= order; --t) x[t] -= reversed.dot(x.segment(t - order, order));
+  subtract_predictions(phi_, x);
   auto tail = x.tail(x.size() - head);
   whiten_fractional(tail);
   auto first = x.head(head);

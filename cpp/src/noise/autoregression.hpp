@@ -18,6 +18,9 @@ Eigen::VectorXd partial_from_phi(Eigen::VectorXd phi);
 /// Whether it is, as far as its partial autocorrelations can be told after rounding.
 bool is_stationary(const Eigen::VectorXd& phi);
 
+/// Every row past the first p loses what phi (p) predicts of it from those before.
+void subtract_predictions(const Eigen::VectorXd& phi, Eigen::Ref<Eigen::VectorXd> x);
+
 /// -2 ln L less its constant, profiled over sigma, of AR(0), ..., AR(max_order) by Burg's lattice
 /// over blocks of rows; the rows of `y` are those of the blocks, one after another.
 struct BurgFit {

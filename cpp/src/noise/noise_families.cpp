@@ -68,6 +68,32 @@ SEPCAL_EVERY_WIDTH void add_squares(const FilterBank& bank, const double* e, Ind
   }
 }
 
+/// One member's filter.
+struct WanderFilter {
+  double decay;
+  const double* gain;       // of each row until they settle
+  const double* precision;  // the root of it, of the innovations
+  Index settled;            // the last row, which stands for all later ones
+};
+
+/// Up to lane_count columns of a run become innovations, each of unit variance.
+SEPCAL_EVERY_WIDTH void whiten_side_by_side(const WanderFilter& filter, double* columns,
+                                            Index stride, Index count, Index rows) {
+  Lanes state = {};
+  double values[lane_count] = {};
+  for (Index t = 0; t < rows; ++t) {
+    const Index at = std::min(t, filter.settled);
+    for (Index k = 0; k < count; ++k) values[k] = columns[k * stride + t];
+    Lanes innovation;
+    load(values, innovation);
+    innovation -= state;
+    state = filter.decay * (state + filter.gain[at] * innovation);
+    innovation *= filter.precision[at];
+    store(innovation, values);
+    for (Index k = 0; k < count; ++k) columns[k * stride + t] = values[k];
+  }
+}
+
 // NOLINTEND(*-pointer-arithmetic,*-c-arrays,*-constant-array-index)
 
 /// The variance of the sum of `rows` increments (1 - B)^delta u = w.
@@ -96,16 +122,18 @@ void whiten_autoregression(const VectorXd& partial, Ref<VectorXd> x) {
   const Index p = std::min(partial.size(), x.size());
   if (partial.size() == 0) return;
   const VectorXd ratios = variance_ratios(partial);
-  VectorXd backward = x;
+  VectorXd first = x.head(p);
+  VectorXd backward = first;
   for (Index order = 0; order < p; ++order) {
     const double r = partial[order];
-    for (Index t = x.size() - 1; t > order; --t) {
-      const double f = x[t];
-      x[t] = f - r * backward[t - 1];
+    for (Index t = p - 1; t > order; --t) {
+      const double f = first[t];
+      first[t] = f - r * backward[t - 1];
       backward[t] = backward[t - 1] - r * f;
     }
   }
-  for (Index t = 0; t < p; ++t) x[t] *= std::sqrt(ratios[t]);
+  if (x.size() > p) subtract_predictions(phi_from_partial(partial), x);
+  for (Index t = 0; t < p; ++t) x[t] = first[t] * std::sqrt(ratios[t]);
 }
 
 void colour_autoregression(const VectorXd& partial, Ref<VectorXd> w) {
@@ -320,21 +348,16 @@ void NoiseFamilies::whiten(const NoiseMember& member, Ref<MatrixXd> columns) con
     return;
   }
   const Wander& wander = wanders_[member.at];
-  const Index settled = wander.gain.size() - 1;
-  for (auto column : columns.colwise()) {
-    Index first = 0;
+  const VectorXd precision = (member.sigma * wander.deviation).cwiseInverse();
+  for (Index first = 0; first < columns.cols(); first += lane_count) {
+    const Index count = std::min(lane_count, columns.cols() - first);
+    Index row = 0;
     for (const Index length : lengths_) {
-      double state = 0.0;
-      for (Index t = 0; t < length; ++t) {
-        const Index at = std::min(t, settled);
-        const double innovation = column[first + t] - state;
-        column[first + t] = innovation / wander.deviation[at];
-        state = wander.a * (state + wander.gain[at] * innovation);
-      }
-      first += length;
+      whiten_side_by_side({wander.a, wander.gain.data(), precision.data(), wander.gain.size() - 1},
+                          &columns(row, first), columns.outerStride(), count, length);
+      row += length;
     }
   }
-  columns /= member.sigma;
 }
 
 void NoiseFamilies::colour(const NoiseMember& member, Ref<VectorXd> innovations) const {
