@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fits that end otherwise than well: exit 4 and 5, with the result written, printed and usable."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -66,8 +68,9 @@ def test_straight_and_level_at_one_speed(pitot: Bench):
         assert list(entry) == ["combination", "parameters", "standard_error"]
         if entry["combination"] in fitted.result["message"]:  # the first few are
             assert all(name in fitted.result["message"] for name in entry["parameters"])
-    assert "lambda_va, w_n and b_va can't be told apart" in fitted.result["message"]
-    assert "can't be told apart" in fitted.result["message"]
+    alike = re.match(r"(.*), (.*) and (.*) can't be told apart", fitted.result["message"])
+    assert alike is not None
+    assert set(alike.groups()) == {"lambda_va", "b_va", "w_n"}  # in an order that rounding decides
     assert fitted.result["parameters"]["lambda_va"]["standard_error"] is None
 
 
