@@ -53,6 +53,25 @@ TEST_CASE("the tree finds the same neighbours as a look at every point") {
   }
 }
 
+TEST_CASE("the nearest of another label is the first such neighbour") {
+  std::mt19937 generator(4);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  MatrixXd points(3, 200);
+  for (double& x : points.reshaped()) x = uniform(generator);
+  std::vector<Index> labels;
+  for (Index s = 0; s < points.cols(); ++s) labels.push_back(points(0, s) > 0.2 ? 1 : 0);
+  const numerics::NearestPoints tree(points);
+  for (Index s = 0; s < points.cols(); ++s) {
+    const auto all = look_around(points, s, points.cols() - 1);
+    const auto expected = std::ranges::find_if(all, [&](Index other) {
+      return labels[static_cast<std::size_t>(other)] != labels[static_cast<std::size_t>(s)];
+    });
+    CHECK(tree.find_other(s, labels, 1e9).second == *expected);
+  }
+  CHECK(tree.find_other(0, std::vector<Index>(200, 1), 1e9).second == -1);
+  CHECK(tree.find_other(0, labels, 1e-9).second == -1);
+}
+
 TEST_CASE("a point by itself has no neighbour") {
   std::vector<Index> found{7};
   numerics::NearestPoints(MatrixXd::Zero(2, 1)).find(0, 0, found);

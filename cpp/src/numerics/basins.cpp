@@ -51,7 +51,7 @@ class Neighbours {
       tree_.find(s, near, found_);
       for (const Index other : found_) join(s, other, pools);
     }
-    for (Index far = 2 * near; join_crowds(std::min(far, count_ - 1), pools); far *= 2) {
+    while (join_crowds(pools)) {
     }
     sort_pairs();
   }
@@ -67,25 +67,30 @@ class Neighbours {
     pools.pour(pools.lowest(s), pools.lowest(other));
   }
 
-  /// Joins every crowd to the nearest point outside of it among the `far` nearest of its points.
-  /// Whether there were several.
-  bool join_crowds(Index far, Pools& pools) {
-    std::map<Index, std::vector<Index>> crowds;
-    for (Index s = 0; s < count_; ++s) crowds[pools.lowest(s)].push_back(s);
-    if (crowds.size() <= 1) return false;
-    for (const auto& [name, crowd] : crowds) {
-      double least = std::numeric_limits<double>::infinity();
-      std::pair<Index, Index> nearest{-1, -1};
-      for (const Index s : crowd) {
-        tree_.find(s, far, found_);
-        const auto outside = std::ranges::find_if(
-            found_, [&](Index other) { return pools.lowest(other) != pools.lowest(s); });
-        if (outside == found_.end() || !(tree_.square_between(s, *outside) < least)) continue;
-        least = tree_.square_between(s, *outside);
-        nearest = {s, *outside};
-      }
-      if (nearest.first >= 0) join(nearest.first, nearest.second, pools);
+  /// Joins every crowd but the largest to the point nearest to it. Whether there were several.
+  bool join_crowds(Pools& pools) {
+    Indices crowd(static_cast<std::size_t>(count_));
+    Indices size(static_cast<std::size_t>(count_), 0);
+    for (Index s = 0; s < count_; ++s) {
+      crowd[static_cast<std::size_t>(s)] = pools.lowest(s);
+      ++size[static_cast<std::size_t>(pools.lowest(s))];
     }
+    const auto largest = static_cast<Index>(std::ranges::max_element(size) - size.begin());
+    if (count_ == 0 || size[static_cast<std::size_t>(largest)] == count_) return false;
+    struct Bridge {
+      double square = std::numeric_limits<double>::infinity();
+      Index from = -1;
+      Index to = -1;
+    };
+    std::map<Index, Bridge> bridges;  // of each crowd
+    for (Index s = 0; s < count_; ++s) {
+      const Index own = crowd[static_cast<std::size_t>(s)];
+      if (own == largest) continue;
+      Bridge& bridge = bridges[own];
+      const auto [square, other] = tree_.find_other(s, crowd, bridge.square);
+      if (other >= 0) bridge = {square, s, other};
+    }
+    for (const auto& [name, bridge] : bridges) join(bridge.from, bridge.to, pools);
     return true;
   }
 

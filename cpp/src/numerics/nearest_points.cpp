@@ -2,6 +2,7 @@
 #include "numerics/nearest_points.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace sepcal::numerics {
@@ -54,14 +55,19 @@ std::size_t NearestPoints::grow(const MatrixXd& points, Index first, Index last)
   return place;
 }
 
+/// From a point to that at a place of the tree's order.
+double NearestPoints::square_to(const double* centre, Index place) const {
+  const double* const point = ordered_.data() + place * n_;
+  double square = 0.0;
+  for (Index k = 0; k < n_; ++k) square += (point[k] - centre[k]) * (point[k] - centre[k]);
+  return square;
+}
+
 void NearestPoints::look_at(const Node& leaf, const double* centre, Index s, std::size_t count) {
-  const double* point = ordered_.data() + leaf.first * n_;
-  for (Index i = leaf.first; i < leaf.last; ++i, point += n_) {
+  for (Index i = leaf.first; i < leaf.last; ++i) {
     const Index other = order_[static_cast<std::size_t>(i)];
     if (other == s) continue;
-    double square = 0.0;
-    for (Index k = 0; k < n_; ++k) square += (point[k] - centre[k]) * (point[k] - centre[k]);
-    const Neighbour found{square, other};
+    const Neighbour found{square_to(centre, i), other};
     if (nearest_.size() == count) {
       if (!(found < nearest_.back())) continue;
       nearest_.pop_back();
@@ -80,12 +86,30 @@ void NearestPoints::search(const Node& node, const double* centre, Index s, std:
   }
 }
 
-double NearestPoints::square_between(Index a, Index b) const {
-  const double* const x = point_[static_cast<std::size_t>(a)];
-  const double* const y = point_[static_cast<std::size_t>(b)];
-  double square = 0.0;
-  for (Index k = 0; k < n_; ++k) square += (x[k] - y[k]) * (x[k] - y[k]);
-  return square;
+void NearestPoints::search_other(const Node& node, const double* centre, Index label,
+                                 const std::vector<Index>& labels, Neighbour& nearest) const {
+  if (node.above == 0) {
+    for (Index i = node.first; i < node.last; ++i) {
+      const Index other = order_[static_cast<std::size_t>(i)];
+      if (labels[static_cast<std::size_t>(other)] == label) continue;
+      nearest = std::min(nearest, Neighbour{square_to(centre, i), other});
+    }
+    return;
+  }
+  const double beyond = centre[node.axis] - node.cut;
+  const bool is_above = beyond >= 0.0;
+  search_other(nodes_[is_above ? node.above : node.below], centre, label, labels, nearest);
+  if (beyond * beyond <= nearest.first) {
+    search_other(nodes_[is_above ? node.below : node.above], centre, label, labels, nearest);
+  }
+}
+
+NearestPoints::Neighbour NearestPoints::find_other(Index s, const std::vector<Index>& labels,
+                                                   double limit) const {
+  const auto own = static_cast<std::size_t>(s);
+  Neighbour nearest{limit, -1};
+  search_other(nodes_.front(), point_[own], labels[own], labels, nearest);
+  return nearest.second < 0 ? Neighbour{std::numeric_limits<double>::infinity(), -1} : nearest;
 }
 
 void NearestPoints::find(Index s, Index count, std::vector<Index>& found) {

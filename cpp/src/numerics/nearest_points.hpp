@@ -18,8 +18,11 @@ class NearestPoints {
   /// nearest first; of points as far away the one that comes first.
   void find(Eigen::Index s, Eigen::Index count, std::vector<Eigen::Index>& found);
 
-  /// The square of the distance between two points.
-  double square_between(Eigen::Index a, Eigen::Index b) const;
+  using Neighbour = std::pair<double, Eigen::Index>;  // squared distance, point
+
+  /// The nearest to point s whose label is another, nearer than `limit` (squared distance);
+  /// infinity and -1 where there is none. `labels`: one a point.
+  Neighbour find_other(Eigen::Index s, const std::vector<Eigen::Index>& labels, double limit) const;
 
  private:
   /// Points of the tree's order, from `first` to before `last`; a leaf has no `above`.
@@ -31,10 +34,11 @@ class NearestPoints {
     std::size_t below = 0;  // among nodes_
     std::size_t above = 0;
   };
-  using Neighbour = std::pair<double, Eigen::Index>;  // squared distance, point
-
   std::size_t grow(const Eigen::MatrixXd& points, Eigen::Index first, Eigen::Index last);
   void search(const Node& node, const double* centre, Eigen::Index s, std::size_t count);
+  double square_to(const double* centre, Eigen::Index place) const;
+  void search_other(const Node& node, const double* centre, Eigen::Index label,
+                    const std::vector<Eigen::Index>& labels, Neighbour& nearest) const;
   void look_at(const Node& leaf, const double* centre, Eigen::Index s, std::size_t count);
 
   Eigen::Index n_;
