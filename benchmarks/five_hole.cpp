@@ -16,6 +16,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/probe_effects.hpp"
+#include "sepcal/lanes.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 
 namespace benchmark {
@@ -84,18 +85,21 @@ Answer stage_two(const sepcal::BlockModel& model, const Record& record, const Fi
   return {two.x.begin(), two.x.end()};
 }
 
-/// One factor of [A | z - b] at every sample; the answer, the root of the least sum of squares.
+/// The probe as a user's own model, and the same that doesn't tell what of it depends on u alone.
+using OwnProbe = sepcal::InLanes<sepcal::FiveHoleProbe>;
+struct UnpreparedProbe : sepcal::FiveHoleProbe {
+  using LanesOf = UnpreparedProbe;
+  void prepare() const = delete;
+};
+
+/// The least sum of squares among the samples; the answer, its root.
 Answer sample(const sepcal::BlockModel& model, const Record& record, const FitOptions& options) {
   sepcal::base::ThreadPool pool(options.threads);
   const sepcal::estimation::Problem problem(model, options);
   const sepcal::model::Measurements measurements(problem.model(), record);
   const sepcal::model::Sweep sweep(problem.model(), measurements, pool);
   const auto samples = sepcal::estimation::draw_samples(problem.nonlinear(), options);
-  double least = sepcal::infinity;
-  for (const auto& factor : sweep.sample_factors(samples, {})) {
-    least = std::min(least, std::abs(factor.matrix()(linear, linear)));
-  }
-  return {least};
+  return {std::sqrt(sweep.sample_squares(samples, {}).minCoeff())};
 }
 
 /// Stage one's samples, those that it descends from in front; their number is added to `answer`,
@@ -192,6 +196,11 @@ bool run_five_hole(const std::string& method, const std::vector<double>& numbers
     report(repeats, [&] { return fit_with_two_effects(probe, record, options); });
   } else if (method == "sampling") {
     report(repeats, [&] { return sample(model, record, options); });
+  } else if (method == "sampling-own") {
+    report(repeats, [&] { return sample(*sepcal::block_model(OwnProbe{probe}), record, options); });
+  } else if (method == "sampling-unprepared") {
+    report(repeats,
+           [&] { return sample(*sepcal::block_model(UnpreparedProbe{probe}), record, options); });
   } else if (method == "stage-one") {
     report(repeats, in_stage_one);
   } else if (method == "stage-two") {

@@ -2,6 +2,7 @@
 // sepcal on many small problems: trials of scalar example 1, a fit each.
 #include "benchmark.hpp"
 #include "sepcal/fit.hpp"
+#include "sepcal/fit_trials.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "trials_file.hpp"
 
@@ -20,16 +21,35 @@ Answer fit_each(const TrialsFile& file, const sepcal::FitOptions& options) {
   return answer;
 }
 
+/// All trials at once.
+Answer fit_together(const TrialsFile& file, const sepcal::FitOptions& options) {
+  sepcal::Record design;
+  design.view("eta", file.eta);
+  const std::span<const double> all(file.z(0).data(), file.trials * file.rows);
+  const sepcal::TrialFits fits =
+      sepcal::fit_trials(sepcal::ScalarExample1{}, design, {{"z", all}}, options);
+  Answer answer;
+  for (const auto trial : fits.estimates.rowwise()) {
+    answer.insert(answer.end(), trial.begin(), trial.end());
+  }
+  return answer;
+}
+
 }  // namespace
 
 bool run_scalar(const std::string& method, const std::vector<double>& numbers, int repeats) {
   const TrialsFile file(numbers);
   sepcal::FitOptions options;
   options.threads = 1;
-  if (method == "no-samples" || method == "no-samples-white") options.samples = 0;
-  if (method == "no-samples-white") options.coloured_errors = false;
-  if (method != "default" && options.samples != 0) return false;
-  report(repeats, [&] { return fit_each(file, options); });
+  if (method != "default") options.samples = 0;
+  if (method == "no-samples-white" || method == "together") options.coloured_errors = false;
+  if (method == "together") {
+    report(repeats, [&] { return fit_together(file, options); });
+  } else if (method == "default" || method == "no-samples" || method == "no-samples-white") {
+    report(repeats, [&] { return fit_each(file, options); });
+  } else {
+    return false;
+  }
   return true;
 }
 

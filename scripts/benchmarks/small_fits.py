@@ -70,6 +70,7 @@ def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
         Contender(
             "sepcal, no samples, white noise", program("scalar", "no-samples-white", file, 3)
         ),
+        Contender("sepcal, trials side by side", program("scalar", "together", file, 9)),
         Contender("SciPy least_squares lm", timed(lambda: fit_each(eta, z, by_least_squares))),
         Contender("SciPy leastsq", timed(lambda: fit_each(eta, z, by_leastsq))),
     ]

@@ -53,6 +53,18 @@ def race_samples(flight: FiveHoleFlight, rounds: int) -> Result:
         share = operations * count / line.median / measure().operations[isa]
         result.facts[f"share of the limit.{isa}"] = share
         shares.append(f"{100 * share:.0f} % ({isa}, {1e9 * line.median / count:.3g} ns)")
+    own, unprepared = (
+        float(
+            np.median([ask("sepcal", "five-hole", method, flight.file, repeats)[0] for _ in "123"])
+        )
+        for method in ("sampling-own", "sampling-unprepared")
+    )
+    result.facts["prepare() brings"] = unprepared / own
+    result.notes.append(
+        "As a user's own model, compiled for SSE2, the probe takes "
+        f"{unprepared / own:.2g} times as long where it doesn't tell what prepare() and settle() "
+        "may compute once."
+    )
     result.notes.append(
         f"{operations:.0f} operations a row and sample: sepcal reaches {', '.join(shares)} of what "
         "one core can do."

@@ -126,13 +126,13 @@ WanderingInputs::Fixed WanderingInputs::fix(const Columns& added) const {
   Fixed fixed{.columns = join(quiet, basis_), .gathered = gather(quiet)};
   const Index count = fixed.columns.cols();
   const Index more = quiet.cols();
-  MatrixXd shares = MatrixXd::Zero(more, count);
+  MatrixXd products = MatrixXd::Zero(more, count);
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
     const MatrixXd panel = fixed.columns.rows(first, rows);
-    shares.noalias() += panel.leftCols(more).transpose() * panel;
+    products.noalias() += panel.leftCols(more).transpose() * panel;
   });
   fixed.squares.resize(count, count);
-  fixed.squares << shares, shares.rightCols(count - more).transpose(), basis_squares_;
+  fixed.squares << products, products.rightCols(count - more).transpose(), basis_squares_;
   return fixed;
 }
 
