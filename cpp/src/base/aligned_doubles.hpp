@@ -10,7 +10,7 @@ namespace sepcal::base {
 
 template <class T>
 struct WidestAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): as containers call it
   static constexpr std::align_val_t alignment{64};
 
   WidestAllocator() = default;

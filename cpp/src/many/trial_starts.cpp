@@ -54,11 +54,12 @@ Sample factor(const TrialDesign& design, const VectorXd& xi2) {
 class Samples {
  public:
   Samples(const TrialDesign& design, const MatrixXd& points, base::ThreadPool& pool)
-      : points_(points), samples_(static_cast<std::size_t>(points.cols())) {
+      : points_(points),
+        samples_(static_cast<std::size_t>(points.cols())),
+        n_1_(design.model().tables().n_1()) {
     pool.for_each(samples_.size(), [&](std::size_t s) {
       samples_[s] = factor(design, points.col(static_cast<Index>(s)));
     });
-    n_1_ = samples_.front().Q.cols();
     columns_.resize(samples_.front().b.size(), points.cols() * (n_1_ + 1));
     for (Index s = 0; s < points.cols(); ++s) {
       Sample& sample = samples_[static_cast<std::size_t>(s)];
@@ -102,7 +103,7 @@ class Samples {
   MatrixXd points_;
   std::vector<Sample> samples_;
   MatrixXd columns_;  // M x S (n_1 + 1)
-  Index n_1_ = 0;
+  Index n_1_;
 };
 
 }  // namespace

@@ -9,9 +9,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double same_sum = 1e-9;               // of squares, by rounding, as a refinement has it
-constexpr double no_noise = 1e-9;               // of z: what is left is rounding, or nearly
-constexpr std::size_t first_cache = 32 * 1024;  // bytes
+constexpr double same_sum = 1e-9;            // of squares, by rounding, as a refinement has it
+constexpr double no_noise = 1e-9;            // of z: what is left is rounding, or nearly
+constexpr std::size_t first_cache = 32'768;  // bytes
 
 std::size_t to_size(Index i) { return static_cast<std::size_t>(i); }
 

@@ -112,7 +112,7 @@ std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
     return factor_blocks(
         tables().n_1() + 1,
         [&](const Block& block, const Measurements::Range& range, Carry* carry,
-            Ref<MatrixXd> rows) { fill_linear(block, range, xi2.data(), carry, rows); });
+            const Ref<MatrixXd>& rows) { fill_linear(block, range, xi2.data(), carry, rows); });
   });
 }
 
@@ -125,7 +125,7 @@ std::vector<TriangularFactor> Sweep::tangent_factors(const VectorXd& xi1,
     return factor_blocks(
         tables().n_1() + tables().n_2() + 1,
         [&](const Block& block, const Measurements::Range& range, Carry* carry,
-            Ref<MatrixXd> rows) { fill_tangent(block, range, xi1, xi2, carry, rows); });
+            const Ref<MatrixXd>& rows) { fill_tangent(block, range, xi1, xi2, carry, rows); });
   });
 }
 

@@ -316,7 +316,8 @@ BurgFit fit_burg(const VectorXd& y, const std::vector<Index>& lengths, int max_o
     const double least = kept * products.square();
     if (auto fit = fit_lattice(products, y.size(), lengths, max_order, least)) return *fit;
   }
-  return *fit_lattice(ReflectedRows(y, lengths), y.size(), lengths, max_order, -infinity);
+  return fit_lattice(ReflectedRows(y, lengths), y.size(), lengths, max_order, -infinity)
+      .value_or(BurgFit{});
 }
 
 }  // namespace sepcal::noise
