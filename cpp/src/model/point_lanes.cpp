@@ -7,6 +7,7 @@
 
 #include "base/aligned_doubles.hpp"
 #include "base/stop.hpp"
+#include "numerics/plain_pivot.hpp"
 
 namespace sepcal::model {
 namespace {
@@ -69,7 +70,7 @@ void PointLanes::find_zeros(const MatrixXd& points) {
   const Tables& tables = model_.tables();
   const Index n_1 = tables.n_1();
   const Index n_z = tables.n_z();
-  MatrixXd largest = MatrixXd::Zero(n_1, n_z);
+  zero_.assign(static_cast<std::size_t>(n_z * n_1), 1);
   std::vector<const double*> pointers;
   for (const auto& chunk : measurements_.chunks()) {
     const Measurements::Range& range = chunk.back();
@@ -81,7 +82,7 @@ void PointLanes::find_zeros(const MatrixXd& points) {
       for (Index j = 0; j < n_z; ++j) {
         const auto own = values.block(j * rows, 0, rows, n_1);
         for (Index c = 0; c < n_1; ++c) {
-          if (!(own.col(c).array() == 0.0).all()) largest(c, j) = 1.0;
+          if (!(own.col(c).array() == 0.0).all()) zero_[static_cast<std::size_t>(j * n_1 + c)] = 0;
         }
       }
     }
@@ -89,8 +90,7 @@ void PointLanes::find_zeros(const MatrixXd& points) {
   for (Index j = 0; j < n_z; ++j) {
     std::vector<Index> kept;
     for (Index c = 0; c < n_1; ++c) {
-      zero_.push_back(largest(c, j) == 0.0 ? 1 : 0);
-      if (zero_.back() == 0) kept.push_back(c);
+      if (zero_[static_cast<std::size_t>(j * n_1 + c)] == 0) kept.push_back(c);
     }
     kept.push_back(n_1);
     kept_.push_back(std::move(kept));
@@ -192,13 +192,12 @@ std::optional<TriangularFactor> PointFactors::factor(std::size_t point) const {
 }
 
 double PointFactors::remaining_square(std::size_t point) const {
-  constexpr double smallest_plain_pivot = 1e-7;
   if (!clear_[point / width_]) return not_a_number;
   for (int c = 0; c + 1 < n_; ++c) {
     double square = 0.0;
     for (int i = 0; i <= c; ++i) square += entry(point, i, c) * entry(point, i, c);
     const double pivot = std::abs(entry(point, c, c));
-    if (!(pivot > smallest_plain_pivot * std::sqrt(square))) return not_a_number;
+    if (!(pivot > numerics::smallest_plain_pivot * std::sqrt(square))) return not_a_number;
   }
   const double last = entry(point, n_ - 1, n_ - 1);
   return last * last;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/plain_pivot.hpp"
 #include "numerics/safe_squares.hpp"
 #include "sepcal/error.hpp"
 
@@ -124,11 +125,9 @@ TriangularSolution solve_triangular(const MatrixXd& R, const VectorXd& q) {
   TriangularSolution solution{VectorXd::Zero(n), MatrixXd(n, 0), static_cast<int>(n)};
   if (n == 0) return solution;
 
-  // Back substitution is accurate to the condition number; a tiny pivot calls for the slow way.
-  constexpr double smallest_plain_pivot = 1e-7;
   bool plain = true;
   for (Index k = 0; k < n && plain; ++k) {
-    plain = std::abs(R(k, k)) > smallest_plain_pivot * R.col(k).head(k + 1).norm();
+    plain = std::abs(R(k, k)) > numerics::smallest_plain_pivot * R.col(k).head(k + 1).norm();
   }
   if (plain) {
     solution.x = R.triangularView<Eigen::Upper>().solve(q);
