@@ -55,10 +55,16 @@ void add_adding_options(CLI::App& add, Arguments& arguments) {
       ->type_name("NEXT.json");
 }
 
+void add_stream(CLI::App& verb, Arguments& arguments) {
+  verb.add_flag("--stream", arguments.stream,
+                "takes a log longer than memory: its columns go to nameless files in $TMPDIR");
+}
+
 void add_applying_options(CLI::App& apply, Arguments& arguments) {
   add_file(apply, "-o,--output", arguments.output, "writes the corrected log there")
       ->type_name("CORRECTED.csv")
       ->required();
+  add_stream(apply, arguments);
 }
 
 /// The verbs of an app with their options, and what was typed.
@@ -88,6 +94,7 @@ class CommandLine {
         ->type_name("BASE.json");
     instrument.add_probe_options(*fit_);
     fit_arguments_.add_to(*fit_);
+    add_stream(*fit_, typed_);
     add_explain(*fit_);
     add_json(*fit_);
 

@@ -36,10 +36,11 @@ int exit_code(Verdict verdict) {
 
 }  // namespace
 
-Flight Verbs::read_flight() const {
+Flight Verbs::read_flight(int threads) const {
   ProgressLine line;
-  return read_csv(arguments_.flight,
-                  [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
+  const auto show = [&](double fraction) { line.show("reading " + arguments_.flight, fraction); };
+  if (!arguments_.stream) return read_csv(arguments_.flight, show, threads);
+  return stream_csv(arguments_.flight, {}, show, threads);
 }
 
 Calibration Verbs::read_base() const {
@@ -51,7 +52,7 @@ Calibration Verbs::read_base() const {
 
 int Verbs::fit(CalibrationOptions options) const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
-  const Flight flight = read_flight();
+  const Flight flight = read_flight(options.fit.threads);
   ProgressLine line;
   options.fit.progress = shown_on(line);
   const Calibration calibration = calibrate(instrument_.probe(flight), flight, options);
@@ -124,9 +125,10 @@ int Verbs::apply() const {
   check_not_input(arguments_.output, arguments_.calibration);
   const Calibration calibration = read_base();
   ProgressLine line;
-  const Applied applied =
-      apply_to_file(calibration, arguments_.flight, arguments_.output,
-                    [&](double fraction) { line.show("reading " + arguments_.flight, fraction); });
+  const Applied applied = apply_to_file(
+      calibration, arguments_.flight, arguments_.output,
+      [&](double fraction) { line.show("reading " + arguments_.flight, fraction); },
+      arguments_.stream);
   line.clear();
   print_notes(applied.notes);
   print(arguments_.json ? to_json(applied, calibration)

@@ -23,6 +23,7 @@ struct Arguments {
   bool explain = false;       // the whole message of the fit
   bool drop_invalid = false;  // of check, and of a later verb whatever the calibration says
   std::vector<std::string> drop_repeats = {};  // of check
+  bool stream = false;                         // of fit and apply and apply
 };
 
 /// Each returns the exit code: 0, or what the fit's status (4 not identifiable, 5 not converged) or
@@ -44,8 +45,8 @@ class Verbs {
   int effects() const;
 
  private:
-  /// Reads FLIGHT with its progress shown.
-  Flight read_flight() const;
+  /// Reads FLIGHT with its progress shown, by so many threads (0: one a core).
+  Flight read_flight(int threads = 0) const;
 
   /// Reads CALIBRATION; --drop-invalid and the probe's own options override what it says.
   Calibration read_base() const;

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "noises.hpp"
@@ -24,7 +25,7 @@ using sepcal::Segment;
 using sepcal::estimation::choose_blocks;
 using sepcal::estimation::cut_blocks;
 using sepcal::estimation::find_block_errors;
-using sepcal::estimation::find_memory;
+using sepcal::estimation::Memory;
 using sepcal::test::draw_autoregression;
 using sepcal::test::draw_noise;
 using sepcal::test::Draws;
@@ -32,6 +33,12 @@ using sepcal::test::Growth;
 using sepcal::test::Line;
 
 namespace {
+
+double find_memory(const VectorXd& residual) {
+  Memory memory(1);
+  memory.add(residual);
+  return memory.rows();
+}
 
 std::vector<double> column(const VectorXd& values) { return {values.begin(), values.end()}; }
 
@@ -118,6 +125,7 @@ TEST_CASE("the memory of a residual is the textbook's for AR(1), and 1 for white
   CHECK(slow > 0.7 * 19.0);  // (1 + 0.9) / (1 - 0.9)
   CHECK(slow < 1.9 * 19.0);
   CHECK(find_memory(VectorXd::Zero(100)) == 1.0);
+  CHECK(std::isnan(find_memory(VectorXd::Constant(40, std::numeric_limits<double>::infinity()))));
 }
 
 TEST_CASE("blocks share the rows out, and are as many as the noise allows") {
@@ -182,7 +190,12 @@ TEST_CASE("in white noise block errors are those of white noise, on average to s
     MatrixXd rows_of_mean(rows, 2);
     rows_of_mean << VectorXd::Ones(rows), VectorXd(e.array() - e.mean());
     const MatrixXd R = MatrixXd::Constant(1, 1, std::sqrt(static_cast<double>(rows)));
-    const auto errors = find_block_errors({rows_of_mean}, R, cut_blocks(rows, 20));
+    std::vector<sepcal::TriangularFactor> blocks;
+    for (Index first = 0; first < rows; first += rows / 20) {
+      MatrixXd block = rows_of_mean.middleRows(first, rows / 20);
+      blocks.emplace_back(2).absorb(block);
+    }
+    const auto errors = find_block_errors(blocks, R);
     CHECK(errors.freedom[0] == Approx(19.0).epsilon(1e-9));
     sum += errors.covariance(0, 0) * rows / 200;
   }

@@ -18,6 +18,7 @@ RACES = {  # functions run(folder, rounds, longest) that yield results
     "fit-with-effects": "whole_fit.run_with_effects",
     "small-fits": "small_fits.run",
     "growth": "growth.run",
+    "stream": "streaming.run",
     "output-error": "output_error.run",
     "smoother": "smoother.run",
 }

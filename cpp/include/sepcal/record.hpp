@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,6 +31,19 @@ class Record {
   /// Adds a column without copying it; `owner` keeps the memory alive (or the caller does).
   Record& view(std::string name, std::span<const double> values,
                std::shared_ptr<const void> owner = nullptr);
+
+  /// Says that the columns are mapped from files and may be longer than memory. `release` is told
+  /// the rows [first, last) that a pass has done with, from any thread, so that their pages can go
+  /// (madvise with MADV_DONTNEED); it may be told of rows that another thread still reads. A fit of
+  /// more than 100,000 such rows finds its noise model from that many of them.
+  Record& map(std::function<void(std::size_t first, std::size_t last)> release);
+
+  bool is_mapped() const { return static_cast<bool>(release_); }
+
+  /// Lets rows [first, last) of a mapped record go; does nothing for another one.
+  void release(std::size_t first, std::size_t last) const {
+    if (release_) release_(first, last);
+  }
 
   bool has(std::string_view name) const;
 
@@ -65,6 +79,7 @@ class Record {
   std::vector<Column> columns_;
   std::vector<Segment> segments_;
   std::size_t length_ = 0;
+  std::function<void(std::size_t, std::size_t)> release_;
 };
 
 /// Cuts at every change of `labels` (may be empty) and at every gap in `time` [s] over five median

@@ -2,6 +2,8 @@
 // What a gap in time is: one definition for segments, runs of noise and what is said of a log.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace sepcal::base {
@@ -11,5 +13,12 @@ namespace sepcal::base {
 /// median; of stamps that come in bursts it is the longest that is reached from there without a
 /// jump by five, but one in twenty may be longer. Infinite where there is no interval.
 double find_gap(std::vector<double> intervals);
+
+/// A pass over intervals, each given to `visit`.
+using PassOverIntervals = std::function<void(const std::function<void(double)>& visit)>;
+
+/// The same of so many intervals that they are not copied: in memory that does not grow with them,
+/// by some fifteen passes.
+double find_gap(std::size_t count, const PassOverIntervals& pass);
 
 }  // namespace sepcal::base

@@ -28,6 +28,11 @@ Record& Record::view(std::string name, std::span<const double> values,
   return *this;
 }
 
+Record& Record::map(std::function<void(std::size_t first, std::size_t last)> release) {
+  release_ = std::move(release);
+  return *this;
+}
+
 bool Record::has(std::string_view name) const {
   return std::ranges::find(columns_, name, &Column::name) != columns_.end();
 }

@@ -8,7 +8,9 @@
 #include <set>
 #include <sstream>
 
+#include "base/excerpt.hpp"
 #include "base/gaps.hpp"
+#include "base/segments.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
@@ -75,9 +77,30 @@ std::string describe_time(const Record& record) {
   return text.str();
 }
 
-/// Appends the intervals within some rows.
-void add_intervals(std::span<const double> time, std::vector<double>& intervals) {
-  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
+/// The gap of the intervals within the record's segments; without a copy where they are many.
+double find_gap_within(const Record& record, std::span<const double> time) {
+  constexpr std::size_t most_copied = std::size_t{1} << 20U;
+  const std::size_t count = time.empty() ? 0 : record.rows() - record.segments().size();
+  const auto pass = [&](const auto& visit) {
+    for_each_piece(record, [&](std::size_t first, std::size_t last) {
+      const bool begins = std::ranges::binary_search(record.segments(), first, {}, &Segment::first);
+      for (std::size_t i = begins ? first + 1 : first; i < last; ++i) visit(time[i] - time[i - 1]);
+    });
+  };
+  if (count > most_copied) return find_gap(count, pass);
+  std::vector<double> intervals;
+  if (count > 0) pass([&](double interval) { intervals.push_back(interval); });
+  return find_gap(std::move(intervals));
+}
+
+/// The rows of each label, one stretch after another.
+std::vector<Segment> runs_of(std::span<const std::string> labels) {
+  std::vector<Segment> runs;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (i == 0 || labels[i] != labels[i - 1]) runs.push_back({labels[i], i, i});
+    runs.back().last = i + 1;
+  }
+  return runs;
 }
 
 }  // namespace
@@ -138,34 +161,39 @@ std::vector<Segment> find_segments(std::span<const double> time,
     throw Error("there are " + std::to_string(labels.size()) + " labels for " +
                 std::to_string(time.size()) + " rows; give one a row or none");
   }
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    if (!(time[i] > time[i - 1])) {
+  Record record;
+  record.view("time", time);
+  return find_segments(record, runs_of(labels));
+}
+
+std::vector<Segment> base::find_segments(const Record& record, const std::vector<Segment>& labels) {
+  const std::span<const double> time = record.column("time");
+  for_each_piece(record, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = std::max<std::size_t>(first, 1); i < last; ++i) {
+      if (time[i] > time[i - 1]) continue;
       throw Error("time does not increase at row " + std::to_string(i) +
                   " (the first is 0): sort the rows and delete repeated ones");
     }
-  }
-  std::vector<double> intervals;
-  add_intervals(time, intervals);
-  const double gap = find_gap(std::move(intervals));
+  });
+  const double gap = find_gap_within(record, time);
   std::vector<Segment> segments;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    const bool begins =
-        i == 0 || time[i] - time[i - 1] > gap || (!labels.empty() && labels[i] != labels[i - 1]);
-    if (begins) segments.push_back({labels.empty() ? "" : labels[i], i, i});
-    segments.back().last = i + 1;
-  }
+  auto label = labels.begin();
+  for_each_piece(record, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      while (label != labels.end() && i >= label->last) ++label;
+      const bool labelled = label != labels.end();
+      if (i == 0 || time[i] - time[i - 1] > gap || (labelled && i == label->first)) {
+        segments.push_back({labelled ? label->label : "", i, i});
+      }
+      segments.back().last = i + 1;
+    }
+  });
   return segments;
 }
 
 std::vector<Segment> find_runs(const Record& record) {
   const auto time = record.has("time") ? record.column("time") : std::span<const double>();
-  std::vector<double> intervals;
-  if (!time.empty()) {
-    for (const Segment& segment : record.segments()) {
-      add_intervals(time.subspan(segment.first, segment.rows()), intervals);
-    }
-  }
-  const double gap = find_gap(std::move(intervals));
+  const double gap = find_gap_within(record, time);
   std::vector<Segment> runs;
   std::size_t row = 0;
   double last = not_a_number;

@@ -52,8 +52,8 @@ Estimates estimates_of(const Bench& bench, const Contender& contender) {
                                     [](const Variable& coefficient) { return coefficient.name; });
   const Columns share = constant_share(room.columns(contender.candidate, contender.shape));
   const VectorXd shift = explained_by(bench.null().basis, share) * effect;
-  constexpr double rounding = 1e-9;
-  return {own, own + shift, shift.norm() <= rounding * own.norm()};
+  constexpr double no_shift = 1e-9;
+  return {own, own + shift, shift.norm() <= no_shift * own.norm()};
 }
 
 const Contender* contender_of(const Contest& contest, const std::string& name) {

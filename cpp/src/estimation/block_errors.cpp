@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "numerics/decompositions.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -15,17 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
-
-/// Mean square of the means of `length` rows that follow each other.
-double mean_square(const Ref<const VectorXd>& e, Index length) {
-  const Index count = e.size() / length;
-  double sum = 0.0;
-  for (Index i = 0; i < count; ++i) {
-    const double mean = e.segment(i * length, length).mean();
-    sum += mean * mean;
-  }
-  return sum / static_cast<double>(count);
-}
 
 /// A block in coordinates in which the information of all rows and the prior is I.
 struct Share {
@@ -38,16 +26,14 @@ struct Share {
   VectorXd step() const { return axes * (axes.transpose() * gradient).cwiseQuotient(others); }
 };
 
-Share share_of(const std::vector<MatrixXd>& tangents, const MatrixXd& R, Index first, Index rows) {
+Share share_of(const TriangularFactor& block, const MatrixXd& R) {
   constexpr double least = 1e-9;  // of the information that the others may be said to have
   const Index k = R.cols();
+  MatrixXd rows = block.matrix();
+  Ref<MatrixXd> J = rows.leftCols(k);
+  R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(J);
   TriangularFactor factor(static_cast<int>(k) + 1);
-  for (const MatrixXd& tangent : tangents) {
-    MatrixXd part = tangent.middleRows(first, rows);
-    Ref<MatrixXd> J = part.leftCols(k);
-    R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(J);
-    factor.absorb(part);
-  }
+  factor.absorb(rows);
   const MatrixXd S = factor.matrix().topLeftCorner(k, k);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(MatrixXd(S.transpose() * S));
   return {.axes = parts.eigenvectors(),
@@ -76,15 +62,40 @@ double degrees_of_freedom(const std::vector<Share>& shares, const VectorXd& l) {
 
 }  // namespace
 
-double find_memory(const MatrixXd& e) {
+Memory::Memory(Index outputs) : outputs_(outputs) {}
+
+void Memory::add(const MatrixXd& e) {
+  MatrixXd means = e;
+  for (std::size_t length = 0; means.rows() > 0; ++length) {
+    if (length == lengths_.size())
+      lengths_.push_back({.squares = VectorXd::Zero(outputs_), .waiting = MatrixXd(0, outputs_)});
+    means = lengths_[length].join(means);
+  }
+}
+
+MatrixXd Memory::Length::join(const MatrixXd& means) {
+  squares += means.colwise().squaredNorm().transpose();
+  MatrixXd all(waiting.rows() + means.rows(), means.cols());
+  all << waiting, means;
+  count += means.rows();
+  const Index pairs = all.rows() / 2;
+  waiting = all.bottomRows(all.rows() - 2 * pairs);
+  return 0.5 *
+         (all(Eigen::seqN(0, pairs, 2), Eigen::all) + all(Eigen::seqN(1, pairs, 2), Eigen::all));
+}
+
+double Memory::rows() const {
   constexpr Index fewest = 16;
   double memory = 1.0;
-  for (const auto& column : e.colwise()) {
-    const double variance = mean_square(column, 1);
-    if (!(variance > 0.0)) continue;
-    for (Index length = 2; e.rows() / length >= fewest; length *= 2) {
-      const double ratio = mean_square(column, length) / variance;
-      memory = std::max(memory, ratio * static_cast<double>(length));
+  for (std::size_t length = 0; length < lengths_.size(); ++length) {
+    const Length& own = lengths_[length];
+    if (!own.squares.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    if (own.count < fewest) break;
+    const double rows = std::exp2(static_cast<double>(length));
+    for (Index j = 0; j < outputs_; ++j) {
+      const double variance = lengths_[0].squares[j] / static_cast<double>(lengths_[0].count);
+      if (!(variance > 0.0)) continue;
+      memory = std::max(memory, rows * own.squares[j] / static_cast<double>(own.count) / variance);
     }
   }
   return memory;
@@ -106,14 +117,13 @@ std::vector<Index> cut_blocks(Index rows, int blocks) {
   return first;
 }
 
-BlockErrors find_block_errors(const std::vector<MatrixXd>& tangents, const MatrixXd& R,
-                              const std::vector<Index>& blocks) {
+BlockErrors find_block_errors(const std::vector<TriangularFactor>& blocks, const MatrixXd& R) {
   constexpr double least_freedom = 4.0;  // a variance known to 70 %
   const Index k = R.cols();
   std::vector<Share> shares;
   MatrixXd steps = MatrixXd::Zero(k, k);
-  for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
-    shares.push_back(share_of(tangents, R, blocks[b], blocks[b + 1] - blocks[b]));
+  for (const TriangularFactor& block : blocks) {
+    shares.push_back(share_of(block, R));
     const VectorXd step = shares.back().step();
     steps += step * step.transpose();
   }

@@ -9,15 +9,40 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
+
+#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 
-/// Rows of a residual that count as one: the largest of the outputs' (columns of e, over their
-/// noise), each the variance of a mean of rows times their number over the variance of a row, for
-/// means of 1, 2, 4, ... rows as long as there are 16 of them, across gaps: what is slow goes on
-/// behind one. At least 1.
-double find_memory(const Eigen::MatrixXd& e);
+/// Rows of a residual that count as one: the largest of the outputs', each the variance of a mean
+/// of rows times their number over the variance of a row, for means of 1, 2, 4, ... rows as long as
+/// there are 16 of them, across gaps: what is slow goes on behind one. At least 1.
+class Memory {
+ public:
+  explicit Memory(Eigen::Index outputs);
+
+  /// Rows that follow (rows x outputs), over their noise.
+  void add(const Eigen::MatrixXd& e);
+
+  /// Of all rows that were added; NaN where one of them is not finite.
+  double rows() const;
+
+ private:
+  /// Means of so many rows that follow each other.
+  struct Length {
+    Eigen::VectorXd squares = {};  // outputs, their sum
+    Eigen::MatrixXd waiting = {};  // a mean that the next one joins (1 x outputs), or none
+    Eigen::Index count = 0;
+
+    /// The means of twice the length that come of it.
+    Eigen::MatrixXd join(const Eigen::MatrixXd& means);
+  };
+
+  Eigen::Index outputs_;
+  std::vector<Length> lengths_;  // 1, 2, 4, ... rows
+};
 
 /// How many blocks to cut `rows` rows into; 0 where a variance can't be told from the few there
 /// would be.
@@ -31,9 +56,10 @@ struct BlockErrors {
   Eigen::VectorXd freedom;     // k degrees of freedom, were the noise white
 };
 
-/// `tangents`: n_z of [J | r] over all rows, over their noise and, with a loss, times sqrt(w); k
-/// columns and the residual. `R` (k x k, upper): the factor of all of J and of the prior.
-BlockErrors find_block_errors(const std::vector<Eigen::MatrixXd>& tangents,
-                              const Eigen::MatrixXd& R, const std::vector<Eigen::Index>& blocks);
+/// `blocks`: the factor of each block's [J | r] over their noise and, with a loss, times sqrt(w),
+/// of all outputs; k columns and the residual. `R` (k x k, upper): the factor of all of J and of
+/// the prior.
+BlockErrors find_block_errors(const std::vector<TriangularFactor>& blocks,
+                              const Eigen::MatrixXd& R);
 
 }  // namespace sepcal::estimation

@@ -40,11 +40,30 @@ std::vector<Index> find_inside(const std::vector<bool>& at_bound) {
   return indices;
 }
 
-/// Rows over `noise`, those of the prior among them: n x n.
-MatrixXd whiten(const Problem& problem, const StageTwo& two, const VectorXd& noise) {
+/// Rows over `noise`, those of the prior among them, or the share of it that is one of `shares`:
+/// n x n.
+MatrixXd whiten(const Problem& problem, const StageTwo& two, const VectorXd& noise,
+                double shares = 1.0) {
   TriangularFactor factor = combine(two.factors, noise.cwiseInverse());
-  for (const Prior& prior : problem.prior()) prior.join(factor, two.x);
+  for (Prior& prior : problem.prior()) {
+    prior.weight /= std::sqrt(shares);
+    prior.join(factor, two.x);
+  }
   return factor.matrix().topLeftCorner(two.x.size(), two.x.size());
+}
+
+/// The estimate with the factors of the sampled rows alone.
+StageTwo on_sampled_rows(const Problem& problem, const SampledRows& sampled, StageTwo two) {
+  const VectorXd xi1 = two.x.head(sampled.sweep.tables().n_1());
+  const VectorXd xi2 = two.x.tail(sampled.sweep.tables().n_2());
+  const FitOptions& options = problem.options();
+  if (options.loss == Loss::squares) {
+    two.factors = sampled.sweep.tangent_factors(xi1, xi2);
+  } else {
+    two.factors = sampled.sweep.forgiving_factors(
+        xi1, xi2, model::RobustLoss(options.loss, options.loss_width), two.noise.cwiseInverse());
+  }
+  return two;
 }
 
 /// Parameters that the measurements had to pay for: all of them, less the share of each that its
@@ -85,16 +104,19 @@ struct Slices {
 /// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
 class Sandwich {
  public:
-  /// `judged` (n_z): the noise behind R (k x k). `ratio`: M / (M - p).
-  Sandwich(const Problem& problem, const model::Sweep& sweep, const StageTwo& two, MatrixXd R,
-           VectorXd judged, double ratio)
+  /// `judged` (n_z): the noise behind R (k x k) of all rows and K of the sampled ones. `ratio`:
+  /// M / (M - p).
+  Sandwich(const Problem& problem, const SampledRows& sampled, const StageTwo& two, MatrixXd R,
+           MatrixXd K, VectorXd judged, double ratio)
       : problem_(problem),
-        sweep_(sweep),
+        sweep_(sampled.sweep),
+        shares_(sampled.rows),
         two_(two),
         R_(std::move(R)),
+        K_(std::move(K)),
         judged_(std::move(judged)),
         ratio_(ratio),
-        residuals_(sweep.residuals(xi1(), xi2())) {
+        residuals_(sweep_.residuals(xi1(), xi2())) {
     const FitOptions& options = problem.options();
     if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
     if (loss_) {
@@ -106,7 +128,7 @@ class Sandwich {
     }
   }
 
-  bool is_finite() const { return residuals_.allFinite() && R_.allFinite(); }
+  bool is_finite() const { return residuals_.allFinite() && R_.allFinite() && K_.allFinite(); }
 
   /// Gives each output's residual its noise model; whether any is coloured.
   bool find_colours(const std::vector<Index>& inside) {
@@ -132,11 +154,11 @@ class Sandwich {
       weigh_each_row(std::move(tangents), inside, bread, middle);
     } else {
       const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs()};
-      middle = find_score_covariance(std::move(tangents), noise, inside, R_, sweep_.pool());
+      middle = find_score_covariance(std::move(tangents), noise, inside, K_, sweep_.pool());
     }
     for (const Prior& prior : problem_.prior()) {
-      MatrixXd W = prior.weight(inside).asDiagonal();
-      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
+      MatrixXd W = (prior.weight(inside) / std::sqrt(shares_)).asDiagonal();
+      K_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
       middle += W.transpose() * W;
       if (loss_) bread += W.transpose() * W;
     }
@@ -160,7 +182,7 @@ class Sandwich {
       const double noise = two_.noise[static_cast<Index>(j)];
       const double judged = judged_[static_cast<Index>(j)];
       MatrixXd Q = tangents[j](Eigen::all, inside) / judged;
-      R_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
+      K_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
       const VectorXd slopes =
           tangents[j].rightCols<1>().unaryExpr([&](double r) { return loss_->slope(r / noise); });
       breads[j] = Q.transpose() * slopes.asDiagonal() * Q;
@@ -182,8 +204,10 @@ class Sandwich {
 
   const Problem& problem_;
   const model::Sweep& sweep_;
+  double shares_;  // of the prior, one of which is the sampled rows'
   const StageTwo& two_;
   MatrixXd R_;
+  MatrixXd K_;
   VectorXd judged_;
   double ratio_;
   MatrixXd residuals_;  // rows x n_z; with a loss, noise_j psi(r / noise_j)
@@ -201,7 +225,7 @@ MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
 }
 
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
-                             const StageTwo& two) {
+                             const SampledRows& sampled, const StageTwo& two) {
   const bool noise_given = problem.noise().size() > 0;
   const FitOptions& options = problem.options();
   Covariances result;
@@ -222,7 +246,14 @@ Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
   if (k == 0 || std::isnan(ratio) || !result.white.allFinite()) return result;
   if (!forgiving && !options.coloured_errors) return result;
 
-  Sandwich sandwich(problem, sweep, two, R, judged, ratio);
+  MatrixXd K = R;
+  if (sampled.rows > 1.0) {
+    const StageTwo part = on_sampled_rows(problem, sampled, two);
+    K = select_columns(whiten(problem, part, judged, sampled.rows), result.inside);
+    result.sample_falls_short = !inverse_of_square(K).allFinite();
+    if (result.sample_falls_short) return result;
+  }
+  Sandwich sandwich(problem, sampled, two, R, std::move(K), judged, ratio);
   if (!sandwich.is_finite()) return result;
   if (forgiving) {
     const Slices slices = sandwich.covariance(result.inside);

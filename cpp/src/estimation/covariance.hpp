@@ -16,6 +16,12 @@
 
 namespace sepcal::estimation {
 
+/// The rows that the colour of residuals is found from: all, or an excerpt that stands for them.
+struct SampledRows {
+  const model::Sweep& sweep;
+  double rows = 1.0;  // of the record to one of these
+};
+
 struct Covariances {
   std::vector<Eigen::Index> inside;  // k free parameters that no bound holds
   Eigen::MatrixXd white;             // k x k, as if residuals were white
@@ -24,7 +30,8 @@ struct Covariances {
   /// n x n, upper: the rows of all free parameters over the noise that white residuals are judged
   /// to have, and those of the prior.
   Eigen::MatrixXd tangent;
-  Eigen::VectorXd judged;  // n_z, that noise
+  Eigen::VectorXd judged;           // n_z, that noise
+  bool sample_falls_short = false;  // the sampled rows leave open what all rows determine
   /// n_z, or none where nobody asked: behind noise_model.
   std::vector<std::optional<OutputNoise>> noise = {};
 };
@@ -32,9 +39,10 @@ struct Covariances {
 /// Where R was estimated, variances are M / (M - p) times what R-hat = SSE / N gives: M
 /// measurements, p parameters less what their prior paid. `noise_model` is `white` where
 /// every output is white at an estimated R, without FitOptions::coloured_errors, and where
-/// something is not finite.
+/// something is not finite. Of an excerpt it is taken how much more its score varies than that of
+/// white noise would, and of all rows how much they determine.
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
-                             const StageTwo& two);
+                             const SampledRows& sampled, const StageTwo& two);
 
 /// The triangular factor of a selection of columns (k x k).
 Eigen::MatrixXd select_columns(const Eigen::MatrixXd& R, const std::vector<Eigen::Index>& columns);

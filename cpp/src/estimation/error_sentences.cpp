@@ -108,6 +108,17 @@ std::string describe_rows(const model::Sweep& sweep) {
 
 }  // namespace
 
+std::string describe_sample(const Covariances& covariances, const model::Sweep& sweep,
+                            const model::Sweep& sampled) {
+  const std::string rows = std::to_string(sampled.measurements().rows()) + " of " +
+                           std::to_string(sweep.measurements().rows()) + " rows";
+  if (covariances.sample_falls_short) {
+    return "there is no noise model, but white noise and blocks: " + rows +
+           ", from which one would be found, leave a parameter open";
+  }
+  return "the noise model is from " + rows + ", in stretches spread evenly over the record";
+}
+
 std::vector<std::string> describe_errors(const Names& parameters, const Covariances& covariances,
                                          const VectorXd& blocks, const model::Sweep& sweep) {
   const VectorXd noise_model = covariances.noise_model.diagonal().cwiseSqrt();

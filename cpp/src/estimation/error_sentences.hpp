@@ -22,4 +22,8 @@ std::vector<std::string> describe_errors(const std::vector<std::string>& paramet
                                          const Covariances& covariances,
                                          const Eigen::VectorXd& blocks, const model::Sweep& sweep);
 
+/// Of how many rows of a record too long for memory the errors are.
+std::string describe_sample(const Covariances& covariances, const model::Sweep& sweep,
+                            const model::Sweep& sampled);
+
 }  // namespace sepcal::estimation

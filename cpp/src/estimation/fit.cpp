@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
+#include "base/excerpt.hpp"
 #include "base/sentences.hpp"
 #include "estimation/bend.hpp"
 #include "estimation/covariance.hpp"
@@ -96,13 +98,34 @@ Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& n
   return exchanged ? strict : plain;
 }
 
+/// What takes rows all at once gets an excerpt of a record that may be longer than memory; not of a
+/// model with a state, whose trajectories an excerpt would cut.
+class Sample {
+ public:
+  Sample(const BlockModel& model, const model::Measurements& all) : all_(all) {
+    if (model.new_carry() != nullptr) return;
+    const Record part = base::excerpt(all.record());
+    if (part.rows() < all.rows()) excerpt_.emplace(model, part);
+  }
+
+  const model::Measurements& measurements() const { return excerpt_ ? *excerpt_ : all_; }
+
+ private:
+  const model::Measurements& all_;
+  std::optional<model::Measurements> excerpt_;
+};
+
 void describe(Fit& result, const BlockModel& model, const Problem& problem,
               const model::Measurements& measurements, const StageTwo& two,
               base::ThreadPool& pool) {
   const auto rows = static_cast<double>(measurements.rows());
   const model::Sweep sweep(problem.model(), measurements, pool);
-  const Covariances covariances = find_covariances(problem, sweep, two);
-  const StandardErrors errors = find_standard_errors(problem, sweep, two, covariances);
+  const Sample sample(problem.model(), measurements);
+  const model::Sweep sampled_sweep(problem.model(), sample.measurements(), pool);
+  const SampledRows sampled{sampled_sweep,
+                            rows / static_cast<double>(sample.measurements().rows())};
+  const Covariances covariances = find_covariances(problem, sweep, sampled, two);
+  const StandardErrors errors = find_standard_errors(problem, sweep, sampled, two, covariances);
   fill_parameters(result, model, problem, two, covariances, errors);
 
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.

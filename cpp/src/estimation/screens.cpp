@@ -60,6 +60,7 @@ class Tangents {
         }
         visit(block, rows);
       }
+      measurements_.release(chunk);
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "estimation/block_errors.hpp"
 #include "estimation/error_sentences.hpp"
@@ -15,50 +16,76 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// [J | r] of every output over the noise that was judged; with a loss, times sqrt(w).
-std::vector<MatrixXd> weighted_tangents(const Problem& problem, const model::Sweep& sweep,
-                                        const StageTwo& two, const Covariances& covariances) {
-  const Index n_1 = sweep.tables().n_1();
-  const Index n_2 = sweep.tables().n_2();
-  std::vector<Index> columns = covariances.inside;
-  columns.push_back(n_1 + n_2);
-  const FitOptions& options = problem.options();
-  std::vector<MatrixXd> tangents = sweep.tangent_rows(two.x.head(n_1), two.x.tail(n_2));
-  for (std::size_t j = 0; j < tangents.size(); ++j) {
-    MatrixXd rows = tangents[j](Eigen::all, columns);
-    if (options.loss != Loss::squares) {
-      const model::RobustLoss loss(options.loss, options.loss_width);
-      const double noise = two.noise[static_cast<Index>(j)];
-      for (auto row : rows.rowwise()) {
-        row *= std::sqrt(loss.weight(row[row.size() - 1] / noise));
-      }
-    }
-    tangents[j] = rows / covariances.judged[static_cast<Index>(j)];
+/// The residual and its tangent as the errors take them: over the noise that was judged and, with a
+/// loss, times sqrt(w).
+class Weighted {
+ public:
+  Weighted(const Problem& problem, const model::Sweep& sweep, const StageTwo& two,
+           const Covariances& covariances)
+      : sweep_(sweep),
+        two_(two),
+        inverses_(covariances.judged.cwiseInverse()),
+        columns_(covariances.inside) {
+    const FitOptions& options = problem.options();
+    if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
+    columns_.push_back(sweep.tables().n_1() + sweep.tables().n_2());
   }
-  return tangents;
-}
 
-MatrixXd residuals_of(const std::vector<MatrixXd>& tangents) {
-  MatrixXd residuals(tangents.front().rows(), static_cast<Index>(tangents.size()));
-  for (std::size_t j = 0; j < tangents.size(); ++j) {
-    residuals.col(static_cast<Index>(j)) = tangents[j].rightCols<1>();
+  /// The rows of the residual that count as one.
+  double memory() const {
+    Memory memory(inverses_.size());
+    sweep_.for_each_residual(xi1(), xi2(), [&](const MatrixXd& r) {
+      MatrixXd e = r;
+      for (Index j = 0; loss_ && j < r.cols(); ++j) {
+        for (double& each : e.col(j)) each *= root_of_weight(j, each);
+      }
+      memory.add(e * inverses_.asDiagonal());
+    });
+    return memory.rows();
   }
-  return residuals;
-}
+
+  /// The factor of each block's [J | r], of all outputs and the free parameters that no bound
+  /// holds.
+  std::vector<TriangularFactor> factors(const std::vector<Index>& cuts) const {
+    model::Sweep::RowWeight weight;
+    if (loss_) weight = [this](Index j, double r) { return root_of_weight(j, r); };
+    std::vector<TriangularFactor> blocks;
+    for (const auto& by_output : sweep_.stretch_factors(xi1(), xi2(), cuts, weight)) {
+      MatrixXd rows = combine(by_output, inverses_).matrix()(Eigen::all, columns_);
+      blocks.emplace_back(static_cast<int>(columns_.size())).absorb(rows);
+    }
+    return blocks;
+  }
+
+ private:
+  VectorXd xi1() const { return two_.x.head(sweep_.tables().n_1()); }
+  VectorXd xi2() const { return two_.x.tail(sweep_.tables().n_2()); }
+
+  double root_of_weight(Index j, double r) const {
+    return std::sqrt(loss_->weight(r / two_.noise[j]));
+  }
+
+  const model::Sweep& sweep_;
+  const StageTwo& two_;
+  VectorXd inverses_;  // n_z, of the noise
+  std::vector<Index> columns_;
+  std::optional<model::RobustLoss> loss_;
+};
 
 /// The jackknife's covariance (k x k), with the prior's own share and, with a loss, the slopes of
 /// psi.
 MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, const StageTwo& two,
                           const Covariances& covariances) {
   const auto k = static_cast<Index>(covariances.inside.size());
-  const std::vector<MatrixXd> tangents = weighted_tangents(problem, sweep, two, covariances);
-  const MatrixXd e = residuals_of(tangents);
-  const int blocks = choose_blocks(e.rows(), find_memory(e));
-  if (blocks == 0 || !e.allFinite()) {
+  const Weighted weighted(problem, sweep, two, covariances);
+  const auto rows = static_cast<Index>(sweep.measurements().rows());
+  const double memory = weighted.memory();
+  const int blocks = std::isfinite(memory) ? choose_blocks(rows, memory) : 0;
+  if (blocks == 0) {
     return MatrixXd::Constant(k, k, std::numeric_limits<double>::quiet_NaN());
   }
   const MatrixXd R = select_columns(covariances.tangent, covariances.inside);
-  MatrixXd covariance = find_block_errors(tangents, R, cut_blocks(e.rows(), blocks)).covariance;
+  MatrixXd covariance = find_block_errors(weighted.factors(cut_blocks(rows, blocks)), R).covariance;
   for (const Prior& prior : problem.prior()) {
     const MatrixXd pulled = covariances.white * prior.weight(covariances.inside).asDiagonal();
     covariance += pulled * pulled.transpose();
@@ -85,7 +112,8 @@ MatrixXd believe(const MatrixXd& noise_model, const VectorXd& blocks) {
 }  // namespace
 
 StandardErrors find_standard_errors(const Problem& problem, const model::Sweep& sweep,
-                                    const StageTwo& two, const Covariances& covariances) {
+                                    const SampledRows& sampled, const StageTwo& two,
+                                    const Covariances& covariances) {
   const auto k = static_cast<Index>(covariances.inside.size());
   StandardErrors errors{
       .believed = covariances.noise_model,
@@ -101,6 +129,9 @@ StandardErrors find_standard_errors(const Problem& problem, const model::Sweep& 
     names.push_back(problem.parameters()[static_cast<std::size_t>(at)].name);
   }
   errors.sentences = describe_errors(names, covariances, blocks, sweep);
+  if (sampled.rows > 1.0) {
+    errors.sentences.push_back(describe_sample(covariances, sweep, sampled.sweep));
+  }
   return errors;
 }
 

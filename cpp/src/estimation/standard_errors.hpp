@@ -21,6 +21,7 @@ struct StandardErrors {
 /// `covariances`: of the same fit. Without FitOptions::coloured_errors the white errors are
 /// believed, and no others are asked for.
 StandardErrors find_standard_errors(const Problem& problem, const model::Sweep& sweep,
-                                    const StageTwo& two, const Covariances& covariances);
+                                    const SampledRows& sampled, const StageTwo& two,
+                                    const Covariances& covariances);
 
 }  // namespace sepcal::estimation

@@ -98,8 +98,9 @@ VectorXd find_curvature_errors(const estimation::Problem& problem,
                                const estimation::StageTwo& two, base::ThreadPool& pool) {
   VectorXd errors = VectorXd::Constant(two.x.size(), not_a_number);
   if (problem.options().loss != Loss::squares) {
-    const estimation::Covariances covariances = estimation::find_covariances(
-        problem, model::Sweep(problem.model(), measurements, pool), two);
+    const model::Sweep sweep(problem.model(), measurements, pool);
+    const estimation::Covariances covariances =
+        estimation::find_covariances(problem, sweep, {sweep}, two);
     errors(covariances.inside) = covariances.inverse_hessian.diagonal().cwiseSqrt();
     return errors;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/excerpt.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::model {
@@ -14,13 +15,13 @@ using Eigen::MatrixXd;
 namespace {
 
 void check_finite(const std::string& name, std::span<const double> values, const Record& record) {
-  for (const Segment& segment : record.segments()) {
-    for (std::size_t row = segment.first; row < segment.last; ++row) {
+  base::for_each_piece(record, [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
       if (std::isfinite(values[row])) continue;
       throw Error("column '" + name + "' is not a finite number in row " + std::to_string(row) +
                   " (counted from 0); remove that row or mend it");
     }
-  }
+  });
 }
 
 }  // namespace
@@ -34,7 +35,7 @@ Record with_constant_outputs(const Tables& tables, Record record) {
 }
 
 Measurements::Measurements(const BlockModel& model, const Record& record)
-    : runs_(find_runs(record)), rows_(record.rows()) {
+    : record_(record), runs_(find_runs(record)), rows_(record.rows()) {
   const auto find = [&](const Variable& variable) {
     const std::span<const double> column = record.column(variable.name);
     check_finite(variable.name, column, record);
@@ -68,9 +69,9 @@ Measurements::Measurements(const BlockModel& model, const Record& record)
   }
   for (const std::span<const double> z : outputs_) {
     double sum = 0.0;
-    for (const Segment& segment : record.segments()) {
-      for (const double value : z.subspan(segment.first, segment.rows())) sum += value * value;
-    }
+    base::for_each_piece(record, [&](std::size_t first, std::size_t last) {
+      for (const double value : z.subspan(first, last - first)) sum += value * value;
+    });
     output_squares_.push_back(sum);
   }
 }
@@ -81,6 +82,16 @@ Block Measurements::block(const Range& range, std::vector<const double*>& pointe
     pointers.push_back(input.constant ? input.values : input.values + range.first);
   }
   return {pointers, range.rows, range.first, range.starts_segment};
+}
+
+void Measurements::release(const std::vector<Range>& chunk) const {
+  if (!record_.is_mapped()) return;
+  for (std::size_t i = 0; i < chunk.size();) {
+    const std::size_t first = chunk[i].first;
+    std::size_t last = first;
+    for (; i < chunk.size() && chunk[i].first == last; ++i) last += chunk[i].rows;
+    record_.release(first, last);
+  }
 }
 
 std::span<const double> Measurements::output(int j, const Range& range) const {
@@ -104,6 +115,7 @@ std::pair<MatrixXd, MatrixXd> Measurements::gather(std::size_t most) const {
         for (Index j = 0; j < z.cols(); ++j) z(at, j) = output(static_cast<int>(j), range)[row];
       }
     }
+    release(chunk);
   }
   return {u, z};
 }

@@ -32,6 +32,8 @@ class Measurements {
   /// column that is missing and for a value that is not finite in a selected row.
   Measurements(const BlockModel& model, const Record& record);
 
+  const Record& record() const { return record_; }
+
   /// Rows in the record's segments, N.
   std::size_t rows() const { return rows_; }
 
@@ -44,6 +46,9 @@ class Measurements {
 
   /// The model's view of a range; `pointers` is scratch that the block refers to.
   Block block(const Range& range, std::vector<const double*>& pointers) const;
+
+  /// What a pass does at a chunk's end: where the record is mapped, its pages may go.
+  void release(const std::vector<Range>& chunk) const;
 
   /// z of output j over a range.
   std::span<const double> output(int j, const Range& range) const;
@@ -64,6 +69,7 @@ class Measurements {
     bool constant = false;
   };
 
+  Record record_;  // whose memory this views
   std::vector<Input> inputs_;
   std::vector<std::vector<double>> constants_;
   std::vector<std::span<const double>> outputs_;

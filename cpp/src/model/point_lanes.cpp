@@ -86,6 +86,7 @@ void PointLanes::find_zeros(const MatrixXd& points) {
         }
       }
     }
+    measurements_.release(chunk);
   }
   for (Index j = 0; j < n_z; ++j) {
     std::vector<Index> kept;
@@ -169,6 +170,7 @@ PointFactors PointLanes::factor(const MatrixXd& points,
         }
       });
     }
+    measurements_.release(chunk);
     after_chunk();
   }
   AlignedDoubles merged(tiles * columns * columns * width_, 0.0);

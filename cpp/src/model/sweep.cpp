@@ -2,9 +2,13 @@
 #include "model/sweep.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "base/stop.hpp"
+#include "model/in_order.hpp"
 #include "model/row_lanes.hpp"
 
 namespace sepcal::model {
@@ -26,17 +30,27 @@ void absorb_by_output(Ref<MatrixXd> rows, Index block_rows, std::vector<Factor>&
   }
 }
 
-Factors merge_in_order(const std::vector<Factors>& chunks, int outputs, int columns) {
-  Factors merged(static_cast<std::size_t>(outputs), TriangularFactor(columns));
-  for (const Factors& chunk : chunks) {
-    for (std::size_t j = 0; j < merged.size(); ++j) merged[j].merge(chunk[j]);
-  }
-  return merged;
+Factors empty_factors(int outputs, int columns) {
+  return Factors(static_cast<std::size_t>(outputs), TriangularFactor(columns));
 }
 
-std::vector<Factors> empty_factors(std::size_t chunks, int outputs, int columns) {
-  return {chunks, Factors(static_cast<std::size_t>(outputs), TriangularFactor(columns))};
+void merge_by_output(const Factors& part, Factors& merged) {
+  for (std::size_t j = 0; j < merged.size(); ++j) merged[j].merge(part[j]);
 }
+
+/// Merges the factors of chunks as they come.
+class Merge : public InOrder<Factors> {
+ public:
+  Merge(int outputs, int columns)
+      : InOrder([this](const Factors& part) { merge_by_output(part, merged_); }),
+        merged_(empty_factors(outputs, columns)) {}
+
+  /// Once every chunk was given.
+  Factors result() { return std::move(merged_); }
+
+ private:
+  Factors merged_;
+};
 
 }  // namespace
 
@@ -61,7 +75,7 @@ void Sweep::fill_tangent(const Block& block, const Measurements::Range& range, c
   rows.rightCols<1>().noalias() -= rows.leftCols(tables().n_1()) * xi1;
 }
 
-void Sweep::for_each_block(const Visit& visit) const {
+void Sweep::for_each_block(const Visit& visit, const AfterChunk& after_chunk) const {
   const auto& chunks = measurements_.chunks();
   pool_.for_each(chunks.size(), [&](std::size_t c) {
     const auto carry = model_.new_carry();
@@ -71,39 +85,49 @@ void Sweep::for_each_block(const Visit& visit) const {
       base::heed_stop();
       visit(c, range, measurements_.block(range, pointers), carry.get(), scratch);
     }
+    if (after_chunk) after_chunk(c);
+    measurements_.release(chunks[c]);
   });
 }
 
 Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
   const int n_z = tables().n_z();
   const std::size_t chunks = measurements_.chunks().size();
+  const auto outputs = static_cast<std::size_t>(n_z);
   if (RowLanes::take(columns)) {
-    std::vector<std::vector<RowLanes>> lanes(
-        chunks, std::vector<RowLanes>(static_cast<std::size_t>(n_z), RowLanes(columns)));
-    for_each_block([&](std::size_t c, const auto& range, const Block& block, Carry* carry,
-                       RowScratch& scratch) {
-      auto rows = scratch.shape(n_z * rows_of(range), columns);
-      fill(block, range, carry, rows);
-      absorb_by_output(rows, rows_of(range), lanes[c]);
-    });
-    std::vector<Factors> parts(chunks);
-    bool safe = true;
-    for (std::size_t c = 0; c < chunks; ++c) {
-      for (const RowLanes& own : lanes[c]) {
-        safe = safe && own.is_safe();
-        parts[c].push_back(own.merge());
-      }
-    }
-    if (safe) return merge_in_order(parts, n_z, columns);
+    Merge merge(n_z, columns);
+    std::vector<std::vector<RowLanes>> lanes(chunks);
+    std::atomic<bool> safe = true;
+    for_each_block(
+        [&](std::size_t c, const auto& range, const Block& block, Carry* carry,
+            RowScratch& scratch) {
+          if (lanes[c].empty()) lanes[c] = std::vector<RowLanes>(outputs, RowLanes(columns));
+          auto rows = scratch.shape(n_z * rows_of(range), columns);
+          fill(block, range, carry, rows);
+          absorb_by_output(rows, rows_of(range), lanes[c]);
+        },
+        [&](std::size_t c) {
+          Factors factors;
+          for (const RowLanes& own : lanes[c]) {
+            if (!own.is_safe()) safe = false;
+            factors.push_back(own.merge());
+          }
+          std::vector<RowLanes>().swap(lanes[c]);
+          merge.give(c, std::move(factors));
+        });
+    if (safe) return merge.result();
   }
-  std::vector<Factors> parts = empty_factors(chunks, n_z, columns);
+  Merge merge(n_z, columns);
+  std::vector<Factors> parts(chunks);
   for_each_block(
       [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
+        if (parts[c].empty()) parts[c] = empty_factors(n_z, columns);
         auto rows = scratch.shape(n_z * rows_of(range), columns);
         fill(block, range, carry, rows);
         absorb_by_output(rows, rows_of(range), parts[c]);
-      });
-  return merge_in_order(parts, n_z, columns);
+      },
+      [&](std::size_t c) { merge.give(c, std::move(parts[c])); });
+  return merge.result();
 }
 
 std::vector<TriangularFactor> Sweep::linear_factors(const VectorXd& xi2) const {
@@ -135,11 +159,13 @@ std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, cons
   ++tangent_passes_;
   const int columns = tables().n_1() + tables().n_2() + 1;
   const int n_z = tables().n_z();
-  std::vector<Factors> parts = empty_factors(measurements_.chunks().size(), n_z, columns);
+  Merge merge(n_z, columns);
+  std::vector<Factors> parts(measurements_.chunks().size());
   MatrixXd excesses = MatrixXd::Zero(n_z, static_cast<Index>(parts.size()));
   for_each_block(
       [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
         const Index N = rows_of(range);
+        if (parts[c].empty()) parts[c] = empty_factors(n_z, columns);
         auto rows = scratch.shape(n_z * N, columns);
         fill_tangent(block, range, xi1, xi2, carry, rows);
         for (Index row = 0; row < rows.rows(); ++row) {
@@ -150,8 +176,9 @@ std::vector<TriangularFactor> Sweep::forgiving_factors(const VectorXd& xi1, cons
           rows.row(row) *= std::sqrt(w);
         }
         absorb_by_output(rows, N, parts[c]);
-      });
-  Factors factors = merge_in_order(parts, n_z, columns);
+      },
+      [&](std::size_t c) { merge.give(c, std::move(parts[c])); });
+  Factors factors = merge.result();
   for (int j = 0; j < n_z; ++j) {
     MatrixXd excess = MatrixXd::Zero(1, columns);
     excess(0, columns - 1) = std::sqrt(excesses.row(j).sum()) / weights[j];
@@ -193,6 +220,7 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
         }
       }
     }
+    measurements_.release(chunks[c]);
   });
   std::vector<MatrixXd> products(static_cast<std::size_t>(n_z), MatrixXd::Zero(n_1, n_2));
   for (const MatrixXd& part : parts) {
@@ -201,6 +229,44 @@ std::vector<MatrixXd> Sweep::slope_products(const VectorXd& xi1, const VectorXd&
     }
   }
   return products;
+}
+
+std::vector<Factors> Sweep::stretch_factors(const VectorXd& xi1, const VectorXd& xi2,
+                                            const std::vector<Index>& cuts,
+                                            const RowWeight& weight) const {
+  ++tangent_passes_;
+  const int columns = tables().n_1() + tables().n_2() + 1;
+  const int n_z = tables().n_z();
+  std::vector<Factors> stretches(cuts.size() - 1, empty_factors(n_z, columns));
+  using Part = std::map<std::size_t, Factors>;  // by stretch
+  InOrder<Part> merge([&](const Part& part) {
+    for (const auto& [stretch, factors] : part) merge_by_output(factors, stretches[stretch]);
+  });
+  std::vector<Part> parts(measurements_.chunks().size());
+  for_each_block(
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
+        const Index N = rows_of(range);
+        const auto first = static_cast<Index>(range.offset);
+        auto rows = scratch.shape(n_z * N, columns);
+        fill_tangent(block, range, xi1, xi2, carry, rows);
+        if (weight) {
+          for (Index row = 0; row < rows.rows(); ++row) {
+            rows.row(row) *= weight(row / N, rows(row, columns - 1));
+          }
+        }
+        for (Index from = 0; from < N;) {
+          const auto stretch = static_cast<std::size_t>(
+              std::ranges::upper_bound(cuts, first + from) - cuts.begin() - 1);
+          const Index to = std::min(N, cuts[stretch + 1] - first);
+          Factors& own = parts[c].try_emplace(stretch, empty_factors(n_z, columns)).first->second;
+          for (int j = 0; j < n_z; ++j) {
+            own[static_cast<std::size_t>(j)].absorb(rows.middleRows(j * N + from, to - from));
+          }
+          from = to;
+        }
+      },
+      [&](std::size_t c) { merge.give(c, std::move(parts[c])); });
+  return stretches;
 }
 
 template <class VisitRows>
@@ -277,14 +343,26 @@ VectorXd Sweep::losses(const VectorXd& xi1, const VectorXd& xi2, const RobustLos
   });
 }
 
-MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+void Sweep::for_each_residual(const VectorXd& xi1, const VectorXd& xi2,
+                              const std::function<void(const MatrixXd& r)>& visit) const {
   ++values_passes_;
-  MatrixXd all(static_cast<Index>(measurements_.rows()), tables().n_z());
+  using Blocks = std::vector<MatrixXd>;
+  InOrder<Blocks> in_order([&](const Blocks& blocks) { std::ranges::for_each(blocks, visit); });
+  std::vector<Blocks> parts(measurements_.chunks().size());
   for_each_block(
-      [&](std::size_t, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
-        all.middleRows(static_cast<Index>(range.offset), rows_of(range)) =
-            block_residuals(block, range, xi1, xi2, carry, scratch);
-      });
+      [&](std::size_t c, const auto& range, const Block& block, Carry* carry, RowScratch& scratch) {
+        parts[c].push_back(block_residuals(block, range, xi1, xi2, carry, scratch));
+      },
+      [&](std::size_t c) { in_order.give(c, std::move(parts[c])); });
+}
+
+MatrixXd Sweep::residuals(const VectorXd& xi1, const VectorXd& xi2) const {
+  MatrixXd all(static_cast<Index>(measurements_.rows()), tables().n_z());
+  Index first = 0;
+  for_each_residual(xi1, xi2, [&](const MatrixXd& r) {
+    all.middleRows(first, r.rows()) = r;
+    first += r.rows();
+  });
   return all;
 }
 

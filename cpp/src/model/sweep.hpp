@@ -80,6 +80,20 @@ class Sweep {
   Eigen::VectorXd losses(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
                          const RobustLoss& loss, const Eigen::VectorXd& weights) const;
 
+  /// What a row of output j is multiplied by, of its residual.
+  using RowWeight = std::function<double(Eigen::Index j, double r)>;
+
+  /// [A | D | r] at (xi1, xi2) of the rows cuts[b] <= row < cuts[b + 1], b = 0, 1, ...: n_z factors
+  /// for each, all rows among them; multiplied by `weight`, where there is one.
+  std::vector<std::vector<TriangularFactor>> stretch_factors(const Eigen::VectorXd& xi1,
+                                                             const Eigen::VectorXd& xi2,
+                                                             const std::vector<Eigen::Index>& cuts,
+                                                             const RowWeight& weight = {}) const;
+
+  /// r of some rows at a time (rows x n_z), in the record's order.
+  void for_each_residual(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2,
+                         const std::function<void(const Eigen::MatrixXd& r)>& visit) const;
+
   /// r of every selected row, in the record's order: rows() x n_z.
   Eigen::MatrixXd residuals(const Eigen::VectorXd& xi1, const Eigen::VectorXd& xi2) const;
 
@@ -94,8 +108,11 @@ class Sweep {
   using Visit = std::function<void(std::size_t chunk, const Measurements::Range& range,
                                    const Block& block, Carry* carry, RowScratch& scratch)>;
 
-  /// Visits every block, a chunk's blocks in order; `scratch` is the chunk's own.
-  void for_each_block(const Visit& visit) const;
+  using AfterChunk = std::function<void(std::size_t chunk)>;
+
+  /// Visits every block, a chunk's blocks in order; `scratch` is the chunk's own. At a chunk's end,
+  /// in the same thread, `after_chunk`.
+  void for_each_block(const Visit& visit, const AfterChunk& after_chunk = {}) const;
 
   /// visit(j, offset, rows): [A | D | r] of output j in the rows of a block, `offset` rows before.
   template <class VisitRows>

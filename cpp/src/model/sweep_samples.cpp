@@ -101,6 +101,7 @@ void Sweep::absorb_samples(const MatrixXd& points, std::vector<Factor>& factors,
         factors[static_cast<std::size_t>(s)].absorb(rows);
       });
     }
+    measurements_.release(chunk);
     after_chunk();
   }
 }

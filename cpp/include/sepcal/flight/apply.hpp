@@ -24,9 +24,11 @@ std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight&
 /// Copies every column and row of `file` to `output` as they stand and adds the corrected columns;
 /// a row without a correction gets empty cells. `output` appears whole or not at all. Throws Error
 /// for bad input, for columns of those names that are there already, and where `output` is `file`
-/// or can't be written.
+/// or can't be written. `stream`: a file that may be longer than memory, by way of stream_csv();
+/// effects, which look at whole columns, are then refused.
 Applied apply_to_file(const Calibration& calibration, const std::string& file,
-                      const std::string& output, const Progress& progress = {});
+                      const std::string& output, const Progress& progress = {},
+                      bool stream = false);
 
 /// What was written, and the status of the calibration behind it; the JSON says the same.
 std::string to_text(const Applied& applied, const Calibration& calibration,

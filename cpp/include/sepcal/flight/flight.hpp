@@ -13,8 +13,13 @@
 #include <vector>
 
 #include "sepcal/flight/csv.hpp"
+#include "sepcal/record.hpp"
 
 namespace sepcal {
+
+namespace base {
+class Spool;  // files that long columns lie in
+}  // namespace base
 
 class Flight {
  public:
@@ -45,6 +50,13 @@ class Flight {
                std::shared_ptr<const void> owner = nullptr,
                std::optional<Cell> first_text = std::nullopt);
 
+  /// The columns are mapped from files of `spool`, which may be longer than memory.
+  Flight& map(std::shared_ptr<base::Spool> spool);
+
+  /// Labels as stretches that cover the rows, instead of one a row, which maneuvers() then doesn't
+  /// have.
+  Flight& label_stretches(std::vector<Segment> stretches);
+
   /// Sets a label a row. Throws Error for a second set and for another length than the columns'.
   Flight& label(std::vector<std::string> maneuvers);
 
@@ -59,6 +71,15 @@ class Flight {
 
   /// A label a row, or none at all where the log has no column "maneuver".
   std::span<const std::string> maneuvers() const { return maneuvers_; }
+
+  /// The labels as stretches; none where the log has no column "maneuver".
+  std::vector<Segment> label_stretches() const;
+
+  bool is_mapped() const { return spool_ != nullptr; }
+  const std::shared_ptr<base::Spool>& spool() const { return spool_; }
+
+  /// Lets the pages of rows [first, last) of mapped columns go; does nothing for others.
+  void release(std::size_t first, std::size_t last) const;
 
   /// The column with that whole header, or nullptr.
   const Column* find(std::string_view header) const;
@@ -77,6 +98,8 @@ class Flight {
   std::string sha256_;
   std::vector<Column> columns_;
   std::vector<std::string> maneuvers_;
+  std::vector<Segment> label_stretches_;
+  std::shared_ptr<base::Spool> spool_;
   std::size_t rows_ = 0;
 };
 
@@ -84,5 +107,11 @@ class Flight {
 /// becomes numbers, with NaN and a memory of the first such cell where one is no finite number.
 /// `threads` of them parse, the caller's included; 0: one a core. Throws Error as CsvReader does.
 Flight read_csv(const std::string& file, const Progress& progress = {}, int threads = 0);
+
+/// The same of a file that may be longer than memory: block by block into files without a name in
+/// `folder` (empty: $TMPDIR or /tmp; 8 bytes a cell), from where its columns are mapped. The file
+/// may be a pipe. Throws Error as read_csv(), and where the folder's disc is full.
+Flight stream_csv(const std::string& file, const std::string& folder = {},
+                  const Progress& progress = {}, int threads = 0);
 
 }  // namespace sepcal

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/spool.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/files/row_blocks.hpp"
 #include "sepcal/error.hpp"
@@ -25,6 +26,15 @@ struct GrowingColumn {
     values.insert(values.end(), rows.begin(), rows.end());
   }
 };
+
+/// One row more.
+void append_label(std::vector<Segment>& stretches, const std::string& label) {
+  if (stretches.empty() || stretches.back().label != label) {
+    const std::size_t row = stretches.empty() ? 0 : stretches.back().last;
+    stretches.push_back({label, row, row});
+  }
+  ++stretches.back().last;
+}
 
 /// Gives back memory that was asked for in vain, where it is worth a copy.
 template <class T>
@@ -60,6 +70,28 @@ Flight& Flight::label(std::vector<std::string> maneuvers) {
   return *this;
 }
 
+Flight& Flight::map(std::shared_ptr<base::Spool> spool) {
+  spool_ = std::move(spool);
+  return *this;
+}
+
+Flight& Flight::label_stretches(std::vector<Segment> stretches) {
+  label_stretches_ = std::move(stretches);
+  return *this;
+}
+
+std::vector<Segment> Flight::label_stretches() const {
+  std::vector<Segment> stretches = label_stretches_;
+  for (std::size_t row = 0; row < maneuvers_.size(); ++row) {
+    append_label(stretches, maneuvers_[row]);
+  }
+  return stretches;
+}
+
+void Flight::release(std::size_t first, std::size_t last) const {
+  if (spool_) spool_->release(first, last);
+}
+
 const Flight::Column* Flight::find(std::string_view header) const {
   const auto found = std::ranges::find(columns_, header, &Column::header);
   return found == columns_.end() ? nullptr : &*found;
@@ -85,7 +117,7 @@ std::string Flight::list_columns() const {
   const std::size_t listed = std::min(columns_.size(), most_columns);
   for (std::size_t i = 0; i < listed; ++i) append(columns_[i].header);
   if (listed < columns_.size()) append(fmt::format("{} more", columns_.size() - listed));
-  if (!maneuvers_.empty()) append(maneuver);
+  if (!maneuvers_.empty() || !label_stretches_.empty()) append(maneuver);
   if (list.size() == prefix) list += "none";
   return list;
 }
@@ -128,6 +160,43 @@ Flight read_csv(const std::string& file, const Progress& progress, int threads) 
   }
   if (maneuver_at < header.size()) flight.label(std::move(labels));
   return flight;
+}
+
+Flight stream_csv(const std::string& file, const std::string& folder, const Progress& progress,
+                  int threads) {
+  CsvReader reader(file, progress);
+  base::ThreadPool pool(threads);
+  const auto& header = reader.header();
+  const auto spool = std::make_shared<base::Spool>(folder);
+  const auto maneuver_at =
+      static_cast<std::size_t>(std::ranges::find(header, maneuver) - header.begin());
+  std::vector<std::unique_ptr<base::Spool::Column>> columns;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    columns.push_back(i == maneuver_at ? nullptr : std::make_unique<base::Spool::Column>(*spool));
+  }
+  std::vector<std::optional<Flight::Cell>> first_text(header.size());
+  std::vector<Segment> labels;
+  std::size_t rows = 0;
+  files::RowBlocks blocks(reader, maneuver_at, pool);
+  for (auto parts = blocks.next(); !parts.empty(); parts = blocks.next()) {
+    for (const files::RowPart& part : parts) {
+      for (const std::string& label : part.labels) append_label(labels, label);
+      for (std::size_t i = 0; i < header.size(); ++i) {
+        if (i == maneuver_at) continue;
+        columns[i]->append(part.columns[i]);
+        if (const auto& text = part.first_text[i]; text && !first_text[i]) {
+          first_text[i] = Flight::Cell{rows + text->row, text->text};
+        }
+      }
+      rows += part.rows;
+    }
+  }
+  Flight flight(file, reader.sha256());
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (i == maneuver_at) continue;
+    flight.view(header[i], columns[i]->finish(), spool, std::move(first_text[i]));
+  }
+  return flight.label_stretches(std::move(labels)).map(spool);
 }
 
 }  // namespace sepcal

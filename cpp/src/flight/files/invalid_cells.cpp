@@ -8,13 +8,9 @@
 
 namespace sepcal::files {
 
-const std::size_t* find_invalid_row(std::span<const std::size_t> rows, const Flight::Column& column,
-                                    const Unit* unit) {
-  const auto found = std::ranges::find_if_not(rows, [&](std::size_t row) {
-    const double value = column.values[row];
-    return std::isfinite(unit == nullptr ? value : unit->convert(value));
-  });
-  return found == rows.end() ? nullptr : &*found;
+bool is_valid(const Flight::Column& column, const Unit* unit, std::size_t row) {
+  const double value = column.values[row];
+  return std::isfinite(unit == nullptr ? value : unit->convert(value));
 }
 
 std::string describe_cell(const Flight::Column& column, std::size_t row) {

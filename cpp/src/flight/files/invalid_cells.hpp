@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 
 #include "flight/files/units.hpp"
@@ -11,10 +10,9 @@
 
 namespace sepcal::files {
 
-/// The first of `rows` in which the column holds no finite number, as it stands (without a unit) or
-/// converted from `unit`; nullptr where there is none.
-const std::size_t* find_invalid_row(std::span<const std::size_t> rows, const Flight::Column& column,
-                                    const Unit* unit);
+/// Whether the column holds a finite number there, as it stands (without a unit) or converted from
+/// `unit`.
+bool is_valid(const Flight::Column& column, const Unit* unit, std::size_t row);
 
 /// "holds 'n/a'", "is empty" or, from arrays, "holds nan"; "holds 1e+308, too large to convert".
 std::string describe_cell(const Flight::Column& column, std::size_t row);

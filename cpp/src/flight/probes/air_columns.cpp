@@ -13,9 +13,10 @@ namespace {
 
 /// Whether the quantity is a number above zero (in the unit used inside) in every kept row.
 bool is_positive(const RecordBuilder& builder, std::string_view name) {
-  return std::ranges::all_of(builder.rows(), [logged = builder.logged(name)](std::size_t row) {
+  const auto positive = [logged = builder.logged(name)](std::size_t row) {
     return std::isfinite(logged.at(row)) && logged.at(row) > 0;
-  });
+  };
+  return !builder.rows().find_if_not(positive);
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/excerpt.hpp"
 #include "base/sentences.hpp"
 #include "flight/probes/ellipsoid.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
@@ -39,6 +41,22 @@ struct Readings {
   }
   Points points() const { return {axes[0], axes[1], axes[2]}; }
 };
+
+/// Of the record's readings; piece by piece, as it may be longer than memory.
+PointBox box_of_readings(const Record& record) {
+  Vector3d low = Vector3d::Constant(infinity);
+  Vector3d high = -low;
+  base::for_each_piece(record, [&](std::size_t first, std::size_t last) {
+    for (Index axis = 0; axis < 3; ++axis) {
+      const auto column =
+          record.column(std::array{"mx", "my", "mz"}[static_cast<std::size_t>(axis)]);
+      const auto [least, largest] = std::ranges::minmax(column.subspan(first, last - first));
+      low[axis] = std::min(low[axis], least);
+      high[axis] = std::max(high[axis], largest);
+    }
+  });
+  return {0.5 * (low + high), 0.5 * (high - low)};
+}
 
 /// Every reading lies |C h| from n, and |C| is below two in any sensor that works.
 void bound_hard_iron(FitOptions& options, const PointBox& box, double field_strength) {
@@ -127,11 +145,11 @@ std::optional<Start> start_from_ellipsoid(const Ellipsoid& ellipsoid, double fie
 FitOptions start_attitude_independent(const FitOptions& options, const Record& record,
                                       double field_strength) {
   FitOptions completed = options;
-  const Readings all(record.select(options.stage_two_segments));
-  bound_hard_iron(completed, box_of(all.points()), field_strength);
+  bound_hard_iron(completed, box_of_readings(record.select(options.stage_two_segments)),
+                  field_strength);
   if (!options.start.empty()) return completed;
 
-  const Readings readings(record.select(options.stage_one_segments));
+  const Readings readings(base::excerpt(record.select(options.stage_one_segments)));
   const Points points = readings.points();
   const PointBox box = box_of(points);
   Start start = start_from_sphere(points, box, field_strength);

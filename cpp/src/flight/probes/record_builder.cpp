@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
+#include "base/excerpt.hpp"
+#include "base/segments.hpp"
+#include "base/spool.hpp"
 #include "flight/files/invalid_cells.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "flight/probes/sampled_rows.hpp"
@@ -17,6 +19,18 @@
 
 namespace sepcal::probes {
 
+namespace {
+
+/// Of a flight whose columns are mapped, what lets their pages go.
+KeptRows::Release release_of(const Flight& flight) {
+  if (!flight.is_mapped()) return {};
+  return [spool = flight.spool()](std::size_t first, std::size_t last) {
+    spool->release(first, last);
+  };
+}
+
+}  // namespace
+
 constexpr std::size_t most_notes = 10;  // of one kind; more of them nobody reads
 
 RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
@@ -24,13 +38,16 @@ RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity
     : flight_(flight),
       quantities_(quantities),
       drop_invalid_(choice.drop_invalid),
-      rows_(flight.rows()) {
-  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+      rows_(flight.rows(), release_of(flight)) {
   for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
   if (!choice.drop_repeats.empty()) drop_repeats(choice.drop_repeats);
 }
 
 void RecordBuilder::drop_repeats(const std::vector<std::string>& columns) {
+  if (flight_.is_mapped()) {
+    throw OptionError({Option{"drop_repeats"}, " looks at whole columns, which ", Option{"stream"},
+                       " never has in memory; leave one of them out"});
+  }
   const std::vector<double> time = has({"time"}) ? logged("time").values() : std::vector<double>();
   const std::vector<bool> sampled = find_sampled(flight_, columns, time);
   keep([&](std::size_t row) { return sampled[row]; },
@@ -134,7 +151,8 @@ bool RecordBuilder::offer(Names names) {
   if (!has(names)) return false;
   for (const std::string_view name : names) {
     const auto& [column, unit] = logged(name);
-    if (const std::size_t* row = files::find_invalid_row(rows_, *column, unit)) {
+    const auto is_valid = [&](std::size_t row) { return files::is_valid(*column, unit, row); };
+    if (const auto row = rows_.find_if_not(is_valid)) {
       note(fmt::format("column '{}' is not used: {}", column->header,
                        files::describe_cell(*column, *row)));
       return false;
@@ -168,24 +186,27 @@ void RecordBuilder::keep_valid() {
 /// In seconds: times that differ as they were logged may be one there.
 void RecordBuilder::check_time() const {
   const LoggedQuantity& time = logged("time");
-  for (std::size_t i = 1; i < rows_.size(); ++i) {
-    const double before = time.at(rows_[i - 1]);
-    const double now = time.at(rows_[i]);
-    if (now > before) continue;
-    throw Error(fmt::format(
-        "{}: {} {} at {}, after {}; time must increase: sort the rows and delete repeated ones",
-        flight_.locate(rows_[i]), time.column->header, now == before ? "repeats" : "runs back",
-        time.column->values[rows_[i]], time.column->values[rows_[i - 1]]));
-  }
+  std::optional<std::size_t> last;
+  double before = 0.0;
+  rows_.for_each([&](std::size_t row) {
+    const double now = time.at(row);
+    if (last && !(now > before)) {
+      throw Error(fmt::format(
+          "{}: {} {} at {}, after {}; time must increase: sort the rows and delete repeated ones",
+          flight_.locate(row), time.column->header, now == before ? "repeats" : "runs back",
+          time.column->values[row], time.column->values[*last]));
+    }
+    last = row;
+    before = now;
+  });
 }
 
 RecordBuilder::Loss RecordBuilder::keep(const RowTest& test, std::string_view reason) {
-  const auto lost_from = std::ranges::find_if_not(rows_, test);
-  if (lost_from == rows_.end()) return {};
-  Loss loss{0, *lost_from};
-  const auto removed = std::ranges::remove_if(rows_, [&](std::size_t row) { return !test(row); });
-  loss.rows = removed.size();
-  rows_.erase(removed.begin(), removed.end());
+  const auto lost_from = rows_.find_if_not(test);
+  if (!lost_from) return {};
+  const std::size_t before = rows_.size();
+  rows_.keep_if(test);
+  const Loss loss{before - rows_.size(), *lost_from};
   dropped_.push_back({std::string(reason), loss.rows});
   return loss;
 }
@@ -208,11 +229,21 @@ void RecordBuilder::note(std::string_view text) {
 
 /// A quantity in use, in the kept rows.
 std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const {
-  Reading reading{std::string(name), std::nullopt, std::vector<double>(rows_.size())};
+  // Of a flight that may be longer than memory: rows spread evenly.
+  const std::size_t stride =
+      flight_.is_mapped() ? 1 + (rows_.size() - 1) / base::excerpt_rows : std::size_t{1};
+  Reading reading{std::string(name), std::nullopt, {}};
+  const auto read = [&](const auto& value) {
+    reading.values.reserve(rows_.size() / stride + 1);
+    std::size_t index = 0;
+    rows_.for_each([&](std::size_t row) {
+      if (index++ % stride == 0) reading.values.push_back(value(row));
+    });
+  };
   const auto computed = std::ranges::find(
       computed_, name, [](const auto& entry) { return std::string_view(entry.first); });
   if (computed != computed_.end()) {
-    std::ranges::transform(rows_, reading.values.begin(), computed->second);
+    read(computed->second);
     return reading;
   }
   const bool is_taken = std::ranges::find(taken_, name) != taken_.end();
@@ -220,8 +251,7 @@ std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const 
   const LoggedQuantity& quantity = logged(name);
   reading.header = quantity.column->header;
   if (quantity.unit->is_inside()) reading.relabel = quantity.unit->kind;
-  std::ranges::transform(rows_, reading.values.begin(),
-                         [&](std::size_t row) { return quantity.at(row); });
+  read([&](std::size_t row) { return quantity.at(row); });
   return reading;
 }
 
@@ -239,23 +269,35 @@ ProbeRecord RecordBuilder::finish() {
   take_quantities();
   check_computed();
   take_drivers();
-  std::vector<std::string> labels;
-  if (!flight_.maneuvers().empty()) {
-    labels.reserve(rows_.size());
-    for (const std::size_t row : rows_) labels.push_back(flight_.maneuvers()[row]);
-  }
-  record_.cut(find_segments(record_.column("time"), labels));
+  if (flight_.is_mapped()) record_.map(release_of(flight_));
+  record_.cut(base::find_segments(record_, label_kept()));
   note_dropped("were dropped");
   return {std::move(record_), flight_.rows(), std::move(dropped_), std::move(notes_),
-          std::move(rows_)};
+          flight_.is_mapped() ? std::vector<std::size_t>() : rows_.list()};
+}
+
+/// The flight's labels as stretches of kept rows.
+std::vector<Segment> RecordBuilder::label_kept() const {
+  std::vector<Segment> kept;
+  const std::vector<Segment> labels = flight_.label_stretches();
+  auto label = labels.begin();
+  std::size_t index = 0;
+  if (labels.empty()) return kept;
+  rows_.for_each([&](std::size_t row) {
+    while (row >= label->last) ++label;
+    if (kept.empty() || kept.back().label != label->label) {
+      kept.push_back({label->label, index, index});
+    }
+    kept.back().last = ++index;
+  });
+  return kept;
 }
 
 ProbeReadings RecordBuilder::finish_readings() {
   note_implausible();
   std::vector<bool> valid(flight_.rows(), false);
-  for (const std::size_t row : rows_) valid[row] = true;
-  rows_.resize(flight_.rows());
-  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+  rows_.for_each([&](std::size_t row) { valid[row] = true; });
+  rows_ = KeptRows(flight_.rows(), release_of(flight_));
   take_quantities();
   note_dropped("can't be calibrated");
   return {std::move(record_), std::move(valid), std::move(dropped_), std::move(notes_)};
@@ -268,11 +310,23 @@ void RecordBuilder::take(std::string name, const Flight::Column& column, const f
     record_.view(std::move(name), column.values, column.owner);
     return;
   }
-  std::vector<double> values(rows_.size());
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const double value = column.values[rows_[i]];
-    values[i] = converts ? unit->convert(value) : value;
+  add(std::move(name), [&](std::size_t row) {
+    const double value = column.values[row];
+    return converts ? unit->convert(value) : value;
+  });
+}
+
+/// A column of its own: where the flight's columns are mapped, another one of their kind.
+void RecordBuilder::add(std::string name, const RowValue& value) {
+  if (flight_.is_mapped()) {
+    base::Spool::Column column(*flight_.spool());
+    rows_.for_each([&](std::size_t row) { column.append(value(row)); });
+    record_.view(std::move(name), column.finish(), flight_.spool());
+    return;
   }
+  std::vector<double> values;
+  values.reserve(rows_.size());
+  rows_.for_each([&](std::size_t row) { values.push_back(value(row)); });
   record_.add(std::move(name), std::move(values));
 }
 
@@ -281,22 +335,18 @@ void RecordBuilder::take_quantities() {
     const LoggedQuantity& quantity = logged(name);
     take(std::string(name), *quantity.column, quantity.unit);
   }
-  for (const auto& [name, value] : computed_) {
-    std::vector<double> values(rows_.size());
-    std::ranges::transform(rows_, values.begin(), value);
-    record_.add(name, std::move(values));
-  }
+  for (const auto& [name, value] : computed_) add(name, value);
 }
 
 /// Each reading is finite; what is computed of them need not be: 1e300 Pa at 1e-300 K.
 void RecordBuilder::check_computed() const {
   for (const auto& [name, value] : computed_) {
     const auto column = record_.column(name);
-    const auto bad = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
-    if (bad == column.end()) continue;
+    const KeptRows indices(column.size(), release_of(flight_));
+    const auto bad = indices.find_if_not([&](std::size_t i) { return std::isfinite(column[i]); });
+    if (!bad) continue;
     throw Error(fmt::format("{}: {} is computed from this row's readings as {}; check them",
-                            flight_.locate(rows_[static_cast<std::size_t>(bad - column.begin())]),
-                            name, *bad));
+                            flight_.locate(rows_.at(*bad)), name, column[*bad]));
   }
 }
 
@@ -312,7 +362,8 @@ void RecordBuilder::take_drivers() {
   std::vector<std::string> refused;
   for (const Flight::Column& column : flight_.columns()) {
     if (is_quantity(column)) continue;
-    if (const std::size_t* row = files::find_invalid_row(rows_, column, nullptr)) {
+    const auto is_valid = [&](std::size_t row) { return files::is_valid(column, nullptr, row); };
+    if (const auto row = rows_.find_if_not(is_valid)) {
       refused.push_back(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
                                     flight_.locate(*row), files::describe_cell(column, *row)));
     } else if (record_.has(column.header)) {

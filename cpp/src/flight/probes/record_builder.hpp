@@ -14,6 +14,7 @@
 
 #include "flight/files/headers.hpp"
 #include "flight/files/units.hpp"
+#include "flight/probes/kept_rows.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "flight/probes/quantities.hpp"
 #include "sepcal/flight/probe_columns.hpp"
@@ -72,7 +73,7 @@ class RecordBuilder {
                       const std::function<std::string(std::size_t row)>& complaint);
 
   /// The flight's rows that are kept.
-  const std::vector<std::size_t>& rows() const { return rows_; }
+  const KeptRows& rows() const { return rows_; }
 
   /// A column of the probe's own making, computed from the flight's row when finishing.
   void compute(std::string name, RowValue value);
@@ -96,7 +97,9 @@ class RecordBuilder {
   bool is_quantity(const Flight::Column& column) const;
   std::optional<Reading> find_reading(std::string_view name) const;
   void note_implausible();
+  void add(std::string name, const RowValue& value);
   void take(std::string name, const Flight::Column& column, const files::Unit* unit);
+  std::vector<Segment> label_kept() const;
   void take_quantities();
   void check_computed() const;
   void take_drivers();
@@ -109,7 +112,7 @@ class RecordBuilder {
   std::vector<std::string_view> taken_;    // quantities that the record has
   std::vector<std::string_view> checked_;  // quantities in which every kept cell is a number
   std::vector<std::pair<std::string, RowValue>> computed_;
-  std::vector<std::size_t> rows_;
+  KeptRows rows_;
   Record record_;
   std::vector<Dropped> dropped_;
   std::vector<std::string> notes_;

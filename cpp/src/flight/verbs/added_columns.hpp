@@ -2,6 +2,9 @@
 // A log as it stands with columns more.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "sepcal/flight/flight.hpp"
@@ -14,5 +17,13 @@ namespace sepcal::verbs {
 /// NaN is an empty cell. Throws Error for columns of those names that are there already.
 void write_with_columns(const Flight& flight, const std::vector<CorrectedColumn>& columns,
                         OutputFile& target);
+
+/// The columns of rows [first, last).
+using ColumnsOfRows =
+    std::function<std::vector<CorrectedColumn>(std::size_t first, std::size_t last)>;
+
+/// The same with columns that are asked for as the rows are written, `piece` rows at a time.
+void write_with_columns(const Flight& flight, const std::vector<std::string>& headers,
+                        std::size_t piece, const ColumnsOfRows& columns_of, OutputFile& target);
 
 }  // namespace sepcal::verbs

@@ -10,6 +10,7 @@
 #include <optional>
 #include <ranges>
 
+#include "base/excerpt.hpp"
 #include "base/parameter_values.hpp"
 #include "base/sentences.hpp"
 #include "estimation/step_times.hpp"
@@ -132,6 +133,19 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
           flight.prepared.notes};
 }
 
+/// What looks at whole columns can't be done where these may be longer than memory.
+void check_streamed(const CalibrationOptions& options) {
+  const std::string_view why =
+      " looks at whole columns, which a streamed log never has in memory; leave it out or fit "
+      "without ";
+  if (!options.effects.empty()) {
+    throw OptionError({Option{"effect"}, std::string(why), Option{"stream"}});
+  }
+  if (options.fit.loss != Loss::squares) {
+    throw OptionError({Option{"loss"}, std::string(why), Option{"stream"}});
+  }
+}
+
 /// Whether these options do what the note asks for; `rows`: those of the flight that are fitted.
 bool is_followed(const LogNote& note, const CalibrationOptions& options, const Flight& flight,
                  const std::vector<std::size_t>& rows) {
@@ -152,6 +166,23 @@ bool is_followed(const LogNote& note, const CalibrationOptions& options, const F
   return note.kind == "interpolated" && std::ranges::any_of(note.columns, is_chosen);
 }
 
+/// Adds what check() says that is worth a word before a fit.
+void note_check(const Probe& probe, const PreparedFlight& prepared,
+                const CalibrationOptions& options, std::vector<std::string>& notes) {
+  const Flight& flight = prepared.flight;
+  if (flight.is_mapped() && flight.rows() > base::excerpt_rows) {
+    notes.push_back(fmt::format(
+        "{}: not checked, since a check takes whole columns into memory: check a part of the log",
+        flight.name()));
+    return;
+  }
+  FlightCheck seen = check(probe, flight);
+  std::erase_if(seen.notes, [&](const LogNote& note) {
+    return is_followed(note, options, flight, prepared.readings.flight_rows);
+  });
+  std::ranges::move(brief_notes(seen), std::back_inserter(notes));
+}
+
 /// What a delay's reach takes from the segments' ends, where that is much.
 void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOptions& options,
                 std::vector<std::string>& notes) {
@@ -169,12 +200,10 @@ void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOpt
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
+  if (flight.is_mapped()) check_streamed(options);
   const PreparedFlight prepared = prepare(*probe, flight, options.rows);
-  FlightCheck seen = check(*probe, flight);
-  std::erase_if(seen.notes, [&](const LogNote& note) {
-    return is_followed(note, options, flight, prepared.readings.flight_rows);
-  });
-  auto notes = brief_notes(seen);
+  std::vector<std::string> notes;
+  note_check(*probe, prepared, options, notes);
   Calibration calibration = calibrate(std::move(probe), prepared, options);
   std::ranges::move(notes, std::back_inserter(calibration.notes));
   return calibration;
