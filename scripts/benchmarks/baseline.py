@@ -7,7 +7,9 @@ import json
 import os
 import statistics
 import subprocess
-from collections.abc import Callable, Iterator
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,17 +33,32 @@ class Spent:
     kilobytes: int  # the most memory that it had
 
 
-def spend(command: list[str]) -> Spent:
+def peak_of(process: int) -> int:
+    """The most memory [kB] that a running process has had; 0 where nobody says.
+
+    What wait4() says is no less than what Python has, whose memory a child shares until it runs.
+    """
+    try:
+        told = Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return 0
+    return next((int(line.split()[1]) for line in told.splitlines() if "VmHWM" in line), 0)
+
+
+def spend(command: Sequence[str | Path]) -> Spent:
     """Runs to the end; raises where it says that its input is bad."""
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    assert child.stderr
-    with child.stderr as pipe:
-        told = pipe.read().decode()
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode not in FINDS:
-        raise RuntimeError(f"{' '.join(command)}: {told.strip()}")
-    return Spent(usage.ru_utime + usage.ru_stime, usage.ru_maxrss)
+    with tempfile.TemporaryFile() as told:
+        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=told)
+        peak, ended = 0, 0
+        while not ended:
+            peak = max(peak, peak_of(child.pid))
+            time.sleep(0.01)
+            ended, status, usage = os.wait4(child.pid, os.WNOHANG)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode not in FINDS:
+            told.seek(0)
+            raise RuntimeError(f"{' '.join(map(str, command))}: {told.read().decode().strip()}")
+    return Spent(usage.ru_utime + usage.ru_stime, peak or usage.ru_maxrss)
 
 
 def of_parameters(calibration: dict[str, Any]) -> np.ndarray:

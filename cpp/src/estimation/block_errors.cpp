@@ -15,49 +15,52 @@ using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-/// A block in coordinates in which the information of all rows and the prior is I.
+/// A block in coordinates in which the information of all rows and the prior is I: its own, and the
+/// factor of what the others have.
 struct Share {
-  MatrixXd axes;      // k x k, of the information J_b'J_b
-  VectorXd own;       // k, the block's share of the information along them
-  VectorXd others;    // k, what the other blocks have: 1 less that
+  MatrixXd own;       // k x k, J_b'J_b
   VectorXd gradient;  // k, J_b'r_b
+  Eigen::LLT<MatrixXd> others;
 
   /// The step of the estimates when the block is left out, but for its sign.
-  VectorXd step() const { return axes * (axes.transpose() * gradient).cwiseQuotient(others); }
+  VectorXd step() const { return others.solve(gradient); }
 };
 
 Share share_of(const TriangularFactor& block, const MatrixXd& R) {
-  constexpr double least = 1e-9;  // of the information that the others may be said to have
   const Index k = R.cols();
   MatrixXd rows = block.matrix();
   Ref<MatrixXd> J = rows.leftCols(k);
   R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(J);
-  TriangularFactor factor(static_cast<int>(k) + 1);
-  factor.absorb(rows);
-  const MatrixXd S = factor.matrix().topLeftCorner(k, k);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(MatrixXd(S.transpose() * S));
-  return {.axes = parts.eigenvectors(),
-          .own = parts.eigenvalues().cwiseMax(0.0),
-          .others = (1.0 - parts.eigenvalues().array()).max(least),
-          .gradient = S.transpose() * factor.matrix().col(k).head(k)};
+  Share share{.own = J.transpose() * J, .gradient = J.transpose() * rows.col(k), .others = {}};
+  // The least information that the others may be said to have; more where rounding asks for it.
+  for (double least = 1e-12; least < 1.0; least *= 10.0) {
+    share.others.compute((1.0 + least) * MatrixXd::Identity(k, k) - share.own);
+    if (share.others.info() == Eigen::Success) break;
+  }
+  return share;
 }
 
 /// Satterthwaite's degrees of freedom of sum_b (y_b'r)^2, r the residual of white noise: y_b, in
-/// the rows of block b, takes the step of the combination `l` (k) when b is left out.
-double degrees_of_freedom(const std::vector<Share>& shares, const VectorXd& l) {
+/// the rows of block b, takes the step of a combination when b is left out. Of each combination
+/// that is a column of `l` (k x k).
+VectorXd degrees_of_freedom(const std::vector<Share>& shares, const MatrixXd& l) {
   const auto blocks = static_cast<Index>(shares.size());
-  MatrixXd taken(l.size(), blocks);  // J_b'y_b
-  VectorXd variances(blocks);        // of y_b'r: |y_b|^2 - |J_b'y_b|^2, without its rounding
-  for (Index b = 0; b < blocks; ++b) {
-    const Share& share = shares[static_cast<std::size_t>(b)];
-    const VectorXd along = share.axes.transpose() * l;
-    const VectorXd ratio = share.own.cwiseQuotient(share.others);
-    taken.col(b) = share.axes * ratio.cwiseProduct(along);
-    variances[b] = along.cwiseAbs2().dot(ratio);
+  const Index k = l.cols();
+  std::vector<MatrixXd> taken(shares.size());  // J_b'y_b
+  MatrixXd variances(blocks, k);  // of y_b'r: |y_b|^2 - |J_b'y_b|^2, without its rounding
+  for (std::size_t b = 0; b < shares.size(); ++b) {
+    taken[b] = shares[b].own * shares[b].others.solve(l);
+    variances.row(static_cast<Index>(b)) = l.cwiseProduct(taken[b]).colwise().sum();
   }
-  MatrixXd P = -taken.transpose() * taken;
-  P.diagonal() = variances;
-  return P.trace() * P.trace() / P.squaredNorm();
+  VectorXd freedom(k);
+  MatrixXd own(k, blocks);
+  for (Index i = 0; i < k; ++i) {
+    for (Index b = 0; b < blocks; ++b) own.col(b) = taken[static_cast<std::size_t>(b)].col(i);
+    MatrixXd P = -own.transpose() * own;
+    P.diagonal() = variances.col(i);
+    freedom[i] = P.trace() * P.trace() / P.squaredNorm();
+  }
+  return freedom;
 }
 
 }  // namespace
@@ -131,9 +134,8 @@ BlockErrors find_block_errors(const std::vector<TriangularFactor>& blocks, const
   const MatrixXd inverse =
       R.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
   BlockErrors errors{.covariance = inverse * ((count - 1.0) / count * steps) * inverse.transpose(),
-                     .freedom = VectorXd(k)};
+                     .freedom = degrees_of_freedom(shares, inverse.transpose())};
   for (Index i = 0; i < k; ++i) {
-    errors.freedom[i] = degrees_of_freedom(shares, inverse.row(i).transpose());
     if (errors.freedom[i] >= least_freedom) continue;
     errors.covariance.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
     errors.covariance.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -51,8 +51,12 @@ class Weighted {
     if (loss_) weight = [this](Index j, double r) { return root_of_weight(j, r); };
     std::vector<TriangularFactor> blocks;
     for (const auto& by_output : sweep_.stretch_factors(xi1(), xi2(), cuts, weight)) {
-      MatrixXd rows = combine(by_output, inverses_).matrix()(Eigen::all, columns_);
-      blocks.emplace_back(static_cast<int>(columns_.size())).absorb(rows);
+      TriangularFactor& block = blocks.emplace_back(static_cast<int>(columns_.size()));
+      for (std::size_t j = 0; j < by_output.size(); ++j) {
+        MatrixXd rows =
+            by_output[j].matrix()(Eigen::all, columns_) * inverses_[static_cast<Index>(j)];
+        block.absorb(rows);
+      }
     }
     return blocks;
   }

@@ -44,14 +44,11 @@ class Neighbours {
  public:
   /// The 4 n nearest of every point, made mutual: fewer leave a narrow valley in pieces. What
   /// chance crowded together, apart from all others, is joined to the nearest of these.
-  explicit Neighbours(const MatrixXd& points) : tree_(points), count_(points.cols()) {
-    const Index near = std::min(4 * points.rows(), count_ - 1);
-    Pools pools(count_);
-    for (Index s = 0; s < count_; ++s) {
-      tree_.find(s, near, found_);
-      for (const Index other : found_) join(s, other, pools);
-    }
-    while (join_crowds(pools)) {
+  explicit Neighbours(const MatrixXd& points) : count_(points.cols()) {
+    if (points.rows() == 1) {
+      join_along_line(points);
+    } else {
+      join_nearest(points);
     }
     sort_pairs();
   }
@@ -62,13 +59,38 @@ class Neighbours {
   }
 
  private:
+  /// On a line there is an order: two on either side.
+  void join_along_line(const MatrixXd& points) {
+    Indices order(static_cast<std::size_t>(count_));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::ranges::sort(order, {}, [&](Index s) { return std::pair(points(0, s), s); });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      for (std::size_t k = i + 1; k < std::min(i + 3, order.size()); ++k) {
+        pairs_.emplace_back(order[i], order[k]);
+      }
+    }
+  }
+
+  void join_nearest(const MatrixXd& points) {
+    NearestPoints tree(points);
+    const Index near = std::min(4 * points.rows(), count_ - 1);
+    Pools pools(count_);
+    Indices found;
+    for (Index s = 0; s < count_; ++s) {
+      tree.find(s, near, found);
+      for (const Index other : found) join(s, other, pools);
+    }
+    while (join_crowds(tree, pools)) {
+    }
+  }
+
   void join(Index s, Index other, Pools& pools) {
     pairs_.emplace_back(s, other);
     pools.pour(pools.lowest(s), pools.lowest(other));
   }
 
   /// Joins every crowd but the largest to the point nearest to it. Whether there were several.
-  bool join_crowds(Pools& pools) {
+  bool join_crowds(const NearestPoints& tree, Pools& pools) {
     Indices crowd(static_cast<std::size_t>(count_));
     Indices size(static_cast<std::size_t>(count_), 0);
     for (Index s = 0; s < count_; ++s) {
@@ -87,7 +109,7 @@ class Neighbours {
       const Index own = crowd[static_cast<std::size_t>(s)];
       if (own == largest) continue;
       Bridge& bridge = bridges[own];
-      const auto [square, other] = tree_.find_other(s, crowd, bridge.square);
+      const auto [square, other] = tree.find_other(s, crowd, bridge.square);
       if (other >= 0) bridge = {square, s, other};
     }
     for (const auto& [name, bridge] : bridges) join(bridge.from, bridge.to, pools);
@@ -109,12 +131,10 @@ class Neighbours {
     }
   }
 
-  NearestPoints tree_;
   Index count_;
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<std::size_t> begins_;
   Indices all_;
-  Indices found_;
 };
 
 }  // namespace
