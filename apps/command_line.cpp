@@ -86,7 +86,7 @@ class CommandLine {
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
         ->type_name("C.json");
     instrument.add_probe_options(*check_);
-    add_row_choice(*check_, typed_.drop_invalid, typed_.drop_repeats);
+    typed_.log.add_to(*check_);
     add_json(*check_);
 
     add_flight(*fit_);
@@ -131,8 +131,7 @@ class CommandLine {
     CLI::App& verb = *cli_.add_subcommand(name, what);
     add_flight(verb);
     add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
-    verb.add_flag("--drop-invalid", typed_.drop_invalid,
-                  "drops rows with a cell that is no number, whatever the calibration's fit did");
+    typed_.log.add_to(verb);
     add_explain(verb);
     add_json(verb);
     return &verb;

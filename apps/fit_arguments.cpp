@@ -98,21 +98,12 @@ void FitArguments::add_to(CLI::App& fit) {
       ->type_name("T")
       ->capture_default_str();
   add_whole_number(fit, "--threads", engine.threads, "threads; 0: one a core", most_threads);
-  add_row_choice(fit, options_.rows.drop_invalid, options_.rows.drop_repeats);
-}
-
-void add_row_choice(CLI::App& verb, bool& drop_invalid, std::vector<std::string>& drop_repeats) {
-  verb.add_flag("--drop-invalid", drop_invalid,
-                "drops rows with a cell that is no number instead of refusing the file");
-  verb.add_option("--drop-repeats", drop_repeats,
-                  "drops the rows between the samples of slow columns that the log holds or "
-                  "interpolates, e.g. airspeed; of several the slowest counts")
-      ->type_name("COLUMN[,COLUMN...]")
-      ->delimiter(',');
+  log_.add_to(fit);
 }
 
 CalibrationOptions FitArguments::resolve() const {
   CalibrationOptions options = options_;
+  options.log = log_.over({});
   FitOptions& engine = options.fit;
   for (const std::string& text : effects_) {
     for (const std::string& name : split_effects(text)) options.effects.push_back({.name = name});

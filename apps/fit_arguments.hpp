@@ -6,12 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "log_arguments.hpp"
 #include "sepcal/flight/calibration.hpp"
 
 namespace sepcal::app {
-
-/// Adds the options that choose a flight's rows.
-void add_row_choice(CLI::App& verb, bool& drop_invalid, std::vector<std::string>& drop_repeats);
 
 class FitArguments {
  public:
@@ -33,6 +31,7 @@ class FitArguments {
   std::string second_stage_ = std::string(to_string(SecondStage::automatic));
   std::string jacobian_ = std::string(to_string(ProjectedJacobian::kaufman));
   std::string loss_ = std::string(to_string(Loss::squares));
+  LogArguments log_;
   CalibrationOptions options_;  // what needs no more than CLI11's reading
 };
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "delivery.hpp"
 #include "flight/files/text_file.hpp"
@@ -19,6 +20,7 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/output_file.hpp"
+#include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -45,7 +47,7 @@ Flight Verbs::read_flight(int threads) const {
 
 Calibration Verbs::read_base() const {
   Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
-  if (arguments_.drop_invalid) calibration.options.rows.drop_invalid = true;
+  calibration.options.log = arguments_.log.over(std::move(calibration.options.log));
   calibration.probe = instrument_.probe_for_flight(calibration.probe);
   return calibration;
 }
@@ -55,7 +57,8 @@ int Verbs::fit(CalibrationOptions options) const {
   const Flight flight = read_flight(options.fit.threads);
   ProgressLine line;
   options.fit.progress = shown_on(line);
-  const Calibration calibration = calibrate(instrument_.probe(flight), flight, options);
+  const Calibration calibration =
+      calibrate(instrument_.probe(read_as(flight, options.log).flight), flight, options);
   line.clear();
   delivery.deliver(calibration);
   return exit_code(calibration.fit.status);
@@ -64,9 +67,9 @@ int Verbs::fit(CalibrationOptions options) const {
 int Verbs::check() const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
   const Flight flight = read_flight();
-  const FlightCheck check = sepcal::check(
-      *instrument_.probe(flight), flight,
-      {.drop_invalid = arguments_.drop_invalid, .drop_repeats = arguments_.drop_repeats}, as_typed);
+  const LogChoice choice = arguments_.log.over({});
+  const auto probe = instrument_.probe(read_as(flight, choice).flight);
+  const FlightCheck check = sepcal::check(*probe, flight, choice, as_typed);
   delivery.deliver(to_json(check), to_text(check));
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "instrument.hpp"
+#include "log_arguments.hpp"
 #include "sepcal/flight/calibration.hpp"
 
 namespace sepcal::app {
@@ -20,10 +21,9 @@ struct Arguments {
   double level = 0.95;
   std::vector<std::string> parameters;
   bool json = false;
-  bool explain = false;       // the whole message of the fit
-  bool drop_invalid = false;  // of check, and of a later verb whatever the calibration says
-  std::vector<std::string> drop_repeats = {};  // of check
-  bool stream = false;                         // of fit and apply and apply
+  bool explain = false;   // the whole message of the fit
+  bool stream = false;    // of fit and apply
+  LogArguments log = {};  // of check, and of a later verb whatever the calibration says
 };
 
 /// Each returns the exit code: 0, or what the fit's status (4 not identifiable, 5 not converged) or
@@ -48,7 +48,8 @@ class Verbs {
   /// Reads FLIGHT with its progress shown, by so many threads (0: one a core).
   Flight read_flight(int threads = 0) const;
 
-  /// Reads CALIBRATION; --drop-invalid and the probe's own options override what it says.
+  /// Reads CALIBRATION; the options that choose of the log and the probe's own override what it
+  /// says.
   Calibration read_base() const;
 
   const Instrument& instrument_;

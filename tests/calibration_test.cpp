@@ -64,7 +64,7 @@ TEST_CASE("a calibration reads back as the same text") {
 
 TEST_CASE("so it does with every option set") {
   CalibrationOptions options = quick_options();
-  options.rows.drop_invalid = true;
+  options.log.drop_invalid = true;
   options.free = {"w_d"};
   options.fit.fixed = {{"w_n", -3.8}, {"eps_phi", 0.05}};
   options.fit.bounds = {{"b_va", {0.0, infinity}}, {"w_e", {-infinity, 30.0}}, {"b_beta", {-1, 1}}};
@@ -86,7 +86,7 @@ TEST_CASE("so it does with every option set") {
   check_round_trip(calibration);
 
   const Calibration again = parse_calibration(to_json(calibration), "base.json");
-  CHECK(again.options.rows.drop_invalid);
+  CHECK(again.options.log.drop_invalid);
   CHECK(again.options.free == options.free);
   CHECK(again.options.fit.fixed == options.fit.fixed);
   CHECK(again.options.fit.bounds.at("b_va").lower == 0.0);

@@ -50,7 +50,7 @@ TEST_CASE("rows that are dropped leave the others' numbers, labels and gaps in p
   SimulatedFlight simulated = make_flight_with_gap();
   column(simulated, "pt_pa")[2] = not_a_number;
   Calibration truth = make_truth();
-  truth.options.rows.drop_invalid = true;
+  truth.options.log.drop_invalid = true;
   const FlightFigures figures = gather_figures(truth, make_flight(simulated));
   REQUIRE(figures.rows.size() == 19);
   CHECK(figures.rows[1] == 1);

@@ -123,7 +123,7 @@ TEST_CASE("a density that is not positive is refused or dropped") {
   Log log = make_five_hole_log();
   log["rho_kgpm3"][4] = 0;
   CHECK(refuse(log.build()) == "log row 4: rho is not positive; drop_invalid drops such rows");
-  CHECK(prepare_five_hole(log.build(), {.rows = {.drop_invalid = true}}).rows_used() == 9);
+  CHECK(prepare_five_hole(log.build(), {.log = {.drop_invalid = true}}).rows_used() == 9);
   log.erase("rho_kgpm3");
   log["temp_k"].assign(10, 288);
   log["temp_k"][6] = -1;
@@ -189,7 +189,7 @@ TEST_CASE("candidate drivers are whole numeric columns, as they stand") {
   CHECK(column(prepared, "time")[0] == 0);
   // Where the only bad cell is in a row that is dropped anyway, the driver stays.
   log["vn_mps"][3] = not_a_number;
-  CHECK(prepare_five_hole(log.build(), {.rows = {.drop_invalid = true}}).record.has("current_a"));
+  CHECK(prepare_five_hole(log.build(), {.log = {.drop_invalid = true}}).record.has("current_a"));
 }
 
 TEST_CASE("a bad cell in a needed column names line and column") {
@@ -216,7 +216,7 @@ TEST_CASE("a bad cell in a needed column names line and column") {
   CHECK_MESSAGE(refuse(read_csv(with_cell(wide))).find("\xC2\xB5', not") != std::string::npos,
                 "cut between characters");
   const auto prepared =
-      prepare_five_hole(read_csv(with_cell("n/a")), {.rows = {.drop_invalid = true}});
+      prepare_five_hole(read_csv(with_cell("n/a")), {.log = {.drop_invalid = true}});
   CHECK(prepared.rows_read == 3);
   CHECK(prepared.rows_used() == 2);
   CHECK(prepared.flight_rows == std::vector<std::size_t>{0, 2});
@@ -233,7 +233,7 @@ TEST_CASE("time that repeats or runs back names the line") {
   log["time_s"][4] = 0.05;
   CHECK(refuse(log.build()).starts_with("log row 4: time_s runs back at 0.05"));
   log["vn_mps"][4] = not_a_number;
-  CHECK(prepare_five_hole(log.build(), {.rows = {.drop_invalid = true}}).rows_used() == 9);
+  CHECK(prepare_five_hole(log.build(), {.log = {.drop_invalid = true}}).rows_used() == 9);
   const TemporaryFolder folder;
   const std::string row = ",0,0,0,1,1,1,1000,900,1,1,1.2\n";
   const auto file = folder.write(five_hole_header + ("0" + row) + ("1" + row) + ("1" + row));
@@ -260,7 +260,7 @@ TEST_CASE("rows without excess pressure are dropped, up to a fifth") {
 TEST_CASE("a flight of which nothing is left") {
   Log log = make_five_hole_log();
   log["vn_mps"].assign(10, not_a_number);
-  CHECK(refuse(log.build(), {.rows = {.drop_invalid = true}}) ==
+  CHECK(refuse(log.build(), {.log = {.drop_invalid = true}}) ==
         "log: no row is left of 10: a cell of a needed column is no finite number");
   for (auto& [name, values] : log.columns) values.clear();
   CHECK(refuse(log.build()) == "log: no row is left of 0: there was none");

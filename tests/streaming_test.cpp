@@ -179,7 +179,7 @@ TEST_CASE("what looks at whole columns is refused of a streamed flight") {
   options.effects = {{.name = "current[current_a]"}};
   CHECK_THROWS_WITH_AS(calibrate(flight, options), Contains("looks at whole columns"), Error);
   options = {};
-  options.rows.drop_repeats = {"mx"};
+  options.log.drop_repeats = {"mx"};
   CHECK_THROWS_WITH_AS(calibrate(flight, options), Contains("drop_repeats"), Error);
 }
 

@@ -11,7 +11,7 @@ from sepcal.calibration import Calibration
 from sepcal.columns import Columns, by_name, labels_in, take_columns, take_drivers
 from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
-from sepcal.options import FitOptions, refuse_row_choice, spelled_out, to_core
+from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.results import Fit
@@ -78,7 +78,7 @@ def fit(
     if isinstance(data, Flight):
         core = _core.calibrate(model._core, data._core, core_options, own)
         return Calibration(core, data, [e for e in effects if isinstance(e, Effect)])
-    refuse_row_choice(options)
+    refuse_log_choice(options)
     data = by_name(data)
     there = set(data)
     needed = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]

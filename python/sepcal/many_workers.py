@@ -18,7 +18,7 @@ from sepcal import _core
 from sepcal.columns import Columns, take_columns, to_labels
 from sepcal.flight import Flight, read_csv
 from sepcal.models import Model
-from sepcal.options import refuse_row_choice, to_core
+from sepcal.options import refuse_log_choice, to_core
 
 Source: TypeAlias = Flight | Columns | str | os.PathLike[str]
 
@@ -130,7 +130,7 @@ def _prepare(question: Question) -> tuple[_core.PreparedFlight, str] | None:
         flight = _core.prepare_flight(model._core, source._core, options, own)
         sha256, cells = source.sha256, source.rows * len(source)
     else:
-        refuse_row_choice(task.options)
+        refuse_log_choice(task.options)
         there = set(source)
         needed = [*model._columns_in(source), *model._measured_in(source), *({"time"} & there)]
         columns = take_columns(model._owner, source, dict.fromkeys(needed))

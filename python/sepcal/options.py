@@ -9,13 +9,24 @@ from sepcal import _core
 from sepcal.own_effect import Effect
 
 SHAPES = {
+    "map": "{header: column}",
+    "ignore": "[column, ...]",
     "drop_repeats": "[column, ...]",
     "bounds": "{name: (lower, upper)}",
     "prior": "{name: (mean, standard deviation)}",
     "sampling_distribution": "{name: (mean, standard deviation)}",
 }
-APP_NAMES = {"fix": "fixed", "effect": "effects"}  # of the apps' --fix, ...
-ROW_CHOICE = ("drop_invalid", "drop_repeats")  # options that choose rows of a flight
+APP_NAMES = {"fix": "fixed", "effect": "effects", "from": "from_time", "to": "to_time"}  # of the apps' --fix, ...
+# Options that choose of a flight's columns and rows.
+LOG_CHOICE = (
+    "map",
+    "ignore",
+    "drop_invalid",
+    "drop_repeats",
+    "where",
+    "from_time",
+    "to_time",
+)
 
 
 class FitOptions(TypedDict, total=False):
@@ -69,10 +80,17 @@ class FitOptions(TypedDict, total=False):
             FlightPath the white noise of the inertial unit's readings].
         threads: The caller's included; 0: one a core [0]. The result does not depend on it.
         free: For flights: parameters freed that the probe holds by default [none].
+        map: For flights: headers as sepcal reads them, and the log's own for them,
+            {"airspeed_kt": "TAS"} [none].
+        ignore: For flights: columns that are as if they were not there [none].
         drop_invalid: For flights: drop rows with a bad cell instead of refusing them [False].
         drop_repeats: For flights: slow columns, e.g. ["airspeed"]; rows between their samples,
             which the log holds or interpolates, are dropped; of several the slowest counts
             [none].
+        where: For flights: only rows in which this holds, "airspeed > 20 and not roll_deg > 45"
+            [all].
+        from_time: For flights: only rows from this time on [s]; not on another flight [all].
+        to_time: The same up to this time [all].
     """
 
     effects: Sequence[str | Effect] | None
@@ -101,8 +119,13 @@ class FitOptions(TypedDict, total=False):
     process_noise: Mapping[str, float] | None
     threads: int | None
     free: Sequence[str] | None
+    map: Mapping[str, str] | None
+    ignore: Sequence[str] | None
     drop_invalid: bool | None
     drop_repeats: Sequence[str] | None
+    where: str | None
+    from_time: float | None
+    to_time: float | None
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -163,10 +186,12 @@ def to_core(options: Mapping[str, Any]) -> _core.Options:
     return core
 
 
-def refuse_row_choice(options: Mapping[str, Any]) -> None:
-    """Raises Error for an option that chooses rows of a flight, where there is none."""
-    for name in ROW_CHOICE:
-        if options.get(name):
+def refuse_log_choice(options: Mapping[str, Any]) -> None:
+    """Raises Error for an option that chooses of a flight, where there is none."""
+    nothing: tuple[object, ...] = (None, False, "", [], {}, ())
+    for name in LOG_CHOICE:
+        value = options.get(name)
+        if value not in nothing or isinstance(value, float):
             raise _core.Error(f"{name} is for flights; give the data as a sepcal.Flight")
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.flight import Flight
-from sepcal.options import ROW_CHOICE, FitOptions, spelled_out, to_core
+from sepcal.options import LOG_CHOICE, FitOptions, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.results import Fit
 from sepcal.states_module import states_module
 
-REFUSED = ("effects", *ROW_CHOICE)  # of a fit's options
+REFUSED = ("effects", *LOG_CHOICE)  # of a fit's options
 
 
 class Track(_core.Track):

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
-from sepcal.options import FitOptions, refuse_row_choice, spelled_out, to_core
+from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 
 
@@ -62,7 +62,7 @@ def fit_trials(
     model = as_model(model)
     if runs_in_python(model):
         options["threads"] = options.get("threads") or 1
-    refuse_row_choice(options)
+    refuse_log_choice(options)
     design = by_name(design)
     needed = [*model._columns_in(design), *({"time"} & set(design))]
     columns = take_columns(model._owner, design, dict.fromkeys(needed))

@@ -32,9 +32,14 @@ def describe_machine() -> Json:
 
 
 def commit() -> str:
-    """What is measured."""
-    asked = ["git", "describe", "--always", "--dirty"]
-    return subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
+    """What is measured; "-dirty" where something else than results differs from it."""
+
+    def ask(*arguments: str) -> str:
+        asked = subprocess.run(["git", *arguments], capture_output=True, text=True, check=False)
+        return asked.stdout.strip()
+
+    changed = ask("status", "--porcelain", "--untracked-files=no", "--", ":!benchmarks/results")
+    return ask("describe", "--always") + ("-dirty" if changed else "")
 
 
 def merge(old: Json, new: list[Result], of: Json) -> Json:

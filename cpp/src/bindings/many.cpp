@@ -17,6 +17,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/read_as.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -88,7 +89,7 @@ PreparedFlight prepare_flight(const Model& model, const Flight& flight,
     throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
   }
   const ManyOptions many = many_options(model, options, own, false);
-  ProbeRecord prepared = model.probe->prepare(flight, options.rows);
+  ProbeRecord prepared = model.probe->prepare(read_as(flight, options.log).flight, options.log);
   return {model.block,
           std::make_unique<FlightProblem>(*model.block, std::move(prepared.record), many)};
 }

@@ -84,6 +84,15 @@ void define_choice(Class& options, const char* name) {
       [](Options& self, const Value& value) { self.fit.*Member = value; });
 }
 
+/// A keyword that is a member of LogChoice as it stands.
+template <auto Member, class Class>
+void define_of_log(Class& options, const char* name) {
+  using Value = std::remove_cvref_t<decltype(std::declval<LogChoice&>().*Member)>;
+  options.def_property(
+      name, [](const Options& self) { return self.log.*Member; },
+      [](Options& self, Value value) { self.log.*Member = std::move(value); });
+}
+
 }  // namespace
 
 void define_options(py::module_& module) {
@@ -115,14 +124,13 @@ void define_options(py::module_& module) {
   define_choice<&FitOptions::process_noise>(options, "process_noise");
   define_choice<&FitOptions::threads>(options, "threads");
   options.def_readwrite("free", &Options::free);
-  options.def_property(
-      "drop_invalid", [](const Options& all) { return all.rows.drop_invalid; },
-      [](Options& all, bool drop) { all.rows.drop_invalid = drop; });
-  options.def_property(
-      "drop_repeats", [](const Options& all) { return all.rows.drop_repeats; },
-      [](Options& all, std::vector<std::string> columns) {
-        all.rows.drop_repeats = std::move(columns);
-      });
+  define_of_log<&LogChoice::map>(options, "map");
+  define_of_log<&LogChoice::ignore>(options, "ignore");
+  define_of_log<&LogChoice::drop_invalid>(options, "drop_invalid");
+  define_of_log<&LogChoice::drop_repeats>(options, "drop_repeats");
+  define_of_log<&LogChoice::where>(options, "where");
+  define_of_log<&LogChoice::from_time>(options, "from_time");
+  define_of_log<&LogChoice::to_time>(options, "to_time");
 }
 
 }  // namespace sepcal::bindings

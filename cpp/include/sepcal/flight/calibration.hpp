@@ -19,7 +19,7 @@ namespace sepcal {
 struct CalibrationOptions {
   FitOptions fit;
   std::vector<std::string> free;  // parameters freed that the probe holds by default
-  RowChoice rows = {};
+  LogChoice log = {};
   std::vector<EffectSetting> effects = {};  // that join the model, in this order
   OwnEffects own_effects = {};              // of the caller's making, that may be among them
 };

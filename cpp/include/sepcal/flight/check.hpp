@@ -72,7 +72,7 @@ struct FlightCheck {
 /// Looks at all rows of the flight, for what this probe reads of it. Never throws for what the log
 /// holds: columns that are missing, text, time that runs back are what it is there to tell.
 /// `rows`: what a fit is to take. `spell`: how the reader types an option, by its name in code.
-FlightCheck check(const Probe& probe, const Flight& flight, const RowChoice& rows = {},
+FlightCheck check(const Probe& probe, const Flight& flight, const LogChoice& log = {},
                   const std::function<std::string(const std::string& name)>& spell = {});
 
 /// The notes that matter to a fit, a line each, worst first: at most six, then how many more there

@@ -50,6 +50,17 @@ class Flight {
                std::shared_ptr<const void> owner = nullptr,
                std::optional<Cell> first_text = std::nullopt);
 
+  /// Calls a column otherwise. Throws Error as add() does for the new header, and where there is no
+  /// such column.
+  Flight& rename(std::string_view header, std::string to);
+
+  /// Puts other values in a column's place, as many, which the flight owns. Throws Error as
+  /// rename().
+  Flight& replace(std::string_view header, std::vector<double> values);
+
+  /// Takes a column away. Throws Error as rename().
+  Flight& drop(std::string_view header);
+
   /// The columns are mapped from files of `spool`, which may be longer than memory.
   Flight& map(std::shared_ptr<base::Spool> spool);
 
@@ -70,7 +81,9 @@ class Flight {
   const std::vector<Column>& columns() const { return columns_; }
 
   /// A label a row, or none at all where the log has no column "maneuver".
-  std::span<const std::string> maneuvers() const { return maneuvers_; }
+  std::span<const std::string> maneuvers() const {
+    return maneuvers_ ? std::span<const std::string>(*maneuvers_) : std::span<const std::string>();
+  }
 
   /// The labels as stretches; none where the log has no column "maneuver".
   std::vector<Segment> label_stretches() const;
@@ -93,11 +106,13 @@ class Flight {
  private:
   bool from_file() const { return !sha256_.empty(); }
   void check_length(std::string_view header, std::size_t length);
+  void check_header(const std::string& header) const;
+  Column& column(std::string_view header);
 
   std::string name_;
   std::string sha256_;
   std::vector<Column> columns_;
-  std::vector<std::string> maneuvers_;
+  std::shared_ptr<const std::vector<std::string>> maneuvers_;  // copies share it
   std::vector<Segment> label_stretches_;
   std::shared_ptr<base::Spool> spool_;
   std::size_t rows_ = 0;

@@ -71,10 +71,10 @@ class Probe {
   virtual std::map<std::string, std::vector<double>> settings() const = 0;
 
   /// What a fit takes of a flight; throws Error as prepare_five_hole() and its like do.
-  virtual ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const = 0;
+  virtual ProbeRecord prepare(const Flight& flight, const LogChoice& log) const = 0;
 
   /// What applying a calibration takes of a flight: every row, but for drop_invalid.
-  virtual ProbeReadings read(const Flight& flight, const RowChoice& rows) const = 0;
+  virtual ProbeReadings read(const Flight& flight, const LogChoice& log) const = 0;
 
   /// Headers of the columns that correct() gives.
   virtual std::vector<std::string> corrected_headers() const = 0;

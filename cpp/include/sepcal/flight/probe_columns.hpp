@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/row_choice.hpp"
+#include "sepcal/flight/log_choice.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {
@@ -44,7 +44,7 @@ struct ProbeReadings {
 
 struct FiveHoleColumns {
   bool lever_arm = false;  // a lever arm is given, so the body rates are needed
-  RowChoice rows = {};
+  LogChoice log = {};
   double k_alpha = 0.0;  // sensitivity of the flow-angle ports [1/rad]; 0: not known
   double k_beta = 0.0;
 };
@@ -62,22 +62,22 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
 
 /// pt, ps, dpa, dpb [Pa] and rho [kg/m^3] of every row; pt <= ps makes a row not valid. Throws
 /// Error as prepare_five_hole() does, but for pt <= ps.
-ProbeReadings read_five_hole(const Flight& flight, const RowChoice& rows = {});
+ProbeReadings read_five_hole(const Flight& flight, const LogChoice& log = {});
 
 /// time [s]; vn, ve, vd [m/s]; airspeed [m/s] as read, from airspeed_mps or else sqrt(2 dp / rho),
 /// rho as above. For effects also rho, dp, ps, attitude, rates and temperature [K], where they are
 /// logged or can be computed in every row. Rows with a reading that is not above zero are dropped.
 /// Throws Error as prepare_five_hole() does, and where neither way to the airspeed is there.
-ProbeRecord prepare_pitot_static(const Flight& flight, const RowChoice& rows = {});
+ProbeRecord prepare_pitot_static(const Flight& flight, const LogChoice& log = {});
 
 /// airspeed [m/s] and rho [kg/m^3] of every row, rho that of the sea level (1.225) where it can't
 /// be had in every row that counts; a row where it is not above zero is not valid. Throws Error as
 /// prepare_pitot_static() does for these columns.
-ProbeReadings read_pitot_static(const Flight& flight, const RowChoice& rows = {});
+ProbeReadings read_pitot_static(const Flight& flight, const LogChoice& log = {});
 
 struct MagnetometerColumns {
   std::optional<std::array<double, 3>> field;  // north, east, down [uT]: instead of logged columns
-  RowChoice rows = {};
+  LogChoice log = {};
 };
 
 /// time [s]; mx, my, mz [uT]; hx, hy, hz [uT], the true field in body axes: logged, or from roll,
@@ -89,9 +89,9 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
 
 /// time [s]; mx, my, mz [uT]; field [uT], zero in every row: what the attitude-independent model
 /// measures. The field and the attitude are not looked at, though they may be there.
-ProbeRecord prepare_attitude_independent(const Flight& flight, const RowChoice& rows = {});
+ProbeRecord prepare_attitude_independent(const Flight& flight, const LogChoice& log = {});
 
 /// mx, my, mz [uT] of every row. Throws Error as prepare_magnetometer() does for these columns.
-ProbeReadings read_magnetometer(const Flight& flight, const RowChoice& rows = {});
+ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log = {});
 
 }  // namespace sepcal

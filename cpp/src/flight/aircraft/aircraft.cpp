@@ -112,7 +112,7 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   AircraftOptions first = options;
   first.model = AircraftModel::path;
   first.calibration.effects.clear();
-  ProbeRecord prepared = prepare(flight, second.model, second.calibration.rows);
+  ProbeRecord prepared = prepare(flight, second.model, second.calibration.log);
   TwoStep steps = within(flight, [&] {
     return two_step(prepared.record, geometry_of(second),
                     {.equations = equations_of(second),

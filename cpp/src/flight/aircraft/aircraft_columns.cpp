@@ -12,6 +12,7 @@
 #include "flight/probes/air_columns.hpp"
 #include "numerics/interpolated_column.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::aircraft_log {
 namespace {
@@ -91,8 +92,10 @@ Record without_jumps(const Record& record) {
 
 }  // namespace
 
-ProbeRecord prepare(const Flight& flight, AircraftModel model, const RowChoice& rows) {
-  RecordBuilder builder(flight, quantities, rows);
+ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log) {
+  const ReadFlight read = read_as(logged, log);
+  const Flight& flight = read.flight;
+  RecordBuilder builder(flight, quantities, log);
   refuse_load_factor(builder, flight);
   builder.need({"time", "ax", "ay", "az", "p", "q", "r"});
   const bool flies_by_air = model != AircraftModel::path;
@@ -113,6 +116,7 @@ ProbeRecord prepare(const Flight& flight, AircraftModel model, const RowChoice& 
   probes::offer_temperature(builder);
   ProbeRecord prepared = builder.finish();
   prepared.record = without_jumps(prepared.record);
+  prepared.notes.insert(prepared.notes.begin(), read.notes.begin(), read.notes.end());
   return prepared;
 }
 

@@ -10,6 +10,6 @@ namespace sepcal::aircraft_log {
 /// time [s]; ax ay az [m/s^2]; p q r [rad/s]; of an aircraft airspeed [m/s], alpha and beta [rad],
 /// rho [kg/m^3] or qbar [Pa]; and whatever else of the models' columns is logged. Throws Error as
 /// prepare_five_hole() does, and for a load factor in place of az.
-ProbeRecord prepare(const Flight& flight, AircraftModel model, const RowChoice& rows);
+ProbeRecord prepare(const Flight& flight, AircraftModel model, const LogChoice& log);
 
 }  // namespace sepcal::aircraft_log

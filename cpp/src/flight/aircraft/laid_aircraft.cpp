@@ -93,7 +93,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
     throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
   }
   laid.equations = equations_of(options);
-  ProbeRecord prepared = prepare(flight, options.model, options.calibration.rows);
+  ProbeRecord prepared = prepare(flight, options.model, options.calibration.log);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);

@@ -10,6 +10,7 @@
 #include "flight/checks/samples.hpp"
 #include "flight/checks/spikes.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/read_as.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal {
@@ -46,11 +47,11 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
 }
 
 /// What a fit would make of the flight.
-void describe_use(const Probe& probe, const Flight& flight, const RowChoice& rows,
+void describe_use(const Probe& probe, const Flight& flight, const LogChoice& choice,
                   const std::function<std::string(const std::string& name)>& spell,
                   FlightCheck& check) {
   try {
-    const ProbeRecord prepared = probe.prepare(flight, rows);
+    const ProbeRecord prepared = probe.prepare(flight, choice);
     check.rows_used = prepared.rows_used();
     check.segments = prepared.record.segments().size();
   } catch (const OptionError& error) {
@@ -62,14 +63,16 @@ void describe_use(const Probe& probe, const Flight& flight, const RowChoice& row
 
 }  // namespace
 
-FlightCheck check(const Probe& probe, const Flight& flight, const RowChoice& rows,
+FlightCheck check(const Probe& probe, const Flight& logged, const LogChoice& choice,
                   const std::function<std::string(const std::string& name)>& spell) {
+  const ReadFlight read = read_as(logged, choice);
+  const Flight& flight = read.flight;
   FlightCheck check{.model = std::string(probe.name()),
                     .app = std::string(probe.app()),
                     .file = flight.name(),
                     .sha256 = flight.sha256(),
                     .rows = flight.rows()};
-  describe_use(probe, flight, rows, spell, check);
+  describe_use(probe, flight, choice, spell, check);
   const Log log(probe.name(), flight);
   check.rate = 1 / log.interval();
   if (std::isfinite(check.rate)) {
@@ -88,6 +91,13 @@ FlightCheck check(const Probe& probe, const Flight& flight, const RowChoice& row
   check_samples(log, check.notes);
   check_clock(log, check.notes);
   check_spikes(log, check.notes);
+  for (const std::string& note : read.notes) {
+    check.notes.push_back({.kind = "read",
+                           .concern = Concern::slight,
+                           .found = note.substr(flight.name().size() + 2),
+                           .effect = "every verb reads the log so",
+                           .advice = "nothing, if that is right"});
+  }
   std::ranges::stable_sort(check.notes, {}, &LogNote::concern);
   return check;
 }

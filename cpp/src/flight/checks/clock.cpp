@@ -48,10 +48,8 @@ void note_faults(const Log& log, const Clock& clock, const std::string& header,
     LogNote note = note_on(log, "restarts", Concern::wrong, {header}, clock.restarts);
     note.found = fmt::format("{} runs back {} time{}, first at {}", header, note.rows,
                              note.rows == 1 ? "" : "s", name_row(log, clock.restarts.front()));
-    note.effect = "a fit refuses the log: logs seem to be joined, each with a clock of its own";
-    note.advice =
-        "add to the stamps of each part where the part before ended, plus some seconds, and give "
-        "each a label in a column maneuver";
+    note.effect = "a fit refuses the log: its rows are out of order";
+    note.advice = "sort the rows by time and delete repeated ones";
     notes.push_back(std::move(note));
   }
 }

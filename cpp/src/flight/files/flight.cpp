@@ -51,6 +51,13 @@ Flight& Flight::add(std::string header, std::vector<double> values) {
 
 Flight& Flight::view(std::string header, std::span<const double> values,
                      std::shared_ptr<const void> owner, std::optional<Cell> first_text) {
+  check_header(header);
+  check_length(header, values.size());
+  columns_.push_back({std::move(header), values, std::move(owner), std::move(first_text)});
+  return *this;
+}
+
+void Flight::check_header(const std::string& header) const {
   if (header.empty()) throw Error(name_ + ": a column has no name");
   if (header == maneuver) {
     throw Error(name_ + ": column 'maneuver' is for labels, a text a row, not for numbers");
@@ -58,15 +65,41 @@ Flight& Flight::view(std::string header, std::span<const double> values,
   if (find(header) != nullptr) {
     throw Error(fmt::format("{}: column '{}' is there twice; rename or delete one", name_, header));
   }
+}
+
+Flight::Column& Flight::column(std::string_view header) {
+  const auto found = std::ranges::find(columns_, header, &Column::header);
+  if (found == columns_.end()) {
+    throw Error(fmt::format("{}: there is no column '{}'; {}", name_, header, list_columns()));
+  }
+  return *found;
+}
+
+Flight& Flight::rename(std::string_view header, std::string to) {
+  Column& renamed = column(header);
+  check_header(to);
+  renamed.header = std::move(to);
+  return *this;
+}
+
+Flight& Flight::replace(std::string_view header, std::vector<double> values) {
+  Column& replaced = column(header);
   check_length(header, values.size());
-  columns_.push_back({std::move(header), values, std::move(owner), std::move(first_text)});
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  replaced.values = *owned;
+  replaced.owner = owned;
+  return *this;
+}
+
+Flight& Flight::drop(std::string_view header) {
+  columns_.erase(columns_.begin() + (&column(header) - columns_.data()));
   return *this;
 }
 
 Flight& Flight::label(std::vector<std::string> maneuvers) {
-  if (!maneuvers_.empty()) throw Error(name_ + ": column 'maneuver' is there twice");
+  if (maneuvers_) throw Error(name_ + ": column 'maneuver' is there twice");
   check_length(maneuver, maneuvers.size());
-  maneuvers_ = std::move(maneuvers);
+  maneuvers_ = std::make_shared<const std::vector<std::string>>(std::move(maneuvers));
   return *this;
 }
 
@@ -82,9 +115,7 @@ Flight& Flight::label_stretches(std::vector<Segment> stretches) {
 
 std::vector<Segment> Flight::label_stretches() const {
   std::vector<Segment> stretches = label_stretches_;
-  for (std::size_t row = 0; row < maneuvers_.size(); ++row) {
-    append_label(stretches, maneuvers_[row]);
-  }
+  for (const std::string& label : maneuvers()) append_label(stretches, label);
   return stretches;
 }
 
@@ -103,7 +134,7 @@ std::string Flight::locate(std::size_t row) const {
 }
 
 std::string Flight::list_columns() const {
-  if (from_file() && columns_.size() == 1 && maneuvers_.empty()) {
+  if (from_file() && columns_.size() == 1 && !maneuvers_) {
     return fmt::format("the file has: {}, and no comma in its header; is this a CSV file?",
                        columns_.front().header);
   }
@@ -117,14 +148,14 @@ std::string Flight::list_columns() const {
   const std::size_t listed = std::min(columns_.size(), most_columns);
   for (std::size_t i = 0; i < listed; ++i) append(columns_[i].header);
   if (listed < columns_.size()) append(fmt::format("{} more", columns_.size() - listed));
-  if (!maneuvers_.empty() || !label_stretches_.empty()) append(maneuver);
+  if (maneuvers_ || !label_stretches_.empty()) append(maneuver);
   if (list.size() == prefix) list += "none";
   return list;
 }
 
 /// The first column sets the length; the others keep to it.
 void Flight::check_length(std::string_view header, std::size_t length) {
-  if (columns_.empty() && maneuvers_.empty()) {
+  if (columns_.empty() && !maneuvers_) {
     rows_ = length;
   } else if (length != rows_) {
     throw Error(fmt::format("{}: column '{}' has {} values, the others have {}", name_, header,

@@ -74,6 +74,32 @@ EffectSetting read_effect(const Json& object) {
   return setting;
 }
 
+void write_choice(const LogChoice& log, Json& options) {
+  options["drop_invalid"] = log.drop_invalid;
+  if (!log.drop_repeats.empty()) options["drop_repeats"] = log.drop_repeats;
+  if (!log.map.empty()) options["map"] = log.map;
+  if (!log.ignore.empty()) options["ignore"] = log.ignore;
+  if (!log.where.empty()) options["where"] = log.where;
+  if (log.from_time) options["from_time"] = *log.from_time;
+  if (log.to_time) options["to_time"] = *log.to_time;
+}
+
+template <class Value>
+void read_optional(const Json& options, const char* name, Value& value) {
+  if (options.contains(name)) value = options.at(name).get<Value>();
+}
+
+LogChoice read_choice_of_log(const Json& options) {
+  LogChoice log{.drop_invalid = options.at("drop_invalid").get<bool>()};
+  read_optional(options, "drop_repeats", log.drop_repeats);
+  read_optional(options, "map", log.map);
+  read_optional(options, "ignore", log.ignore);
+  read_optional(options, "where", log.where);
+  if (options.contains("from_time")) log.from_time = options.at("from_time").get<double>();
+  if (options.contains("to_time")) log.to_time = options.at("to_time").get<double>();
+  return log;
+}
+
 }  // namespace
 
 Json write_options(const Calibration& calibration) {
@@ -120,8 +146,7 @@ Json write_options(const CalibrationOptions& chosen) {
   options["coloured_errors"] = fit.coloured_errors;
   if (!fit.process_noise.empty()) options["process_noise"] = fit.process_noise;
   options["threads"] = fit.threads;
-  options["drop_invalid"] = chosen.rows.drop_invalid;
-  if (!chosen.rows.drop_repeats.empty()) options["drop_repeats"] = chosen.rows.drop_repeats;
+  write_choice(chosen.log, options);
   return options;
 }
 
@@ -160,10 +185,7 @@ CalibrationOptions read_options(const Json& options) {
     fit.process_noise = options.at("process_noise").get<std::map<std::string, double>>();
   }
   fit.threads = whole_number<int>(options.at("threads"));
-  result.rows.drop_invalid = options.at("drop_invalid").get<bool>();
-  if (options.contains("drop_repeats")) {
-    result.rows.drop_repeats = options.at("drop_repeats").get<std::vector<std::string>>();
-  }
+  result.log = read_choice_of_log(options);
   return result;
 }
 

@@ -39,7 +39,7 @@ void compute_angle(RecordBuilder& builder, const char* name, const char* port, d
 }  // namespace
 
 ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& options) {
-  RecordBuilder builder(flight, quantities_of("five-hole"), options.rows);
+  RecordBuilder builder(flight, quantities_of("five-hole"), options.log);
   builder.need({"time", "roll", "pitch", "yaw", "vn", "ve", "vd"});
   if (options.lever_arm) builder.need({"p", "q", "r"});
   need_readings(builder, flight);
@@ -57,8 +57,8 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
   return builder.finish();
 }
 
-ProbeReadings read_five_hole(const Flight& flight, const RowChoice& rows) {
-  RecordBuilder builder(flight, quantities_of("five-hole"), rows);
+ProbeReadings read_five_hole(const Flight& flight, const LogChoice& log) {
+  RecordBuilder builder(flight, quantities_of("five-hole"), log);
   need_readings(builder, flight);
   builder.keep(air_moves(builder), still_air);
   return builder.finish_readings();

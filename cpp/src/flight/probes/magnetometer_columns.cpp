@@ -74,7 +74,7 @@ void use_logged_field(RecordBuilder& builder) {
 
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
   if (options.field) check_field(*options.field);
-  RecordBuilder builder(flight, quantities_of("magnetometer"), options.rows);
+  RecordBuilder builder(flight, quantities_of("magnetometer"), options.log);
   builder.need({"time", "mx", "my", "mz"});
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
   if (options.field) {
@@ -104,8 +104,8 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   return builder.finish();
 }
 
-ProbeRecord prepare_attitude_independent(const Flight& flight, const RowChoice& rows) {
-  RecordBuilder builder(flight, quantities_of("magnetometer"), rows);
+ProbeRecord prepare_attitude_independent(const Flight& flight, const LogChoice& log) {
+  RecordBuilder builder(flight, quantities_of("magnetometer"), log);
   builder.need({"time", "mx", "my", "mz"});
   builder.keep_valid();
   builder.check_time();
@@ -114,8 +114,8 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, const RowChoice& 
   return builder.finish();
 }
 
-ProbeReadings read_magnetometer(const Flight& flight, const RowChoice& rows) {
-  RecordBuilder builder(flight, quantities_of("magnetometer"), rows);
+ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log) {
+  RecordBuilder builder(flight, quantities_of("magnetometer"), log);
   builder.need({"mx", "my", "mz"});
   builder.keep_valid();
   return builder.finish_readings();

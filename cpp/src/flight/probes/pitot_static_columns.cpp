@@ -55,8 +55,8 @@ const char* still_in_tube(const RecordBuilder& builder) {
 
 }  // namespace
 
-ProbeRecord prepare_pitot_static(const Flight& flight, const RowChoice& rows) {
-  RecordBuilder builder(flight, quantities_of("pitot-static"), rows);
+ProbeRecord prepare_pitot_static(const Flight& flight, const LogChoice& log) {
+  RecordBuilder builder(flight, quantities_of("pitot-static"), log);
   builder.need({"time", "vn", "ve", "vd"});
   need_airspeed(builder, flight);
   builder.check_time();
@@ -73,8 +73,8 @@ ProbeRecord prepare_pitot_static(const Flight& flight, const RowChoice& rows) {
   return builder.finish();
 }
 
-ProbeReadings read_pitot_static(const Flight& flight, const RowChoice& rows) {
-  RecordBuilder builder(flight, quantities_of("pitot-static"), rows);
+ProbeReadings read_pitot_static(const Flight& flight, const LogChoice& log) {
+  RecordBuilder builder(flight, quantities_of("pitot-static"), log);
   need_airspeed(builder, flight);
   builder.keep(air_meets_tube(builder), still_in_tube(builder));
   if (has_airspeed(builder) && !offer_density(builder)) {

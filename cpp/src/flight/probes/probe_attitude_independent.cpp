@@ -42,12 +42,12 @@ class StrengthOnlyMagnetometer final : public Probe {
     return {{"field_strength", {setup_.field_strength}}, {"field_noise", {setup_.noise}}};
   }
 
-  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
-    return prepare_attitude_independent(flight, rows);
+  ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
+    return prepare_attitude_independent(flight, log);
   }
 
-  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
-    ProbeReadings readings = read_magnetometer(flight, rows);
+  ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
+    ProbeReadings readings = read_magnetometer(flight, log);
     readings.notes.push_back(flight.name() +
                              ": the corrected field is in body axes up to a rotation, which the "
                              "field's strength does not show");

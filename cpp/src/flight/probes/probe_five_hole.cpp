@@ -46,15 +46,15 @@ class FiveHole final : public Probe {
             {"lever_arm", {arm[0], arm[1], arm[2]}}};
   }
 
-  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
+  ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
     const bool lever_arm = setup_.lever_arm.cwiseAbs().maxCoeff() > 0;
     return prepare_five_hole(
         flight,
-        {.lever_arm = lever_arm, .rows = rows, .k_alpha = setup_.k_alpha, .k_beta = setup_.k_beta});
+        {.lever_arm = lever_arm, .log = log, .k_alpha = setup_.k_alpha, .k_beta = setup_.k_beta});
   }
 
-  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
-    return read_five_hole(flight, rows);
+  ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
+    return read_five_hole(flight, log);
   }
 
   std::vector<std::string> corrected_headers() const override {

@@ -29,12 +29,12 @@ class KnownFieldMagnetometer final : public Probe {
     return {{"field", {field_->begin(), field_->end()}}};
   }
 
-  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
-    return prepare_magnetometer(flight, {.field = field_, .rows = rows});
+  ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
+    return prepare_magnetometer(flight, {.field = field_, .log = log});
   }
 
-  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
-    return read_magnetometer(flight, rows);
+  ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
+    return read_magnetometer(flight, log);
   }
 
   std::vector<std::string> corrected_headers() const override {

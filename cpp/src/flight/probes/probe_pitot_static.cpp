@@ -26,12 +26,12 @@ class PitotStaticTube final : public Probe {
   const BlockModel& model() const override { return model_; }
   std::map<std::string, std::vector<double>> settings() const override { return {}; }
 
-  ProbeRecord prepare(const Flight& flight, const RowChoice& rows) const override {
-    return prepare_pitot_static(flight, rows);
+  ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
+    return prepare_pitot_static(flight, log);
   }
 
-  ProbeReadings read(const Flight& flight, const RowChoice& rows) const override {
-    return read_pitot_static(flight, rows);
+  ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
+    return read_pitot_static(flight, log);
   }
 
   std::vector<std::string> corrected_headers() const override { return {"airspeed_cal_mps"}; }

@@ -12,6 +12,7 @@
 #include "base/segments.hpp"
 #include "base/spool.hpp"
 #include "flight/files/invalid_cells.hpp"
+#include "flight/logs/chosen_rows.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "flight/probes/sampled_rows.hpp"
 #include "sepcal/effect_name.hpp"
@@ -34,13 +35,29 @@ KeptRows::Release release_of(const Flight& flight) {
 constexpr std::size_t most_notes = 10;  // of one kind; more of them nobody reads
 
 RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
-                             const RowChoice& choice)
+                             const LogChoice& choice)
     : flight_(flight),
       quantities_(quantities),
       drop_invalid_(choice.drop_invalid),
       rows_(flight.rows(), release_of(flight)) {
   for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
+  choose_rows(choice);
   if (!choice.drop_repeats.empty()) drop_repeats(choice.drop_repeats);
+}
+
+void RecordBuilder::choose_rows(const LogChoice& choice) {
+  const auto find = [this](const std::string& name) {
+    const auto found = logged_.find(name);
+    return found == logged_.end() ? std::nullopt : std::optional(found->second);
+  };
+  if (const auto within = logs::rows_within_times(flight_, choice)) {
+    keep(within, fmt::format("they are not within the times chosen, {} to {} s",
+                             choice.from_time ? fmt::format("{}", *choice.from_time) : "the first",
+                             choice.to_time ? fmt::format("{}", *choice.to_time) : "the last"));
+  }
+  if (const auto holds = logs::rows_where(flight_, choice, find)) {
+    keep(holds, fmt::format("{} does not hold there", choice.where));
+  }
 }
 
 void RecordBuilder::drop_repeats(const std::vector<std::string>& columns) {

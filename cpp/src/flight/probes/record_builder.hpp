@@ -29,10 +29,10 @@ class RecordBuilder {
   using RowTest = std::function<bool(std::size_t row)>;
   using RowValue = std::function<double(std::size_t row)>;
 
-  /// Throws Error for one of the quantities in an unknown unit, or in two, and for a column of
-  /// drop_repeats that is not there.
+  /// `flight` as read_as() gives it. Throws Error for one of the quantities in an unknown unit, or in
+  /// two, for a column of drop_repeats or a name in a condition that is not there.
   RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
-                const RowChoice& choice);
+                const LogChoice& choice);
 
   bool has(Names names) const;
 
@@ -90,6 +90,7 @@ class RecordBuilder {
 
  private:
   void find_quantity(const ProbeQuantity& quantity);
+  void choose_rows(const LogChoice& choice);
   void drop_repeats(const std::vector<std::string>& columns);
   const ProbeQuantity& quantity_of(std::string_view name) const;
   std::vector<std::string> other_headers() const;

@@ -2,11 +2,18 @@
 #include "sepcal/flight/apply.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
 
 #include "base/excerpt.hpp"
+#include "flight/logs/chosen_rows.hpp"
+#include "flight/probes/quantities.hpp"
 #include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/effect_readings.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/flight/output_file.hpp"
+#include "sepcal/flight/read_as.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal {
@@ -16,8 +23,37 @@ using namespace verbs;  // this room's own
 namespace {
 
 /// As far as it can be read: what a fit left out for its own sake is calibrated all the same.
-RowChoice every_row(const Calibration& calibration) {
-  return {.drop_invalid = calibration.options.rows.drop_invalid};
+LogChoice every_row(const Calibration& calibration) {
+  const LogChoice& chosen = calibration.options.log;
+  return {.map = chosen.map, .ignore = chosen.ignore, .drop_invalid = chosen.drop_invalid};
+}
+
+/// Where the calibration was fitted to some rows by what they hold or when they were: the column
+/// that says, with a 1, which rows are not such. `flight` as read_as() gives it.
+std::optional<CorrectedColumn> find_outside(const Calibration& calibration, const Flight& flight,
+                                            std::vector<std::string>& notes) {
+  const LogChoice choice = choice_for(calibration, flight, notes);
+  const auto quantities = probes::quantities_of(calibration.probe->name());
+  const auto find = [&](const std::string& name) -> std::optional<files::LoggedQuantity> {
+    const auto quantity = std::ranges::find(quantities, name, &probes::ProbeQuantity::name);
+    if (quantity == quantities.end()) return std::nullopt;
+    return files::find_quantity(flight, quantity->name, quantity->kind);
+  };
+  const logs::RowTruth within = logs::rows_within_times(flight, choice);
+  const logs::RowTruth holds = logs::rows_where(flight, choice, find);
+  if (!within && !holds) return std::nullopt;
+  CorrectedColumn outside{"outside_fit", std::vector<double>(flight.rows(), 0.0)};
+  for (std::size_t row = 0; row < flight.rows(); ++row) {
+    const bool inside = (!within || within(row)) && (!holds || holds(row));
+    outside.values[row] = inside ? 0.0 : 1.0;
+  }
+  return outside;
+}
+
+std::vector<double> part_of(const std::vector<double>& values, std::size_t first,
+                            std::size_t last) {
+  return {values.begin() + static_cast<std::ptrdiff_t>(first),
+          values.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
 /// The corrected readings of some rows of a flight without effects: each row is corrected by
@@ -38,8 +74,14 @@ std::vector<CorrectedColumn> correct_rows(const Calibration& calibration, const 
 }  // namespace
 
 std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight& flight) {
-  ProbeReadings readings = calibration.probe->read(flight, every_row(calibration));
-  return correct_with_effects(calibration, flight, readings);
+  const LogChoice choice = every_row(calibration);
+  ReadFlight read = read_as(flight, choice);
+  ProbeReadings readings = calibration.probe->read(read.flight, choice);
+  auto columns = correct_with_effects(calibration, read.flight, readings);
+  if (auto outside = find_outside(calibration, read.flight, read.notes)) {
+    columns.push_back(std::move(*outside));
+  }
+  return columns;
 }
 
 Applied apply_to_file(const Calibration& calibration, const std::string& file,
@@ -53,17 +95,27 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   }
   OutputFile target(output);
   const Flight flight = stream ? stream_csv(file, {}, progress) : read_csv(file, progress);
-  ProbeReadings readings = probe.read(flight, every_row(calibration));
-  const auto columns =
-      stream ? std::vector<CorrectedColumn>() : correct_with_effects(calibration, flight, readings);
+  const LogChoice choice = every_row(calibration);
+  const ReadFlight read = read_as(flight, choice);
+  ProbeReadings readings = probe.read(read.flight, choice);
+  auto columns = stream ? std::vector<CorrectedColumn>()
+                        : correct_with_effects(calibration, read.flight, readings);
 
   Applied applied{.output = output,
                   .rows = flight.rows(),
                   .headers = probe.corrected_headers(),
-                  .notes = readings.notes};
+                  .notes = read.notes};
+  std::ranges::copy(readings.notes, std::back_inserter(applied.notes));
+  const auto outside = find_outside(calibration, read.flight, applied.notes);
+  if (outside) {
+    applied.headers.push_back(outside->header);
+    if (!stream) columns.push_back(*outside);
+  }
   if (stream) {
     const auto columns_of = [&](std::size_t first, std::size_t last) {
-      return correct_rows(calibration, flight, readings, first, last);
+      auto part = correct_rows(calibration, read.flight, readings, first, last);
+      if (outside) part.push_back({outside->header, part_of(outside->values, first, last)});
+      return part;
     };
     write_with_columns(flight, applied.headers, base::piece_rows, columns_of, target);
   } else {

@@ -151,7 +151,7 @@ bool is_followed(const LogNote& note, const CalibrationOptions& options, const F
                  const std::vector<std::size_t>& rows) {
   if (note.kind == "outliers") return options.fit.loss != Loss::squares;
   if (note.kind == "at_rest") return !options.fit.stage_two_segments.empty();
-  if (options.rows.drop_repeats.empty()) return false;
+  if (options.log.drop_repeats.empty()) return false;
   if (note.kind == "held") {  // few of the rows that are left repeat the one before
     const std::span<const double> values = flight.find(note.columns.front())->values;
     std::size_t repeats = 0;
@@ -159,7 +159,7 @@ bool is_followed(const LogNote& note, const CalibrationOptions& options, const F
     return 10 * repeats < rows.size();
   }
   const auto is_chosen = [&](const std::string& header) {
-    return std::ranges::any_of(options.rows.drop_repeats, [&](const std::string& name) {
+    return std::ranges::any_of(options.log.drop_repeats, [&](const std::string& name) {
       return probes::is_called(header, name);
     });
   };
@@ -201,7 +201,7 @@ void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOpt
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   if (flight.is_mapped()) check_streamed(options);
-  const PreparedFlight prepared = prepare(*probe, flight, options.rows);
+  const PreparedFlight prepared = prepare(*probe, flight, options.log);
   std::vector<std::string> notes;
   note_check(*probe, prepared, options, notes);
   Calibration calibration = calibrate(std::move(probe), prepared, options);

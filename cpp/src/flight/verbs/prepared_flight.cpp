@@ -8,15 +8,38 @@
 
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::verbs {
 
-PreparedFlight prepare(const Probe& probe, const Flight& flight, const RowChoice& rows) {
-  return {flight, probe.prepare(flight, rows)};
+PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice& log) {
+  ReadFlight read = read_as(flight, log);
+  ProbeRecord readings = probe.prepare(read.flight, log);
+  readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());
+  return {std::move(read.flight), std::move(readings)};
 }
 
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
-  return prepare(*calibration.probe, flight, calibration.options.rows);
+  std::vector<std::string> notes;
+  const LogChoice choice = choice_for(calibration, flight, notes);
+  PreparedFlight prepared = prepare(*calibration.probe, flight, choice);
+  auto& all = prepared.readings.notes;
+  all.insert(all.begin(), notes.begin(), notes.end());
+  return prepared;
+}
+
+LogChoice choice_for(const Calibration& calibration, const Flight& flight,
+                     std::vector<std::string>& notes) {
+  LogChoice choice = calibration.options.log;
+  if (!is_other_flight(calibration, flight) || (!choice.from_time && !choice.to_time)) {
+    return choice;
+  }
+  notes.push_back(fmt::format(
+      "{}: the times that the calibration was fitted within are of another log's clock: all times "
+      "count here",
+      flight.name()));
+  choice.from_time = choice.to_time = std::nullopt;
+  return choice;
 }
 
 EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFlight& prepared) {

@@ -15,13 +15,18 @@
 namespace sepcal::verbs {
 
 struct PreparedFlight {
-  const Flight& flight;  // must outlive this
+  Flight flight;         // as read_as() gives it
   ProbeRecord readings;  // before effects in time cut its edges
 };
 
-/// Throws Error as Probe::prepare() does.
-PreparedFlight prepare(const Probe& probe, const Flight& flight, const RowChoice& rows);
+/// Throws Error as read_as() and Probe::prepare() do.
+PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice& log);
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight);
+
+/// What the calibration chose of its log, as far as it means something on this flight: times are of
+/// the fitted one's clock. A note says what was left out.
+LogChoice choice_for(const Calibration& calibration, const Flight& flight,
+                     std::vector<std::string>& notes);
 
 /// As the model with the calibration's effects takes it; they mean what they meant on the flight
 /// that was fitted. Throws Error as with_effects() does, and where the calibration's parameters are

@@ -9,7 +9,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 
-namespace row_choice_test {
+namespace log_choice_test {
 
 using sepcal::Error;
 using sepcal::prepare_pitot_static;
@@ -119,4 +119,4 @@ TEST_CASE("a column that is not there is refused by name") {
       Error);
 }
 
-}  // namespace row_choice_test
+}  // namespace log_choice_test

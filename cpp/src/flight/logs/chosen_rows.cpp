@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/logs/chosen_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "sepcal/option_error.hpp"
+#include "sepcal/quantity.hpp"
+
+namespace sepcal::logs {
+namespace {
+
+/// The label of a row, from stretches that cover the rows.
+RowText labels_of(const Flight& flight) {
+  auto stretches = std::make_shared<const std::vector<Segment>>(flight.label_stretches());
+  if (stretches->empty()) return {};
+  return [stretches](std::size_t row) -> std::string_view {
+    return std::ranges::upper_bound(*stretches, row, {}, &Segment::last)->label;
+  };
+}
+
+}  // namespace
+
+RowTruth rows_where(const Flight& flight, const LogChoice& choice, const FindQuantity& find) {
+  if (choice.where.empty()) return {};
+  const auto number = [&](const std::string& name) -> RowNumber {
+    if (const Flight::Column* column = flight.find(name)) {
+      return [values = column->values](std::size_t row) { return values[row]; };
+    }
+    if (const auto quantity = find(name)) {
+      return [quantity = *quantity](std::size_t row) { return quantity.at(row); };
+    }
+    throw Error(fmt::format("'{}' is no column; {}", name, flight.list_columns()));
+  };
+  try {
+    return parse_condition(choice.where, {number, labels_of(flight)});
+  } catch (const Error& error) {
+    throw OptionError({flight.name() + ": ", Option{"where"}, fmt::format(": {}", error.what())});
+  }
+}
+
+RowTruth rows_within_times(const Flight& flight, const LogChoice& choice) {
+  if (!choice.from_time && !choice.to_time) return {};
+  const auto time = files::find_quantity(flight, "time", files::UnitKind::time);
+  const Option used{choice.from_time ? "from_time" : "to_time"};
+  if (!time) {
+    throw OptionError({flight.name() + ": ", used,
+                       fmt::format(" needs a column time_s; {}", flight.list_columns())});
+  }
+  const double first = choice.from_time.value_or(-infinity);
+  const double last = choice.to_time.value_or(infinity);
+  if (!(first < last)) {
+    throw OptionError({Option{"from_time"}, fmt::format(" {} is not before ", first),
+                       Option{"to_time"}, fmt::format(" {}", last)});
+  }
+  return [time = *time, first, last](std::size_t row) {
+    const double now = time.at(row);
+    return now >= first && now <= last;
+  };
+}
+
+}  // namespace sepcal::logs

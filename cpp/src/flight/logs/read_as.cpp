@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/read_as.hpp"
+
+#include "flight/logs/chosen_columns.hpp"
+#include "flight/logs/joined_clock.hpp"
+#include "flight/logs/quaternion_columns.hpp"
+
+namespace sepcal {
+
+ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
+  ReadFlight read{flight, {}};
+  logs::choose_columns(read.flight, choice);
+  logs::join_clock(read.flight, read.notes);
+  logs::convert_quaternion(read.flight, read.notes);
+  return read;
+}
+
+}  // namespace sepcal

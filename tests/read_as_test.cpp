@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Logs as they come: foreign headers, clocks that start anew, attitude as a quaternion.
+#include "sepcal/flight/read_as.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sepcal/error.hpp"
+
+namespace read_as_test {
+
+using doctest::Approx;
+using doctest::Contains;
+using sepcal::Error;
+using sepcal::Flight;
+using sepcal::LogChoice;
+using sepcal::read_as;
+using sepcal::ReadFlight;
+
+namespace {
+
+std::vector<double> values(const Flight& flight, std::string_view header) {
+  REQUIRE(flight.find(header) != nullptr);
+  const auto column = flight.find(header)->values;
+  return {column.begin(), column.end()};
+}
+
+std::vector<double> ramp(double first, double step, std::size_t count) {
+  std::vector<double> column;
+  for (std::size_t i = 0; i < count; ++i) column.push_back(first + step * static_cast<double>(i));
+  return column;
+}
+
+}  // namespace
+
+TEST_CASE("columns are read under other names, or are as if they were not there") {
+  Flight log("log");
+  log.add("Time", {0, 1}).add("TAS", {40, 41}).add("airspeed_kt", {9, 9}).add("junk", {0, 0});
+  const LogChoice choice{.map = {{"airspeed_kt", "TAS"}, {"time_s", "Time"}},
+                         .ignore = {"airspeed_kt", "junk"}};
+  const Flight read = read_as(log, choice).flight;
+  CHECK(read.columns().size() == 2);
+  CHECK(values(read, "airspeed_kt") == std::vector<double>{40, 41});
+  CHECK(values(read, "time_s") == std::vector<double>{0, 1});
+  CHECK(log.columns().size() == 4);  // stays as it was
+}
+
+TEST_CASE("a choice of columns that can't be is refused") {
+  Flight log("log");
+  log.add("TAS", {40, 41}).add("airspeed_kt", {9, 9});
+  CHECK_THROWS_WITH_AS(read_as(log, {.map = {{"airspeed_kt", "IAS"}}}),
+                       "log: map airspeed_kt=IAS names a column that is not there; the flight has: "
+                       "TAS, airspeed_kt",
+                       Error);
+  CHECK_THROWS_WITH_AS(read_as(log, {.map = {{"airspeed_kt", "TAS"}}}),
+                       Contains("there is a column 'airspeed_kt' already; ignore it"), Error);
+  CHECK_THROWS_WITH_AS(read_as(log, {.ignore = {"IAS"}}), Contains("ignore names IAS"), Error);
+  CHECK_THROWS_WITH_AS(read_as(log, {.map = {{"maneuver", "TAS"}}}),
+                       Contains("call that column maneuver"), Error);
+}
+
+TEST_CASE("a clock that starts anew goes on behind a gap; one that is out of order stays") {
+  std::vector<double> time = ramp(100, 20, 30);  // ms, to 680
+  std::ranges::copy(ramp(0, 20, 20), std::back_inserter(time));
+  Flight log("log");
+  log.add("time_ms", time);
+  const ReadFlight read = read_as(log, {});
+  const auto joined = values(read.flight, "time_ms");
+  CHECK(joined[29] == 680);
+  CHECK(joined[30] == 680 + 1000);
+  CHECK(joined.back() == 680 + 1000 + 19 * 20);
+  REQUIRE(read.notes.size() == 1);
+  CHECK(read.notes[0] ==
+        "log: time_ms runs back once, first at log row 30: taken for two logs that were joined, "
+        "each with a clock of its own; each follows the one before after 1 s");
+
+  time[5] = 0;
+  Flight shuffled("log");
+  shuffled.add("time_ms", time);
+  CHECK(values(read_as(shuffled, {}).flight, "time_ms") == time);
+}
+
+TEST_CASE("a quaternion is the attitude of Eigen's rotation, whatever its length") {
+  Flight log("log");
+  const std::vector<Eigen::Vector3d> attitudes{
+      {0.1, -0.4, 2.0}, {-2.5, 0.7, -3.0}, {0.0, 0.0, 0.0}, {1.0, 1.2, 0.5}};
+  std::vector<std::vector<double>> q(4);
+  for (const Eigen::Vector3d& euler : attitudes) {
+    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(euler[2], Eigen::Vector3d::UnitZ()) *
+                                      Eigen::AngleAxisd(euler[1], Eigen::Vector3d::UnitY()) *
+                                      Eigen::AngleAxisd(euler[0], Eigen::Vector3d::UnitX()));
+    const double length = 1.0 + euler[0];
+    q[0].push_back(length * rotation.w());
+    q[1].push_back(length * rotation.x());
+    q[2].push_back(length * rotation.y());
+    q[3].push_back(length * rotation.z());
+  }
+  for (auto& part : q) part.push_back(0.0);  // none at all
+  log.add("qw", q[0]).add("qx", q[1]).add("qy", q[2]).add("qz", q[3]);
+  const ReadFlight read = read_as(log, {});
+  CHECK(read.flight.columns().size() == 3);
+  for (std::size_t row = 0; row < attitudes.size(); ++row) {
+    CHECK(values(read.flight, "roll_rad")[row] == Approx(attitudes[row][0]).epsilon(1e-12));
+    CHECK(values(read.flight, "pitch_rad")[row] == Approx(attitudes[row][1]).epsilon(1e-12));
+    CHECK(values(read.flight, "yaw_rad")[row] == Approx(attitudes[row][2]).epsilon(1e-12));
+  }
+  CHECK(std::isnan(values(read.flight, "roll_rad").back()));
+  CHECK(read.notes.size() == 1);
+  log.add("roll_deg", std::vector<double>(5, 0.0));
+  CHECK(read_as(log, {}).flight.columns().size() == 5);  // angles are there already
+}
+
+}  // namespace read_as_test
