@@ -31,7 +31,7 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
   if (delta != 0.0 && rows > 0) {
     constexpr Index at_once = 16;  // variances, none above 20, under one logarithm
     gain_ = VectorXd::Ones(rows);
-    deviation_ = VectorXd::Ones(rows);
+    precision_ = VectorXd::Ones(rows);
     double variance = fractional_variance(delta);
     double product = 1.0;
     double log_variance = 0.0;
@@ -43,7 +43,7 @@ ArfimaFactor::ArfimaFactor(double delta, VectorXd phi, const std::vector<Index>&
         const double partial = delta / (at - delta);
         variance *= (1.0 - partial) * (1.0 + partial);
       }
-      deviation_[s] = std::sqrt(variance);
+      precision_[s] = 1.0 / (gain_[s] * std::sqrt(variance));
       product *= variance;
       const bool is_asked = asked != log_variance_.end() && asked->first == s + 1;
       if (s % at_once != 0 && !is_asked) continue;
@@ -106,16 +106,14 @@ void ArfimaFactor::whiten(Ref<VectorXd> x, const std::vector<Index>& blocks) con
 
 void ArfimaFactor::whiten_fractional(Ref<VectorXd> u) const {
   if (delta_ == 0.0) return;
-  const auto gain = gain_.head(u.size()).array();
-  u.array() *= gain;
+  u.array() *= gain_.head(u.size()).array();
   difference_.apply(u);
-  u.array() /= gain * deviation_.head(u.size()).array();
+  u.array() *= precision_.head(u.size()).array();
 }
 
 void ArfimaFactor::colour_fractional(Ref<VectorXd> u) const {
   if (delta_ == 0.0) return;
-  const auto gain = gain_.head(u.size()).array();
-  u.array() *= gain * deviation_.head(u.size()).array();
+  u.array() /= precision_.head(u.size()).array();
   if (delta_ > -1.0) {
     // (1 - B)^-delta is itself a difference where delta <= 0, else the sum of one.
     FractionalDifference(delta_ > 0.0 ? 1.0 - delta_ : -delta_, u.size()).apply(u);
@@ -126,7 +124,7 @@ void ArfimaFactor::colour_fractional(Ref<VectorXd> u) const {
   } else {  // the inverse of a running sum
     for (Index t = u.size() - 1; t > 0; --t) u[t] -= u[t - 1];
   }
-  u.array() /= gain;
+  u.array() /= gain_.head(u.size()).array();
 }
 
 void ArfimaFactor::whiten(Ref<VectorXd> x) const {

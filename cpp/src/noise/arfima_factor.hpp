@@ -43,7 +43,7 @@ class ArfimaFactor {
   Eigen::VectorXd phi_;
   FractionalDifference difference_;
   Eigen::VectorXd gain_;                         // g_s / g_0; none where delta is 0
-  Eigen::VectorXd deviation_;                    // sqrt v_t
+  Eigen::VectorXd precision_;                    // 1 / (g_t / g_0 sqrt v_t)
   std::map<Eigen::Index, double> log_variance_;  // sum of ln v, by a block's rows behind its head
   Eigen::MatrixXd regression_;          // p x rows: of the first rows on the whitened later ones
   std::map<Eigen::Index, Head> heads_;  // by the rows of a block

@@ -48,10 +48,6 @@ struct PairSums {
 
 // NOLINTBEGIN(*-pointer-arithmetic,*-c-arrays,*-constant-array-index): lanes of a register.
 
-double add_lanes(const Lanes& sum) {
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
-
 SEPCAL_EVERY_WIDTH PairSums add_pairs(const double* forward, const double* backward, Index pairs) {
   Lanes product = {};
   Lanes forwards = {};

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "noise/lanes.hpp"
+#include "numerics/gauss_rule.hpp"
 
 namespace sepcal::noise {
 namespace {
@@ -18,18 +19,20 @@ constexpr Index near_rows = Index{2} * Exponentials::count;
 constexpr Index few_rows = 128;  // whose coefficients cost less than exponentials do
 // Trapezoids in ln(lambda) converge like e^{-pi^2 / step}: 2e-11 here.
 constexpr double step = 0.4;
+constexpr Index many_rows =
+    2048;  // over which fewer exponentials save more than finding them costs
 
 // NOLINTBEGIN(*-pointer-arithmetic,*-c-arrays,*-constant-array-index): lanes of a register.
 
-constexpr std::size_t most_groups = 16;
-
-/// y_t from the last near_rows of x, by `near` (the oldest first), and from all before, by the
-/// exponentials.
-SEPCAL_EVERY_WIDTH void filter(const double* near, const Exponentials* distant, std::size_t groups,
-                               double* x, Index rows) {
-  Lanes state[most_groups] = {};
-  Lanes decay[most_groups];
-  Lanes weight[most_groups];
+/// y_t from the last near_rows of x, by `near` (the oldest first), and from all before, by groups
+/// of exponentials, which stay in registers where these are wide.
+template <std::size_t groups>
+[[gnu::always_inline]] inline void filter_by(const double* near, const Exponentials* distant,
+                                             double* x, Index rows) {
+  Lanes state[groups] = {};
+  Lanes decay[groups];
+  Lanes weight[groups];
+#pragma GCC unroll 9
   for (std::size_t g = 0; g < groups; ++g) {
     load(distant[g].decay, decay[g]);
     load(distant[g].weight, weight[g]);
@@ -50,18 +53,64 @@ SEPCAL_EVERY_WIDTH void filter(const double* near, const Exponentials* distant, 
       load(past + t + 1, old_rows);
       load(past + t + 1 + Exponentials::count, new_rows);
       Lanes sum = older * old_rows + newer * new_rows;
+#pragma GCC unroll 9
       for (std::size_t g = 0; g < groups; ++g) {
         state[g] = decay[g] * state[g] + leaving;
         sum += weight[g] * state[g];
       }
-      x[first + t] =
-          ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+      x[first + t] = add_lanes(sum);
     }
     std::copy_n(past + count, near_rows, past);
   }
 }
 
+constexpr std::size_t fewest_groups = 3;
+constexpr std::size_t most_groups = 9;  // those of 2048 rows; no more rows need as many
+
+SEPCAL_EVERY_WIDTH void filter(const double* near, const Exponentials* distant, std::size_t groups,
+                               double* x, Index rows) {
+  switch (groups) {
+    case fewest_groups:
+      filter_by<fewest_groups>(near, distant, x, rows);
+      break;
+    case 5:
+      filter_by<5>(near, distant, x, rows);
+      break;
+    case 7:
+      filter_by<7>(near, distant, x, rows);
+      break;
+    default:
+      filter_by<most_groups>(near, distant, x, rows);
+  }
+}
+
+/// Groups for so many terms, of which filter() has an odd number.
+std::size_t count_groups(Index terms) {
+  const auto groups = static_cast<std::size_t>((terms - 1) / Exponentials::count + 1);
+  return std::clamp(groups | 1U, fewest_groups, most_groups);
+}
+
 // NOLINTEND(*-pointer-arithmetic,*-c-arrays,*-constant-array-index)
+
+struct Terms {
+  VectorXd lambda;  // ascending
+  VectorXd weight;
+};
+
+/// The exponentials that hardly fall over the rows, most of all, become a group of Gauss's: with
+/// lambda k < 6 a polynomial of degree 15 in lambda stands for e^{-lambda k} to 1e-10.
+Terms merge_slow(const Terms& all, Index rows) {
+  constexpr double fall = 6.0;
+  const Index slow = (all.lambda.array() * static_cast<double>(rows) < fall).count();
+  const Index fast = all.lambda.size() - slow;
+  if (slow <= Exponentials::count) return all;
+  const numerics::GaussRule rule =
+      numerics::gauss_rule(all.lambda.head(slow), all.weight.head(slow), Exponentials::count);
+  Terms merged{VectorXd(rule.nodes.size() + fast), VectorXd(rule.nodes.size() + fast)};
+  merged.lambda << rule.nodes, all.lambda.tail(fast);
+  merged.weight << rule.weights, all.weight.tail(fast);
+  return merged;
+}
 
 }  // namespace
 
@@ -81,15 +130,20 @@ FractionalDifference::FractionalDifference(double d, Index rows)
   const double lowest = std::log(1e-10 / static_cast<double>(rows) / scale) / (1.0 + d_);
   const double highest = std::log(45.0 / (static_cast<double>(near_rows) - d_));
   const auto nodes = static_cast<Index>(std::ceil((highest - lowest) / step)) + 1;
-  const auto groups = static_cast<std::size_t>((nodes - 1) / Exponentials::count + 1);
-  distant_.resize(groups);
+  Terms terms{VectorXd(nodes), VectorXd(nodes)};
   for (Index i = 0; i < nodes; ++i) {
     const double lambda = std::exp(lowest + step * static_cast<double>(i));
+    terms.lambda[i] = lambda;
+    terms.weight[i] = -scale * step * lambda * std::pow(-std::expm1(-lambda), d_) *
+                      std::exp(-(static_cast<double>(near_rows) - d_) * lambda);
+  }
+  if (rows > many_rows) terms = merge_slow(terms, rows);
+  const Index count = terms.lambda.size();
+  distant_.resize(count_groups(count));
+  for (Index i = 0; i < count; ++i) {
     Exponentials& group = distant_[static_cast<std::size_t>(i / Exponentials::count)];
-    group.decay[i % Exponentials::count] = std::exp(-lambda);
-    group.weight[i % Exponentials::count] =
-        -scale * step * lambda * std::pow(-std::expm1(-lambda), d_) *
-        std::exp(-(static_cast<double>(near_rows) - d_) * lambda);
+    group.decay[i % Exponentials::count] = std::exp(-terms.lambda[i]);
+    group.weight[i % Exponentials::count] = terms.weight[i];
   }
 }
 

@@ -22,4 +22,14 @@ using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
 inline void load(const double* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); }
 inline void store(const Lanes& lanes, double* to) { std::memcpy(to, &lanes, sizeof lanes); }
 
+inline double add_lanes(const Lanes& lanes) {
+  using Half [[gnu::vector_size(lane_count / 2 * sizeof(double))]] = double;
+  using Quarter [[gnu::vector_size(lane_count / 4 * sizeof(double))]] = double;
+  const Half half = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
+                    __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const Quarter quarter =
+      __builtin_shufflevector(half, half, 0, 2) + __builtin_shufflevector(half, half, 1, 3);
+  return quarter[0] + quarter[1];
+}
+
 }  // namespace sepcal::noise
