@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/columns.hpp"
 
+#include "numerics/tall_products.hpp"
+
 namespace sepcal::diagnosis {
 
 using Eigen::Index;
@@ -50,6 +52,11 @@ Columns view(const Ref<const MatrixXd>& matrix) {
           }};
 }
 
+Columns keep_few(const RowLayout& layout, const Columns& columns) {
+  constexpr Index few = 6;
+  return columns.cols() > few ? columns : Columns(columns.dense(layout));
+}
+
 Columns select(const Columns& columns, const std::vector<Index>& chosen) {
   return {static_cast<Index>(chosen.size()), [columns, chosen](Index first, Ref<MatrixXd> rows) {
             rows = columns.rows(first, rows.rows())(Eigen::all, chosen);
@@ -59,14 +66,14 @@ Columns select(const Columns& columns, const std::vector<Index>& chosen) {
 VectorXd multiply_transposed(const RowLayout& layout, const Columns& X, const VectorXd& y) {
   VectorXd sum = VectorXd::Zero(X.cols());
   for_each_panel(layout, [&](Index first, Index rows) {
-    sum.noalias() += X.rows(first, rows).transpose() * y.segment(first, rows);
+    numerics::add_transposed_product(X.rows(first, rows), y.segment(first, rows), sum);
   });
   return sum;
 }
 
 VectorXd subtract(const RowLayout& layout, VectorXd y, const Columns& X, const VectorXd& c) {
   for_each_panel(layout, [&](Index first, Index rows) {
-    y.segment(first, rows).noalias() -= X.rows(first, rows) * c;
+    numerics::add_product(X.rows(first, rows), -c, y.segment(first, rows));
   });
   return y;
 }

@@ -44,6 +44,9 @@ Columns join(const Columns& left, const Columns& right);
 /// Those of a matrix (count() rows) that outlives them.
 Columns view(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
+/// Those that are asked for again and again: kept whole where they are few.
+Columns keep_few(const RowLayout& layout, const Columns& columns);
+
 /// Some of them.
 Columns select(const Columns& columns, const std::vector<Eigen::Index>& chosen);
 
@@ -58,20 +61,6 @@ void for_each_panel(const RowLayout& layout, const Visit& visit) {
       visit(layout.first(j) + row, std::min(panel_rows, layout.rows - row));
     }
   }
-}
-
-/// Columns that a tall matrix is multiplied by one by one: packing it for a product of matrices
-/// costs more.
-inline constexpr Eigen::Index few_columns = 6;
-
-/// sum += A'B.
-template <class A, class B>
-void add_transposed_product(const A& a, const B& b, Eigen::MatrixXd& sum) {
-  if (b.cols() > few_columns) {
-    sum.noalias() += a.transpose() * b;
-    return;
-  }
-  for (Eigen::Index k = 0; k < b.cols(); ++k) sum.col(k).noalias() += a.transpose() * b.col(k);
 }
 
 /// X'y.

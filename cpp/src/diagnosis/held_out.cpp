@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/tall_products.hpp"
 #include "numerics/toeplitz.hpp"
 #include "sepcal/triangular_factor.hpp"
 
@@ -23,11 +24,24 @@ std::vector<TriangularFactor> factor_by_fold(const RowLayout& layout, const Colu
                                         TriangularFactor(static_cast<int>(columns.cols())));
   for (const HeldOutBlock& block : folds.blocks) {
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      MatrixXd rows = columns.rows(layout.first(j) + block.first, block.last - block.first);
-      factors[static_cast<std::size_t>(block.fold)].absorb(rows);
+      for (Index row = block.first; row < block.last; row += panel_rows) {
+        MatrixXd panel =
+            columns.rows(layout.first(j) + row, std::min(panel_rows, block.last - row));
+        factors[static_cast<std::size_t>(block.fold)].absorb(panel);
+      }
     }
   }
   return factors;
+}
+
+/// The factor of [J e] from that of [J G e], of G's `added` columns.
+TriangularFactor leave_out(const TriangularFactor& factor, Index added) {
+  const MatrixXd& R = factor.matrix();
+  MatrixXd rows(R.rows(), R.cols() - added);
+  rows << R.leftCols(rows.cols() - 1), R.rightCols<1>();
+  TriangularFactor left(static_cast<int>(rows.cols()));
+  left.absorb(rows);
+  return left;
 }
 
 /// The same factor of [J ...] from that of [Q ...], J = Q coordinates.
@@ -60,17 +74,22 @@ VectorXd estimate_without(const LinearisedFit& fit, const std::vector<Triangular
   return of_basis;
 }
 
-/// Squared error of a block in the outputs' unit.
-double square_of(const RowLayout& layout, const Columns& columns, const VectorXd& estimate,
-                 const HeldOutBlock& block) {
-  double square = 0.0;
-  const Index n = estimate.size();
+/// Squared errors of a block in the outputs' unit, of estimates (a column each) for [J G e].
+VectorXd squares_of(const RowLayout& layout, const Columns& columns, const MatrixXd& estimates,
+                    const HeldOutBlock& block) {
+  VectorXd squares = VectorXd::Zero(estimates.cols());
+  const Index n = estimates.rows();
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const MatrixXd rows = columns.rows(layout.first(j) + block.first, block.last - block.first);
     const double scale = layout.outputs[j].scale;
-    square += scale * scale * (rows.col(n) - rows.leftCols(n) * estimate).squaredNorm();
+    for (Index row = block.first; row < block.last; row += panel_rows) {
+      const MatrixXd panel =
+          columns.rows(layout.first(j) + row, std::min(panel_rows, block.last - row));
+      MatrixXd errors = panel.col(n).replicate(1, estimates.cols());
+      numerics::add_product(panel.leftCols(n), -estimates, errors);
+      squares += scale * scale * errors.colwise().squaredNorm().transpose();
+    }
   }
-  return square;
+  return squares;
 }
 
 /// The least and the largest value of each column in each block (blocks x columns).
@@ -207,15 +226,18 @@ HeldOut summarise(const std::vector<double>& before, const std::vector<double>& 
 
 HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds) {
   const RowLayout& layout = fit.layout;
-  const Columns without = join(view(fit.tangent), view(fit.residual));
-  const Columns with = join(join(view(fit.tangent), G), view(fit.residual));
-  const auto factors_without = factor_by_fold(layout, without, folds);
-  const auto factors_with = factor_by_fold(layout, with, folds);
-  std::vector<VectorXd> estimates_without;
-  std::vector<VectorXd> estimates_with;
+  const Columns columns = join(join(view(fit.tangent), G), view(fit.residual));
+  const auto factors_with = factor_by_fold(layout, columns, folds);
+  std::vector<TriangularFactor> factors_without;
+  for (const TriangularFactor& factor : factors_with) {
+    factors_without.push_back(leave_out(factor, G.cols()));
+  }
+  std::vector<MatrixXd> estimates;  // without G and with it
   for (int f = 0; f < folds.count; ++f) {
-    estimates_without.push_back(estimate_without(fit, factors_without, f));
-    estimates_with.push_back(estimate_without(fit, factors_with, f));
+    MatrixXd both = MatrixXd::Zero(columns.cols() - 1, 2);
+    both.col(0).head(fit.tangent.cols()) = estimate_without(fit, factors_without, f);
+    both.col(1) = estimate_without(fit, factors_with, f);
+    estimates.push_back(std::move(both));
   }
   std::vector<double> before;
   std::vector<double> after;
@@ -223,8 +245,9 @@ HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds)
   for (const HeldOutBlock& block : folds.blocks) {
     if (!block.judged) continue;
     const auto f = static_cast<std::size_t>(block.fold);
-    before.push_back(square_of(layout, without, estimates_without[f], block));
-    after.push_back(square_of(layout, with, estimates_with[f], block));
+    const VectorXd squares = squares_of(layout, columns, estimates[f], block);
+    before.push_back(squares[0]);
+    after.push_back(squares[1]);
     rows += static_cast<double>(block.last - block.first);
   }
   return summarise(before, after, rows * static_cast<double>(layout.outputs.size()));

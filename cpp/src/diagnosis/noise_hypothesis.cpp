@@ -7,6 +7,7 @@
 #include <span>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/tall_products.hpp"
 
 namespace sepcal::diagnosis {
 namespace {
@@ -90,12 +91,11 @@ MatrixXd white_products(const RowLayout& layout, const Columns& X, const VectorX
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     for (Index a = 0; a < count; a += width) {
       const MatrixXd left = make(j, a);
-      products.block(a, a, left.cols(), left.cols())
-          .selfadjointView<Eigen::Upper>()
-          .rankUpdate(left.transpose());
+      numerics::add_square(left, products.block(a, a, left.cols(), left.cols()));
       for (Index b = a + width; b < count; b += width) {
         const MatrixXd right = make(j, b);
-        products.block(a, b, left.cols(), right.cols()).noalias() += left.transpose() * right;
+        numerics::add_transposed_product(left, right,
+                                         products.block(a, b, left.cols(), right.cols()));
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/tall_products.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
@@ -109,7 +110,8 @@ MatrixXd explained_on(const TangentBasis& tangent, const Columns& G) {
   const LinearisedFit& fit = tangent.fit();
   MatrixXd products = MatrixXd::Zero(fit.tangent.cols(), G.cols());
   for_each_panel(fit.layout, [&](Index first, Index rows) {
-    add_transposed_product(fit.tangent.middleRows(first, rows), G.rows(first, rows), products);
+    numerics::add_transposed_product(fit.tangent.middleRows(first, rows), G.rows(first, rows),
+                                     products);
   });
   return tangent.weights() * (tangent.weights().transpose() * products);
 }
@@ -122,15 +124,11 @@ MatrixXd in_parameters(const TangentBasis& tangent, const MatrixXd& C) {
 /// (G - J C) W.
 Columns subtract_tangent(const TangentBasis& tangent, const Columns& G, const MatrixXd& C,
                          const MatrixXd& W) {
-  return {W.cols(), [&J = tangent.fit().tangent, G, W, CW = MatrixXd(C * W)](
+  return {W.cols(), [&J = tangent.fit().tangent, G, W, explained = MatrixXd(-C * W)](
                         Index first, Eigen::Ref<MatrixXd> rows) {
-            const auto own = J.middleRows(first, rows.rows());
-            rows.noalias() = G.rows(first, rows.rows()) * W;
-            if (CW.cols() > few_columns) {
-              rows.noalias() -= own * CW;
-              return;
-            }
-            for (Index k = 0; k < CW.cols(); ++k) rows.col(k).noalias() -= own * CW.col(k);
+            rows.setZero();
+            numerics::add_product(G.rows(first, rows.rows()), W, rows);
+            numerics::add_product(J.middleRows(first, rows.rows()), explained, rows);
           }};
 }
 

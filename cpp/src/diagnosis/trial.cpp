@@ -7,6 +7,7 @@
 
 #include "diagnosis/refits.hpp"
 #include "numerics/tails.hpp"
+#include "numerics/tall_products.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
@@ -105,16 +106,17 @@ ScreenProducts multiply_for_screen(const NullHypothesis& null, const Columns& X)
       X.fill(first + row, part);
       MatrixXd panel(part.rows(), q + 1);
       panel << part, null.residual.segment(first + row, part.rows());
-      plain.noalias() += panel.transpose() * panel;
+      numerics::add_square(panel, plain);
       panel.conservativeResize(Eigen::NoChange, q);
       factor.absorb(panel);
     }
     products.plain.push_back(std::move(plain));
     null.whiteners[j].apply(columns);
-    add_transposed_product(columns, columns, products.white_square);
-    add_transposed_product(null.white_basis.middleRows(first, layout.rows), columns, shares);
-    products.white_product.noalias() +=
-        columns.transpose() * null.white_residual.segment(first, layout.rows);
+    numerics::add_square(columns, products.white_square);
+    numerics::add_transposed_product(null.white_basis.middleRows(first, layout.rows), columns,
+                                     shares);
+    numerics::add_transposed_product(columns, null.white_residual.segment(first, layout.rows),
+                                     products.white_product);
   }
   products.R = factor.matrix();
   products.white_square -= shares.transpose() * shares;
@@ -215,7 +217,8 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   trial.tested = true;
   NoiseTails least{infinity, infinity};
   for (const double shape : shapes) {
-    const Projection added = project_trial(room, null, trial, shape);
+    Projection added = project_trial(room, null, trial, shape);
+    added.basis = keep_few(room.fit().layout, added.basis);
     const NoiseTest::Ratios ratios = null.test->compare(added.basis);
     const auto q = added.visible();
     const NoiseTails tails = NoiseTest::tails(ratios, static_cast<int>(q));
@@ -249,7 +252,8 @@ bool is_smooth(const RowLayout& layout, const Columns& columns) {
 
 void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
                base::ThreadPool& pool, Trial& trial) {
-  const Projection added = project_trial(room, null, trial, trial.shape);
+  Projection added = project_trial(room, null, trial, trial.shape);
+  added.basis = keep_few(room.fit().layout, added.basis);
   const bool smooth = is_smooth(room.fit().layout, added.basis);
   const NoiseTails tails =
       null.test->calibrate(trial.ratios, added.basis, smooth, draws, seed, pool);

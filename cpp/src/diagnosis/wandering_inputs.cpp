@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "numerics/tall_products.hpp"
+
 namespace sepcal::diagnosis {
 namespace {
 
@@ -62,8 +64,7 @@ WanderingInputs::WanderingInputs(const TangentBasis& tangent) : fit_(tangent.fit
   const Index rank = basis_.cols();
   basis_squares_ = MatrixXd::Zero(rank, rank);
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
-    const MatrixXd panel = basis_.rows(first, rows);
-    basis_squares_.noalias() += panel.transpose() * panel;
+    numerics::add_square(basis_.rows(first, rows), basis_squares_);
   });
   scale_ = std::sqrt(static_cast<double>(fit_.wandering.rows()) / square_sum);
   const auto [first, last] = std::ranges::minmax(fit_.times);
@@ -129,7 +130,7 @@ WanderingInputs::Fixed WanderingInputs::fix(const Columns& added) const {
   MatrixXd products = MatrixXd::Zero(more, count);
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
     const MatrixXd panel = fixed.columns.rows(first, rows);
-    products.noalias() += panel.leftCols(more).transpose() * panel;
+    numerics::add_transposed_product(panel.leftCols(more), panel, products);
   });
   fixed.squares.resize(count, count);
   fixed.squares << products, products.rightCols(count - more).transpose(), basis_squares_;
@@ -143,8 +144,8 @@ std::vector<WanderingInputs::Found> WanderingInputs::evaluate(
   const auto rows = static_cast<double>(residuals.rows());
   MatrixXd products = MatrixXd::Zero(count, residuals.cols());
   for_each_panel(fit_.layout, [&](Index first, Index panel) {
-    products.noalias() +=
-        fixed.columns.rows(first, panel).transpose() * residuals.middleRows(first, panel);
+    numerics::add_transposed_product(fixed.columns.rows(first, panel),
+                                     residuals.middleRows(first, panel), products);
   });
   const MatrixXd of_residuals = gather(view(residuals));
   std::vector<Found> found(static_cast<std::size_t>(residuals.cols()));
@@ -230,7 +231,7 @@ void WanderingInputs::weigh(Index row, Weights& weights) const {
 MatrixXd WanderingInputs::gather(const Columns& columns) const {
   const Index sizes = 2 * corrections();  // of two knots
   MatrixXd sums = MatrixXd::Zero(knots * corrections(), columns.cols());
-  MatrixXd weights(sizes, panel_rows);
+  MatrixXd weights(panel_rows, sizes);
   Weights at;
   for_each_panel(fit_.layout, [&](Index first, Index rows) {
     const MatrixXd panel = columns.rows(first, rows);
@@ -238,15 +239,15 @@ MatrixXd WanderingInputs::gather(const Columns& columns) const {
     Index knot = 0;   // the first of their sizes
     const auto add = [&](Index end) {
       const Index count = end - begin;
-      sums.middleRows(knot, sizes).noalias() +=
-          weights.leftCols(count) * panel.middleRows(begin, count);
+      numerics::add_transposed_product(weights.topRows(count), panel.middleRows(begin, count),
+                                       sums.middleRows(knot, sizes));
       begin = end;
     };
     for (Index row = 0; row < rows; ++row) {
       weigh(first + row, at);
       if (at.first != knot && row > begin) add(row);
       knot = at.first;
-      weights.col(row - begin) = at.of;
+      weights.row(row - begin) = at.of.transpose();
     }
     add(rows);
   });

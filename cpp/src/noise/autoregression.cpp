@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "noise/lanes.hpp"
+#include "numerics/lanes.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal::noise {
@@ -15,6 +15,11 @@ namespace sepcal::noise {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using numerics::add_lanes;
+using numerics::lane_count;
+using numerics::Lanes;
+using numerics::load;
+using numerics::store;
 
 VectorXd phi_from_partial(const VectorXd& partial) {
   VectorXd phi = partial;

@@ -5,14 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "noise/lanes.hpp"
 #include "numerics/gauss_rule.hpp"
+#include "numerics/lanes.hpp"
 
 namespace sepcal::noise {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+using numerics::add_lanes;
+using numerics::lane_count;
+using numerics::Lanes;
+using numerics::load;
 
 static_assert(Exponentials::count == lane_count);
 constexpr Index near_rows = Index{2} * Exponentials::count;

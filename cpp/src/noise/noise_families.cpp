@@ -6,9 +6,9 @@
 
 #include "base/stop.hpp"
 #include "noise/autoregression.hpp"
-#include "noise/lanes.hpp"
 #include "noise/noise_autocovariance.hpp"
 #include "noise/noise_room.hpp"
+#include "numerics/lanes.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal::noise {
@@ -19,6 +19,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
+using numerics::lane_count;
+using numerics::Lanes;
+using numerics::load;
+using numerics::store;
 
 constexpr std::array grid_of_d{0.0, 0.15, 0.3, 0.45, 0.6, 0.8, 0.999};
 constexpr double differences_from = 0.5;

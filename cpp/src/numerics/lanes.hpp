@@ -14,7 +14,7 @@
 #define SEPCAL_EVERY_WIDTH
 #endif
 
-namespace sepcal::noise {
+namespace sepcal::numerics {
 
 inline constexpr Eigen::Index lane_count = 8;
 using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
@@ -32,4 +32,4 @@ inline double add_lanes(const Lanes& lanes) {
   return quarter[0] + quarter[1];
 }
 
-}  // namespace sepcal::noise
+}  // namespace sepcal::numerics
