@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "diagnosis/known_products.hpp"
 #include "diagnosis/projection.hpp"
 #include "linearisations.hpp"
 #include "noises.hpp"
@@ -64,8 +65,11 @@ struct Bench {
   }
 
   std::array<diagnosis::FamilyFit, 2> fit(const MatrixXd& of, const VectorXd& e) const {
-    auto fits = fit_families(families, layout, of, e, orders);
-    for (diagnosis::FamilyFit& fit : fits) finish_fit(families, layout, of, e, fit);
+    const auto products = [&](const diagnosis::NoiseMembers& noise) {
+      return family_products(families, layout, noise, of, e);
+    };
+    auto fits = fit_families(families, layout, of, e, orders, products);
+    for (diagnosis::FamilyFit& fit : fits) finish_fit(products, fit);
     return fits;
   }
 };
@@ -83,6 +87,36 @@ TEST_CASE("coefficients are those of dense generalised least squares in the nois
       const VectorXd expected = normal.ldlt().solve(weighted * e);
       CHECK((fit.coefficients - expected).norm() < 1e-6 * expected.norm());
       CHECK(fit.covariance.isApprox(normal.inverse(), 1e-6));
+    }
+  }
+}
+
+TEST_CASE("products beside known columns are those of all columns, whitened") {
+  const Bench bench;
+  Draws draws(21);
+  const MatrixXd added = draws.normal_matrix(outputs * rows, 2);
+  for (const std::string& kind : noise_kinds) {
+    const VectorXd e = bench.residual(kind, 5);
+    const diagnosis::KnownProducts known(bench.families, bench.layout, bench.columns, e, orders);
+    for (const std::uint64_t seed : {11, 12}) {  // of each family twice: some is known by then
+      for (const diagnosis::FamilyFit& fit : bench.fit(bench.columns, bench.residual(kind, seed))) {
+        for (const Index count : {0, 2}) {
+          CAPTURE(kind);
+          CAPTURE(count);
+          const MatrixXd X = added.leftCols(count);
+          MatrixXd all(outputs * rows, bench.columns.cols() + count + 1);
+          all << bench.columns, X, e;
+          const MatrixXd expected = all.transpose() * bench.precision(fit.noise) * all;
+          const VectorXd scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+          const MatrixXd off = known.beside(fit.noise, X) - expected;
+          CHECK((scale.asDiagonal() * off * scale.asDiagonal()).cwiseAbs().maxCoeff() < 1e-7);
+          const MatrixXd plain =
+              family_products(bench.families, bench.layout, fit.noise,
+                              diagnosis::Columns(MatrixXd(all.leftCols(all.cols() - 1))), e);
+          const MatrixXd apart = known.beside(fit.noise, X) - plain;
+          CHECK((scale.asDiagonal() * apart * scale.asDiagonal()).cwiseAbs().maxCoeff() < 1e-10);
+        }
+      }
     }
   }
 }

@@ -56,18 +56,55 @@ TEST_CASE("what find() says of a member is its likelihood by the dense covarianc
   }
 }
 
-TEST_CASE("whiten_backwards() is the transpose of a wandering member's whiten()") {
+TEST_CASE("whiten_backwards() is the transpose of whiten()") {
   const NoiseFamilies families(runs);
   Draws draws(11);
   for (const std::string& kind : noise_kinds) {
-    const NoiseMember member =
-        families.find(NoiseFamily::wandering, draw_noise(kind, rows, draws), 0);
-    MatrixXd factor = MatrixXd::Identity(rows, rows);
-    families.whiten(member, factor);
-    MatrixXd transposed = MatrixXd::Identity(rows, rows);
-    for (auto column : transposed.colwise()) families.whiten_backwards(member, column);
-    CHECK(transposed.isApprox(factor.transpose(), 1e-12));
+    for (const NoiseFamily family : noise::noise_families) {
+      for (const int order : {0, 1, 3}) {
+        CAPTURE(kind);
+        CAPTURE(order);
+        NoiseMember member = families.find(family, draw_noise(kind, rows, draws), order);
+        // Every d of the fractional family; of the other the one that was found.
+        const bool fractional = family == NoiseFamily::fractional;
+        for (std::size_t k = 0; k < (fractional ? families.fractions() : 1); ++k) {
+          if (fractional) member.at = k;
+          MatrixXd factor = MatrixXd::Identity(rows, rows);
+          families.whiten(member, factor);
+          MatrixXd transposed = MatrixXd::Identity(rows, rows);
+          for (auto column : transposed.colwise()) families.whiten_backwards(member, column);
+          CHECK(transposed.isApprox(factor.transpose(), 1e-10));
+        }
+      }
+    }
   }
+}
+
+TEST_CASE("squares by lagged products are those of whitened columns, in runs of any length") {
+  const std::vector<Segment> many{{"", 0, 1}, {"", 1, 3}, {"", 3, 7}, {"", 7, 90}, {"", 90, 99}};
+  const NoiseFamilies families(many);
+  Draws draws(5);
+  MatrixXd columns = draws.normal_matrix(99, 3);
+  columns.col(1).setOnes();
+  columns.col(2) = VectorXd::LinSpaced(99, 0.0, 30.0);
+  for (std::size_t at = 0; at < families.fractions(); ++at) {
+    for (const VectorXd& partial : {VectorXd(), VectorXd::Constant(1, 0.9).eval(),
+                                    VectorXd::LinSpaced(4, 0.7, -0.3).eval()}) {
+      CAPTURE(at);
+      CAPTURE(partial.size());
+      const NoiseMember member{.at = at, .partial = partial};
+      MatrixXd white = columns;
+      families.whiten(member, white);
+      const auto squares = families.lagged_squares(at, columns, static_cast<int>(partial.size()));
+      const MatrixXd expected = white.transpose() * white;
+      const MatrixXd found = squares.whitened(partial);
+      CHECK((found - expected).norm() < 1e-12 * columns.squaredNorm());
+      CHECK(squares.is_sound(found));
+    }
+  }
+  // An autoregression that predicts all but a millionth.
+  const auto level = NoiseFamilies({{"", 0, 2000}}).lagged_squares(0, MatrixXd::Ones(2000, 1), 1);
+  CHECK(!level.is_sound(level.whitened(VectorXd::Constant(1, 0.9999999))));
 }
 
 TEST_CASE("the wandering family is white noise plus Gauss and Markov's, run by run") {

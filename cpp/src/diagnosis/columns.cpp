@@ -10,15 +10,43 @@ using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-Columns::Columns(MatrixXd matrix)
-    : cols_(matrix.cols()),
-      fill_([kept = std::make_shared<const MatrixXd>(std::move(matrix))](
-                Index first, Ref<MatrixXd> rows) { rows = kept->middleRows(first, rows.rows()); }) {
+Columns::Columns(Index cols, Fill fill) : cols_(cols) {
+  parts_.push_back({.cols = cols, .fill = std::move(fill)});
+}
+
+Columns::Columns(MatrixXd matrix) {
+  const auto kept = std::make_shared<const MatrixXd>(std::move(matrix));
+  *this = view(*kept);
+  parts_.front().kept = kept;
 }
 
 void Columns::fill(Index first, Ref<MatrixXd> rows) const {
   for (Index row = 0; row < rows.rows(); row += panel_rows) {
-    fill_(first + row, rows.middleRows(row, std::min(panel_rows, rows.rows() - row)));
+    auto panel = rows.middleRows(row, std::min(panel_rows, rows.rows() - row));
+    Index at = 0;
+    for (const Part& part : parts_) {
+      if (part.fill) {
+        part.fill(first + row, panel.middleCols(at, part.cols));
+      } else {
+        panel.middleCols(at, part.cols) = part.rows(first + row, panel.rows());
+      }
+      at += part.cols;
+    }
+  }
+}
+
+void Columns::visit(Index first, Index count,
+                    const std::function<void(Index at, const Rows& rows)>& visit) const {
+  Index at = 0;
+  for (const Part& part : parts_) {
+    if (part.fill) {
+      MatrixXd made(count, part.cols);
+      part.fill(first, made);
+      visit(at, made);
+    } else {
+      visit(at, part.rows(first, count));
+    }
+    at += part.cols;
   }
 }
 
@@ -37,19 +65,18 @@ MatrixXd Columns::dense(const RowLayout& layout) const {
 }
 
 Columns join(const Columns& left, const Columns& right) {
-  return {left.cols() + right.cols(), [left, right](Index first, Ref<MatrixXd> rows) {
-            left.fill(first, rows.leftCols(left.cols()));
-            right.fill(first, rows.rightCols(right.cols()));
-          }};
+  Columns both = left;
+  both.cols_ += right.cols_;
+  both.parts_.insert(both.parts_.end(), right.parts_.begin(), right.parts_.end());
+  return both;
 }
 
 Columns view(const Ref<const MatrixXd>& matrix) {
-  return {matrix.cols(),
-          [matrix = Eigen::Map<const MatrixXd, 0, Eigen::OuterStride<>>(
-               matrix.data(), matrix.rows(), matrix.cols(),
-               Eigen::OuterStride<>(matrix.outerStride()))](Index first, Ref<MatrixXd> rows) {
-            rows = matrix.middleRows(first, rows.rows());
-          }};
+  Columns seen;
+  seen.cols_ = matrix.cols();
+  seen.parts_.push_back(
+      {.cols = matrix.cols(), .data = matrix.data(), .stride = matrix.outerStride()});
+  return seen;
 }
 
 Columns keep_few(const RowLayout& layout, const Columns& columns) {
@@ -66,14 +93,18 @@ Columns select(const Columns& columns, const std::vector<Index>& chosen) {
 VectorXd multiply_transposed(const RowLayout& layout, const Columns& X, const VectorXd& y) {
   VectorXd sum = VectorXd::Zero(X.cols());
   for_each_panel(layout, [&](Index first, Index rows) {
-    numerics::add_transposed_product(X.rows(first, rows), y.segment(first, rows), sum);
+    X.visit(first, rows, [&](Index at, const Columns::Rows& part) {
+      numerics::add_transposed_product(part, y.segment(first, rows), sum.segment(at, part.cols()));
+    });
   });
   return sum;
 }
 
 VectorXd subtract(const RowLayout& layout, VectorXd y, const Columns& X, const VectorXd& c) {
   for_each_panel(layout, [&](Index first, Index rows) {
-    numerics::add_product(X.rows(first, rows), -c, y.segment(first, rows));
+    X.visit(first, rows, [&](Index at, const Columns::Rows& part) {
+      numerics::add_product(part, -c.segment(at, part.cols()), y.segment(first, rows));
+    });
   });
   return y;
 }

@@ -18,9 +18,10 @@ class Columns {
  public:
   /// Fills the rows from `first` of count() on, all of one output.
   using Fill = std::function<void(Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows)>;
+  using Rows = Eigen::Ref<const Eigen::MatrixXd>;
 
   Columns() = default;  // none
-  Columns(Eigen::Index cols, Fill fill) : cols_(cols), fill_(std::move(fill)) {}
+  Columns(Eigen::Index cols, Fill fill);
 
   /// Those of a matrix of count() rows.
   Columns(Eigen::MatrixXd matrix);  // NOLINT(*-explicit-*)
@@ -33,9 +34,30 @@ class Columns {
   Eigen::MatrixXd rows(Eigen::Index first, Eigen::Index count) const;
   Eigen::MatrixXd dense(const RowLayout& layout) const;  // count() x cols()
 
+  /// Calls visit(at, rows) for columns from `at` on, some at a time: those of a matrix are not
+  /// copied.
+  void visit(Eigen::Index first, Eigen::Index count,
+             const std::function<void(Eigen::Index at, const Rows& rows)>& visit) const;
+
  private:
+  friend Columns join(const Columns& left, const Columns& right);
+  friend Columns view(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+  struct Part {  // made, or those of a matrix
+    Eigen::Index cols = 0;
+    Fill fill = {};
+    const double* data = nullptr;
+    Eigen::Index stride = 0;                           // from column to column of the matrix
+    std::shared_ptr<const Eigen::MatrixXd> kept = {};  // where that is its own
+
+    auto rows(Eigen::Index first, Eigen::Index count) const {
+      return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+          data + first, count, cols, Eigen::OuterStride<>(stride));  // NOLINT(*-pointer-arithmetic)
+    }
+  };
+
   Eigen::Index cols_ = 0;
-  Fill fill_ = [](Eigen::Index, const Eigen::Ref<Eigen::MatrixXd>&) {};
+  std::vector<Part> parts_ = {};
 };
 
 /// Side by side.

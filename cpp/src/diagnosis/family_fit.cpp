@@ -17,21 +17,11 @@ using noise::NoiseFamilies;
 using noise::NoiseFamily;
 using noise::NoiseMember;
 
-/// The coefficients for the members, where these were found last.
-template <class Problem>
-void finish(const Problem& problem, FamilyFit& fit) {
-  if (fit.is_finished()) return;
-  const Index k = fit.coefficients.size();
-  const MatrixXd products = problem.products(fit.noise);
-  fit.covariance = pseudo_inverse(products.topLeftCorner(k, k));
-  fit.coefficients = fit.covariance * products.col(k).head(k);
-}
-
 /// Members for coefficients and coefficients for members, in turn until that gains little.
 /// `problem`:
 ///   NoiseMembers find_members(coefficients)  the likeliest for what these leave
 ///   MatrixXd products(members)               [X e]' [X e] in their noise, of k columns
-/// The coefficients for the last members are left for finish().
+/// The coefficients for the last members are left for finish_fit().
 template <class Problem>
 FamilyFit maximise(const Problem& problem, const VectorXd& start) {
   constexpr int most_rounds = 5;
@@ -52,7 +42,7 @@ FamilyFit maximise(const Problem& problem, const VectorXd& start) {
     best.minus_two_log_likelihood = value;
     best.covariance = {};
     if (gain < least_gain || round + 1 == most_rounds) break;
-    finish(problem, best);
+    finish_fit([&](const NoiseMembers& noise) { return problem.products(noise); }, best);
   }
   return best;
 }
@@ -65,6 +55,7 @@ struct OneResidual {
   const Columns& columns;
   const VectorXd& residual;
   const std::vector<int>& orders;
+  const WhiteProducts& products;
 
   NoiseMembers find_members(const VectorXd& coefficients) const {
     const VectorXd left = subtract(layout, residual, columns, coefficients);
@@ -75,30 +66,30 @@ struct OneResidual {
     }
     return members;
   }
-
-  MatrixXd products(const NoiseMembers& members) const {
-    return family_products(families, layout, members, columns, residual);
-  }
 };
 
 }  // namespace
 
 std::array<FamilyFit, 2> fit_families(const NoiseFamilies& families, const RowLayout& layout,
                                       const Columns& columns, const VectorXd& residual,
-                                      const std::vector<int>& orders) {
+                                      const std::vector<int>& orders,
+                                      const WhiteProducts& products) {
   const VectorXd start = multiply_transposed(layout, columns, residual);
   std::array<FamilyFit, 2> fits;
   for (std::size_t k = 0; k < fits.size(); ++k) {
     const NoiseFamily family = noise::noise_families[k];
-    fits[k] = maximise(OneResidual{families, layout, family, columns, residual, orders}, start);
+    fits[k] =
+        maximise(OneResidual{families, layout, family, columns, residual, orders, products}, start);
   }
   return fits;
 }
 
-void finish_fit(const NoiseFamilies& families, const RowLayout& layout, const Columns& columns,
-                const VectorXd& residual, FamilyFit& fit) {
-  const std::vector<int> none;
-  finish(OneResidual{families, layout, fit.noise.front().family, columns, residual, none}, fit);
+void finish_fit(const WhiteProducts& products, FamilyFit& fit) {
+  if (fit.is_finished()) return;
+  const Index k = fit.coefficients.size();
+  const MatrixXd square = products(fit.noise);
+  fit.covariance = pseudo_inverse(square.topLeftCorner(k, k));
+  fit.coefficients = fit.covariance * square.col(k).head(k);
 }
 
 MatrixXd family_products(const NoiseFamilies& families, const RowLayout& layout,
@@ -229,7 +220,7 @@ FamilyFit FamilyRegression::Residual::fit(NoiseFamily family, Index count) const
   const InFamily problem{*regression_, *this, family, count};
   const VectorXd start = regression_->columns_.leftCols(count).transpose() * e_;
   FamilyFit fit = maximise(problem, start);
-  finish(problem, fit);
+  finish_fit([&](const NoiseMembers& noise) { return problem.products(noise); }, fit);
   return fit;
 }
 

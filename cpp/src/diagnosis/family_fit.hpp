@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,18 +26,21 @@ struct FamilyFit {
   bool is_finished() const { return covariance.size() > 0 || coefficients.size() == 0; }
 };
 
+/// [X e]' [X e] of columns X and a residual e, white in these noises.
+using WhiteProducts = std::function<Eigen::MatrixXd(const NoiseMembers& noise)>;
+
 /// The fit of orthonormal columns to a residual in each of noise::noise_families, as far as the
 /// likelihoods need it: finish_fit() does the rest. `orders`: of each output's autoregression in
-/// the fractional one.
+/// the fractional one; `products`: of these columns and this residual.
 std::array<FamilyFit, 2> fit_families(const noise::NoiseFamilies& families, const RowLayout& layout,
                                       const Columns& columns, const Eigen::VectorXd& residual,
-                                      const std::vector<int>& orders);
+                                      const std::vector<int>& orders,
+                                      const WhiteProducts& products);
 
 /// The coefficients and their covariance in the noise that was found.
-void finish_fit(const noise::NoiseFamilies& families, const RowLayout& layout,
-                const Columns& columns, const Eigen::VectorXd& residual, FamilyFit& fit);
+void finish_fit(const WhiteProducts& products, FamilyFit& fit);
 
-/// [X e]' [X e] of columns X and a residual e, white in these noises.
+/// Those of any columns and any residual.
 Eigen::MatrixXd family_products(const noise::NoiseFamilies& families, const RowLayout& layout,
                                 const NoiseMembers& noise, const Columns& X,
                                 const Eigen::VectorXd& e);

@@ -116,23 +116,25 @@ NoiseTest::NoiseTest(const TangentBasis& tangent, std::vector<int> orders)
       basis_(tangent.columns()),
       orders_(std::move(orders)),
       families_(fit_.layout.runs),
-      nulls_(fit_families(families_, fit_.layout, basis_, fit_.residual, orders_)),
+      known_(std::make_unique<const KnownProducts>(families_, fit_.layout, basis_, fit_.residual,
+                                                   orders_)),
       inputs_(tangent) {
-  for (FamilyFit& null : nulls_) {
-    finish_fit(families_, fit_.layout, basis_, fit_.residual, null);
-  }
+  const auto products = [this](const NoiseMembers& noise) { return known_->beside(noise, {}); };
+  nulls_ = fit_families(families_, fit_.layout, basis_, fit_.residual, orders_, products);
+  for (FamilyFit& null : nulls_) finish_fit(products, null);
 }
 
 NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
   const Columns columns = join(basis_, added);
-  const auto with = fit_families(families_, fit_.layout, columns, fit_.residual, orders_);
+  const auto products = [&](const NoiseMembers& noise) { return known_->beside(noise, added); };
+  const auto with = fit_families(families_, fit_.layout, columns, fit_.residual, orders_, products);
   Ratios ratios;
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
     ratios.own[k] =
         std::max(0.0, nulls_[k].minus_two_log_likelihood - with[k].minus_two_log_likelihood);
   }
   ratios.with = likeliest(with);
-  finish_fit(families_, fit_.layout, columns, fit_.residual, ratios.with);
+  finish_fit(products, ratios.with);
   double null = likeliest(nulls_).minus_two_log_likelihood;
   double least_with = ratios.with.minus_two_log_likelihood;
   if (!inputs_.is_empty()) {

@@ -10,10 +10,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/thread_pool.hpp"
 #include "diagnosis/family_fit.hpp"
+#include "diagnosis/known_products.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/wandering_inputs.hpp"
 
@@ -65,6 +67,7 @@ class NoiseTest {
   Columns basis_;
   std::vector<int> orders_;
   noise::NoiseFamilies families_;
+  std::unique_ptr<const KnownProducts> known_;  // of the basis and the fit's residual
   std::array<FamilyFit, 2> nulls_;
   WanderingInputs inputs_;
 };

@@ -144,6 +144,15 @@ void ArfimaFactor::whiten(Ref<VectorXd> x) const {
   heads_.at(x.size()).factor.triangularView<Eigen::Lower>().solveInPlace(first);
 }
 
+void ArfimaFactor::whiten_backwards(Ref<VectorXd> x) const {
+  if (delta_ == 0.0) return;
+  x.array() *= precision_.head(x.size()).array();
+  x.reverseInPlace();
+  difference_.apply(x);
+  x.reverseInPlace();
+  x.array() *= gain_.head(x.size()).array();
+}
+
 void ArfimaFactor::colour(Ref<VectorXd> x) const {
   const Index order = phi_.size();
   if (order == 0) {

@@ -29,6 +29,8 @@ class ArfimaFactor {
   /// The same of each block, one after another in x.
   void whiten(Eigen::Ref<Eigen::VectorXd> x, const std::vector<Eigen::Index>& blocks) const;
   void colour(Eigen::Ref<Eigen::VectorXd> x) const;  // x becomes W^-1 x
+  /// x becomes W' x. Without an AR only.
+  void whiten_backwards(Eigen::Ref<Eigen::VectorXd> x) const;
 
  private:
   struct Head {              // the first rows of a block, min(p, rows), given the others

@@ -6,6 +6,7 @@
 
 #include "base/stop.hpp"
 #include "noise/autoregression.hpp"
+#include "noise/autoregression_filter.hpp"
 #include "noise/noise_autocovariance.hpp"
 #include "noise/noise_room.hpp"
 #include "numerics/lanes.hpp"
@@ -112,46 +113,6 @@ double variance_of_sum(double delta, Index rows) {
   return variance;
 }
 
-/// prod_{t<j<=p} (1 - r_j^2) for t = 0, ..., p.
-VectorXd variance_ratios(const VectorXd& partial) {
-  VectorXd ratios = VectorXd::Ones(partial.size() + 1);
-  for (Index t = partial.size() - 1; t >= 0; --t) {
-    ratios[t] = ratios[t + 1] * (1.0 - partial[t] * partial[t]);
-  }
-  return ratios;
-}
-
-/// A block's rows become innovations of the AR, all of one variance.
-void whiten_autoregression(const VectorXd& partial, Ref<VectorXd> x) {
-  const Index p = std::min(partial.size(), x.size());
-  if (partial.size() == 0) return;
-  const VectorXd ratios = variance_ratios(partial);
-  VectorXd first = x.head(p);
-  VectorXd backward = first;
-  for (Index order = 0; order < p; ++order) {
-    const double r = partial[order];
-    for (Index t = p - 1; t > order; --t) {
-      const double f = first[t];
-      first[t] = f - r * backward[t - 1];
-      backward[t] = backward[t - 1] - r * f;
-    }
-  }
-  if (x.size() > p) subtract_predictions(phi_from_partial(partial), x);
-  for (Index t = 0; t < p; ++t) x[t] = first[t] * std::sqrt(ratios[t]);
-}
-
-void colour_autoregression(const VectorXd& partial, Ref<VectorXd> w) {
-  if (partial.size() == 0) return;
-  const VectorXd ratios = variance_ratios(partial);
-  VectorXd phi;
-  for (Index t = 0; t < w.size(); ++t) {
-    const Index order = std::min(t, partial.size());
-    if (order > phi.size()) phi = phi_from_partial(partial.head(order));
-    w[t] /= std::sqrt(ratios[order]);
-    if (order > 0) w[t] += phi.dot(w.segment(t - order, order).reverse());
-  }
-}
-
 }  // namespace
 
 NoiseFamilies::NoiseFamilies(const std::vector<Segment>& runs) : lengths_(find_lengths(runs)) {
@@ -245,6 +206,22 @@ void NoiseFamilies::difference(const Fraction& fraction, Ref<VectorXd> x) const 
   }
 }
 
+void NoiseFamilies::difference_backwards(const Fraction& fraction, Ref<VectorXd> x) const {
+  Index first = 0;
+  for (std::size_t i = 0; i < lengths_.size(); ++i) {
+    auto run = x.segment(first, lengths_[i]);
+    first += lengths_[i];
+    if (!fraction.differences) {
+      fraction.factor.whiten_backwards(run);
+      continue;
+    }
+    const Index rest = run.size() - 1;
+    fraction.factor.whiten_backwards(run.tail(rest));
+    run[0] /= fraction.first_deviation[i];
+    for (Index t = 0; t < rest; ++t) run[t] -= run[t + 1];
+  }
+}
+
 VectorXd NoiseFamilies::gather_blocks(const Fraction& fraction, const VectorXd& x) const {
   if (!fraction.differences) return x;
   VectorXd rows(rows_ - static_cast<Index>(lengths_.size()));
@@ -327,7 +304,26 @@ void NoiseFamilies::whiten_differenced(const NoiseMember& member, Ref<MatrixXd> 
   columns /= member.sigma;
 }
 
+LaggedSquares NoiseFamilies::lagged_squares(std::size_t at, MatrixXd columns, int order) const {
+  const Fraction& fraction = fractions_[at];
+  for (auto column : columns.colwise()) difference(fraction, column);
+  return {columns, fraction.blocks, fraction.differences ? 1 : 0, order};
+}
+
 void NoiseFamilies::whiten_backwards(const NoiseMember& member, Ref<VectorXd> column) const {
+  if (member.family == NoiseFamily::fractional) {
+    const Fraction& fraction = fractions_[member.at];
+    const Index skipped = fraction.differences ? 1 : 0;
+    Index first = 0;
+    for (const Index length : lengths_) {
+      whiten_autoregression_backwards(member.partial,
+                                      column.segment(first + skipped, length - skipped));
+      first += length;
+    }
+    difference_backwards(fraction, column);
+    column /= member.sigma;
+    return;
+  }
   const Wander& wander = wanders_[member.at];
   const Index settled = wander.gain.size() - 1;
   Index first = 0;

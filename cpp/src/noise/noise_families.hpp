@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "noise/arfima_factor.hpp"
+#include "noise/lagged_squares.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::noise {
@@ -37,6 +38,9 @@ class NoiseFamilies {
   NoiseMember find_fractional(const Eigen::Ref<const Eigen::MatrixXd>& differences,
                               int order) const;
 
+  /// How many d the fractional family has; `at` is one of them.
+  std::size_t fractions() const { return fractions_.size(); }
+
   /// How many members the wandering family has; `at` is one of them.
   std::size_t wanders() const { return wanders_.size(); }
 
@@ -47,8 +51,11 @@ class NoiseFamilies {
   void whiten(const NoiseMember& member, Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// The same of columns that a fractional member's difference has made.
   void whiten_differenced(const NoiseMember& member, Eigen::Ref<Eigen::MatrixXd> columns) const;
-  /// The transpose of a wandering member's whiten(), which makes R^-1 e of it.
+  /// The transpose of whiten(), which makes R^-1 e of it.
   void whiten_backwards(const NoiseMember& member, Eigen::Ref<Eigen::VectorXd> column) const;
+
+  /// What whiten() makes of products X'X for every fractional member of this d (`at`) and order.
+  LaggedSquares lagged_squares(std::size_t at, Eigen::MatrixXd columns, int order) const;
 
   /// The inverse: innovations become noise.
   void colour(const NoiseMember& member, Eigen::Ref<Eigen::VectorXd> innovations) const;
@@ -81,6 +88,7 @@ class NoiseFamilies {
   Fraction make_fraction(double d) const;
   Wander make_wander(double rows, double white) const;
   void difference(const Fraction& fraction, Eigen::Ref<Eigen::VectorXd> x) const;
+  void difference_backwards(const Fraction& fraction, Eigen::Ref<Eigen::VectorXd> x) const;
   Eigen::VectorXd gather_blocks(const Fraction& fraction, const Eigen::VectorXd& x) const;
   NoiseMember find_wandering(const Eigen::VectorXd& e) const;
 
