@@ -43,11 +43,13 @@ from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
 from sepcal.design_trial import DesignTrial
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
+from sepcal.earth_field import EarthField, earth_field
 from sepcal.filters import Filter, RecursiveLeastSquares
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
 from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
+from sepcal.logs import LogContents, LoggedFlight, list_log, read_log
 from sepcal.many import fit_many
 from sepcal.many_results import ManyFit
 from sepcal.models import (
@@ -90,6 +92,7 @@ __all__ = [
     "Derived",
     "DesignTrial",
     "Diagnosis",
+    "EarthField",
     "Effect",
     "EffectFinding",
     "EffectSetting",
@@ -109,7 +112,9 @@ __all__ = [
     "Innovation",
     "Intervals",
     "LocalMinimum",
+    "LogContents",
     "LogNote",
+    "LoggedFlight",
     "Magnetometer",
     "ManyFit",
     "Misfit",
@@ -143,16 +148,19 @@ __all__ = [
     "Window",
     "__version__",
     "check",
+    "earth_field",
     "effects",
     "fit",
     "fit_many",
     "fit_trials",
+    "list_log",
     "load",
     "monte_carlo",
     "predict",
     "profile_intervals",
     "read_aircraft",
     "read_csv",
+    "read_log",
     "report",
     "simulate",
     "smooth",

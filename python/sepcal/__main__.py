@@ -14,9 +14,11 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from sepcal import _core
+from sepcal.earth_field import command as field
+from sepcal.logs import command as log
 from sepcal.reporting import command as report
 
-COMMANDS = (report,)
+COMMANDS = (report, log, field)
 BAD_INPUT = 2
 INTERRUPTED = 130
 

@@ -16,9 +16,10 @@ from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 from sepcal.reporting.gather import gather
-from sepcal.reporting.page import build_page, read_plotly, write_whole
+from sepcal.reporting.page import build_page, read_plotly
 from sepcal.reporting.sections import compose
 from sepcal.reporting.trajectory import compose_flown, gather_flown
+from sepcal.whole_files import write_whole
 
 Path = str | os.PathLike[str]
 
@@ -73,4 +74,4 @@ def report(
     else:
         page = compose(gather(chain, flight, diagnosis, names, told), target)
     told("drawing")
-    write_whole(target, build_page(page, plotly))
+    write_whole({target: build_page(page, plotly)})

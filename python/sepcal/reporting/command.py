@@ -6,12 +6,12 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from sepcal._core import Error
 from sepcal.calibration import load
 from sepcal.flight import read_csv
 from sepcal.reporting import report
+from sepcal.whole_files import refuse_outputs
 
 
 def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -46,15 +46,7 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
 
 def run(arguments: argparse.Namespace) -> int:
     """Writes the page; returns 0. Raises sepcal.Error on bad input."""
-    folder = Path(arguments.output).parent
-    if not folder.is_dir():
-        raise Error(f"{arguments.output}: folder '{folder}' isn't there; make it first")
-    for read in (arguments.flight, *arguments.calibrations):
-        written = Path(arguments.output)
-        if written.exists() and Path(read).exists() and written.samefile(read):
-            raise Error(
-                f"{written}: it is an input, and writing there would lose it; name another file"
-            )
+    refuse_outputs((arguments.output,), (arguments.flight, *arguments.calibrations))
     flight = read_csv(arguments.flight)
     chain = [load(file) for file in arguments.calibrations]
     live = sys.stderr.isatty()

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import base64
 import json
-import os
-import tempfile
 from dataclasses import dataclass, field
 from html import escape
 from importlib import resources
@@ -175,24 +173,3 @@ def read_plotly() -> str:
             "the report needs plotly, which is not installed: pip install sepcal[report]"
         ) from error
     return str(get_plotlyjs())
-
-
-def write_whole(file: str, text: str) -> None:
-    """Writes a file that appears whole or not at all; raises Error where it can't."""
-    folder = os.path.dirname(os.path.abspath(file))
-    if os.path.isdir(file):
-        raise _core.Error(f"{file} is a folder; name a file in it")
-    try:
-        handle, draft = tempfile.mkstemp(dir=folder, prefix=".report-", suffix=".html")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as out:
-                out.write(text)
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(draft, 0o666 & ~mask)
-            os.replace(draft, file)
-        except BaseException:
-            os.unlink(draft)
-            raise
-    except OSError as error:
-        raise _core.Error(f"{file} can't be written: {error.strerror}") from error
