@@ -68,12 +68,12 @@ def undo(
     matrix *= scale[:, None, None]
 
     last = "COMPASS_PMOT_EN" in parameters or f"COMPASS_SCALE{suffix}" in parameters
-    raw = np.linalg.solve(matrix, (field - motors if last else field)[..., None])[..., 0]
-    raw = raw - (0 if last else motors)
+    solved = np.linalg.solve(matrix, (field - motors if last else field)[..., None])[..., 0]
+    before_matrix = np.zeros(3) if last else motors
     exact = parameters.stack([f"COMPASS_OFS{suffix}_{a}" for a in AXES], times, np.nan)
     known = np.abs(exact - offsets) < 1.01  # what is logged is cut to whole mG
     used = np.where(known, exact, offsets)
-    raw = np.asarray(raw - used, dtype=float)
+    raw: Array = np.asarray(solved - before_matrix - used, dtype=float)
 
     if motors.any():
         order = "after" if last else "before"

@@ -80,7 +80,7 @@ def _find_vehicle(log: DataFlash) -> str:
 
 def _read_parameters(log: DataFlash) -> Parameters:
     messages = log["PARM"]
-    if messages is None:
+    if messages is None or "Name" not in messages or "Value" not in messages:
         return Parameters(())
     times = log.times(messages)
     return Parameters(zip(times, messages.texts("Name"), messages["Value"], strict=True))

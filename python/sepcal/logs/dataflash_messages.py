@@ -7,7 +7,8 @@ import contextlib
 import io
 import os
 import struct
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -100,18 +101,25 @@ class DataFlash:
                 f"{file}: a DataFlash log needs pymavlink, which is not installed: "
                 "pip install sepcal[logs]"
             ) from error
+
+        class Reader(DFReader.DFReader_binary):  # type: ignore[misc]
+            """The messages' times are read here: a clock of the GPS isn't needed."""
+
+            def init_clock(self) -> None:
+                pass
+
         size = os.path.getsize(file)
-        talk = io.StringIO()  # pymavlink prints what it skips
+        progress(f"reading {file}")
         try:
-            with contextlib.redirect_stdout(talk), contextlib.redirect_stderr(talk):
-                reader = DFReader.DFReader_binary(
-                    file, progress_callback=lambda done: progress(f"reading {file}, {done} %")
-                )
+            with _silence():
+                reader = Reader.__new__(Reader)  # so that it can be closed where reading fails
                 try:
+                    Reader.__init__(reader, file)  # type: ignore[call-arg]
                     self._read(file, size, reader, cut_off)
                 finally:
-                    reader.data_map.close()
-                    reader.filehandle.close()
+                    for opened in ("filehandle", "data_map"):
+                        with contextlib.suppress(AttributeError, BufferError):
+                            getattr(reader, opened).close()
         except _core.Error:
             raise
         except Exception as error:  # of a damaged file pymavlink raises what it meets
@@ -146,10 +154,10 @@ class DataFlash:
                     self.by_name[form.name] = Messages(form.name, at, data, letters)
         tail = bytes(whole[end:size])
         if torn is None and HEAD[:1] in tail[:1]:
-            torn = "unknown"
+            torn = ""
         if not tail.strip(b"\0\xff"):
             torn = None
-        self.torn = f"a message {torn} at byte {end}" if torn else ""
+        self.torn = " ".join(f"a message {torn} at byte {end}".split()) if torn is not None else ""
         if not self.by_name:
             raise _core.Error(f"{file}: cut off or foreign: no whole message is in it")
         self._clock = self._find_clock()
@@ -157,7 +165,7 @@ class DataFlash:
             seen = f", {self._clock[1].max():.1f} s" if len(self._clock[1]) else ""
             raise _core.Error(
                 f"{file}: the log is cut off inside {self.torn}{seen}; "
-                "--cut-off (in Python cut_off=True) takes what is whole"
+                "--cut-off takes what is whole (in Python cut_off=True)"
             )
         self.damaged = end - covered
 
@@ -198,6 +206,22 @@ class DataFlash:
             if messages is not None and stamps is not None:
                 return messages.offsets, stamps
         return np.empty(0), np.empty(0)
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Nothing goes to standard output and error, of compiled code neither: pymavlink chatters."""
+    talk = io.StringIO()
+    sys.stderr.flush()
+    kept = os.dup(2)
+    try:
+        with open(os.devnull, "wb") as nothing:
+            os.dup2(nothing.fileno(), 2)
+        with contextlib.redirect_stdout(talk), contextlib.redirect_stderr(talk):
+            yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
 
 
 def _stamps(messages: Messages) -> Array | None:

@@ -10,6 +10,7 @@ from sepcal.columns import Array
 from sepcal.earth_field.models import Date, EarthField, earth_field
 from sepcal.logs.recording import Channel, Recording
 
+HIGHEST = 1e5  # [m]
 MOVED = 100.0  # [m]: the field is evaluated anew after so much of the way
 DIGITS = 4  # of a microtesla: finer than the model is known, and steady where nothing moves
 MOST_KNOTS = 2000
@@ -52,7 +53,8 @@ def find_field(log: Recording, date: Date | None) -> FieldColumns | None:
     Raises:
         Error: Positions without a date, none given; a day outside the models; no pygeomag.
     """
-    if log.position is None:
+    positions = _keep_plausible(log.position)
+    if positions is None:
         return None
     said = "on the day that was given"
     if date is None:
@@ -61,14 +63,24 @@ def find_field(log: Recording, date: Date | None) -> FieldColumns | None:
                 f"{log.file}: positions without a date give no field of the Earth; --date "
                 "2026-03-01 gives it, --no-field does without (in Python date=..., field=False)"
             )
-        date = log.utc.at(float(log.position.times[0]))
+        date = log.utc.at(float(positions.times[0]))
         said = f"on {date:%Y-%m-%d}, by {log.utc.source.split(',')[0]}"
     try:
-        return FieldColumns(log.position, date, said)
+        return FieldColumns(positions, date, said)
     except _core.Error as error:
         raise _core.Error(
             f"{log.file}: {error}; --date gives another day, --no-field does without"
         ) from error
+
+
+def _keep_plausible(positions: Channel | None) -> Channel | None:
+    """Those on the Earth, and not far off it; None where there are none."""
+    if positions is None:
+        return None
+    kept = (np.abs(positions.values) <= (90.0, 180.0, HIGHEST)).all(axis=1)
+    if not kept.any():
+        return None
+    return Channel(positions.source, positions.times[kept], positions.values[kept], positions.done)
 
 
 def _choose_knots(positions: Array) -> list[int]:

@@ -5,11 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from sepcal import _core
+from sepcal.logs import dataflash, ulog
 from sepcal.logs.dataflash_messages import looks_like_dataflash
 from sepcal.logs.recording import MAGNETOMETER, Recording, Sensor
 from sepcal.logs.ulog_topics import HEADER, MAGIC
 
+DAMAGES = (LookupError, ValueError, TypeError, ArithmeticError, np.linalg.LinAlgError)
 START = 4096  # bytes in which the format shows
 
 
@@ -34,14 +38,18 @@ def open_log(
     if start.startswith(MAGIC):
         if len(start) < HEADER:
             raise _core.Error(f"{file}: the log is cut off inside its header; nothing is in it")
-        from sepcal.logs import ulog
-
-        return ulog.read(file, cut_off, progress)
-    if looks_like_dataflash(start):
-        from sepcal.logs import dataflash
-
-        return dataflash.read(file, cut_off, progress)
-    raise _core.Error(f"{file}: {_guess(start)}")
+        read = ulog.read
+    elif looks_like_dataflash(start):
+        read = dataflash.read
+    else:
+        raise _core.Error(f"{file}: {_guess(start)}")
+    try:
+        with np.errstate(all="ignore"):
+            return read(file, cut_off, progress)
+    except _core.Error:
+        raise
+    except DAMAGES as error:
+        raise _core.Error(f"{file}: damaged beyond reading: {error!r}") from error
 
 
 def choose_sensor(log: Recording, name: str | None) -> Sensor:

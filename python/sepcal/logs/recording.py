@@ -6,6 +6,7 @@ Times are in the log's own clock [s], mostly since the vehicle was switched on.
 
 from __future__ import annotations
 
+import bisect
 import datetime
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ import numpy as np
 
 from sepcal.columns import Array
 
+ABSURD = 1e12  # no unit that is used here has such values: the bytes are damaged
 MAGNETOMETER, TUBE = "magnetometer", "pitot-static tube"
 
 
@@ -125,13 +127,12 @@ class Recording:
 def make_channel(
     source: str, times: Array, values: Array, done: tuple[str, ...] = ()
 ) -> Channel | None:
-    """A channel of the samples that are finite and whose stamps increase; None of fewer than two.
-
-    A stamp that jumps ahead for one sample is dropped, and not all that follow it.
-    """
+    """A channel of the samples that are finite and in order; None of fewer than two."""
+    if len(times) < 2:
+        return None
     values = np.asarray(values, dtype=float)
     values = values.reshape(len(times), -1)
-    kept = np.flatnonzero(np.isfinite(values).all(axis=1) & np.isfinite(times))
+    kept = np.flatnonzero((np.abs(values) < ABSURD).all(axis=1) & (np.abs(times) < ABSURD))
     unread = len(times) - kept.size
     kept = kept[_increasing(np.asarray(times, dtype=float)[kept])]
     if kept.size < 2:
@@ -144,13 +145,23 @@ def make_channel(
 
 
 def _increasing(times: Array) -> np.ndarray:
-    """Indices of the times that come after all before, lone jumps ahead left out."""
-    if times.size < 3:
-        ahead = np.zeros(times.size, dtype=bool)
-    else:
-        back = np.append(times[:-1] > times[1:], False)
-        ahead = back & np.append(np.append(True, times[:-2] < times[2:]), False)
-    kept = np.flatnonzero(~ahead)
-    highest = np.maximum.accumulate(times[kept]) if kept.size else times[kept]
-    first = np.append(True, highest[1:] > highest[:-1]) if kept.size else highest.astype(bool)
-    return np.asarray(kept[first])
+    """Indices of as many times as possible that increase: lone jumps and repeats go.
+
+    The longest increasing subsequence: ends[k] is the smallest time that ends one of k + 1.
+    """
+    if not (np.diff(times) <= 0).any():
+        return np.arange(times.size)
+    ends: list[float] = []
+    at: list[int] = []
+    before = np.full(times.size, -1)
+    for i, time in enumerate(times.tolist()):
+        k = bisect.bisect_left(ends, time)
+        if k < len(ends) and ends[k] == time:
+            continue
+        ends[k : k + 1] = [time]
+        at[k : k + 1] = [i]
+        before[i] = at[k - 1] if k else -1
+    kept = [at[-1]]
+    while before[kept[-1]] >= 0:
+        kept.append(int(before[kept[-1]]))
+    return np.array(kept[::-1])

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -19,6 +18,7 @@ from sepcal.logs.recording import Channel, make_channel
 MAGIC = b"\x55\x4c\x6f\x67\x01\x12\x35"
 HEADER = 16  # bytes
 KNOWN = b"FDIMPQARSOLCB"  # types of messages
+FIRST_OF_DATA = b"ALC"
 READ = (
     "actuator_armed",
     "actuator_controls_0",
@@ -126,26 +126,29 @@ class ULog:
                 f"{file}: a ULog needs pyulog, which is not installed: pip install sepcal[logs]"
             ) from error
         progress(f"reading {file}")
+        with open(file, "rb") as opened:
+            data = opened.read()
+        _check_definitions(file, data)
         talk = io.StringIO()  # pyulog prints what it finds damaged
         try:
             with contextlib.redirect_stdout(talk), contextlib.redirect_stderr(talk):
-                log = pyulog.ULog(file, message_name_filter_list=list(READ))
+                log = pyulog.ULog(io.BytesIO(data), message_name_filter_list=list(READ))
         except Exception as error:  # of a damaged file pyulog raises what it meets
             raise _core.Error(
                 f"{file}: pyulog can't read it as a ULog: {error or type(error)}"
             ) from error
         self._topics: dict[str, list[Topic]] = {}
-        for data in sorted(log.data_list, key=lambda d: (d.name, d.multi_id)):
-            if "timestamp" in data.data and len(data.data["timestamp"]):
-                topic = Topic(data.name, data.multi_id, data.data)
-                self._topics.setdefault(data.name, []).append(topic)
+        for one in sorted(log.data_list, key=lambda d: (d.name, d.multi_id)):
+            if "timestamp" in one.data and len(one.data["timestamp"]):
+                topic = Topic(one.name, one.multi_id, one.data)
+                self._topics.setdefault(one.name, []).append(topic)
         self.damaged = bool(log.file_corruption)
         self.dropouts = sum(d.duration for d in log.dropouts) / 1e3
-        self.torn = "" if self.damaged else _find_torn_end(file, log)
+        self.torn = "" if self.damaged else _find_torn_end(data, log)
         if self.torn and not cut_off:
             raise _core.Error(
                 f"{file}: the log is cut off inside {self.torn}; "
-                "--cut-off (in Python cut_off=True) takes what is whole"
+                "--cut-off takes what is whole (in Python cut_off=True)"
             )
         initial = [(-np.inf, name, value) for name, value in log.initial_parameters.items()]
         changed = [(time / 1e6, name, value) for time, name, value in log.changed_parameters]
@@ -190,17 +193,30 @@ def _describe(info: dict[str, Any]) -> str:
     return f"{info.get('sys_name', '')}{version}".strip()
 
 
-def _find_torn_end(file: str, log: Any) -> str:  # noqa: ANN401, pyulog has no types
+def _check_definitions(file: str, data: bytes) -> None:
+    """Raises Error where the messages before the first subscription are no chain of known ones.
+
+    Formats and parameters stand there; and pyulog may look for its way in such a file for ever.
+    """
+    at = HEADER
+    while at + 3 <= len(data):
+        length, kind = int.from_bytes(data[at : at + 2], "little"), data[at + 2]
+        if kind not in KNOWN:
+            raise _core.Error(f"{file}: damaged among its definitions, at byte {at}: unreadable")
+        if kind in FIRST_OF_DATA:
+            return
+        at += 3 + length
+    raise _core.Error(f"{file}: the log is cut off inside its definitions; nothing is in it")
+
+
+def _find_torn_end(data: bytes, log: Any) -> str:  # noqa: ANN401, pyulog has no types
     """Where a file ends inside a message: the bytes there; else nothing."""
-    size = os.path.getsize(file)
-    with open(file, "rb") as opened:
-        data = opened.read()
     at = log._appended_offsets[-1] if log.has_data_appended and log._appended_offsets else HEADER
-    while at + 3 <= size:
+    while at + 3 <= len(data):
         length, kind = int.from_bytes(data[at : at + 2], "little"), data[at + 2]
         if kind not in KNOWN:
             return ""
-        if at + 3 + length > size:
+        if at + 3 + length > len(data):
             return f"the message at byte {at}"
         at += 3 + length
-    return f"the message at byte {at}" if at < size else ""
+    return f"the message at byte {at}" if at < len(data) else ""
