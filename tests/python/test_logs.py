@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 import flown_logs as flown
 import sepcal
-from log_writers import DataFlashWriter
+from log_writers import DataFlashWriter, ULogWriter
 from sepcal.logs.clock import count_leaps
 from sepcal.logs.mounting import rotation_of
 
@@ -323,13 +323,94 @@ def test_a_log_without_most(tmp_path):
     assert "--field-strength F" in str(sepcal.list_log(file))
 
 
-def test_ekf2_and_the_gps_stand_in(tmp_path):
+def test_ekf2(tmp_path):
     log = flown.new_dataflash()
     data = log.data().replace(b"XKF1", b"NKF1").replace(b"XKF4", b"NKF4")
     flight = sepcal.read_log(write(tmp_path, "a.bin", data), "pitot0")
     t = flight["time_s"]
     assert_allclose(stack(flight, "vn_mps ve_mps vd_mps"), flown.velocity(t), atol=0.03)
     assert "NKF1" in flight.conversion["columns"]["vn_mps"]["source"]
+
+
+def write_tube_and_gps(folder, form, columns, values):
+    """A DataFlash log of a tube and a GPS alone."""
+    log = DataFlashWriter()
+    log.form("ARSP", "QBffc", "TimeUS,I,Airspeed,DiffPress,Temp")
+    log.form("BARO", "QBffc", "TimeUS,I,Alt,Press,Temp")
+    log.form("GPS", form, columns)
+    for t in flown.at_rate(10):
+        us = round(t * 1e6)
+        log.add(t, "ARSP", us, 0, 20.0, flown.differential_pressure(t), 18.5)
+        log.add(t, "BARO", us, 0, flown.altitude(t), 95000.0, 25.0)
+        log.add(t, "GPS", us, *values(t))
+    return write(folder, "a.bin", log)
+
+
+def test_velocity_of_the_gps(tmp_path):
+    def values(t):
+        vn, ve, vd = flown.velocity(t)
+        course = np.degrees(np.arctan2(ve, vn)) % 360
+        return 3, *flown.PLACE, np.hypot(vn, ve), course, vd
+
+    form, columns = "QBLLefff", "TimeUS,Status,Lat,Lng,Alt,Spd,GCrs,VZ"
+    flight = sepcal.read_log(write_tube_and_gps(tmp_path, form, columns, values))
+    assert flight.sensor == "pitot0"
+    velocity = stack(flight, "vn_mps ve_mps vd_mps")
+    assert_allclose(velocity, flown.velocity(flight["time_s"]), atol=1e-4)
+
+
+def test_positions_where_no_velocity_is_logged(tmp_path):
+    def values(t):
+        return 47.4 + 1e-4 * (t - 20), 8.5, 500.0
+
+    form, columns = "QLLe", "TimeUS,Lat,Lng,Alt"
+    flight = sepcal.read_log(write_tube_and_gps(tmp_path, form, columns, values))
+    assert "vn_mps" not in flight
+    assert_allclose(flight["lat_deg"], 47.4 + 1e-4 * (flight["time_s"] - 20), atol=1e-7)
+    assert_allclose(flight["lon_deg"], 8.5)
+
+
+def test_a_gps_of_old_in_a_ulog(tmp_path):
+    """Whole 1e-7 degrees and millimetres; and a vehicle_magnetometer that names no device."""
+    log = ULogWriter(flown.PX4)
+    log.form("vehicle_gps_position", "int32_t lat;int32_t lon;int32_t alt;uint64_t time_utc_usec")
+    log.form("vehicle_magnetometer", "float[3] magnetometer_ga")
+    for t in flown.at_rate(10):
+        unix = round((1_710_742_386.0 + t) * 1e6)
+        log.add(t, "vehicle_gps_position", 474000000, 85000000, 500000, unix)
+        still = dict(flown.PX4) | {f"CAL_MAG0_{a}COMP": 0.0 for a in "XYZ"}
+        log.add(t, "vehicle_magnetometer", *flown.px4_corrects([t], still)[0])
+    flight = sepcal.read_log(write(tmp_path, "a.ulg", log))
+    assert_allclose(magnetic(flight), flown.raw(flight["time_s"]), atol=1e-4)
+    expected = sepcal.earth_field(*flown.PLACE, "2024-03-18")
+    assert_allclose(flight["field_strength_ut"], expected.strength, atol=1e-3)
+
+
+def test_two_magnetometers_of_a_ulog(tmp_path):
+    """Each is undone by the parameters that name its device, in whatever order."""
+    second = [(n.replace("MAG0", "MAG1"), v) for n, v in flown.PX4 if n.startswith("CAL_MAG0")]
+    first = [("CAL_MAG0_ID", 5), ("CAL_MAG0_XOFF", 0.3), ("CAL_MAG0_ROT", 0)]
+    written = ULogWriter([*first, *second, ("CAL_MAG_COMP_TYP", 2)])
+    fields = "uint64_t timestamp_sample;uint32_t device_id;float[3] magnetometer_ga"
+    written.form("vehicle_magnetometer", fields)
+    written.form("battery_status", "float voltage_v;float current_a")
+    written.form("vehicle_status", "uint8_t nav_state;uint8_t arming_state")
+    for t in flown.at_rate(20):
+        stamp = round(t * 1e6)
+        corrected = flown.px4_corrects([t])[0]
+        written.add(t + 0.005, "vehicle_magnetometer", stamp, flown.DEVICE, *corrected, instance=1)
+        other = flown.raw([t])[0] / 100 - (0.3, 0, 0)
+        written.add(t + 0.005, "vehicle_magnetometer", stamp, 5, *other, instance=0)
+    for t in flown.at_rate(10, 0.03):
+        written.add(t, "battery_status", 16.0, flown.current(t))
+    for t in flown.at_rate(1):
+        written.add(t, "vehicle_status", 3, 2)
+    file = write(tmp_path, "a.ulg", written)
+    for name in ("mag0", "mag1"):
+        flight = sepcal.read_log(file, name)
+        assert_allclose(magnetic(flight), flown.raw(flight["time_s"]), atol=1e-4)
+    titles = [sensor["title"] for sensor in sepcal.list_log(file).to_dict()["sensors"]]
+    assert titles == ["device 5, CAL_MAG0", f"device {flown.DEVICE}, CAL_MAG1"]
 
 
 @pytest.mark.parametrize(

@@ -8,23 +8,19 @@ from collections.abc import Callable
 import numpy as np
 
 from sepcal.columns import Array
-from sepcal.logs import ardupilot_compass, clock, modes
+from sepcal.logs import clock, modes
 from sepcal.logs.attitude import from_euler
 from sepcal.logs.dataflash_messages import DataFlash, Messages
+from sepcal.logs.dataflash_sensors import read_compasses, read_tubes
 from sepcal.logs.parameters import Parameters
 from sepcal.logs.recording import (
-    MAGNETOMETER,
-    TUBE,
     Channel,
     Labels,
     Recording,
-    Sensor,
     Utc,
     make_channel,
 )
 
-MILLIGAUSS = 10.0  # to a microtesla
-LATEST = 0.5  # [s]: a reading's own stamp may be so much older than its message's
 FIX_3D = 3
 ARMED, DISARMED = 10, 11  # of EV
 VEHICLES = ("Copter", "Plane", "Rover", "Sub", "Tracker", "Blimp")
@@ -40,10 +36,6 @@ def read(file: str, cut_off: bool, progress: Callable[[str], None]) -> Recording
         notes.append(f"{log.damaged} bytes between the messages are damaged and were skipped")
     if log.torn:
         notes.append(f"the log is cut off inside {log.torn}; what is whole before it is used")
-    sensors = [
-        *_read_compasses(log, parameters),
-        *_read_tubes(log),
-    ]
     ends = [t for m in log.by_name.values() if (t := _spread(log, m)) is not None]
     span = (min(e[0] for e in ends), max(e[1] for e in ends)) if ends else (0.0, 0.0)
     return Recording(
@@ -51,10 +43,10 @@ def read(file: str, cut_off: bool, progress: Callable[[str], None]) -> Recording
         form="DataFlash",
         vehicle=vehicle,
         span=span,
-        sensors=tuple(sensors),
+        sensors=(*read_compasses(log, parameters), *read_tubes(log)),
         attitude=_read_attitude(log),
         velocity=_read_velocity(log, parameters),
-        rates=_of(log, ("IMU",), "GyrX", "GyrY", "GyrZ", done="the gyroscope's own bias stays"),
+        rates=log.first_of(("IMU",), "GyrX", "GyrY", "GyrZ", done="the gyroscope's own bias stays"),
         position=_read_position(log),
         drivers=_read_drivers(log, vehicle),
         labels=_read_labels(log, vehicle),
@@ -67,7 +59,7 @@ def _spread(log: DataFlash, messages: Messages) -> tuple[float, float] | None:
     if messages.first("TimeUS", "TimeMS") is None or messages.name.startswith(("GPS", "CAM")):
         return None
     times = log.times(messages)
-    return float(np.percentile(times, 0)), float(times.max())
+    return float(times.min()), float(times.max())
 
 
 def _find_vehicle(log: DataFlash) -> str:
@@ -86,95 +78,9 @@ def _read_parameters(log: DataFlash) -> Parameters:
     return Parameters(zip(times, messages.texts("Name"), messages["Value"], strict=True))
 
 
-def _of(
-    log: DataFlash, names: tuple[str, ...], *columns: str, factor: float = 1.0, done: str = ""
-) -> Channel | None:
-    """The first instance of the first of these messages that has all columns and says something."""
-    for messages in log.instances(*names):
-        if not all(column in messages for column in columns):
-            continue
-        values = np.stack([messages[column] for column in columns], axis=-1) * factor
-        if values.any():
-            source = f"{messages.name}.{', '.join(columns)}"
-            said = (done,) if done else ()
-            channel = make_channel(source, log.times(messages), values, said)
-            if channel is not None:
-                return channel
-    return None
-
-
-def _read_compasses(log: DataFlash, parameters: Parameters) -> list[Sensor]:
-    sensors = []
-    for instance, messages in enumerate(log.instances("MAG", "MAG2", "MAG3")):
-        if not all(f"Mag{axis}" in messages for axis in "XYZ"):
-            continue
-        field = _vectors(messages, "Mag")
-        if not field.any():
-            continue  # no compass there
-        offsets = _vectors(messages, "Ofs")
-        motors = _vectors(messages, "MOfs") if "MOfsX" in messages else _vectors(messages, "MO")
-        times, stamped = _reading_times(messages, log.times(messages))
-        suffix = ardupilot_compass.find_set(parameters, instance, offsets)
-        raw, undone = ardupilot_compass.undo(field, offsets, motors, times, parameters, suffix)
-        done = (*stamped, *(undone or ("the autopilot corrected nothing",)))
-        if parameters.first("COMPASS_MOTCT") and "MOfsX" not in messages and "MOX" not in messages:
-            done += ("the motors' field was taken off and isn't logged: that stays",)
-        source = f"{messages.name}.MagX, MagY, MagZ"
-        channel = make_channel(source, times, raw / MILLIGAUSS, (*done, "mG to uT"))
-        if channel is None:
-            continue
-        device = parameters.first(f"COMPASS_DEV_ID{suffix}")
-        title = f"device {device:.0f}" if device else ""
-        sensors.append(Sensor(f"mag{instance}", MAGNETOMETER, channel, title=title))
-    return sensors
-
-
-def _vectors(messages: Messages, name: str) -> Array:
-    """X, Y and Z of a name, (n, 3); zeros where they aren't logged."""
-    columns = [f"{name}{axis}" for axis in "XYZ"]
-    if not all(column in messages for column in columns):
-        return np.zeros((len(messages), 3))
-    return np.stack([messages[column] for column in columns], axis=-1)
-
-
-def _reading_times(messages: Messages, times: Array) -> tuple[Array, tuple[str, ...]]:
-    """When the readings were taken, S [us, 32 bits], where it fits the messages' own times."""
-    if "S" not in messages or messages.letters["S"] not in "IQ":
-        return times, ()
-    late = np.mod(np.round(times * 1e6) - messages["S"], 2.0**32) / 1e6
-    if not (late < LATEST).mean() > 0.9:
-        return times, ()
-    taken = np.where(late < LATEST, np.round((times - late) * 1e6) / 1e6, np.nan)
-    before = f"{np.median(late) * 1e3:.3g} ms before TimeUS"
-    return taken, (f"at the time S of the reading, {before}",)
-
-
-def _read_tubes(log: DataFlash) -> list[Sensor]:
-    sensors = []
-    for instance, messages in enumerate(log.instances("ARSP", "ASP2")):
-        if "DiffPress" not in messages or not messages["DiffPress"].any():
-            continue
-        done = (
-            "less the offset that the autopilot found on the ground",
-            "no ratio: ARSPD_RATIO makes the autopilot's airspeed of it",
-        )
-        times = log.times(messages)
-        source = f"{messages.name}.DiffPress"
-        channel = make_channel(source, times, messages["DiffPress"], done)
-        if channel is None:
-            continue
-        own = {}
-        if "Temp" in messages and messages["Temp"].any():
-            warm = make_channel(f"{messages.name}.Temp", times, messages["Temp"])
-            if warm is not None:
-                own["temp_degc"] = warm
-        sensors.append(Sensor(f"pitot{instance}", TUBE, channel, "dp_pa", own))
-    return sensors
-
-
 def _read_attitude(log: DataFlash) -> Channel | None:
     for name in ("ATT", "XKF1", "NKF1", "EKF1", "AHR2"):
-        angles = _of(log, (name,), "Roll", "Pitch", "Yaw")
+        angles = log.first_of((name,), "Roll", "Pitch", "Yaw")
         if angles is not None:
             done = ("Euler angles from the autopilot's own filter",)
             q = from_euler(np.radians(angles.values))
@@ -204,7 +110,7 @@ def _read_velocity(log: DataFlash, parameters: Parameters) -> Channel | None:
     for messages in log.instances("GPS", "GPS2"):
         speed, course = messages.first("Spd", "SPD"), messages.first("GCrs")
         if speed and course and "VZ" in messages:
-            fixed = messages["Status"] >= FIX_3D if "Status" in messages else np.isfinite(course)
+            fixed = messages["Status"] >= FIX_3D if "Status" in messages else np.isfinite(messages[course])
             track = np.radians(messages[course])
             values = np.stack(
                 (
@@ -245,9 +151,9 @@ def _read_position(log: DataFlash) -> Channel | None:
 
 def _read_drivers(log: DataFlash, vehicle: str) -> dict[str, Channel]:
     found = {
-        "altitude_m": _of(log, ("BARO",), "Alt") or _of(log, ("GPS",), "Alt"),
-        "ps_pa": _of(log, ("BARO",), "Press"),
-        "temp_degc": _of(log, ("BARO",), "Temp"),
+        "altitude_m": log.first_of(("BARO",), "Alt") or log.first_of(("GPS",), "Alt"),
+        "ps_pa": log.first_of(("BARO",), "Press"),
+        "temp_degc": log.first_of(("BARO",), "Temp"),
         "throttle": _read_throttle(log, vehicle),
         "current_a": _read_battery(log, "Curr"),
         "voltage_v": _read_battery(log, "Volt"),
@@ -262,7 +168,7 @@ def _read_battery(log: DataFlash, column: str) -> Channel | None:
             hundredths = messages.letters[column] in "hH"
             done = "hundredths to one" if hundredths else ""
             factor = 0.01 if hundredths else 1.0
-            return _of(log, (messages.name,), column, factor=factor, done=done)
+            return log.first_of((messages.name,), column, factor=factor, done=done)
     return None
 
 
@@ -279,7 +185,7 @@ def _read_throttle(log: DataFlash, vehicle: str) -> Channel | None:
             full = 1000.0 if messages.letters[column] in "hHiI" else 1.0
         else:
             full = next(f for f in (1.0, 100.0, max(1000.0, highest)) if highest <= 1.05 * f)
-        return _of(log, (name,), column, factor=1 / full, done=f"{full:g} to 1")
+        return log.first_of((name,), column, factor=1 / full, done=f"{full:g} to 1")
     return None
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
+from sepcal.logs.recording import Channel, make_channel
 
 HEAD = b"\xa3\x95"
 # By the letter of a format: NumPy's type and the factor to the unit that is meant.
@@ -197,6 +198,22 @@ class DataFlash:
             numbers = messages[column]
             found += [messages.where(numbers == number) for number in np.unique(numbers)]
         return found
+
+    def first_of(
+        self, names: tuple[str, ...], *columns: str, factor: float = 1.0, done: str = ""
+    ) -> Channel | None:
+        """Columns of the first of these messages that has them all, not all of them zero."""
+        for messages in self.instances(*names):
+            if not all(column in messages for column in columns):
+                continue
+            values = np.stack([messages[column] for column in columns], axis=-1) * factor
+            if values.any():
+                source = f"{messages.name}.{', '.join(columns)}"
+                said = (done,) if done else ()
+                channel = make_channel(source, self.times(messages), values, said)
+                if channel is not None:
+                    return channel
+        return None
 
     def _find_clock(self) -> tuple[Array, Array]:
         """Offsets and times of a steady message, by which those without a stamp are placed."""

@@ -30,10 +30,11 @@ def read_magnetometers(log: ULog) -> tuple[list[Sensor], tuple[str, ...]]:
     corrected = _by_device(log, "vehicle_magnetometer", columns)
     if not raw and not corrected:
         corrected = _of_sensor_combined(log, columns)
+    if raw and 0 in corrected:  # vehicle_magnetometer of old: of the primary device, unsaid
+        primary = _selected_device(log)
+        primary = primary if primary in raw else next(iter(raw))
+        corrected = {primary: corrected[0]}
     devices = list(dict.fromkeys((*raw, *corrected)))
-    if len(raw) == len(corrected) == 1 and (0 in raw or 0 in corrected):
-        devices = [max(*raw, *corrected)]  # one of the topics doesn't say the device
-        raw, corrected = ({devices[0]: next(iter(d.values()))} for d in (raw, corrected))
     sensors: list[Sensor] = []
     for device in devices:
         correction = Correction(log.parameters, abs(device))
