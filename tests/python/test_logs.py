@@ -3,6 +3,9 @@
 
 import datetime
 import json
+import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 import flown_logs as flown
 import sepcal
+from documents import ROOT
 from log_writers import DataFlashWriter, ULogWriter
 from sepcal.logs.clock import count_leaps
 from sepcal.logs.mounting import rotation_of
@@ -442,3 +446,16 @@ def test_mountings_are_those_of_mavlink():
         expected = Rotation.from_euler("ZYX", order, degrees=True).as_matrix()
         assert_allclose(rotation_of(number), expected, atol=1e-12, err_msg=name)
     assert rotation_of(48) is None
+
+
+def test_every_option_is_explained():
+    text = (ROOT / "docs" / "commands.md").read_text()
+    for command in ("log", "field"):
+        done = subprocess.run(
+            [sys.executable, "-m", "sepcal", command, "--help"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        options = set(re.findall(r"--[a-z][a-z-]*", done.stdout)) - {"--help", "--output"}
+        assert {o for o in options if f"{command} {o}" not in text} == set()
