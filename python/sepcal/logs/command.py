@@ -83,9 +83,10 @@ def run(arguments: argparse.Namespace) -> int:
     flight.save(output)
     if flight.conversion["field"] is not None and (age := warn_of_age()):
         print(f"sepcal log: {age}", file=sys.stderr)
-    print(to_json(flight.conversion), end="") if arguments.json else print(
-        describe(flight, output, [sensor.name for sensor in log.sensors])
-    )
+    if arguments.json:
+        print(to_json(flight.conversion), end="")
+    else:
+        print(describe(flight, output, [sensor.name for sensor in log.sensors]))
     return 0
 
 
@@ -93,15 +94,16 @@ def describe(flight: LoggedFlight, output: str, sensors: list[str]) -> str:
     """What was written, and what to do next."""
     told = flight.conversion
     sensor, span, field = told["sensor"], told["span"], told["field"]
-    of = f" of {', '.join(sensors)}" if len(sensors) > 1 else ""
-    lines = [
-        f"wrote {output}: {told['rows']} rows of {sensor['name']}{of}, {sensor['kind']}, "
-        f"from {span['from_s']:.3f} to {span['to_s']:.3f} s"
-    ]
+    what = ", ".join(text for text in (sensor["kind"], sensor["title"]) if text)
     reading = next(
         told["columns"][header] for header in ("mx_ut", "dp_pa", "airspeed_mps") if header in flight
     )
-    lines += [f"  {reading['source']}: {'; '.join(reading['done'])}"]
+    lines = [
+        f"wrote {output}: {told['rows']} rows of {sensor['name']} ({what}), "
+        f"{span['from_s']:.3f} to {span['to_s']:.3f} s",
+        f"  readings: {reading['source']}",
+    ]
+    lines += [f"    {text}" for text in reading["done"]]
     lines += [f"  rows left out: {count}, {reason}" for reason, count in told["left_out"].items()]
     if told["utc"] is not None:
         lines.append(f"  first row {told['utc']['first_row']}: {told['utc']['source']}")
@@ -109,6 +111,8 @@ def describe(flight: LoggedFlight, output: str, sensors: list[str]) -> str:
         parts = ",".join(f"{field[f'{name}_ut']:.4f}" for name in ("north", "east", "down"))
         lines.append(f"  field by {field['model']}: {parts} uT north, east, down at the start")
     lines += [f"  note: {note}" for note in told["notes"]]
+    if others := [name for name in sensors if name != sensor["name"]]:
+        lines.append(f"  also in the log: {', '.join(others)} (--sensor)")
     lines.append(f"  {sidecar_of(output)} says what was done to each column")
     return "\n".join((*lines, *_advise(flight, output)))
 

@@ -110,7 +110,11 @@ def _read_velocity(log: DataFlash, parameters: Parameters) -> Channel | None:
     for messages in log.instances("GPS", "GPS2"):
         speed, course = messages.first("Spd", "SPD"), messages.first("GCrs")
         if speed and course and "VZ" in messages:
-            fixed = messages["Status"] >= FIX_3D if "Status" in messages else np.isfinite(messages[course])
+            fixed = (
+                messages["Status"] >= FIX_3D
+                if "Status" in messages
+                else np.isfinite(messages[course])
+            )
             track = np.radians(messages[course])
             values = np.stack(
                 (

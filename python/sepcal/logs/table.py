@@ -73,7 +73,7 @@ def build_table(
     readings = Channel(
         sensor.readings.source, stamps[inside], sensor.readings.values[inside], sensor.readings.done
     )
-    builder.add(headers, readings, hold=False)
+    builder.put(headers, readings.values, readings.source, [*readings.done])
     if log.attitude is not None:
         q = Channel(
             log.attitude.source,
@@ -149,9 +149,13 @@ class _Builder:
         if not np.isfinite(values).any():
             self._table.notes.append(f"{channel.source} has nothing at the time of these rows")
             return
+        self.put(headers, values, channel.source, [*channel.done, how])
+
+    def put(self, headers: tuple[str, ...], values: Array, source: str, done: list[str]) -> None:
+        """Columns as they are."""
         for header, column in zip(headers, values.T, strict=True):
             self._table.columns[header] = np.ascontiguousarray(column)
-            self._table.told[header] = {"source": channel.source, "done": [*channel.done, how]}
+            self._table.told[header] = {"source": source, "done": done}
 
     def fill(self, earth: FieldColumns, with_parts: bool) -> None:
         """The Earth's field."""
