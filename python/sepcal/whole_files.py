@@ -26,7 +26,8 @@ def write_whole(texts: Mapping[str, str]) -> None:
             os.umask(mask)
             os.chmod(drafts[writing], 0o666 & ~mask)
         for writing in texts:
-            os.replace(drafts.pop(writing), writing)
+            os.replace(drafts[writing], writing)
+            del drafts[writing]
     except OSError as error:
         raise _core.Error(f"{writing} can't be written: {error.strerror}") from error
     finally:

@@ -2,6 +2,7 @@
 """Logs that can't be converted: one line names culprit and way out, and nothing is written."""
 
 import contextlib
+import os
 import random
 import subprocess
 import sys
@@ -151,6 +152,18 @@ def test_bad_outputs(tmp_path, new_bin):
         sepcal.read_log(tmp_path / name).save(tmp_path / "f.csv")
     assert {file.name for file in tmp_path.iterdir()} == {"a.bin", "f.csv.json"}
     assert (tmp_path / name).read_bytes() == before
+
+
+def test_an_interrupted_save_leaves_nothing(tmp_path, monkeypatch, new_bin):
+    flight = sepcal.read_log(tmp_path / place(tmp_path, "a.bin", new_bin))
+
+    def refuse(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(sepcal.Error, match="f.csv can't be written: No space left"):
+        flight.save(tmp_path / "f.csv")
+    assert [file.name for file in tmp_path.iterdir()] == ["a.bin"]
 
 
 def test_positions_without_a_date(tmp_path):
