@@ -43,10 +43,10 @@ from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
 from sepcal.design_trial import DesignTrial
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
-from sepcal.earth_field import EarthField, earth_field
 from sepcal.filters import Filter, RecursiveLeastSquares
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
+from sepcal.geomagnetism import EarthField, earth_field
 from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
 from sepcal.logs import LogContents, LoggedFlight, list_log, read_log

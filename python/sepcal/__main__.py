@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from sepcal import _core
-from sepcal.earth_field import command as field
+from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
 from sepcal.reporting import command as report
 

@@ -161,7 +161,7 @@ def test_an_interrupted_save_leaves_nothing(tmp_path, monkeypatch, new_bin):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "replace", refuse)
-    with pytest.raises(sepcal.Error, match="f.csv can't be written: No space left"):
+    with pytest.raises(sepcal.Error, match=r"f\.csv can't be written: No space left"):
         flight.save(tmp_path / "f.csv")
     assert [file.name for file in tmp_path.iterdir()] == ["a.bin"]
 
@@ -189,7 +189,7 @@ def test_a_date_outside_the_models(tmp_path):
     ("name", "missing"), [("a.bin", "pymavlink"), ("a.ulg", "pyulog"), ("a.bin", "pygeomag")]
 )
 def test_without_the_extra(tmp_path, monkeypatch, name, missing, new_bin, new_ulg):
-    from sepcal.earth_field import models
+    from sepcal.geomagnetism import models
 
     models._model_of.cache_clear()
     place(tmp_path, name, new_bin if name == "a.bin" else new_ulg)

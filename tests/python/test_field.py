@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 
 import sepcal
 from oracle.world_magnetic_model import evaluate
-from sepcal.earth_field import models
+from sepcal.geomagnetism import models
 
 pygeomag = pytest.importorskip("pygeomag")
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import shlex
 import sys
 
 from sepcal._core import Error
-from sepcal.earth_field.models import warn_of_age
+from sepcal.geomagnetism.models import warn_of_age
 from sepcal.logs.flights import LoggedFlight, convert, sidecar_of, to_json
 from sepcal.logs.listing import list_recording
 from sepcal.logs.reading import open_log
@@ -118,7 +119,7 @@ def describe(flight: LoggedFlight, output: str, sensors: list[str]) -> str:
 
 
 def _advise(flight: LoggedFlight, output: str) -> list[str]:
-    told = flight.conversion
+    told, output = flight.conversion, shlex.quote(output)
     if told["sensor"]["kind"] != MAGNETOMETER:
         return [f"next: sepcal-pitot check {output}, sepcal-pitot fit {output} -o base.json"]
     field = told["field"]

@@ -8,6 +8,7 @@ import io
 import os
 import struct
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -225,20 +226,24 @@ class DataFlash:
         return np.empty(0), np.empty(0)
 
 
+_SILENCE = threading.Lock()  # standard error is the whole process'
+
+
 @contextlib.contextmanager
 def _silence() -> Iterator[None]:
     """Nothing goes to standard output and error, of compiled code neither: pymavlink chatters."""
     talk = io.StringIO()
-    sys.stderr.flush()
-    kept = os.dup(2)
-    try:
-        with open(os.devnull, "wb") as nothing:
-            os.dup2(nothing.fileno(), 2)
-        with contextlib.redirect_stdout(talk), contextlib.redirect_stderr(talk):
-            yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
+    with _SILENCE:
+        sys.stderr.flush()
+        kept = os.dup(2)
+        try:
+            with open(os.devnull, "wb") as nothing:
+                os.dup2(nothing.fileno(), 2)
+            with contextlib.redirect_stdout(talk), contextlib.redirect_stderr(talk):
+                yield
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
 
 
 def _stamps(messages: Messages) -> Array | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
-from sepcal.earth_field.models import Date, EarthField, earth_field
+from sepcal.geomagnetism.models import Date, EarthField, earth_field
 from sepcal.logs.recording import Channel, Recording
 
 HIGHEST = 1e5  # [m]

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 from sepcal import _core
-from sepcal.earth_field.models import Date
 from sepcal.flight import Flight
+from sepcal.geomagnetism.models import Date
 from sepcal.logs.earth import FieldColumns, find_field
 from sepcal.logs.reading import choose_sensor, open_log, quiet
 from sepcal.logs.recording import MAGNETOMETER, Recording, Sensor

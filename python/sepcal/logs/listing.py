@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import os
+import shlex
 from dataclasses import dataclass
 from typing import Any
 
 from sepcal import _core
-from sepcal.earth_field.command import describe_place, paste
+from sepcal.geomagnetism.command import describe_place, paste
 from sepcal.logs.earth import find_field
 from sepcal.logs.reading import find_lacking, open_log
 from sepcal.logs.recording import MAGNETOMETER, Channel, Recording, Sensor
@@ -175,7 +176,8 @@ def _advise(told: dict[str, Any]) -> list[str]:
         if not sensor["calibrates"]:
             lines.append(f"  {name}: no, {sensor['lacks']} is logged")
             continue
-        lines.append(f"  python -m sepcal log {told['file']} --sensor {name} -o {name}.csv, then")
+        log = shlex.quote(told["file"])
+        lines.append(f"  python -m sepcal log {log} --sensor {name} -o {name}.csv, then")
         if sensor["kind"] != MAGNETOMETER:
             lines.append(f"    sepcal-pitot fit {name}.csv -o {name}_base.json")
             continue

@@ -8,7 +8,7 @@ import dataclasses
 import json
 import sys
 
-from sepcal.earth_field.models import EarthField, earth_field, warn_of_age
+from sepcal.geomagnetism.models import EarthField, earth_field, warn_of_age
 
 
 def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
