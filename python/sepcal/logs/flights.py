@@ -10,6 +10,8 @@ import os
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from sepcal import _core
 from sepcal.flight import Flight
 from sepcal.geomagnetism.models import Date
@@ -106,7 +108,8 @@ def convert(
         )
     sensor = choose_sensor(log, name)
     earth = find_field(log, date) if field and sensor.kind == MAGNETOMETER else None
-    table = build_table(log, sensor, start, end, earth)
+    with np.errstate(all="ignore"):  # of damaged numbers, which are dropped
+        table = build_table(log, sensor, start, end, earth)
     return LoggedFlight(log.file, sensor, table, _tell(log, sensor, table, earth))
 
 
