@@ -216,3 +216,8 @@ def test_damaged_bytes(tmp_path, kind, new_bin, new_ulg):
         name = place(tmp_path, f"a.{kind}", bytes(data))
         with contextlib.suppress(sepcal.Error):
             assert sepcal.read_log(tmp_path / name, cut_off=True, field=False).rows > 0
+
+
+def test_a_damaged_format_is_said_on_one_line(tmp_path, new_bin):
+    name = place(tmp_path, "a.bin", new_bin.replace(b"QNff\0", b"QN\nf\0"))
+    refuse(tmp_path, name, "-o", "f.csv", words=["pymavlink can't read it", "format char: '?'"])

@@ -20,6 +20,7 @@ from sepcal.logs.recording import (
     Utc,
     make_channel,
 )
+from sepcal.logs.words import one_line
 
 FIX_3D = 3
 ARMED, DISARMED = 10, 11  # of EV
@@ -66,7 +67,7 @@ def _find_vehicle(log: DataFlash) -> str:
     messages = log["MSG"]
     for text in messages.texts("Message") if messages is not None and "Message" in messages else ():
         if any(vehicle in text for vehicle in VEHICLES):
-            return text.strip()
+            return one_line(text)
     return ""
 
 

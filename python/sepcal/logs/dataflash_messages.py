@@ -17,6 +17,7 @@ import numpy as np
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.logs.recording import Channel, make_channel
+from sepcal.logs.words import one_line
 
 HEAD = b"\xa3\x95"
 # By the letter of a format: NumPy's type and the factor to the unit that is meant.
@@ -126,7 +127,7 @@ class DataFlash:
             raise
         except Exception as error:  # of a damaged file pymavlink raises what it meets
             raise _core.Error(
-                f"{file}: pymavlink can't read it as a DataFlash log: {error or type(error)}"
+                f"{file}: pymavlink can't read it as a DataFlash log: {one_line(error)}"
             ) from error
 
     def _read(self, file: str, size: int, reader: Any, cut_off: bool) -> None:  # noqa: ANN401

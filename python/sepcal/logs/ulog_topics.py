@@ -14,6 +14,7 @@ from sepcal import _core
 from sepcal.columns import Array
 from sepcal.logs.parameters import Parameters
 from sepcal.logs.recording import Channel, make_channel
+from sepcal.logs.words import one_line
 
 MAGIC = b"\x55\x4c\x6f\x67\x01\x12\x35"
 HEADER = 16  # bytes
@@ -135,7 +136,7 @@ class ULog:
                 log = pyulog.ULog(io.BytesIO(data), message_name_filter_list=list(READ))
         except Exception as error:  # of a damaged file pyulog raises what it meets
             raise _core.Error(
-                f"{file}: pyulog can't read it as a ULog: {error or type(error)}"
+                f"{file}: pyulog can't read it as a ULog: {one_line(error)}"
             ) from error
         self._topics: dict[str, list[Topic]] = {}
         for one in sorted(log.data_list, key=lambda d: (d.name, d.multi_id)):
@@ -190,7 +191,7 @@ def _describe(info: dict[str, Any]) -> str:
     release = release if isinstance(release, int) else 0
     numbers = [release >> shift & 0xFF for shift in (24, 16, 8)]
     version = " " + ".".join(map(str, numbers)) if any(numbers) else ""
-    return f"{info.get('sys_name', '')}{version}".strip()
+    return one_line(f"{info.get('sys_name', '')}{version}")
 
 
 def _check_definitions(file: str, data: bytes) -> None:
