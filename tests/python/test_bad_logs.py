@@ -9,7 +9,9 @@ import sys
 
 import pytest
 
-import flown_logs as flown
+import flown_dataflash
+import flown_flight as flown
+import flown_ulog
 import sepcal
 from log_writers import DataFlashWriter, ULogWriter
 
@@ -20,12 +22,12 @@ pytest.importorskip("pygeomag")
 
 @pytest.fixture(scope="module")
 def new_bin():
-    return flown.new_dataflash().data()
+    return flown_dataflash.new_dataflash().data()
 
 
 @pytest.fixture(scope="module")
 def new_ulg():
-    return flown.new_ulog().data()
+    return flown_ulog.new_ulog().data()
 
 
 def refuse(folder, *arguments, words=()):
@@ -167,7 +169,7 @@ def test_an_interrupted_save_leaves_nothing(tmp_path, monkeypatch, new_bin):
 
 
 def test_positions_without_a_date(tmp_path):
-    log = flown.new_ulog(utc=False)
+    log = flown_ulog.new_ulog(utc=False)
     name = place(tmp_path, "a.ulg", log.data())
     words = ["a.ulg: positions without a date", "--date 2026-03-01 gives it", "--no-field does"]
     refuse(tmp_path, name, "-o", "f.csv", words=words)
@@ -179,7 +181,7 @@ def test_positions_without_a_date(tmp_path):
 
 def test_a_date_outside_the_models(tmp_path):
     """The GPS' week counter of ten bits began anew in 2019: receivers of old say 2004."""
-    log = flown.new_dataflash(week=flown.WEEK - 1024)
+    log = flown_dataflash.new_dataflash(week=flown_dataflash.WEEK - 1024)
     name = place(tmp_path, "a.bin", log.data())
     words = ["a.bin: the year 2004 is outside the field models", "--date gives another day"]
     refuse(tmp_path, name, "-o", "f.csv", words=words)
