@@ -81,7 +81,7 @@ def test_zeros_at_the_end_are_no_cut(tmp_path, new_bin):
         (b"", "the file is empty"),
         (b"\x89PNG\r\n\x1a\n" + bytes(100), "neither a ULog (.ulg) nor a DataFlash log (.bin)"),
         (b"time_s,mx_ut\n0,1\n", "a table as text, not a log; the apps read CSV files"),
-        (b"FMT, 128, 89, FMT, BBnNZ, Type,Length\n", "as text (.log); give the binary one (.bin)"),
+        (b"FMT, 128, 89, FMT, BBnNZ, Type,Length\n", "no whole message is in it"),
         (bytes(8) + b"\xfd" + bytes(60), "a telemetry log (.tlog)"),
     ],
 )

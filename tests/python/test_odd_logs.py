@@ -11,6 +11,7 @@ import flown_ulog
 import sepcal
 from flown_logs import magnetic, stack, turns_between, write, write_logs
 from log_writers import DataFlashWriter, ULogWriter
+from oracle.dataflash_reader import read_messages
 
 pytest.importorskip("pyulog")
 pytest.importorskip("pymavlink")
@@ -222,3 +223,28 @@ def test_two_magnetometers_of_a_ulog(tmp_path):
         assert_allclose(magnetic(flight), flown.raw(flight["time_s"]), atol=1e-4)
     titles = [sensor["title"] for sensor in sepcal.list_log(file).to_dict()["sensors"]]
     assert titles == ["device 5, CAL_MAG0", f"device {flown_ulog.DEVICE}, CAL_MAG1"]
+
+
+@pytest.mark.parametrize("name", ["new.bin", "old.bin"])
+def test_a_log_as_text(folder, tmp_path, name):
+    """As ground stations wrote it: numbers in their units, modes by name."""
+    lines = []
+    for kind, message in read_messages((folder / name).read_bytes()):
+        values = dict(message)
+        if kind == "MODE":
+            values["Mode"] = {0: "STABILIZE", 5: "LOITER", 10: "AUTO"}[message["Mode"]]
+            values.pop("ModeNum", None)
+        if kind == "FMT" and values["Name"] == "MODE":
+            values["Format"] = values["Format"].replace("QMBB", "QMB")
+            values["Columns"] = values["Columns"].replace("ModeNum,", "")
+        cells = (f"{v:.9g}" if isinstance(v, float) else str(v) for v in values.values())
+        lines.append(", ".join((kind, *cells)))
+    text = "\n".join(lines) + "\n"
+    flight = sepcal.read_log(write(tmp_path, "a.log", text.encode()))
+    binary = sepcal.read_log(folder / name)
+    assert flight.columns == binary.columns
+    for header in binary:
+        assert_allclose(flight[header], binary[header], rtol=1e-6, atol=1e-6, err_msg=header)
+    assert flight.maneuvers == binary.maneuvers
+    with pytest.raises(sepcal.Error, match=r"cut off inside line .*, the last"):
+        sepcal.read_log(write(tmp_path, "b.log", text[:-3].encode()))

@@ -26,7 +26,7 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
         "and beside it FLIGHT.csv.json with what was done to each column. What the autopilot had "
         "corrected is undone from its own parameters. Times are on the log's own clock.",
     )
-    parser.add_argument("log", metavar="LOG", help="a .ulg or a .bin")
+    parser.add_argument("log", metavar="LOG", help="a .ulg, a .bin, or a .log of text")
     parser.add_argument("-o", "--output", metavar="FLIGHT.csv", help="writes the flight there")
     parser.add_argument(
         "--list",

@@ -10,7 +10,8 @@ import numpy as np
 from sepcal.columns import Array
 from sepcal.logs import clock, modes
 from sepcal.logs.attitude import from_euler
-from sepcal.logs.dataflash_messages import DataFlash, Messages
+from sepcal.logs.dataflash_columns import Messages
+from sepcal.logs.dataflash_messages import DataFlash
 from sepcal.logs.dataflash_sensors import read_compasses, read_tubes
 from sepcal.logs.parameters import Parameters
 from sepcal.logs.recording import (
@@ -199,8 +200,12 @@ def _read_labels(log: DataFlash, vehicle: str) -> Labels | None:
     if messages is None or (column := messages.first("ModeNum", "Mode")) is None:
         return None
     names = _mode_names(vehicle)
-    numbers = messages[column].astype(int)
-    flown = [names.get(n, f"mode_{n}").lower() for n in numbers]
+    if messages.is_text(column):
+        words = [one_line(word).lower() for word in messages.texts(column)]
+        flown = [names.get(int(w), f"mode_{w}").lower() if w.isdigit() else w for w in words]
+    else:
+        numbers = messages[column].astype(int)
+        flown = [names.get(n, f"mode_{n}").lower() for n in numbers]
     switched = (log.times(messages), flown)
     arming = _read_arming(log)
     source = f"MODE.{column}" + (" and arming" if arming else "; arming isn't logged")
@@ -208,8 +213,10 @@ def _read_labels(log: DataFlash, vehicle: str) -> Labels | None:
 
 
 def _mode_names(vehicle: str) -> dict[int, str]:
-    from pymavlink import mavutil
-
+    try:
+        from pymavlink import mavutil
+    except ImportError:  # a log of text is read without; its modes mostly have names
+        return {}
     tables = {
         "Copter": "acm",
         "Plane": "apm",

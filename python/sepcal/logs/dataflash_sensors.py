@@ -7,7 +7,8 @@ import numpy as np
 
 from sepcal.columns import Array
 from sepcal.logs import ardupilot_compass
-from sepcal.logs.dataflash_messages import DataFlash, Messages
+from sepcal.logs.dataflash_columns import Messages
+from sepcal.logs.dataflash_messages import DataFlash
 from sepcal.logs.parameters import Parameters
 from sepcal.logs.recording import MAGNETOMETER, TUBE, Sensor, make_channel
 

@@ -9,12 +9,13 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.logs import dataflash, ulog
-from sepcal.logs.dataflash_messages import looks_like_dataflash
+from sepcal.logs.dataflash_binary import looks_like_binary
+from sepcal.logs.dataflash_messages import START
+from sepcal.logs.dataflash_text import looks_like_text
 from sepcal.logs.recording import MAGNETOMETER, Recording, Sensor
 from sepcal.logs.ulog_topics import HEADER, MAGIC
 
 DAMAGES = (LookupError, ValueError, TypeError, ArithmeticError, np.linalg.LinAlgError)
-START = 4096  # bytes in which the format shows
 
 
 def quiet(_: str) -> None:
@@ -39,7 +40,7 @@ def open_log(
         if len(start) < HEADER:
             raise _core.Error(f"{file}: the log is cut off inside its header; nothing is in it")
         read = ulog.read
-    elif looks_like_dataflash(start):
+    elif looks_like_binary(start) or looks_like_text(start):
         read = dataflash.read
     else:
         raise _core.Error(f"{file}: {_guess(start)}")
@@ -98,8 +99,6 @@ def find_lacking(log: Recording, sensor: Sensor) -> str:
 def _guess(start: bytes) -> str:
     if not start:
         return "the file is empty"
-    if start.lstrip().startswith(b"FMT"):
-        return "a DataFlash log as text (.log); give the binary one (.bin) that it was made from"
     if start[8:9] in (b"\xfd", b"\xfe"):
         return "a telemetry log (.tlog); give the one that the vehicle wrote (.bin or .ulg)"
     if b"\0" not in start and b"," in start.splitlines()[0]:
