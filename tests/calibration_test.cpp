@@ -252,7 +252,7 @@ TEST_CASE("a calibration with any entry missing or of another kind is refused") 
     CAPTURE(key);
     Json damaged = whole;
     damaged.erase(key);
-    check_damaged(damaged);
+    if (key != "restated") check_damaged(damaged);  // earlier files have none
     damaged[key] = value.is_number() ? Json("text") : Json(3);
     check_damaged(damaged);
   }

@@ -7,8 +7,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
+#include "draws.hpp"
+#include "flight/logs/smoothed_track.hpp"
 #include "sepcal/error.hpp"
 
 namespace read_as_test {
@@ -112,6 +115,90 @@ TEST_CASE("a quaternion is the attitude of Eigen's rotation, whatever its length
   CHECK(read.notes.size() == 1);
   log.add("roll_deg", std::vector<double>(5, 0.0));
   CHECK(read_as(log, {}).flight.columns().size() == 5);  // angles are there already
+}
+
+/// A circle of 300 m in 60 s, climbing at 2 m/s, from a place on the ellipsoid.
+struct Circle {
+  double t = 0.0;
+  double rate = 2.0 * std::numbers::pi / 60.0;
+
+  double north() const { return 300.0 * std::sin(rate * t); }
+  double east() const { return 300.0 * (1.0 - std::cos(rate * t)); }
+  double vn() const { return 300.0 * rate * std::cos(rate * t); }
+  double ve() const { return 300.0 * rate * std::sin(rate * t); }
+};
+
+TEST_CASE("velocity is that of the path whose positions were logged, across the date line too") {
+  // Radii of WGS 84 at 60 deg, from tables: 6383.454 km along the meridian, 6394.209 km across.
+  constexpr double meridian = 6'383'454.0 + 500.0;
+  constexpr double across = 6'394'209.0 + 500.0;
+  for (const double longitude : {10.0, 179.999}) {
+    Flight log("log");
+    std::vector<double> time;
+    std::vector<double> lat;
+    std::vector<double> lon;
+    std::vector<double> altitude;
+    for (int row = 0; row < 1200; ++row) {
+      const Circle at{.t = 0.1 * row};
+      time.push_back(at.t);
+      lat.push_back(60.0 + at.north() / meridian * 180.0 / std::numbers::pi);
+      const double east = longitude + at.east() / (across * 0.5) * 180.0 / std::numbers::pi;
+      lon.push_back(east > 180.0 ? east - 360.0 : east);
+      altitude.push_back(500.0 + 2.0 * at.t);
+    }
+    log.add("time_s", time).add("lat_deg", lat).add("lon_deg", lon).add("altitude_m", altitude);
+    const ReadFlight read = read_as(log, {});
+    REQUIRE(read.notes.size() == 1);
+    CHECK(read.notes[0].find("velocity is from 1200 fixes") != std::string::npos);
+    const auto vn = values(read.flight, "vn_mps");
+    const auto ve = values(read.flight, "ve_mps");
+    const auto vd = values(read.flight, "vd_mps");
+    for (std::size_t row = 20; row < 1180; ++row) {
+      const Circle at{.t = time[row]};
+      CHECK(std::abs(vn[row] - at.vn()) < 0.03);  // the latitude changes the radii by 1e-4
+      CHECK(std::abs(ve[row] - at.ve()) < 0.03);
+      CHECK(std::abs(vd[row] + 2.0) < 1e-3);
+    }
+  }
+}
+
+TEST_CASE("a smoothed track is off by what it says, at any rate of fixes") {
+  for (const double rate : {1.0, 10.0}) {
+    for (const double size : {1.5, 0.05}) {
+      sepcal::test::Draws draws(7);
+      std::vector<double> time;
+      std::vector<double> position;
+      std::vector<double> truth;
+      for (int i = 0; i < 600 * static_cast<int>(rate); ++i) {
+        const Circle at{.t = i / rate};
+        time.push_back(at.t);
+        position.push_back(at.north() + size * draws.normal());
+        truth.push_back(at.vn());
+      }
+      const auto track = sepcal::logs::smooth_track(time, position, {0, time.size()});
+      double squares = 0.0;
+      for (std::size_t i = 0; i < time.size(); ++i) {
+        squares += (track.velocity[i] - truth[i]) * (track.velocity[i] - truth[i]);
+      }
+      const double error = std::sqrt(squares / static_cast<double>(time.size()));
+      CHECK(track.position_error == Approx(size).epsilon(0.2));
+      CHECK(error < 1.5 * track.velocity_error);
+      CHECK(error > 0.4 * track.velocity_error);
+    }
+  }
+}
+
+TEST_CASE("positions make no velocity where one is logged, and none across a gap") {
+  std::vector<double> time = ramp(0, 1, 60);
+  for (std::size_t row = 30; row < 60; ++row) time[row] += 100;
+  Flight log("log");
+  log.add("time_s", time).add("lat_deg", ramp(50, 1e-4, 60)).add("lon_deg", ramp(8, 1e-4, 60));
+  log.add("altitude_m", std::vector<double>(60, 100.0));
+  const auto vn = values(read_as(log, {}).flight, "vn_mps");
+  CHECK(vn[29] == Approx(11.12).epsilon(0.01));
+  CHECK(vn[30] == Approx(11.12).epsilon(0.01));
+  log.add("vn_mps", std::vector<double>(60, 0.0));
+  CHECK(read_as(log, {}).notes.empty());
 }
 
 }  // namespace read_as_test

@@ -41,6 +41,16 @@ class Calibration(Fit):
         self.own_effects = list(own)
 
     @property
+    def restated(self) -> dict[str, dict[str, Any]]:
+        """Estimates in other forms, by name: a "sentence", and its numbers.
+
+        "wind": from_deg, speed_mps, ellipse_mps (half axes that hold it in 95 %), ellipse_axis_deg.
+        "correction" of a magnetometer: h = A (m - b), A row by row and b_ut. "airspeed_ratio": the
+        factor on an autopilot's ARSPD_RATIO.
+        """
+        return self.core.restated
+
+    @property
     def derived(self) -> dict[str, _core.Derived]:
         """What follows: of a Pitot-static tube lambda_va and b_va, which correct the reading."""
         return self.core.derived

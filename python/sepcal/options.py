@@ -16,7 +16,8 @@ SHAPES = {
     "prior": "{name: (mean, standard deviation)}",
     "sampling_distribution": "{name: (mean, standard deviation)}",
 }
-APP_NAMES = {"fix": "fixed", "effect": "effects", "from": "from_time", "to": "to_time"}  # of the apps' --fix, ...
+# Of the apps' --fix, ...
+APP_NAMES = {"fix": "fixed", "effect": "effects", "from": "from_time", "to": "to_time"}
 # Options that choose of a flight's columns and rows.
 LOG_CHOICE = (
     "map",

@@ -29,6 +29,10 @@ SCALE_BOUNDS = re.compile(r" +\[(?:-0\.95|0\.05), inf\]$", re.MULTILINE)  # ther
 OUTPUTS = re.compile(r"^output +rmse.*(?:\n\S.*)+", re.MULTILINE)
 
 
+# Estimates in other forms: there were none.
+RESTATED = re.compile(r"(?:\n(?:wind|airspeed_ratio|correction): .*)+\n", re.MULTILINE)
+
+
 STATUS = re.compile(r"^(status: \w+)((?:\n  \S.*)+)", re.MULTILINE)
 
 
@@ -46,6 +50,7 @@ def without_errors(page: str) -> str:
     R settles in fewer turns since, at the same numbers, which are compared beside the page.
     """
     page = re.sub(r"\d+ iterations?, R settled in \d+", "R settled", page)
+    page = RESTATED.sub("", page)
     page = OUTPUTS.sub(lambda at: re.sub(r"^(\S+ +\S+).*$", r"\1", at[0], flags=re.M), page)
     lines = re.sub(r"^(status: \w+):.*$", r"\1", page, flags=re.MULTILINE).splitlines()
     header = next(at for at, line in enumerate(lines) if line.startswith("parameter"))

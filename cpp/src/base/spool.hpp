@@ -18,6 +18,7 @@ class Spool {
   explicit Spool(std::string folder);
   Spool(const Spool&) = delete;
   Spool& operator=(const Spool&) = delete;
+  ~Spool() = default;
 
   class Column {
    public:

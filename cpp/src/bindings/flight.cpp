@@ -315,10 +315,25 @@ FittedModel fit_of(const Calibration& calibration) {
   return fitted_model(calibration.fit, calibration.options.effects, page_of(calibration));
 }
 
+/// {name: {"sentence": str, key: number or list}}.
+py::dict restated_of(const Calibration& calibration) {
+  py::dict all;
+  for (const Restatement& one : calibration.restated) {
+    py::dict entry;
+    entry["sentence"] = one.sentence;
+    for (const auto& [key, values] : one.numbers) {
+      entry[key.c_str()] = values.size() == 1 ? py::cast(values.front()) : py::cast(values);
+    }
+    all[one.name.c_str()] = entry;
+  }
+  return all;
+}
+
 void define_calibration(py::module_& module) {
   py::class_<Calibration>(module, "Calibration")
       .def_property_readonly("fit", &fit_of)
       .def_readonly("derived", &Calibration::derived)
+      .def_property_readonly("restated", &restated_of)
       .def_readonly("history", &Calibration::history)
       .def_readonly("notes", &Calibration::notes)
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/known_products.hpp"
 
+#include <memory>
 #include <mutex>
-#include <optional>
 #include <utility>
 
 #include "numerics/tall_products.hpp"
@@ -27,8 +27,8 @@ struct KnownProducts::Output {
 
   Output(std::size_t fractions, std::size_t wanders) : fractional(fractions), wandering(wanders) {}
 
-  std::vector<Once<std::optional<LaggedSquares>>> fractional;  // of each d
-  std::vector<Once<MatrixXd>> wandering;                       // of each member with sigma 1
+  std::vector<Once<std::unique_ptr<const LaggedSquares>>> fractional;  // of each d
+  std::vector<Once<MatrixXd>> wandering;  // of each member with sigma 1
 };
 
 KnownProducts::KnownProducts(const NoiseFamilies& families, const RowLayout& layout,
@@ -66,7 +66,8 @@ MatrixXd KnownProducts::known_square(const NoiseMember& member, std::size_t j) c
   }
   auto& known = outputs_[j]->fractional[member.at];
   std::call_once(known.made, [&] {
-    known.value = families_.lagged_squares(member.at, known_rows(j), orders_[j]);
+    known.value = std::make_unique<const LaggedSquares>(
+        families_.lagged_squares(member.at, known_rows(j), orders_[j]));
   });
   const MatrixXd square = known.value->whitened(member.partial);
   return known.value->is_sound(square) ? square / variance : whitened_square(member, j);

@@ -33,10 +33,11 @@ Share share_of(const TriangularFactor& block, const MatrixXd& R) {
   R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(J);
   Share share{.own = J.transpose() * J, .gradient = J.transpose() * rows.col(k), .others = {}};
   // The least information that the others may be said to have; more where rounding asks for it.
-  for (double least = 1e-12; least < 1.0; least *= 10.0) {
+  double least = 1e-12;
+  do {
     share.others.compute((1.0 + least) * MatrixXd::Identity(k, k) - share.own);
-    if (share.others.info() == Eigen::Success) break;
-  }
+    least *= 10.0;
+  } while (share.others.info() != Eigen::Success && least < 1.0);
   return share;
 }
 

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "estimation/block_errors.hpp"
 #include "estimation/error_sentences.hpp"
@@ -27,7 +26,10 @@ class Weighted {
         inverses_(covariances.judged.cwiseInverse()),
         columns_(covariances.inside) {
     const FitOptions& options = problem.options();
-    if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
+    if (options.loss != Loss::squares) {
+      weight_ = [loss = model::RobustLoss(options.loss, options.loss_width), &two](
+                    Index j, double r) { return std::sqrt(loss.weight(r / two.noise[j])); };
+    }
     columns_.push_back(sweep.tables().n_1() + sweep.tables().n_2());
   }
 
@@ -36,8 +38,8 @@ class Weighted {
     Memory memory(inverses_.size());
     sweep_.for_each_residual(xi1(), xi2(), [&](const MatrixXd& r) {
       MatrixXd e = r;
-      for (Index j = 0; loss_ && j < r.cols(); ++j) {
-        for (double& each : e.col(j)) each *= root_of_weight(j, each);
+      for (Index j = 0; weight_ && j < r.cols(); ++j) {
+        for (double& each : e.col(j)) each *= weight_(j, each);
       }
       memory.add(e * inverses_.asDiagonal());
     });
@@ -47,10 +49,8 @@ class Weighted {
   /// The factor of each block's [J | r], of all outputs and the free parameters that no bound
   /// holds.
   std::vector<TriangularFactor> factors(const std::vector<Index>& cuts) const {
-    model::Sweep::RowWeight weight;
-    if (loss_) weight = [this](Index j, double r) { return root_of_weight(j, r); };
     std::vector<TriangularFactor> blocks;
-    for (const auto& by_output : sweep_.stretch_factors(xi1(), xi2(), cuts, weight)) {
+    for (const auto& by_output : sweep_.stretch_factors(xi1(), xi2(), cuts, weight_)) {
       TriangularFactor& block = blocks.emplace_back(static_cast<int>(columns_.size()));
       for (std::size_t j = 0; j < by_output.size(); ++j) {
         MatrixXd rows =
@@ -65,15 +65,11 @@ class Weighted {
   VectorXd xi1() const { return two_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return two_.x.tail(sweep_.tables().n_2()); }
 
-  double root_of_weight(Index j, double r) const {
-    return std::sqrt(loss_->weight(r / two_.noise[j]));
-  }
-
   const model::Sweep& sweep_;
   const StageTwo& two_;
   VectorXd inverses_;  // n_z, of the noise
   std::vector<Index> columns_;
-  std::optional<model::RobustLoss> loss_;
+  model::Sweep::RowWeight weight_;  // sqrt(w), with a loss
 };
 
 /// The jackknife's covariance (k x k), with the prior's own share and, with a loss, the slopes of

@@ -19,6 +19,7 @@ from studies.trust.flights import NOISES
 from studies.trust.minima import HARD_PROBLEMS, MINIMA
 from studies.trust.pairs import PAIR_SETS
 from studies.trust.part import Key, Part, Row
+from studies.trust.positions import POSITIONS
 from studies.trust.power import POWER
 from studies.trust.unlogged import UNLOGGED
 from studies.trust.verdicts import ALARMS, DECOY_CHANNELS
@@ -30,6 +31,7 @@ PARTS: dict[str, Part] = {
     "pairs": PAIR_SETS,
     "unlogged": UNLOGGED,
     "errors": ERRORS,
+    "positions": POSITIONS,
     "minima": MINIMA,
     "hard": HARD_PROBLEMS,
 }

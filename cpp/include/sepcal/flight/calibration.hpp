@@ -60,6 +60,7 @@ struct Calibration {
   FittedFlight flight;
   Fit fit;
   std::vector<Derived> derived;  // in the probe's order
+  std::vector<Restatement> restated;
   std::vector<HistoryEntry> history;
   std::vector<std::string> notes;  // one line each, for people; not part of the JSON
   std::string file = {};           // that it was read from; empty: it was just fitted

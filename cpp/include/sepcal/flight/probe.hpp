@@ -35,6 +35,13 @@ struct DerivedQuantity {
   std::map<std::string, double> slopes;  // its derivatives, by parameter; zero where not named
 };
 
+/// Estimates in another form, as people elsewhere write them.
+struct Restatement {
+  std::string name;                                    // "wind"
+  std::string sentence;                                // "from 242 deg, 46.1 kt; ..."
+  std::map<std::string, std::vector<double>> numbers;  // of the sentence, units in their names
+};
+
 /// What a calibration's effects do to readings. Empty: nothing.
 struct ReadingEffects {
   /// A term of the model, at its parameters' values.
@@ -104,6 +111,9 @@ class Probe {
   virtual void judge(Fit& fit) const;
 
   virtual std::vector<DerivedQuantity> derive(const Fit& fit) const;
+
+  /// The estimates of the probe's own parameters in other forms.
+  virtual std::vector<Restatement> restate(const Fit& /*fit*/) const { return {}; }
 };
 
 /// K_alpha, K_beta [1/rad] and the lever arm from the velocity's reference point [m, body axes].

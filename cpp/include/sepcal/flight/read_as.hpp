@@ -16,7 +16,8 @@ struct ReadFlight {
 };
 
 /// The log's columns as `choice` maps and ignores them; clocks that start anew joined; attitude
-/// from a quaternion (qw, qx, qy, qz, body to north-east-down) where no angles are logged. Rows are
+/// from a quaternion (qw, qx, qy, qz, body to north-east-down) where no angles are logged; velocity
+/// from positions (lat_deg, lon_deg, altitude_m) where none is. Rows are
 /// those of the log. Throws OptionError for a choice of columns that are not there.
 ReadFlight read_as(const Flight& flight, const LogChoice& choice);
 

@@ -36,6 +36,7 @@ Calibration read(const Json& root) {
   }
   calibration.fit.rows = calibration.flight.rows_used;
   calibration.derived = read_derived(root.at("derived"));
+  if (root.contains("restated")) calibration.restated = read_restated(root.at("restated"));
   calibration.history = read_history(root.at("history"));
   return calibration;
 }
@@ -75,6 +76,7 @@ std::string to_json(const Calibration& calibration) {
   root["options"] = write_options(calibration);
   write_estimates(calibration.fit, root);
   root["derived"] = write_derived(calibration.derived);
+  if (!calibration.restated.empty()) root["restated"] = write_restated(calibration.restated);
   write_rest(calibration.fit, calibration.options.fit, root);
   root["history"] = write_history(calibration.history);
   return text_of(root);

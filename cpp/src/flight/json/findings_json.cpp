@@ -38,6 +38,36 @@ std::vector<Derived> read_derived(const Json& object) {
   return derived;
 }
 
+/// {name: {sentence, number or list by name}}.
+Json write_restated(const std::vector<Restatement>& restated) {
+  Json object = Json::object();
+  for (const Restatement& one : restated) {
+    Json entry = {{"sentence", one.sentence}};
+    for (const auto& [name, values] : one.numbers) {
+      entry[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+    }
+    object[one.name] = std::move(entry);
+  }
+  return object;
+}
+
+std::vector<Restatement> read_restated(const Json& object) {
+  std::vector<Restatement> restated;
+  for (const auto& [name, entry] : entries_of(object)) {
+    Restatement one{.name = name, .sentence = {}, .numbers = {}};
+    for (const auto& [key, value] : entries_of(entry)) {
+      if (key == "sentence") {
+        one.sentence = value.get<std::string>();
+      } else {
+        one.numbers[key] = value.is_array() ? value.get<std::vector<double>>()
+                                            : std::vector<double>{value.get<double>()};
+      }
+    }
+    restated.push_back(std::move(one));
+  }
+  return restated;
+}
+
 Json write_history(const std::vector<HistoryEntry>& history) {
   Json list = Json::array();
   for (const HistoryEntry& entry : history) {

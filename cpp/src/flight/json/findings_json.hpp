@@ -17,6 +17,9 @@ Json write_misfit(const Misfit& misfit);
 Json write_derived(const std::vector<Derived>& derived);
 std::vector<Derived> read_derived(const Json& object);
 
+Json write_restated(const std::vector<Restatement>& restated);
+std::vector<Restatement> read_restated(const Json& object);
+
 Json write_history(const std::vector<HistoryEntry>& history);
 std::vector<HistoryEntry> read_history(const Json& list);
 

@@ -14,8 +14,8 @@
 namespace sepcal::logs {
 namespace {
 
-constexpr std::array parts{"qw", "qx", "qy", "qz"};
-constexpr std::array angles{"roll", "pitch", "yaw"};
+constexpr std::array quaternion{"qw", "qx", "qy", "qz"};
+constexpr std::array euler_angles{"roll", "pitch", "yaw"};
 
 }  // namespace
 
@@ -24,10 +24,10 @@ void convert_quaternion(Flight& flight, std::vector<std::string>& notes) {
   const auto is_logged = [&](const char* angle) {
     return files::find_quantity(flight, angle, files::UnitKind::angle).has_value();
   };
-  if (flight.is_mapped() || !std::ranges::all_of(parts, is_there)) return;
-  if (std::ranges::any_of(angles, is_logged)) return;
+  if (flight.is_mapped() || !std::ranges::all_of(quaternion, is_there)) return;
+  if (std::ranges::any_of(euler_angles, is_logged)) return;
   std::array<std::span<const double>, 4> q;
-  std::ranges::transform(parts, q.begin(),
+  std::ranges::transform(quaternion, q.begin(),
                          [&](const char* part) { return flight.find(part)->values; });
   std::array<std::vector<double>, 3> euler;
   euler.fill(std::vector<double>(flight.rows(), std::numeric_limits<double>::quiet_NaN()));
@@ -43,9 +43,9 @@ void convert_quaternion(Flight& flight, std::vector<std::string>& notes) {
     euler[1][row] = std::asin(std::clamp(2.0 * (w * y - x * z), -1.0, 1.0));
     euler[2][row] = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
   }
-  for (const char* header : parts) flight.drop(header);
-  for (std::size_t k = 0; k < angles.size(); ++k) {
-    flight.add(fmt::format("{}_rad", angles[k]), std::move(euler[k]));
+  for (const char* header : quaternion) flight.drop(header);
+  for (std::size_t k = 0; k < euler_angles.size(); ++k) {
+    flight.add(fmt::format("{}_rad", euler_angles[k]), std::move(euler[k]));
   }
   notes.push_back(fmt::format(
       "{}: roll, pitch and yaw are from the quaternion qw, qx, qy, qz, body to north-east-down",

@@ -4,6 +4,7 @@
 #include "flight/logs/chosen_columns.hpp"
 #include "flight/logs/joined_clock.hpp"
 #include "flight/logs/quaternion_columns.hpp"
+#include "flight/logs/velocity_columns.hpp"
 
 namespace sepcal {
 
@@ -12,6 +13,7 @@ ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
   logs::choose_columns(read.flight, choice);
   logs::join_clock(read.flight, read.notes);
   logs::convert_quaternion(read.flight, read.notes);
+  logs::derive_velocity(read.flight, read.notes);
   return read;
 }
 

@@ -135,7 +135,8 @@ using Relation = bool (*)(double, double);
 
 /// The comparison that a sign stands for; nullptr for another token.
 Relation relation_of(const Token& token) {
-  const std::string_view sign = token.kind == Kind::sign ? token.text : "";
+  if (token.kind != Kind::sign) return nullptr;
+  const std::string_view sign = token.text;
   if (sign == "<") return [](double a, double b) { return a < b; };
   if (sign == "<=") return [](double a, double b) { return a <= b; };
   if (sign == ">") return [](double a, double b) { return a > b; };

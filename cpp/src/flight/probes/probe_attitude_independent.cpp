@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/parameter_values.hpp"
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
+#include "flight/probes/restatements.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
@@ -79,6 +81,14 @@ class StrengthOnlyMagnetometer final : public Probe {
     judge_scales(
         fit, std::array{Scale{"lambda_x", 0.0}, Scale{"lambda_y", 0.0}, Scale{"lambda_z", 0.0}});
     judge_attitude_independent(fit, setup_.field_strength);
+  }
+
+  std::vector<Restatement> restate(const Fit& fit) const override {
+    const Vec<double, 9> xi2 =
+        base::in_order(model_.tables().parameters(), fit.by_name()).head<9>();
+    const auto correction = restate_correction(
+        AttitudeIndependentMagnetometer::soft_iron_and_scale<double>(xi2), xi2.tail<3>());
+    return correction ? std::vector{*correction} : std::vector<Restatement>();
   }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
+#include "flight/probes/restatements.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/option_error.hpp"
@@ -95,6 +96,11 @@ class FiveHole final : public Probe {
   }
 
   void judge(Fit& fit) const override { judge_scales(fit, std::array{Scale{"lambda_va", 0.0}}); }
+
+  std::vector<Restatement> restate(const Fit& fit) const override {
+    const auto wind = restate_wind(fit);
+    return wind ? std::vector{*wind} : std::vector<Restatement>();
+  }
 
  private:
   FiveHoleProbe setup_;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "base/parameter_values.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
+#include "flight/probes/restatements.hpp"
+#include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/static_model.hpp"
@@ -44,10 +47,8 @@ class KnownFieldMagnetometer final : public Probe {
   /// h = C^-1 (m - n), the field in body axes.
   std::vector<CorrectedColumn> correct(const ProbeReadings& readings, const VectorXd& values,
                                        const ReadingEffects& effects) const override {
-    const Eigen::Matrix3d CC = Magnetometer::soft_iron_and_misalignment<double>(values.tail<6>());
-    const Eigen::Vector3d scale = values.head<3>().array() + 1.0;
-    return correct_field(readings, CC * scale.asDiagonal(), values.segment<3>(3),
-                         corrected_headers(), effects);
+    return correct_field(readings, matrix_of(values), values.segment<3>(3), corrected_headers(),
+                         effects);
   }
 
   void judge(Fit& fit) const override {
@@ -55,7 +56,19 @@ class KnownFieldMagnetometer final : public Probe {
         fit, std::array{Scale{"lambda_x", 0.0}, Scale{"lambda_y", 0.0}, Scale{"lambda_z", 0.0}});
   }
 
+  std::vector<Restatement> restate(const Fit& fit) const override {
+    const VectorXd values = base::in_order(model_.tables().parameters(), fit.by_name());
+    const auto correction = restate_correction(matrix_of(values), values.segment<3>(3));
+    return correction ? std::vector{*correction} : std::vector<Restatement>();
+  }
+
  private:
+  /// C of m = C h + n.
+  static Eigen::Matrix3d matrix_of(const VectorXd& values) {
+    const Eigen::Vector3d scale = values.head<3>().array() + 1.0;
+    return Magnetometer::soft_iron_and_misalignment<double>(values.tail<6>()) * scale.asDiagonal();
+  }
+
   std::optional<std::array<double, 3>> field_;
   StaticModel<Magnetometer> model_;
 };

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
+#include "flight/probes/restatements.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
@@ -71,6 +73,14 @@ class PitotStaticTube final : public Probe {
     const double c = fit["c_va"].value;
     return {{"lambda_va", "1", 1.0 / s - 1.0, {{"s_va", -1.0 / (s * s)}}},
             {"b_va", "m/s", 0.0 - c / s, {{"s_va", c / (s * s)}, {"c_va", -1.0 / s}}}};
+  }
+
+  std::vector<Restatement> restate(const Fit& fit) const override {
+    std::vector<Restatement> restated;
+    if (auto wind = restate_wind(fit)) restated.push_back(std::move(*wind));
+    const double s = fit["s_va"].value;
+    if (s != 0.0) restated.push_back(restate_ratio(1.0 / s - 1.0, 0.0 - fit["c_va"].value / s));
+    return restated;
   }
 
  private:

@@ -29,8 +29,8 @@ class RecordBuilder {
   using RowTest = std::function<bool(std::size_t row)>;
   using RowValue = std::function<double(std::size_t row)>;
 
-  /// `flight` as read_as() gives it. Throws Error for one of the quantities in an unknown unit, or in
-  /// two, for a column of drop_repeats or a name in a condition that is not there.
+  /// `flight` as read_as() gives it. Throws Error for one of the quantities in an unknown unit, or
+  /// in two, for a column of drop_repeats or a name in a condition that is not there.
   RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
                 const LogChoice& choice);
 

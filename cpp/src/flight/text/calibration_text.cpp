@@ -34,6 +34,15 @@ std::string history_table(const Calibration& calibration) {
   return text;
 }
 
+/// A line each; empty where there are none.
+std::string restated_lines(const Calibration& calibration) {
+  std::string text;
+  for (const Restatement& one : calibration.restated) {
+    text += fmt::format("{}{}: {}\n", text.empty() ? "\n" : "", one.name, one.sentence);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string to_text(const Calibration& calibration, Detail detail) {
@@ -41,7 +50,7 @@ std::string to_text(const Calibration& calibration, Detail detail) {
                      calibration.flight.rows_used, calibration.flight.rows,
                      calibration.flight.file) +
          text::fit_table(calibration.fit, calibration.options, calibration.derived, detail) +
-         history_table(calibration);
+         restated_lines(calibration) + history_table(calibration);
 }
 
 }  // namespace sepcal

@@ -128,8 +128,14 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
   probe->judge(fit);
   fitted.rows_used = fit.rows;
   std::vector<Derived> derived = derive(*probe, fit);
-  return {std::move(probe),     std::move(held),    std::move(fitted),
-          std::move(fit),       std::move(derived), {},
+  std::vector<Restatement> restated = probe->restate(fit);
+  return {std::move(probe),
+          std::move(held),
+          std::move(fitted),
+          std::move(fit),
+          std::move(derived),
+          std::move(restated),
+          {},
           flight.prepared.notes};
 }
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/logs/velocity_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "base/gaps.hpp"
+#include "flight/files/headers.hpp"
+#include "flight/logs/smoothed_track.hpp"
+#include "numerics/interpolated_column.hpp"
+
+namespace sepcal::logs {
+namespace {
+
+using files::UnitKind;
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// WGS 84: metres a radian of latitude and of longitude.
+struct Radii {
+  double north;
+  double east;
+};
+
+Radii radii_at(double latitude, double altitude) {
+  constexpr double equator = 6'378'137.0;
+  constexpr double e2 = 6.69437999014e-3;
+  const double s = std::sin(latitude);
+  const double w = 1.0 - e2 * s * s;
+  return {equator * (1.0 - e2) / (w * std::sqrt(w)) + altitude,
+          (equator / std::sqrt(w) + altitude) * std::cos(latitude)};
+}
+
+/// A value a row, in rad, m and s.
+struct Positions {
+  std::vector<double> time;
+  std::vector<double> latitude;
+  std::vector<double> longitude;
+  std::vector<double> altitude;
+
+  bool all_there(std::size_t row) const {
+    return std::isfinite(time[row]) && std::isfinite(latitude[row]) &&
+           std::isfinite(longitude[row]) && std::isfinite(altitude[row]);
+  }
+};
+
+/// Rows of new fixes; a stamp that does not rise is none.
+std::vector<std::size_t> find_fixes(const Positions& at) {
+  std::vector<std::size_t> fixes;
+  for (std::size_t row = 0; row < at.time.size(); ++row) {
+    if (!at.all_there(row)) continue;
+    if (!fixes.empty()) {
+      const std::size_t last = fixes.back();
+      if (!(at.time[row] > at.time[last])) continue;
+      if (at.latitude[row] == at.latitude[last] && at.longitude[row] == at.longitude[last])
+        continue;
+    }
+    fixes.push_back(row);
+  }
+  return fixes;
+}
+
+/// The first fix of each part between gaps, and behind them their count.
+std::vector<std::size_t> find_parts(const std::vector<double>& time) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
+  const double gap = base::find_gap(intervals);
+  std::vector<std::size_t> parts{0};
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    if (intervals[i] > gap) parts.push_back(i + 1);
+  }
+  parts.push_back(time.size());
+  return parts;
+}
+
+/// The slope at `t` of the cubic with these ends and slopes there.
+double slope_between(double t, double t0, double t1, double p0, double p1, double v0, double v1) {
+  const double dt = t1 - t0;
+  const double s = (t - t0) / dt;
+  return 6.0 * s * (1.0 - s) * (p1 - p0) / dt + (1.0 - s) * (1.0 - 3.0 * s) * v0 +
+         s * (3.0 * s - 2.0) * v1;
+}
+
+/// At every row of `time`, from the fixes within the same part; NaN elsewhere.
+std::vector<double> velocity_at(const std::vector<double>& time, const std::vector<double>& fixed,
+                                const std::vector<std::size_t>& parts, const SmoothedTrack& track) {
+  std::vector<double> velocity(time.size(), nothing);
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    const auto after = std::ranges::upper_bound(fixed, time[row]);
+    if (!std::isfinite(time[row]) || after == fixed.begin()) continue;
+    const auto i = static_cast<std::size_t>(after - fixed.begin()) - 1;
+    if (time[row] == fixed[i]) {
+      velocity[row] = track.velocity[i];
+    } else if (i + 1 < fixed.size() && !std::ranges::binary_search(parts, i + 1)) {
+      velocity[row] =
+          slope_between(time[row], fixed[i], fixed[i + 1], track.position[i], track.position[i + 1],
+                        track.velocity[i], track.velocity[i + 1]);
+    }
+  }
+  return velocity;
+}
+
+std::vector<double> at_fixes(const std::vector<double>& values,
+                             const std::vector<std::size_t>& fixes) {
+  std::vector<double> chosen;
+  for (const std::size_t row : fixes) chosen.push_back(values[row]);
+  return chosen;
+}
+
+/// From the first one on, in other units.
+std::vector<double> offsets(std::vector<double> values, double scale) {
+  const double first = values.front();
+  for (double& value : values) value = scale * (value - first);
+  return values;
+}
+
+}  // namespace
+
+void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
+  const auto is_logged = [&](const char* name) {
+    return files::find_quantity(flight, name, UnitKind::speed).has_value();
+  };
+  if (flight.is_mapped() || std::ranges::any_of(std::array{"vn", "ve", "vd"}, is_logged)) return;
+  Positions at{files::read_quantity(flight, "time", UnitKind::time),
+               files::read_quantity(flight, "lat", UnitKind::angle),
+               files::read_quantity(flight, "lon", UnitKind::angle),
+               files::read_quantity(flight, "altitude", UnitKind::length)};
+  if (at.time.empty() || at.latitude.empty() || at.longitude.empty() || at.altitude.empty()) return;
+  const std::vector<std::size_t> fixes = find_fixes(at);
+  constexpr std::size_t fewest = 10;
+  if (fixes.size() < fewest) return;
+  const std::vector<double> time = offsets(at_fixes(at.time, fixes), 1.0);
+  std::vector<double> longitude = at_fixes(at.longitude, fixes);
+  numerics::unwrap(longitude);
+  const std::vector<std::size_t> parts = find_parts(time);
+  const Radii first = radii_at(at.latitude[fixes[0]], at.altitude[fixes[0]]);
+  const SmoothedTrack north =
+      smooth_track(time, offsets(at_fixes(at.latitude, fixes), first.north), parts);
+  const SmoothedTrack east = smooth_track(time, offsets(std::move(longitude), first.east), parts);
+  const SmoothedTrack down = smooth_track(time, offsets(at_fixes(at.altitude, fixes), -1.0), parts);
+  std::vector<double> rows = at.time;
+  for (double& t : rows) t -= at.time[fixes[0]];
+  std::vector<double> vn = velocity_at(rows, time, parts, north);
+  std::vector<double> ve = velocity_at(rows, time, parts, east);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (!at.all_there(row)) continue;
+    const Radii here = radii_at(at.latitude[row], at.altitude[row]);
+    vn[row] *= here.north / first.north;
+    ve[row] *= here.east / first.east;
+  }
+  flight.add("vn_mps", std::move(vn));
+  flight.add("ve_mps", std::move(ve));
+  flight.add("vd_mps", velocity_at(rows, time, parts, down));
+  notes.push_back(fmt::format(
+      "{}: velocity is from {} fixes of lat, lon and altitude, which are off by {:.2g} m (north), "
+      "{:.2g} m (east) and {:.2g} m (down) from a smooth track; its errors there are about {:.2g}, "
+      "{:.2g} and {:.2g} m/s",
+      flight.name(), fixes.size(), north.position_error, east.position_error, down.position_error,
+      north.velocity_error, east.velocity_error, down.velocity_error));
+}
+
+}  // namespace sepcal::logs

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Velocity of a log that has positions alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sepcal/flight/flight.hpp"
+
+namespace sepcal::logs {
+
+/// Where lat, lon, altitude and time are there and none of vn, ve and vd: adds vn_mps, ve_mps and
+/// vd_mps of the smoothed track, with a note. A row that repeats the position before it is no new
+/// fix; between fixes the velocity is that of the cubic through them. Logs that are longer than
+/// memory stay as they are.
+void derive_velocity(Flight& flight, std::vector<std::string>& notes);
+
+}  // namespace sepcal::logs
