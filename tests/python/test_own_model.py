@@ -5,6 +5,7 @@
 
 import gc
 import weakref
+from typing import Any
 
 import numpy as np
 import pytest
@@ -195,3 +196,35 @@ def test_what_at_changes_is_its_own() -> None:
 def test_an_own_model_tells_what_it_is() -> None:
     assert repr(sepcal.OwnModel(WindBox())).startswith("OwnModel(<")
     assert isinstance(sepcal.OwnModel(WindBox()), sepcal.Model)
+
+
+class NearlyAlike:
+    """Two columns that differ by `part` of one."""
+
+    inputs = {"x": "1"}
+    outputs = {"z": "1"}
+    linear = {"a": "1", "b": "1", "c": "1"}
+    nonlinear = {"k": ("1", -2.0, 2.0)}
+
+    def __init__(self, part: float) -> None:
+        self.part = part
+
+    def at(self, u: Any, xi2: Any) -> tuple[np.ndarray, np.ndarray]:
+        """A (N, 1, 3) and b (N, 1)."""
+        A = np.zeros((len(u.x), 1, 3))
+        A[:, 0] = np.column_stack([np.ones_like(u.x), u.x, u.x + self.part * np.sin(3 * u.x)])
+        return A, np.sin(xi2[0] * u.x)[:, None]
+
+
+@pytest.mark.parametrize("part", [1e-4, 1e-6, 3.6e-8])
+def test_columns_nearly_alike_are_told_apart(part: float) -> None:
+    """A condition of up to 1e8 costs no more digits than the singular values say."""
+    x = np.linspace(-1.0, 1.0, 2000)
+    model = NearlyAlike(part)
+    A = model.at(type("Inputs", (), {"x": x}), [0.8])[0][:, 0]
+    z = A @ [1.0, 2.0, 3.0] + np.sin(0.8 * x)
+    fit = sepcal.fit(model, {"x": x, "z": z}, fixed={"k": 0.8}, noise={"z": 1e-10})
+    assert fit.status == "converged"
+    expected = np.linalg.lstsq(A, z - np.sin(0.8 * x), rcond=None)[0]
+    found = [fit[name].value for name in "abc"]
+    assert found == pytest.approx(expected, rel=1e-6)
