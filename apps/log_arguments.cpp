@@ -39,7 +39,7 @@ void LogArguments::add_to(CLI::App& verb) {
       ->allow_extra_args(false);
   verb.add_option(
           "--where", typed_.where,
-          "takes only rows in which this holds, e.g. \"airspeed > 20 and not roll_deg > 45\"")
+          "takes only rows in which this holds, e.g. \"airspeed > 20 and abs(roll_deg) < 45\"")
       ->type_name("CONDITION")
       ->group(group);
   add_time(verb, "--from,--from-time", typed_.from_time, "takes only rows from this time on [s]");

@@ -60,7 +60,8 @@ TEST_CASE("a choice of columns that can't be is refused") {
                        "TAS, airspeed_kt",
                        Error);
   CHECK_THROWS_WITH_AS(read_as(log, {.map = {{"airspeed_kt", "TAS"}}}),
-                       Contains("there is a column 'airspeed_kt' already; ignore it"), Error);
+                       Contains("there is a column 'airspeed_kt' already; ignore airspeed_kt"),
+                       Error);
   CHECK_THROWS_WITH_AS(read_as(log, {.ignore = {"IAS"}}), Contains("ignore names IAS"), Error);
   CHECK_THROWS_WITH_AS(read_as(log, {.map = {{"maneuver", "TAS"}}}),
                        Contains("call that column maneuver"), Error);
@@ -185,6 +186,16 @@ TEST_CASE("a smoothed track is off by what it says, at any rate of fixes") {
       CHECK(error < 1.5 * track.velocity_error);
       CHECK(error > 0.4 * track.velocity_error);
     }
+  }
+}
+
+TEST_CASE("a track that stands or moves evenly has that velocity") {
+  const std::vector<double> time = ramp(0, 0.2, 100);
+  const auto still = sepcal::logs::smooth_track(time, std::vector<double>(100, 4.0), {0, 100});
+  const auto even = sepcal::logs::smooth_track(time, ramp(-5, 0.4, 100), {0, 50, 100});
+  for (std::size_t i = 0; i < 100; ++i) {
+    CHECK(std::abs(still.velocity[i]) < 1e-6);
+    CHECK(even.velocity[i] == Approx(2.0).epsilon(1e-4));
   }
 }
 

@@ -88,7 +88,7 @@ class FitOptions(TypedDict, total=False):
         drop_repeats: For flights: slow columns, e.g. ["airspeed"]; rows between their samples,
             which the log holds or interpolates, are dropped; of several the slowest counts
             [none].
-        where: For flights: only rows in which this holds, "airspeed > 20 and not roll_deg > 45"
+        where: For flights: only rows in which this holds, "airspeed > 20 and abs(roll_deg) < 45"
             [all].
         from_time: For flights: only rows from this time on [s]; not on another flight [all].
         to_time: The same up to this time [all].

@@ -232,3 +232,97 @@ def test_joined_logs_are_fitted_as_they_are(tube: Bench) -> None:
 )
 def test_bad_choices(tube: Bench, options: tuple[str, ...], words: tuple[str, ...]) -> None:
     assert_refused(tube, "fit", "flight.csv", *options, words=words)
+
+
+def every_fiftieth(rows: int) -> list[str]:
+    """A channel of 1 Hz in a log of 50 Hz."""
+    return [f"{12.5 - 0.001 * i:.4f}" if i % 50 == 0 else "" for i in range(rows)]
+
+
+@pytest.mark.parametrize(
+    ("header", "cells"),
+    [
+        ("voltage_v", every_fiftieth(800)),
+        ("every_other", ["7.25" if i % 2 else "" for i in range(800)]),
+        ("phase", ["climb" if i < 400 else "cruise" for i in range(800)]),
+        ("clock", [f"10:{i // 60:02}:{i % 60:02}" for i in range(800)]),
+        ("nothing", [""] * 800),
+        ("holes", ["" if i % 40 == 7 else "3.5" for i in range(800)]),
+    ],
+)
+def test_channels_that_hold_no_numbers_cost_nothing(
+    tube: Bench, header: str, cells: list[str]
+) -> None:
+    """A merged or foreign log: the fit is that without the column, and a note says so."""
+    log = tube.read_log()
+    log.add(header, cells)
+    (tube.folder / "merged.csv").write_text(log.text())
+    checked = tube.run("check", "merged.csv")
+    assert checked.code == 0, checked.err
+    done = tube.fit(flight="merged.csv")
+    assert done.code == 0, done.err
+    assert done.result["parameters"] == tube.fit().result["parameters"]
+    assert header in done.err
+
+
+def test_a_quantity_may_be_named_in_any_unit(tube: Bench) -> None:
+    """The file logs airspeed in m/s."""
+    in_knots = tube.fit("--where", "airspeed_kt > 35").result
+    inside = tube.fit("--where", f"airspeed > {35 * 1852 / 3600!r}").result
+    assert in_knots["parameters"] == inside["parameters"]
+    assert in_knots["inputs"]["rows_used"] < 800
+
+
+def test_a_map_is_for_logs_that_need_it(tube: Bench) -> None:
+    """A calibration of a foreign log looks at one with sepcal's own names."""
+    log = tube.read_log()
+    log.replace("airspeed_mps", log.column("airspeed_mps"), "TAS")
+    (tube.folder / "foreign.csv").write_text(log.text())
+    fitted = tube.fit("--map", "airspeed_mps=TAS", "-o", "f.json", flight="foreign.csv")
+    assert fitted.code == 0, fitted.err
+    compared = tube.run("compare", "flight.csv", "f.json", "--json")
+    assert compared.code == 0, compared.err
+    assert compared.result["inputs"]["rows_used"] == 800
+    assert tube.run("apply", "flight.csv", "f.json", "-o", "out.csv").code == 0
+
+
+@pytest.mark.parametrize("block", [(300, 301), (300, 302)])
+def test_a_stamp_that_is_off_is_refused(tube: Bench, block: tuple[int, int]) -> None:
+    """It is no clock that starts anew."""
+    log = tube.read_log()
+    time = log.column("time_s")
+    time[slice(*block)] -= 10.0
+    log.replace("time_s", time)
+    (tube.folder / "flight.csv").write_text(log.text())
+    assert_refused(tube, "fit", "flight.csv", words=("time_s runs back", "sort the rows"))
+
+
+def test_held_positions_give_every_row_a_velocity(tube: Bench) -> None:
+    """Fixes of 5 Hz in a faster log, the last of them held for a while; no fix at first is said."""
+    log = tube.read_log()
+    time = log.column("time_s")
+    east = np.cumsum(log.column("ve_mps") * np.gradient(time))
+    north = np.cumsum(log.column("vn_mps") * np.gradient(time))
+    fix = np.arange(800) // 4 * 4
+    for name in ("vn_mps", "ve_mps", "vd_mps"):
+        log.drop(name)
+    if "altitude_m" in log.headers:
+        log.drop("altitude_m")
+    latitude = 45.0 + np.degrees(north / 6_367_382.0)[fix]
+    longitude = 7.0 + np.degrees(east / 4_517_591.0)[fix]
+    log.add("lat_deg", latitude)
+    log.add("lon_deg", longitude)
+    log.add("altitude_m", np.zeros(800))
+    (tube.folder / "positions.csv").write_text(log.text())
+    done = tube.fit(flight="positions.csv")
+    assert done.code == 0, done.err
+    assert done.result["inputs"]["rows_used"] == 800
+    latitude[:50] = longitude[:50] = 0.0
+    log.replace("lat_deg", latitude)
+    log.replace("lon_deg", longitude)
+    (tube.folder / "flight.csv").write_text(log.text())
+    words = ("no velocity: no fix is near", "--drop-invalid")
+    assert_refused(tube, "fit", "flight.csv", words=words)
+    log.replace("lat_deg", latitude * 1e7)
+    (tube.folder / "flight.csv").write_text(log.text())
+    assert_refused(tube, "fit", "flight.csv", words=("lat_deg is", "beyond 90 degrees"))

@@ -30,9 +30,10 @@ void rename_columns(Flight& flight, const LogChoice& choice) {
     }
     if (header == logged) continue;
     if (flight.find(header) != nullptr) {
-      fail(
-          flight, "map",
-          fmt::format(" {}={}: there is a column '{}' already; ignore it", header, logged, header));
+      throw OptionError(
+          {flight.name() + ": ", Option{"map"},
+           fmt::format(" {}={}: there is a column '{}' already; ", header, logged, header),
+           Option{"ignore"}, " " + header});
     }
     flight.rename(logged, header);
   }

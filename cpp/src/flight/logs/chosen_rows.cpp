@@ -21,6 +21,22 @@ RowText labels_of(const Flight& flight) {
   };
 }
 
+/// A quantity that was logged in another unit than `name` says: "roll_deg" of roll_rad; empty where
+/// there is none.
+RowNumber in_other_unit(const std::string& name, const FindQuantity& find) {
+  const std::size_t split = name.rfind('_');
+  if (split == std::string::npos) return {};
+  const auto quantity = find(name.substr(0, split));
+  if (!quantity) return {};
+  const files::Unit* unit = files::find_unit(quantity->unit->kind, name.substr(split + 1));
+  if (unit == nullptr) return {};
+  const double zero = unit->convert(0.0);
+  const double one = unit->convert(1.0) - zero;
+  return [quantity = *quantity, zero, one](std::size_t row) {
+    return (quantity.at(row) - zero) / one;
+  };
+}
+
 }  // namespace
 
 RowTruth rows_where(const Flight& flight, const LogChoice& choice, const FindQuantity& find) {
@@ -32,6 +48,7 @@ RowTruth rows_where(const Flight& flight, const LogChoice& choice, const FindQua
     if (const auto quantity = find(name)) {
       return [quantity = *quantity](std::size_t row) { return quantity.at(row); };
     }
+    if (RowNumber converted = in_other_unit(name, find)) return converted;
     throw Error(fmt::format("'{}' is no column; {}", name, flight.list_columns()));
   };
   try {

@@ -16,7 +16,8 @@ namespace sepcal::logs {
 using FindQuantity = std::function<std::optional<files::LoggedQuantity>(const std::string& name)>;
 
 /// Whether `choice.where` holds; empty where there is none. Names are whole headers, as logged, or
-/// quantities. Throws OptionError for what is no condition, and for a name that is neither.
+/// quantities, in the unit used inside or in one that their name ends with. Throws OptionError for
+/// what is no condition, and for a name that is neither.
 RowTruth rows_where(const Flight& flight, const LogChoice& choice, const FindQuantity& find);
 
 /// Whether a row lies within `choice.from_time` and `choice.to_time`; empty where it has neither.

@@ -18,7 +18,8 @@ constexpr double least_gap = 1.0;          // s
 
 /// What time does in the rows that hold a number, in the column's own unit.
 struct Clock {
-  std::vector<std::size_t> restarts;                          // rows before which time runs back
+  std::vector<std::size_t> restarts;  // rows before which time runs back
+  bool to_the_start = true;           // each of them to the first half of the part before it
   double shortest = std::numeric_limits<double>::infinity();  // of these ways back
   std::vector<double> intervals;                              // within parts
 };
@@ -26,21 +27,25 @@ struct Clock {
 Clock read_clock(std::span<const double> time) {
   Clock clock;
   double before = std::numeric_limits<double>::quiet_NaN();
+  double began = before;
   for (std::size_t row = 0; row < time.size(); ++row) {
     if (!std::isfinite(time[row])) continue;
     if (time[row] < before) {
       clock.restarts.push_back(row);
       clock.shortest = std::min(clock.shortest, before - time[row]);
+      clock.to_the_start = clock.to_the_start && time[row] < 0.5 * (began + before);
     }
+    if (!(time[row] >= before)) began = time[row];
     if (time[row] > before) clock.intervals.push_back(time[row] - before);
     before = time[row];
   }
   return clock;
 }
 
-/// Parts of some rows each, and every way back as long as such a part: no rows out of order.
+/// Parts of some rows each, and every way back as long as such a part and to where the part before
+/// it began rather than where it ended: neither rows out of order nor a stamp that is off.
 bool starts_anew(const Clock& clock, std::size_t rows) {
-  if (clock.restarts.empty() || clock.intervals.empty()) return false;
+  if (clock.restarts.empty() || clock.intervals.empty() || !clock.to_the_start) return false;
   std::vector<double> intervals = clock.intervals;
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::ranges::nth_element(intervals, middle);

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 
 #include "flight/files/headers.hpp"
@@ -43,9 +45,16 @@ void convert_quaternion(Flight& flight, std::vector<std::string>& notes) {
     euler[1][row] = std::asin(std::clamp(2.0 * (w * y - x * z), -1.0, 1.0));
     euler[2][row] = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
   }
+  std::optional<Flight::Cell> no_length;
+  const auto bad = std::ranges::find_if_not(euler[0], [](double v) { return std::isfinite(v); });
+  if (bad != euler[0].end()) {
+    no_length = Flight::Cell{static_cast<std::size_t>(bad - euler[0].begin()),
+                             "no angle: qw to qz are no rotation"};
+  }
   for (const char* header : quaternion) flight.drop(header);
   for (std::size_t k = 0; k < euler_angles.size(); ++k) {
-    flight.add(fmt::format("{}_rad", euler_angles[k]), std::move(euler[k]));
+    const auto owned = std::make_shared<const std::vector<double>>(std::move(euler[k]));
+    flight.view(fmt::format("{}_rad", euler_angles[k]), *owned, owned, no_length);
   }
   notes.push_back(fmt::format(
       "{}: roll, pitch and yaw are from the quaternion qw, qx, qy, qz, body to north-east-down",

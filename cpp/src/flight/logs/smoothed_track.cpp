@@ -111,7 +111,8 @@ class Track {
       sum += bend * bend;
     }
     const auto count = static_cast<double>(std::max<std::size_t>(position.size(), 3) - 2);
-    return std::max(sum / (6.0 * count), std::numeric_limits<double>::min());
+    constexpr double least = 1e-8;  // m^2: positions that bend less have no noise
+    return std::max(sum / (6.0 * count), least);
   }
 
   /// From two fixes, before the first: of the acceleration nothing is known but that it is less
@@ -145,7 +146,9 @@ double find_density(const Track& track, const std::vector<std::size_t>& parts) {
   const auto cost = [&](double logarithm) {
     const Innovations seen = innovations_of(track, parts, std::exp(logarithm));
     const auto count = static_cast<double>(seen.count);
-    return count > 0.0 ? count * std::log(seen.squares / count) + seen.logs : 0.0;
+    constexpr double least = 1e-12;  // m^2
+    if (!(count > 0.0)) return 0.0;
+    return count * std::log(std::max(seen.squares / count, least)) + seen.logs;
   };
   constexpr double golden = 0.6180339887498949;
   double low = std::log(1e-9);

@@ -7,20 +7,23 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "base/gaps.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/logs/smoothed_track.hpp"
 #include "numerics/interpolated_column.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::logs {
 namespace {
 
 using files::UnitKind;
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_velocity = std::numeric_limits<double>::quiet_NaN();
 
 /// WGS 84: metres a radian of latitude and of longitude.
 struct Radii {
@@ -55,6 +58,7 @@ std::vector<std::size_t> find_fixes(const Positions& at) {
   std::vector<std::size_t> fixes;
   for (std::size_t row = 0; row < at.time.size(); ++row) {
     if (!at.all_there(row)) continue;
+    if (at.latitude[row] == 0.0 && at.longitude[row] == 0.0) continue;  // no fix yet
     if (!fixes.empty()) {
       const std::size_t last = fixes.back();
       if (!(at.time[row] > at.time[last])) continue;
@@ -64,6 +68,15 @@ std::vector<std::size_t> find_fixes(const Positions& at) {
     fixes.push_back(row);
   }
   return fixes;
+}
+
+/// The median step from one fix to the next.
+double usual_interval(const std::vector<double>& time) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  return *middle;
 }
 
 /// The first fix of each part between gaps, and behind them their count.
@@ -87,15 +100,22 @@ double slope_between(double t, double t0, double t1, double p0, double p1, doubl
          s * (3.0 * s - 2.0) * v1;
 }
 
-/// At every row of `time`, from the fixes within the same part; NaN elsewhere.
+/// At every row of `time`, from the fixes within the same part, and from the nearest one where that
+/// is not farther than `reach` [s]; NaN elsewhere.
 std::vector<double> velocity_at(const std::vector<double>& time, const std::vector<double>& fixed,
-                                const std::vector<std::size_t>& parts, const SmoothedTrack& track) {
-  std::vector<double> velocity(time.size(), nothing);
+                                const std::vector<std::size_t>& parts, const SmoothedTrack& track,
+                                double reach) {
+  std::vector<double> velocity(time.size(), no_velocity);
   for (std::size_t row = 0; row < time.size(); ++row) {
+    if (!std::isfinite(time[row])) continue;
     const auto after = std::ranges::upper_bound(fixed, time[row]);
-    if (!std::isfinite(time[row]) || after == fixed.begin()) continue;
+    if (after == fixed.begin()) {
+      if (fixed.front() - time[row] <= reach) velocity[row] = track.velocity.front();
+      continue;
+    }
     const auto i = static_cast<std::size_t>(after - fixed.begin()) - 1;
-    if (time[row] == fixed[i]) {
+    const bool is_last = i + 1 == fixed.size() || std::ranges::binary_search(parts, i + 1);
+    if (time[row] == fixed[i] || (is_last && time[row] - fixed[i] <= reach)) {
       velocity[row] = track.velocity[i];
     } else if (i + 1 < fixed.size() && !std::ranges::binary_search(parts, i + 1)) {
       velocity[row] =
@@ -120,6 +140,30 @@ std::vector<double> offsets(std::vector<double> values, double scale) {
   return values;
 }
 
+/// Throws Error for a latitude beyond the poles: another unit.
+void check_latitude(const Flight& flight, const Positions& at) {
+  constexpr double pole = std::numbers::pi / 2.0;
+  const auto beyond = std::ranges::find_if(
+      at.latitude, [](double latitude) { return std::abs(latitude) > 1.001 * pole; });
+  if (beyond == at.latitude.end()) return;
+  const auto row = static_cast<std::size_t>(beyond - at.latitude.begin());
+  const auto logged = files::find_quantity(flight, "lat", UnitKind::angle);
+  throw Error(fmt::format("{}: {} is {}, beyond 90 degrees: convert it, or ignore the column",
+                          flight.locate(row), logged->column->header, logged->column->values[row]));
+}
+
+/// Says in the column of what rows lack why they lack it.
+void add_velocity(Flight& flight, const char* header, std::vector<double> values) {
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  std::optional<Flight::Cell> first;
+  const auto bad = std::ranges::find_if_not(*owned, [](double v) { return std::isfinite(v); });
+  if (bad != owned->end()) {
+    first =
+        Flight::Cell{static_cast<std::size_t>(bad - owned->begin()), "no velocity: no fix is near"};
+  }
+  flight.view(header, *owned, owned, std::move(first));
+}
+
 }  // namespace
 
 void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
@@ -132,9 +176,10 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
                files::read_quantity(flight, "lon", UnitKind::angle),
                files::read_quantity(flight, "altitude", UnitKind::length)};
   if (at.time.empty() || at.latitude.empty() || at.longitude.empty() || at.altitude.empty()) return;
+  check_latitude(flight, at);
   const std::vector<std::size_t> fixes = find_fixes(at);
-  constexpr std::size_t fewest = 10;
-  if (fixes.size() < fewest) return;
+  constexpr std::size_t fewest_fixes = 10;
+  if (fixes.size() < fewest_fixes) return;
   const std::vector<double> time = offsets(at_fixes(at.time, fixes), 1.0);
   std::vector<double> longitude = at_fixes(at.longitude, fixes);
   numerics::unwrap(longitude);
@@ -146,17 +191,18 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
   const SmoothedTrack down = smooth_track(time, offsets(at_fixes(at.altitude, fixes), -1.0), parts);
   std::vector<double> rows = at.time;
   for (double& t : rows) t -= at.time[fixes[0]];
-  std::vector<double> vn = velocity_at(rows, time, parts, north);
-  std::vector<double> ve = velocity_at(rows, time, parts, east);
+  const double reach = 1.5 * usual_interval(time);
+  std::vector<double> vn = velocity_at(rows, time, parts, north, reach);
+  std::vector<double> ve = velocity_at(rows, time, parts, east, reach);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (!at.all_there(row)) continue;
     const Radii here = radii_at(at.latitude[row], at.altitude[row]);
     vn[row] *= here.north / first.north;
     ve[row] *= here.east / first.east;
   }
-  flight.add("vn_mps", std::move(vn));
-  flight.add("ve_mps", std::move(ve));
-  flight.add("vd_mps", velocity_at(rows, time, parts, down));
+  add_velocity(flight, "vn_mps", std::move(vn));
+  add_velocity(flight, "ve_mps", std::move(ve));
+  add_velocity(flight, "vd_mps", velocity_at(rows, time, parts, down, reach));
   notes.push_back(fmt::format(
       "{}: velocity is from {} fixes of lat, lon and altitude, which are off by {:.2g} m (north), "
       "{:.2g} m (east) and {:.2g} m (down) from a smooth track; its errors there are about {:.2g}, "

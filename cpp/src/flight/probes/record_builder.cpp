@@ -145,10 +145,12 @@ void RecordBuilder::fail_missing(std::span<const std::string_view> names) const 
   std::vector<std::string> others;
   std::ranges::transform(names.subspan(1), std::back_inserter(others), inside);
   throw Error(fmt::format(
-      "{}: {}{}; {}", flight_.name(),
+      "{}: {}{}; {}{}", flight_.name(),
       files::describe_missing(names.front(), quantity_of(names.front()).kind, other_headers()),
       others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
-      flight_.list_columns()));
+      flight_.list_columns(),
+      flight_.is_mapped() ? "; quaternions and positions of a streamed log are not converted"
+                          : ""));
 }
 
 void RecordBuilder::need(Names names) {
@@ -209,9 +211,10 @@ void RecordBuilder::check_time() const {
     const double now = time.at(row);
     if (last && !(now > before)) {
       throw Error(fmt::format(
-          "{}: {} {} at {}, after {}; time must increase: sort the rows and delete repeated ones",
+          "{}: {} {} at {}, after {}; time must increase: sort the rows and delete repeated ones{}",
           flight_.locate(row), time.column->header, now == before ? "repeats" : "runs back",
-          time.column->values[row], time.column->values[*last]));
+          time.column->values[row], time.column->values[*last],
+          flight_.is_mapped() ? "; clocks of a streamed log are not joined" : ""));
     }
     last = row;
     before = now;

@@ -79,7 +79,8 @@ Runs find_equal_runs(std::span<const double> values, const std::vector<Segment>&
 /// a quantity at rest, and repeats that are few on the whole and uneven are one that now and then
 /// rests.
 double find_hold(const Runs& runs, const std::vector<double>& spacings, double step) {
-  if (runs.lengths.size() < fewest_to_tell) return 1.0;
+  if (runs.lengths.size() < fewest_to_tell || runs.jumps.empty()) return 1.0;
+  if (!std::isfinite(step) && spacings.empty()) return 1.0;
   const double least = std::isfinite(step) ? 2.5 * step : 15 * quantile(spacings, 0.1);
   if (quantile(runs.jumps, 0.5) < least) return 1.0;
   const auto mean_of = [&](double longest) {

@@ -23,8 +23,9 @@ using namespace verbs;  // this room's own
 namespace {
 
 /// As far as it can be read: what a fit left out for its own sake is calibrated all the same.
-LogChoice every_row(const Calibration& calibration) {
-  const LogChoice& chosen = calibration.options.log;
+LogChoice every_row(const Calibration& calibration, const Flight& flight) {
+  std::vector<std::string> unused;
+  const LogChoice chosen = choice_for(calibration, flight, unused);
   return {.map = chosen.map, .ignore = chosen.ignore, .drop_invalid = chosen.drop_invalid};
 }
 
@@ -74,7 +75,7 @@ std::vector<CorrectedColumn> correct_rows(const Calibration& calibration, const 
 }  // namespace
 
 std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight& flight) {
-  const LogChoice choice = every_row(calibration);
+  const LogChoice choice = every_row(calibration, flight);
   ReadFlight read = read_as(flight, choice);
   ProbeReadings readings = calibration.probe->read(read.flight, choice);
   auto columns = correct_with_effects(calibration, read.flight, readings);
@@ -95,7 +96,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   }
   OutputFile target(output);
   const Flight flight = stream ? stream_csv(file, {}, progress) : read_csv(file, progress);
-  const LogChoice choice = every_row(calibration);
+  const LogChoice choice = every_row(calibration, flight);
   const ReadFlight read = read_as(flight, choice);
   ProbeReadings readings = probe.read(read.flight, choice);
   auto columns = stream ? std::vector<CorrectedColumn>()

@@ -31,9 +31,15 @@ PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
 LogChoice choice_for(const Calibration& calibration, const Flight& flight,
                      std::vector<std::string>& notes) {
   LogChoice choice = calibration.options.log;
-  if (!is_other_flight(calibration, flight) || (!choice.from_time && !choice.to_time)) {
-    return choice;
-  }
+  if (!is_other_flight(calibration, flight)) return choice;
+  // Another log may have sepcal's names already, and lack what was in the way.
+  std::erase_if(choice.map, [&](const auto& names) {
+    return flight.find(names.second) == nullptr && flight.find(names.first) != nullptr;
+  });
+  std::erase_if(choice.ignore, [&](const std::string& header) {
+    return flight.find(header) == nullptr && !choice.map.contains(header);
+  });
+  if (!choice.from_time && !choice.to_time) return choice;
   notes.push_back(fmt::format(
       "{}: the times that the calibration was fitted within are of another log's clock: all times "
       "count here",
