@@ -98,7 +98,7 @@ TEST_CASE("products beside known columns are those of all columns, whitened") {
   for (const std::string& kind : noise_kinds) {
     const VectorXd e = bench.residual(kind, 5);
     const diagnosis::KnownProducts known(bench.families, bench.layout, bench.columns, e, orders);
-    for (const std::uint64_t seed : {11, 12}) {  // of each family twice: some is known by then
+    for (const std::uint64_t seed : {11UL, 12UL}) {  // of each family twice: some is known by then
       for (const diagnosis::FamilyFit& fit : bench.fit(bench.columns, bench.residual(kind, seed))) {
         for (const Index count : {0, 2}) {
           CAPTURE(kind);
