@@ -145,9 +145,9 @@ void check_latitude(const Flight& flight, const Positions& at) {
   constexpr double pole = std::numbers::pi / 2.0;
   const auto beyond = std::ranges::find_if(
       at.latitude, [](double latitude) { return std::abs(latitude) > 1.001 * pole; });
-  if (beyond == at.latitude.end()) return;
-  const auto row = static_cast<std::size_t>(beyond - at.latitude.begin());
   const auto logged = files::find_quantity(flight, "lat", UnitKind::angle);
+  if (beyond == at.latitude.end() || !logged) return;
+  const auto row = static_cast<std::size_t>(beyond - at.latitude.begin());
   throw Error(fmt::format("{}: {} is {}, beyond 90 degrees: convert it, or ignore the column",
                           flight.locate(row), logged->column->header, logged->column->values[row]));
 }
