@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <utility>
@@ -97,6 +98,12 @@ double find_gap_of(const Intervals& intervals) {
 }
 
 }  // namespace
+
+double usual_interval(std::vector<double> intervals) {
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  return *middle;
+}
 
 double find_gap(std::vector<double> intervals) {
   return find_gap_of(SortedIntervals(std::move(intervals)));

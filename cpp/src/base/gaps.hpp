@@ -14,6 +14,9 @@ namespace sepcal::base {
 /// jump by five, but one in twenty may be longer. Infinite where there is no interval.
 double find_gap(std::vector<double> intervals);
 
+/// The one in the middle of intervals, of an even number the upper one; there is at least one.
+double usual_interval(std::vector<double> intervals);
+
 /// A pass over intervals, each given to `visit`.
 using PassOverIntervals = std::function<void(const std::function<void(double)>& visit)>;
 

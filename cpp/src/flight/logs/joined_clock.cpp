@@ -46,10 +46,8 @@ Clock read_clock(std::span<const double> time) {
 /// it began rather than where it ended: neither rows out of order nor a stamp that is off.
 bool starts_anew(const Clock& clock, std::size_t rows) {
   if (clock.restarts.empty() || clock.intervals.empty() || !clock.to_the_start) return false;
-  std::vector<double> intervals = clock.intervals;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::ranges::nth_element(intervals, middle);
-  if (clock.shortest < static_cast<double>(shortest_part) * *middle) return false;
+  const double usual = base::usual_interval(clock.intervals);
+  if (clock.shortest < static_cast<double>(shortest_part) * usual) return false;
   std::size_t first = 0;
   for (const std::size_t restart : clock.restarts) {
     if (restart - first < shortest_part) return false;

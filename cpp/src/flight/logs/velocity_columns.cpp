@@ -70,25 +70,21 @@ std::vector<std::size_t> find_fixes(const Positions& at) {
   return fixes;
 }
 
-/// The median step from one fix to the next.
-double usual_interval(const std::vector<double>& time) {
+/// From one fix to the next.
+std::vector<double> intervals_of(const std::vector<double>& time) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::ranges::nth_element(intervals, middle);
-  return *middle;
+  return intervals;
 }
 
 /// The first fix of each part between gaps, and behind them their count.
-std::vector<std::size_t> find_parts(const std::vector<double>& time) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
+std::vector<std::size_t> find_parts(const std::vector<double>& intervals) {
   const double gap = base::find_gap(intervals);
   std::vector<std::size_t> parts{0};
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     if (intervals[i] > gap) parts.push_back(i + 1);
   }
-  parts.push_back(time.size());
+  parts.push_back(intervals.size() + 1);
   return parts;
 }
 
@@ -117,7 +113,7 @@ std::vector<double> velocity_at(const std::vector<double>& time, const std::vect
     const bool is_last = i + 1 == fixed.size() || std::ranges::binary_search(parts, i + 1);
     if (time[row] == fixed[i] || (is_last && time[row] - fixed[i] <= reach)) {
       velocity[row] = track.velocity[i];
-    } else if (i + 1 < fixed.size() && !std::ranges::binary_search(parts, i + 1)) {
+    } else if (!is_last) {
       velocity[row] =
           slope_between(time[row], fixed[i], fixed[i + 1], track.position[i], track.position[i + 1],
                         track.velocity[i], track.velocity[i + 1]);
@@ -183,7 +179,8 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
   const std::vector<double> time = offsets(at_fixes(at.time, fixes), 1.0);
   std::vector<double> longitude = at_fixes(at.longitude, fixes);
   numerics::unwrap(longitude);
-  const std::vector<std::size_t> parts = find_parts(time);
+  const std::vector<double> intervals = intervals_of(time);
+  const std::vector<std::size_t> parts = find_parts(intervals);
   const Radii first = radii_at(at.latitude[fixes[0]], at.altitude[fixes[0]]);
   const SmoothedTrack north =
       smooth_track(time, offsets(at_fixes(at.latitude, fixes), first.north), parts);
@@ -191,7 +188,7 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
   const SmoothedTrack down = smooth_track(time, offsets(at_fixes(at.altitude, fixes), -1.0), parts);
   std::vector<double> rows = at.time;
   for (double& t : rows) t -= at.time[fixes[0]];
-  const double reach = 1.5 * usual_interval(time);
+  const double reach = 1.5 * base::usual_interval(intervals);
   std::vector<double> vn = velocity_at(rows, time, parts, north, reach);
   std::vector<double> ve = velocity_at(rows, time, parts, east, reach);
   for (std::size_t row = 0; row < rows.size(); ++row) {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/excerpt.hpp"
+
 namespace sepcal::probes {
 
 class KeptRows {
@@ -80,10 +82,9 @@ class KeptRows {
   /// In pieces, until `visit(row)` is false.
   template <class Visit>
   void walk(const Visit& visit) const {
-    constexpr std::size_t piece = 16'384;
     for (const auto& [begin, end] : stretches_) {
-      for (std::size_t first = begin; first < end; first += piece) {
-        const std::size_t last = std::min(first + piece, end);
+      for (std::size_t first = begin; first < end; first += base::piece_rows) {
+        const std::size_t last = std::min(first + base::piece_rows, end);
         for (std::size_t row = first; row < last; ++row) {
           if (!visit(row)) return;
         }
