@@ -113,11 +113,12 @@ TEST_CASE("a block views the record's memory at its rows") {
   const auto& range = measurements.chunks().front()[1];
   std::vector<const double*> pointers;
   const sepcal::Block block = measurements.block(range, pointers);
-  CHECK(block.inputs[0] == record.column("u").data() + 256);
-  CHECK(block.first == 256);
-  CHECK(block.rows == 256);
+  CHECK(block.inputs[0] == record.column("u").data() + Measurements::block_rows);
+  CHECK(block.first == Measurements::block_rows);
+  CHECK(block.rows == Measurements::block_rows);
   CHECK_FALSE(block.starts_segment);
-  CHECK(measurements.output(0, range).data() == record.column("z").data() + 256);
+  CHECK(measurements.output(0, range).data() ==
+        record.column("z").data() + Measurements::block_rows);
 }
 
 TEST_CASE("the sum of squares is over the selected rows alone") {

@@ -35,6 +35,7 @@ using sepcal::Record;
 using sepcal::TriangularFactor;
 using sepcal::base::ThreadPool;
 using sepcal::lanes::LaneKit;
+using sepcal::lanes::Panel;
 using sepcal::lanes::ShippedModel;
 using sepcal::model::Measurements;
 using sepcal::model::PointFactors;
@@ -311,11 +312,9 @@ TEST_CASE("a factor in a lane is TriangularFactor's, down to a condition of 1e8"
           }
           expected[lane].absorb(own);
         }
-        std::vector<double*> columns;
-        for (std::size_t c = 0; c < static_cast<std::size_t>(n); ++c) {
-          columns.push_back(rows.data() + c * m * kit->width);
-        }
-        CHECK(kit->absorb[static_cast<std::size_t>(n)](T.data(), columns.data(), m));
+        const auto count = static_cast<std::size_t>(n);
+        const Panel panel = sepcal::lanes::stack_panel(*kit, count, T.data(), rows.data(), m);
+        CHECK(sepcal::lanes::absorb_panels(*kit, count, {&panel, 1}, m));
       }
       for (std::size_t lane = 0; lane < kit->width; ++lane) {
         MatrixXd own = MatrixXd::Zero(n, n);
@@ -451,6 +450,38 @@ TEST_CASE("a user's model with lanes fits as one without") {
     const double off = std::abs(parameter.value - other[parameter.name].value);
     CHECK(off < 1e-9 * parameter.standard_error);
   }
+}
+
+TEST_CASE("sine and cosine in lanes are right to an ulp, small angles and others side by side") {
+  using Wide = sepcal::Batch<xsimd::default_arch>;
+  constexpr std::size_t width = Wide::size;
+  const double quarter = std::atan(1.0);
+  Draws draws(74);
+  double largest = 0.0;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    alignas(64) std::array<double, width> x{};
+    alignas(64) std::array<double, width> cosine{};
+    alignas(64) std::array<double, width> sine{};
+    for (double& angle : x) angle = quarter * std::tanh(0.3 * (trial % 9) * draws.normal());
+    if (trial % 3 == 0) x[static_cast<std::size_t>(trial) % width] *= 50.0;
+    const auto [c, s] = sepcal::lanes::cos_sin(Wide::load_aligned(x.data()));
+    c.store_aligned(cosine.data());
+    s.store_aligned(sine.data());
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      const auto angle = static_cast<long double>(x[lane]);
+      const auto off_in_ulps = [](double value, long double truth) {
+        const auto rounded = std::abs(static_cast<double>(truth));
+        const double ulp = std::nextafter(rounded, 2.0) - rounded;
+        return std::abs(static_cast<double>(static_cast<long double>(value) - truth)) / ulp;
+      };
+      largest = std::max({largest, off_in_ulps(cosine[lane], std::cos(angle)),
+                          off_in_ulps(sine[lane], std::sin(angle))});
+    }
+  }
+  CHECK(largest < 1.5);
+  const auto [c, s] = sepcal::lanes::cos_sin(Wide(sepcal::not_a_number));
+  CHECK(std::isnan(c.get(0)));
+  CHECK(std::isnan(s.get(0)));
 }
 
 }  // namespace point_lanes_test

@@ -15,6 +15,24 @@ concept HoistedModel = requires(const M& model, const Vec<double, Sizes<M>::n_u>
   model.combine(model.prepare(u), model.settle(xi2));
 };
 
+/// [A, b] of a sample and what moves with xi2: D = d(A xi1 + b) / dxi2 (n_z x n_2).
+template <class X, int n_z, int n_1, int n_2>
+struct Tangent {
+  Affine<X, n_z, n_1> z;
+  Eigen::Matrix<X, n_z, n_2> D;
+};
+
+/// A hoisted model may also have its tangent by hand, tangent(prepared, settled, xi1), where dual
+/// numbers multiply many zeros. Lanes take it, all else takes dual numbers, and check_model() holds
+/// it against differences.
+template <class M>
+concept HasTangent =
+    HoistedModel<M> &&
+    requires(const M& model, const Vec<double, Sizes<M>::n_u>& u,
+             const Vec<double, Sizes<M>::n_2>& xi2, const Vec<double, Sizes<M>::n_1>& xi1) {
+      model.tangent(model.prepare(u), model.settle(xi2), xi1);
+    };
+
 }  // namespace sepcal
 
 /// The three of any model: where it doesn't tell, all is left to combine().

@@ -9,6 +9,7 @@
 #include <utility>
 #include <xsimd/xsimd.hpp>
 
+#include "sepcal/lane_angles.hpp"
 #include "sepcal/lanewise.hpp"
 
 namespace sepcal {
@@ -92,11 +93,11 @@ struct LaneDual {
   friend auto operator>(const LaneDual& x, double s) { return x.a > B(s); }
 
   friend LaneDual sin(const LaneDual& x) {
-    const auto [sine, cosine] = xsimd::sincos(x.a);
+    const auto [cosine, sine] = lanes::cos_sin(x.a);
     return chain(sine, cosine, x);
   }
   friend LaneDual cos(const LaneDual& x) {
-    const auto [sine, cosine] = xsimd::sincos(x.a);
+    const auto [cosine, sine] = lanes::cos_sin(x.a);
     return chain(cosine, -sine, x);
   }
   friend LaneDual exp(const LaneDual& x) {
@@ -133,7 +134,7 @@ struct Lanewise<LaneDual<Arch, N>> {
     return chosen;
   }
   static std::pair<T, T> cos_sin(const T& x) {
-    const auto [sine, cosine] = xsimd::sincos(x.a);
+    const auto [cosine, sine] = lanes::cos_sin(x.a);
     return {T::chain(cosine, -sine, x), T::chain(sine, cosine, x)};
   }
   static bool vanishes(const T& /*x*/) { return false; }

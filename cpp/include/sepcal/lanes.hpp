@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bitset>
 #include <cstddef>
 #include <new>
 #include <type_traits>
@@ -12,6 +13,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "sepcal/hoisted_model.hpp"
+#include "sepcal/lane_angles.hpp"
 #include "sepcal/lane_dual.hpp"
 #include "sepcal/lane_kernel.hpp"
 #include "sepcal/lanewise.hpp"
@@ -29,10 +31,7 @@ struct Lanewise<xsimd::batch<double, Arch>> {
   static T where(const xsimd::batch_bool<double, Arch>& condition, const T& yes, const T& no) {
     return xsimd::select(condition, yes, no);
   }
-  static std::pair<T, T> cos_sin(const T& x) {
-    const auto [sine, cosine] = xsimd::sincos(x);
-    return {cosine, sine};
-  }
+  static std::pair<T, T> cos_sin(const T& x) { return lanes::cos_sin(x); }
   static bool vanishes(const T& x) { return xsimd::all(x == T(0.0)); }
 };
 
@@ -65,6 +64,20 @@ namespace sepcal::lanes {
 // Kernels are flattened: a call to a model's part would pass its numbers through memory, and duals
 // of batches are large; tangents take 1.3 (AVX-512) to 1.8 times (AVX2) as long with the calls.
 
+/// A block's zero entries. A copy: a loop that stores what may be anything reads the block's own
+/// again for each row.
+template <int entries>
+using ZeroEntries = std::bitset<static_cast<std::size_t>(entries)>;
+
+template <int entries>
+ZeroEntries<entries> find_zero_entries(const LaneBlock& block) {
+  ZeroEntries<entries> zero;
+  for (std::size_t k = 0; block.zero != nullptr && k < zero.size(); ++k) {
+    zero[k] = block.zero[k] != 0;
+  }
+  return zero;
+}
+
 /// As LaneKernel::evaluate.
 template <class Arch, class M>
 [[gnu::flatten]] bool evaluate_points(const void* of_model, const LaneBlock& block,
@@ -82,6 +95,7 @@ template <class Arch, class M>
     for (int k = 0; k < n_u; ++k) u[k] = block.inputs[k][i];
     prepared[i] = hoisting::prepare(model, u);
   }
+  const ZeroEntries<n_z * n_1> left_out = find_zero_entries<n_z * n_1>(block);
   xsimd::batch_bool<double, Arch> left_out_holds(true);  // of a zero; NaN is none
   const std::size_t stride = block.rows * width;
   for (std::size_t t = 0; t < points.tiles; ++t) {
@@ -96,7 +110,7 @@ template <class Arch, class M>
       double* to = scratch + i * width;
       for (int j = 0; j < n_z; ++j) {
         for (int c = 0; c < n_1; ++c) {
-          if (block.zero != nullptr && block.zero[j * n_1 + c] != 0) {
+          if (left_out[static_cast<std::size_t>(j * n_1 + c)]) {
             left_out_holds = left_out_holds && z.A(j, c) == Batch<Arch>(0.0);
           } else {
             z.A(j, c).store_aligned(to);
@@ -144,6 +158,14 @@ void store_rows(const Batch<Arch>& values, std::size_t count, double* to) {
   for (std::size_t i = 0; i < count; ++i) to[i] = all[i];
 }
 
+/// n numbers, each in every lane.
+template <class Arch, int n>
+Vec<Batch<Arch>, n> same_in_all(const double* values) {
+  Vec<Batch<Arch>, n> x;
+  for (int k = 0; k < n; ++k) x[k] = Batch<Arch>(values[k]);
+  return x;
+}
+
 /// As LaneKernel::fill_values.
 template <class Arch, class M>
 [[gnu::flatten]] void fill_values(const void* of_model, const double* const* inputs,
@@ -153,9 +175,7 @@ template <class Arch, class M>
   constexpr int n_z = Sizes<M>::n_z;
   constexpr int n_1 = Sizes<M>::n_1;
   const M& model = *static_cast<const M*>(of_model);
-  Vec<Batch<Arch>, Sizes<M>::n_2> x;
-  for (int k = 0; k < Sizes<M>::n_2; ++k) x[k] = Batch<Arch>(xi2[k]);
-  const auto settled = hoisting::settle(model, x);
+  const auto settled = hoisting::settle(model, same_in_all<Arch, Sizes<M>::n_2>(xi2));
   for (std::size_t row = 0; row < rows; row += width) {
     const std::size_t count = std::min(width, rows - row);
     const auto z = hoisting::combine(
@@ -171,6 +191,56 @@ template <class Arch, class M>
   }
 }
 
+/// The tangent of any row at one point: by hand where the model has it so, else by dual numbers.
+template <class Arch, class M>
+class TangentAt {
+  using B = Batch<Arch>;
+  static constexpr int n_z = Sizes<M>::n_z;
+  static constexpr int n_1 = Sizes<M>::n_1;
+  static constexpr int n_2 = Sizes<M>::n_2;
+
+ public:
+  TangentAt(const M& model, const Vec<B, n_1>& xi1, const Vec<B, n_2>& xi2)
+      : model_(model), xi1_(xi1), settled_(settle(model, xi2)) {}
+
+  template <class Row>
+  Tangent<B, n_z, n_1, n_2> of(const Row& prepared) const {
+    if constexpr (HasTangent<M>) {
+      return model_.tangent(prepared, settled_, xi1_);
+    } else {
+      const auto z = hoisting::combine(model_, prepared, settled_);
+      Tangent<B, n_z, n_1, n_2> tangent;
+      for (int j = 0; j < n_z; ++j) {
+        tangent.z.b[j] = z.b[j].a;
+        auto slopes = z.b[j].v;
+        for (int c = 0; c < n_1; ++c) {
+          tangent.z.A(j, c) = z.A(j, c).a;
+          for (std::size_t i = 0; i < slopes.size(); ++i) {
+            slopes[i] = xsimd::fma(xi1_[c], z.A(j, c).v[i], slopes[i]);
+          }
+        }
+        for (int i = 0; i < n_2; ++i) tangent.D(j, i) = slopes[static_cast<std::size_t>(i)];
+      }
+      return tangent;
+    }
+  }
+
+ private:
+  static auto settle(const M& model, const Vec<B, n_2>& xi2) {
+    if constexpr (HasTangent<M>) {
+      return hoisting::settle(model, xi2);
+    } else {
+      Vec<LaneDual<Arch, n_2>, n_2> x;
+      for (int k = 0; k < n_2; ++k) x[k] = LaneDual<Arch, n_2>(xi2[k], k);
+      return hoisting::settle(model, x);
+    }
+  }
+
+  const M& model_;
+  Vec<B, n_1> xi1_;
+  decltype(settle(std::declval<const M&>(), Vec<B, n_2>())) settled_;
+};
+
 /// As LaneKernel::fill_tangent.
 template <class Arch, class M>
 [[gnu::flatten]] void fill_tangent(const void* of_model, const double* const* inputs,
@@ -180,29 +250,17 @@ template <class Arch, class M>
   constexpr int n_z = Sizes<M>::n_z;
   constexpr int n_1 = Sizes<M>::n_1;
   constexpr int n_2 = Sizes<M>::n_2;
-  using Dual = LaneDual<Arch, n_2>;
   const M& model = *static_cast<const M*>(of_model);
-  Vec<Dual, n_2> x;
-  for (int k = 0; k < n_2; ++k) x[k] = Dual(Batch<Arch>(xi2[k]), k);
-  const auto settled = hoisting::settle(model, x);
+  const TangentAt<Arch, M> tangent(model, same_in_all<Arch, n_1>(xi1), same_in_all<Arch, n_2>(xi2));
   for (std::size_t row = 0; row < rows; row += width) {
     const std::size_t count = std::min(width, rows - row);
-    const auto z = hoisting::combine(
-        model, hoisting::prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)),
-        settled);
+    const auto [z, D] =
+        tangent.of(hoisting::prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)));
     for (int j = 0; j < n_z; ++j) {
       double* own = to + static_cast<std::size_t>(j) * rows + row;
-      auto slopes = z.b[j].v;
-      for (int c = 0; c < n_1; ++c, own += stride) {
-        store_rows<Arch>(z.A(j, c).a, count, own);
-        for (std::size_t i = 0; i < slopes.size(); ++i) {
-          slopes[i] = xsimd::fma(Batch<Arch>(xi1[c]), z.A(j, c).v[i], slopes[i]);
-        }
-      }
-      for (std::size_t i = 0; i < slopes.size(); ++i, own += stride) {
-        store_rows<Arch>(slopes[i], count, own);
-      }
-      store_rows<Arch>(z.b[j].a, count, own);
+      for (int c = 0; c < n_1; ++c, own += stride) store_rows<Arch>(z.A(j, c), count, own);
+      for (int i = 0; i < n_2; ++i, own += stride) store_rows<Arch>(D(j, i), count, own);
+      store_rows<Arch>(z.b[j], count, own);
     }
   }
 }
@@ -274,32 +332,26 @@ template <class Arch, class M>
   constexpr int n_z = Sizes<M>::n_z;
   constexpr int n_1 = Sizes<M>::n_1;
   constexpr int n_2 = Sizes<M>::n_2;
-  using Dual = LaneDual<Arch, n_2>;
-  const M& model = *static_cast<const M*>(of_model);
   const auto entry = [](const double* of, std::size_t place) {
     return Batch<Arch>::load_aligned(of + place * width);
   };
   Vec<Batch<Arch>, n_1> xi1;
   for (int k = 0; k < n_1; ++k) xi1[k] = entry(trials.xi1, static_cast<std::size_t>(k));
-  Vec<Dual, n_2> xi2;
-  for (int k = 0; k < n_2; ++k) xi2[k] = Dual(entry(trials.xi2, static_cast<std::size_t>(k)), k);
-  const auto settled = hoisting::settle(model, xi2);
+  Vec<Batch<Arch>, n_2> xi2;
+  for (int k = 0; k < n_2; ++k) xi2[k] = entry(trials.xi2, static_cast<std::size_t>(k));
+  const TangentAt<Arch, M> tangent(*static_cast<const M*>(of_model), xi1, xi2);
   const auto* const prepared = static_cast<const Prepared<M>*>(trials.prepared);
   const std::size_t stride = trials.rows * width;
   for (std::size_t row = 0; row < trials.rows; ++row) {
-    const auto z = hoisting::combine(model, prepared[row], settled);
+    const auto [z, D] = tangent.of(prepared[row]);
     double* own = to + row * width;
     for (int j = 0; j < n_z; ++j) {
-      Batch<Arch> value = z.b[j].a;
-      auto slopes = z.b[j].v;
+      Batch<Arch> value = z.b[j];
       for (int c = 0; c < n_1; ++c, own += stride) {
-        z.A(j, c).a.store_aligned(own);
-        value = xsimd::fma(xi1[c], z.A(j, c).a, value);
-        for (std::size_t i = 0; i < slopes.size(); ++i) {
-          slopes[i] = xsimd::fma(xi1[c], z.A(j, c).v[i], slopes[i]);
-        }
+        z.A(j, c).store_aligned(own);
+        value = xsimd::fma(xi1[c], z.A(j, c), value);
       }
-      for (std::size_t i = 0; i < slopes.size(); ++i, own += stride) slopes[i].store_aligned(own);
+      for (int i = 0; i < n_2; ++i, own += stride) D(j, i).store_aligned(own);
       const std::size_t measured = static_cast<std::size_t>(j) * trials.z_stride + row;
       (entry(trials.z, measured) - value).store_aligned(own);
       own += stride;

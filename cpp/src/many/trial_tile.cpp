@@ -27,7 +27,8 @@ TrialTile::TrialTile(const estimation::Problem& problem, const TrialDesign& desi
       kit_(*lanes::lane_kit_of(width_)),
       given_noise_(problem.noise()),
       z_squares_(width_, 0.0) {
-  const std::size_t a_row = columns_ * width_ * sizeof(double);  // of one output
+  panels_.resize(n_z_);
+  const std::size_t a_row = n_z_ * columns_ * width_ * sizeof(double);
   panel_ = std::min(std::max(first_cache / a_row, most_lane_rows), design.rows());
   const std::size_t square = columns_ * columns_ * width_;
   z_.resize(n_z_ * design.rows() * width_);
@@ -61,10 +62,11 @@ void TrialTile::factor() {
     design_.model().fill_trials(trials, rows_.data());
     const std::size_t stride = trials.rows * width_;
     for (std::size_t j = 0; j < n_z_; ++j) {
-      // Whether lanes were safe, is_sound() tells of each by itself.
-      absorb(next_.data() + j * place(columns_, 0), rows_.data() + j * columns_ * stride,
-             trials.rows);
+      panels_[j] = lanes::stack_panel(kit_, columns_, next_.data() + j * place(columns_, 0),
+                                      rows_.data() + j * columns_ * stride, trials.rows);
     }
+    // Whether lanes were safe, is_sound() tells of each by itself.
+    lanes::absorb_panels(kit_, columns_, panels_, trials.rows);
   }
 }
 

@@ -71,8 +71,9 @@ class TrialTile {
   bool take_noise(std::size_t lane);
   const double* damp(const std::vector<double>& damping);
   /// Returns whether every lane was safe.
-  bool absorb(double* T, double* panel, std::size_t m) const {
-    return lanes::absorb_panel(kit_, columns_, T, panel, m);
+  bool absorb(double* T, double* rows, std::size_t m) const {
+    const lanes::Panel panel = lanes::stack_panel(kit_, columns_, T, rows, m);
+    return lanes::absorb_panels(kit_, columns_, {&panel, 1}, m);
   }
 
   std::size_t place(std::size_t row, std::size_t column) const {
@@ -86,8 +87,9 @@ class TrialTile {
   std::size_t n_z_;
   std::size_t columns_;  // n + 1
   const lanes::LaneKit& kit_;
-  std::size_t panel_;            // rows at a time
-  Eigen::VectorXd given_noise_;  // n_z, or empty
+  std::size_t panel_;                 // rows at a time
+  std::vector<lanes::Panel> panels_;  // n_z, of a pass
+  Eigen::VectorXd given_noise_;       // n_z, or empty
 
   std::vector<double> z_squares_;  // one a lane; what follows has an entry for each lane
   base::AlignedDoubles z_;         // n_z N

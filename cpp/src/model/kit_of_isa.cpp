@@ -19,10 +19,9 @@ namespace {
 
 using Arch = xsimd::default_arch;
 
-template <int... n>
-constexpr auto absorbers(std::integer_sequence<int, n...> /*columns*/) {
-  return std::array<bool (*)(double*, double* const*, std::size_t), sizeof...(n) + 1>{
-      nullptr, &LaneFactor<Arch, n + 1>::absorb...};
+template <std::size_t... n>
+constexpr auto absorbers(std::index_sequence<n...> /*columns*/) {
+  return std::array<AbsorbPanels, sizeof...(n) + 1>{nullptr, &LaneFactor<Arch, n + 1>::absorb...};
 }
 
 }  // namespace
@@ -34,6 +33,6 @@ constinit const LaneKit SEPCAL_KIT{
     {kernel_for<Arch, AttitudeIndependentMagnetometer>, kernel_for<Arch, FiveHoleProbe>,
      kernel_for<Arch, Magnetometer>, kernel_for<Arch, PitotStatic>,
      kernel_for<Arch, ScalarExample1>, kernel_for<Arch, ScalarExample2>},
-    absorbers(std::make_integer_sequence<int, most_columns>())};
+    absorbers(std::make_index_sequence<most_columns>())};
 
 }  // namespace sepcal::lanes

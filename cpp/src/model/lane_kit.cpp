@@ -69,11 +69,19 @@ const LaneKit& choose() {
 
 }  // namespace
 
-bool absorb_panel(const LaneKit& kit, std::size_t columns, double* T, double* panel,
-                  std::size_t m) {
-  std::array<double*, most_columns> begins{};
-  for (std::size_t c = 0; c < columns; ++c) begins[c] = panel + c * m * kit.width;
-  return kit.absorb[columns](T, begins.data(), m);
+Panel stack_panel(const LaneKit& kit, std::size_t columns, double* T, double* rows, std::size_t m) {
+  Panel panel{T};
+  for (std::size_t c = 0; c < columns; ++c) panel.columns[c] = rows + c * m * kit.width;
+  return panel;
+}
+
+bool absorb_panels(const LaneKit& kit, std::size_t columns, std::span<const Panel> panels,
+                   std::size_t m) {
+  bool safe = true;
+  for (; !panels.empty(); panels = panels.subspan(std::min(most_panels, panels.size()))) {
+    safe = kit.absorb[columns](panels.data(), std::min(most_panels, panels.size()), m) && safe;
+  }
+  return safe;
 }
 
 const LaneKit& lane_kit() {

@@ -23,16 +23,32 @@ enum class ShippedModel {
 };
 inline constexpr std::size_t shipped_models = 6;
 
+/// A factor T (n x n, upper; row i, column j in the lanes from (i * n + j) * width on) and rows
+/// that join it, column c's row i in the lanes from columns[c] + i * width on, left destroyed.
+struct Panel {
+  double* T = nullptr;
+  std::array<double*, most_columns> columns{};
+};
+
+inline constexpr std::size_t most_panels = 3;  // in step
+
+/// Each of `count` panels of m rows, most_panels at most: T becomes the factor of [T; rows].
+/// Returns whether every lane was safe.
+using AbsorbPanels = bool (*)(const Panel* panels, std::size_t count, std::size_t m);
+
 struct LaneKit {
   const char* name;  // "avx2"
   std::size_t width;
   std::array<LaneKernel, shipped_models> models;
-  /// By columns, as LaneFactor::absorb().
-  std::array<bool (*)(double* T, double* const* columns, std::size_t m), most_columns + 1> absorb;
+  std::array<AbsorbPanels, most_columns + 1> absorb;  // by columns
 };
 
-/// Absorbs a panel of m rows, its columns one below the other, behind the factor T.
-bool absorb_panel(const LaneKit& kit, std::size_t columns, double* T, double* panel, std::size_t m);
+/// Columns of m rows one below the other, to join the factor T.
+Panel stack_panel(const LaneKit& kit, std::size_t columns, double* T, double* rows, std::size_t m);
+
+/// Absorbs any number of panels, of as many columns each, those side by side in step.
+bool absorb_panels(const LaneKit& kit, std::size_t columns, std::span<const Panel> panels,
+                   std::size_t m);
 
 /// The kit that SEPCAL_ISA names ("baseline", "avx2", "avx512"), else the widest that the processor
 /// takes. Throws Error for a name that is unknown or that the processor can't run.

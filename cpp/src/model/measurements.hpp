@@ -59,7 +59,7 @@ class Measurements {
   /// Sum of z^2 of output j.
   double output_square(int j) const { return output_squares_[static_cast<std::size_t>(j)]; }
 
-  static constexpr std::size_t block_rows = 256;   // one output's [A D r] stays in the first cache
+  static constexpr std::size_t block_rows = 128;   // all outputs' [A D r] stay in the first cache
   static constexpr std::size_t chunk_rows = 4096;  // enough work to be worth a thread's while
 
  private:

@@ -35,6 +35,17 @@ void for_each_lane_block(const Measurements& measurements, const Measurements::R
   }
 }
 
+/// Outputs of as many columns, as far as they follow each other: the first of them and their count.
+template <class Visit>
+void for_each_alike(const std::vector<std::vector<Index>>& kept, const Visit& visit) {
+  for (std::size_t first = 0; first < kept.size();) {
+    std::size_t last = first;
+    while (last < kept.size() && kept[last].size() == kept[first].size()) ++last;
+    visit(first, last - first);
+    first = last;
+  }
+}
+
 /// Points by tile, parameter and lane; the last tile is filled up with its first point.
 AlignedDoubles pack(const MatrixXd& points, std::size_t tiles, std::size_t width) {
   AlignedDoubles packed;
@@ -115,7 +126,8 @@ bool PointLanes::merge(const double* by_output, double* merged) const {
     }
     by_output += n * n * width_;
     if (wide.empty()) {
-      safe = lanes::absorb_panel(*kit_, columns, merged, rows.data(), n) && safe;
+      const lanes::Panel panel = lanes::stack_panel(*kit_, columns, merged, rows.data(), n);
+      safe = lanes::absorb_panels(*kit_, columns, {&panel, 1}, n) && safe;
       continue;
     }
     using Strided = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
@@ -151,6 +163,7 @@ PointFactors PointLanes::factor(const MatrixXd& points,
     begins.push_back(begins.back() + kept.size() * kept.size() * width_);
   AlignedDoubles factors(tiles * begins.back(), 0.0);
   std::vector<bool> clear(tiles, true);
+  std::vector<lanes::Panel> panels(outputs);
   bool zeros_hold = true;
   for (const auto& chunk : measurements_.chunks()) {
     for (const Measurements::Range& range : chunk) {
@@ -160,10 +173,15 @@ PointFactors PointLanes::factor(const MatrixXd& points,
         const auto absorb = [&](std::size_t tile, double* rows) {
           for (std::size_t j = 0; j < outputs; ++j) {
             double* T = factors.data() + tile * begins.back() + begins[j];
-            if (!lanes::absorb_panel(*kit_, kept_[j].size(), T, rows, block.rows))
-              clear[tile] = false;
+            panels[j] = lanes::stack_panel(*kit_, kept_[j].size(), T, rows, block.rows);
             rows += kept_[j].size() * block.rows * width_;
           }
+          for_each_alike(kept_, [&](std::size_t first, std::size_t alike) {
+            if (!lanes::absorb_panels(*kit_, kept_[first].size(),
+                                      std::span(panels).subspan(first, alike), block.rows)) {
+              clear[tile] = false;
+            }
+          });
         };
         if (!model_.evaluate_lanes(block, {packed.data(), tiles}, scratch.data(), absorb)) {
           zeros_hold = false;

@@ -29,22 +29,38 @@ void RowLanes::begin_anew(const Eigen::Ref<MatrixXd>& rows) {
   used_ = true;
 }
 
-void RowLanes::absorb(Eigen::Ref<MatrixXd> rows) {
+std::optional<lanes::Panel> RowLanes::take_rows(Eigen::Ref<MatrixXd> rows) {
   const std::size_t width = kit_.width;
   const auto stride = static_cast<std::size_t>(rows.outerStride());
-  const auto count = static_cast<std::size_t>(rows.rows());
   const std::size_t alignment = width * sizeof(double);
   const bool aligned = reinterpret_cast<std::uintptr_t>(rows.data()) % alignment == 0 &&  // NOLINT
-                       stride % width == 0 && count % width == 0;
+                       stride % width == 0 && static_cast<std::size_t>(rows.rows()) % width == 0;
   if (!aligned) {
     beside_.absorb(rows);
-    return;
+    return {};
   }
   if (!fits(rows)) begin_anew(rows);
-  if (kept_.empty()) return;
-  std::array<double*, lanes::most_columns> columns{};
-  for (std::size_t c = 0; c < kept_.size(); ++c) columns[c] = rows.col(kept_[c]).data();
-  if (!kit_.absorb[kept_.size()](triangles_.data(), columns.data(), count / width)) safe_ = false;
+  if (kept_.empty()) return {};
+  lanes::Panel panel{triangles_.data()};
+  for (std::size_t c = 0; c < kept_.size(); ++c) panel.columns[c] = rows.col(kept_[c]).data();
+  return panel;
+}
+
+void RowLanes::absorb_outputs(std::span<RowLanes> outputs, Eigen::Ref<MatrixXd> rows) {
+  const Index own = rows.rows() / static_cast<Index>(outputs.size());
+  std::array<std::vector<lanes::Panel>, lanes::most_columns + 1> panels;  // by columns
+  for (std::size_t j = 0; j < outputs.size(); ++j) {
+    const auto panel = outputs[j].take_rows(rows.middleRows(static_cast<Index>(j) * own, own));
+    if (panel) panels[outputs[j].kept_.size()].push_back(*panel);
+  }
+  const lanes::LaneKit& kit = outputs.front().kit_;
+  for (std::size_t columns = 1; columns < panels.size(); ++columns) {
+    const auto m = static_cast<std::size_t>(own) / kit.width;
+    if (lanes::absorb_panels(kit, columns, panels[columns], m)) continue;
+    for (RowLanes& output : outputs) {
+      if (output.kept_.size() == columns) output.safe_ = false;
+    }
+  }
 }
 
 TriangularFactor RowLanes::merge() const {

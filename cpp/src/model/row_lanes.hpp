@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One output's factor of many rows, the rows dealt to lanes: each lane has a triangle of its own,
+// An output's factor of many rows, the rows dealt to lanes: each lane has a triangle of its own,
 // and at the end these are merged. A column that is zero in every row costs nothing.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "base/aligned_doubles.hpp"
@@ -21,7 +23,9 @@ class RowLanes {
 
   /// As TriangularFactor::absorb(). Rows that are no whole number of lanes, or lie where registers
   /// don't load them, go to a factor beside the lanes.
-  void absorb(Eigen::Ref<Eigen::MatrixXd> rows);
+  void absorb(Eigen::Ref<Eigen::MatrixXd> rows) { absorb_outputs({this, 1}, rows); }
+  /// The same for several outputs at once, rows stacked output by output.
+  static void absorb_outputs(std::span<RowLanes> outputs, Eigen::Ref<Eigen::MatrixXd> rows);
 
   /// False: a square has underflowed or overflowed, and the rows must be absorbed without lanes.
   bool is_safe() const { return safe_; }
@@ -29,6 +33,9 @@ class RowLanes {
   TriangularFactor merge() const;
 
  private:
+  /// What of an output's rows goes to the lanes, of all columns that are kept; nothing where they
+  /// went beside them, or where no column is.
+  std::optional<lanes::Panel> take_rows(Eigen::Ref<Eigen::MatrixXd> rows);
   /// Whether every column that is left out is zero here, too.
   bool fits(const Eigen::Ref<Eigen::MatrixXd>& rows) const;
   /// Leaves out the columns that are zero, behind what lanes have seen so far.

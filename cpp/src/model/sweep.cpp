@@ -23,8 +23,7 @@ using Factors = std::vector<TriangularFactor>;
 Index rows_of(const Measurements::Range& range) { return static_cast<Index>(range.rows); }
 
 /// One factor an output, from rows stacked output by output.
-template <class Factor>
-void absorb_by_output(Ref<MatrixXd> rows, Index block_rows, std::vector<Factor>& factors) {
+void absorb_by_output(Ref<MatrixXd> rows, Index block_rows, Factors& factors) {
   for (std::size_t j = 0; j < factors.size(); ++j) {
     factors[j].absorb(rows.middleRows(static_cast<Index>(j) * block_rows, block_rows));
   }
@@ -104,7 +103,7 @@ Factors Sweep::factor_blocks(int columns, const FillRows& fill) const {
           if (lanes[c].empty()) lanes[c] = std::vector<RowLanes>(outputs, RowLanes(columns));
           auto rows = scratch.shape(n_z * rows_of(range), columns);
           fill(block, range, carry, rows);
-          absorb_by_output(rows, rows_of(range), lanes[c]);
+          RowLanes::absorb_outputs(lanes[c], rows);
         },
         [&](std::size_t c) {
           Factors factors;

@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "sepcal/eigen.hpp"
+#include "sepcal/hoisted_model.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
 #include "sepcal/rotation.hpp"
@@ -86,13 +88,23 @@ struct FiveHoleProbe {
   template <class U, class X>
   static Affine<X, 3, 5> combine(const Prepared<U>& row, const Settled<X>& settled) {
     const Vec<X, 2> angles = flow_angles<U, X>(row.alpha, row.beta, settled.xi2);
-    const Vec<X, 3> F = row.C_bn * air_direction<X>(angles[0], angles[1], settled);
-    Affine<X, 3, 5> z;
-    z.A.col(0) = F * row.airspeed;                                     // lambda_va
-    z.A.col(1) = F;                                                    // b_va
-    z.A.template rightCols<3>() = Eigen::Matrix<X, 3, 3>::Identity();  // w_n, w_e, w_d
-    z.b = z.A.col(0) - row.of_rotation.template cast<X>();
-    return z;
+    return place(row, air_direction(angles[0], angles[1], settled));
+  }
+
+  /// With d(A xi1 + b)/dxi2 by hand: the air's direction alone moves with xi2.
+  template <class U, class X>
+  static Tangent<X, 3, 5, 5> tangent(const Prepared<U>& row, const Settled<X>& settled,
+                                     const Vec<X, 5>& xi1) {
+    const Vec<X, 2> angles = flow_angles<U, X>(row.alpha, row.beta, settled.xi2);
+    const AirDirection<X> air(angles[0], angles[1]);
+    const Vec<X, 3> in_body = to_body(air.at(), settled);
+    const X speed = row.airspeed * (1.0 + xi1[0]) + xi1[1];
+    const Vec<X, 3> by_alpha = row.C_bn * to_body(air.by_alpha(), settled) * speed;
+    const Vec<X, 3> by_beta = row.C_bn * to_body(air.by_beta(), settled) * speed;
+    const Vec<X, 3> by_eps = row.C_bn * Vec<X, 3>(X(0.0), in_body[2], -in_body[1]) * speed;
+    Tangent<X, 3, 5, 5> result{place(row, in_body), {}};
+    result.D << by_alpha * row.alpha, by_alpha, by_beta * row.beta, by_beta, by_eps;
+    return result;
   }
 
   template <class U, class X>
@@ -109,11 +121,41 @@ struct FiveHoleProbe {
   /// C(eps) [cos a cos b, sin b, sin a cos b]: the air's direction in body axes (Eqs. 38, 41).
   template <class X>
   static Vec<X, 3> air_direction(const X& alpha, const X& beta, const Settled<X>& settled) {
-    const auto [cos_a, sin_a] = cos_sin(alpha);
-    const auto [cos_b, sin_b] = cos_sin(beta);
-    const X z = sin_a * cos_b;
-    return {cos_a * cos_b, settled.cos_eps * sin_b + settled.sin_eps * z,
-            settled.cos_eps * z - settled.sin_eps * sin_b};
+    return to_body(AirDirection<X>(alpha, beta).at(), settled);
+  }
+
+ private:
+  /// The air's direction in the probe's axes, and its slopes.
+  template <class X>
+  struct AirDirection {
+    AirDirection(const X& alpha, const X& beta) {
+      std::tie(cos_a, sin_a) = cos_sin(alpha);
+      std::tie(cos_b, sin_b) = cos_sin(beta);
+    }
+    Vec<X, 3> at() const { return {cos_a * cos_b, sin_b, sin_a * cos_b}; }
+    Vec<X, 3> by_alpha() const { return {-sin_a * cos_b, X(0.0), cos_a * cos_b}; }
+    Vec<X, 3> by_beta() const { return {-cos_a * sin_b, cos_b, -sin_a * sin_b}; }
+
+    X cos_a, sin_a, cos_b, sin_b;
+  };
+
+  /// C(eps) x (Eq. 41).
+  template <class X>
+  static Vec<X, 3> to_body(const Vec<X, 3>& x, const Settled<X>& settled) {
+    return {x[0], settled.cos_eps * x[1] + settled.sin_eps * x[2],
+            settled.cos_eps * x[2] - settled.sin_eps * x[1]};
+  }
+
+  /// A and b of a row whose air comes from there, in body axes.
+  template <class U, class X>
+  static Affine<X, 3, 5> place(const Prepared<U>& row, const Vec<X, 3>& in_body) {
+    const Vec<X, 3> F = row.C_bn * in_body;
+    Affine<X, 3, 5> z;
+    z.A.col(0) = F * row.airspeed;                                     // lambda_va
+    z.A.col(1) = F;                                                    // b_va
+    z.A.template rightCols<3>() = Eigen::Matrix<X, 3, 3>::Identity();  // w_n, w_e, w_d
+    z.b = z.A.col(0) - row.of_rotation.template cast<X>();
+    return z;
   }
 };
 
