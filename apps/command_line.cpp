@@ -80,7 +80,7 @@ class CommandLine {
             add_later_verb("intervals", "says how far each parameter may lie, by the likelihood")),
         diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
         add_(add_later_verb("add", "adds a physical effect and fits again")),
-        apply_(add_later_verb("apply", "adds the calibrated readings to a log")),
+        apply_(add_later_verb("apply", "adds the calibrated readings to a log", false)),
         simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
     add_flight(*check_);
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
@@ -90,6 +90,12 @@ class CommandLine {
     add_json(*check_);
 
     add_flight(*fit_);
+    add_more_flights(*fit_, "other flights, fitted jointly with it");
+    fit_->add_option("--own", typed_.own,
+                     "of several flights: parameters that each has for itself, e.g. wind")
+        ->type_name("NAME[,...]")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     add_file(*fit_, "-o,--output", typed_.output, "writes the calibration there")
         ->type_name("BASE.json");
     instrument.add_probe_options(*fit_);
@@ -127,9 +133,10 @@ class CommandLine {
 
  private:
   /// A verb that takes a calibration and a flight.
-  CLI::App* add_later_verb(const char* name, const char* what) {
+  CLI::App* add_later_verb(const char* name, const char* what, bool of_several = true) {
     CLI::App& verb = *cli_.add_subcommand(name, what);
     add_flight(verb);
+    if (of_several) add_other_flights(verb);
     add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
     typed_.log.add_to(verb);
     add_explain(verb);
@@ -139,6 +146,19 @@ class CommandLine {
 
   void add_flight(CLI::App& verb) {
     add_file(verb, "FLIGHT", typed_.flight, "the log, a CSV file")->required();
+  }
+
+  CLI::Option* add_more_flights(CLI::App& verb, const std::string& what) {
+    return verb.add_option("MORE", typed_.more_flights, what)->type_name("CSV");
+  }
+
+  /// Before CALIBRATION, from which their ending tells them.
+  void add_other_flights(CLI::App& verb) {
+    verb.validate_positionals();
+    add_more_flights(verb, "the other flights of a joint fit, whose names end in .csv")
+        ->check([](const std::string& file) {
+          return std::string(file.ends_with(".csv") ? "" : "the name of a log ends in .csv");
+        });
   }
 
   void add_json(CLI::App& verb) {

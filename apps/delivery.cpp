@@ -31,7 +31,7 @@ int exit_code(FitStatus status) {
   }
 }
 
-Delivery::Delivery(Wishes wishes, std::initializer_list<std::string> inputs)
+Delivery::Delivery(Wishes wishes, const std::vector<std::string>& inputs)
     : wishes_(std::move(wishes)) {
   if (wishes_.output.empty()) return;
   for (const std::string& input : inputs) check_not_input(wishes_.output, input);

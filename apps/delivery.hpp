@@ -34,7 +34,7 @@ class Delivery {
 
   /// The file is opened before the work, so that one that can't be written is refused at once.
   /// Throws Error where -o names one of `inputs` or can't be written.
-  Delivery(Wishes wishes, std::initializer_list<std::string> inputs);
+  Delivery(Wishes wishes, const std::vector<std::string>& inputs);
 
   template <class Result>
   void deliver(const Result& result) {

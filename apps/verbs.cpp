@@ -19,6 +19,7 @@
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
+#include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/read_as.hpp"
 
@@ -38,27 +39,71 @@ int exit_code(Verdict verdict) {
 
 }  // namespace
 
-Flight Verbs::read_flight(int threads) const {
+Flight Verbs::read_flight(int threads) const { return read_flight(arguments_.flight, threads); }
+
+Flight Verbs::read_flight(const std::string& file, int threads) const {
   ProgressLine line;
-  const auto show = [&](double fraction) { line.show("reading " + arguments_.flight, fraction); };
-  if (!arguments_.stream) return read_csv(arguments_.flight, show, threads);
-  return stream_csv(arguments_.flight, {}, show, threads);
+  const auto show = [&](double fraction) { line.show("reading " + file, fraction); };
+  if (!arguments_.stream) return read_csv(file, show, threads);
+  return stream_csv(file, {}, show, threads);
+}
+
+std::vector<std::string> Verbs::flight_files() const {
+  std::vector<std::string> files{arguments_.flight};
+  files.insert(files.end(), arguments_.more_flights.begin(), arguments_.more_flights.end());
+  return files;
+}
+
+std::vector<Flight> Verbs::read_flights(int threads) const {
+  std::vector<Flight> flights;
+  for (const std::string& file : flight_files()) flights.push_back(read_flight(file, threads));
+  return flights;
+}
+
+Verbs::Subject Verbs::read_subject() const {
+  Calibration calibration = read_base();
+  if (arguments_.more_flights.empty()) {
+    Flight flight = read_flight();
+    return {for_flight(calibration, flight), std::move(flight)};
+  }
+  std::vector<std::string> notes;
+  Flight joined = rejoin_flights(calibration, read_flights(), notes);
+  print_notes(notes);
+  return {std::move(calibration), std::move(joined)};
+}
+
+Verbs::Subject Verbs::read_whole_subject() const {
+  const Calibration calibration = read_base();
+  const JointSetup* const joint = joint_setup(*calibration.probe);
+  if (joint != nullptr && arguments_.more_flights.empty()) {
+    throw Error(fmt::format("{} is of {} flights; give them all", arguments_.calibration,
+                            joint->flights.size()));
+  }
+  return read_subject();
 }
 
 Calibration Verbs::read_base() const {
   Calibration calibration = read_calibration(arguments_.calibration, instrument_.app());
   calibration.options.log = arguments_.log.over(std::move(calibration.options.log));
-  calibration.probe = instrument_.probe_for_flight(calibration.probe);
+  if (joint_setup(*calibration.probe) == nullptr) {
+    calibration.probe = instrument_.probe_for_flight(calibration.probe);
+  }
   return calibration;
 }
 
 int Verbs::fit(CalibrationOptions options) const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
-  const Flight flight = read_flight(options.fit.threads);
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, flight_files());
+  const std::vector<Flight> flights = read_flights(options.fit.threads);
+  const Flight& flight = flights.front();
+  if (flights.size() == 1 && !arguments_.own.empty()) {
+    throw Error("--own is of several flights; give them, or leave it out");
+  }
   ProgressLine line;
   options.fit.progress = shown_on(line);
-  const Calibration calibration =
-      calibrate(instrument_.probe(read_as(flight, options.log).flight), flight, options);
+  const auto probe = instrument_.probe(read_as(flight, options.log).flight);
+  const Calibration calibration = flights.size() == 1
+                                      ? calibrate(probe, flight, options)
+                                      : calibrate_jointly(probe, flights, arguments_.own, options);
   line.clear();
   delivery.deliver(calibration);
   return exit_code(calibration.fit.status);
@@ -76,16 +121,19 @@ int Verbs::check() const {
 
 int Verbs::compare() const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {});
-  const Calibration calibration = read_base();
-  delivery.deliver(sepcal::compare(calibration, read_flight()));
+  const auto [calibration, flight] = read_subject();
+  check_known(calibration, flight);
+  delivery.deliver(sepcal::compare(calibration, flight));
   return 0;
 }
 
 int Verbs::intervals() const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain},
-                    {arguments_.flight, arguments_.calibration});
-  const Calibration base = read_base();
-  const Flight flight = read_flight();
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, [this] {
+    auto files = flight_files();
+    files.push_back(arguments_.calibration);
+    return files;
+  }());
+  const auto [base, flight] = read_whole_subject();
   ProgressLine line;
   const FlightIntervals intervals = find_intervals(
       base, flight,
@@ -96,12 +144,14 @@ int Verbs::intervals() const {
 }
 
 int Verbs::diagnose() const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain},
-                    {arguments_.flight, arguments_.calibration});
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, [this] {
+    auto files = flight_files();
+    files.push_back(arguments_.calibration);
+    return files;
+  }());
   std::optional<SizedEffect> injected;
   if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
-  const Calibration base = read_base();
-  const Flight flight = read_flight();
+  const auto [base, flight] = read_whole_subject();
   ProgressLine line;
   DiagnosisOptions options;
   options.threads = base.options.fit.threads;
@@ -114,11 +164,11 @@ int Verbs::diagnose() const {
 }
 
 int Verbs::add() const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {arguments_.flight});
-  const Calibration base = read_base();
-  const Flight flight = read_flight();
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, flight_files());
+  const auto [base, flight] = read_whole_subject();
   ProgressLine line;
-  const Calibration next = sepcal::add(base, flight, arguments_.effect, {}, shown_on(line));
+  Calibration next = sepcal::add(base, flight, arguments_.effect, {}, shown_on(line));
+  find_departures(next, flight);
   line.clear();
   delivery.deliver(next);
   return exit_code(next.fit.status);
@@ -126,7 +176,10 @@ int Verbs::add() const {
 
 int Verbs::apply() const {
   check_not_input(arguments_.output, arguments_.calibration);
-  const Calibration calibration = read_base();
+  Calibration calibration = read_base();
+  if (joint_setup(*calibration.probe) != nullptr) {
+    calibration = for_flight(calibration, read_flight());
+  }
   ProgressLine line;
   const Applied applied = apply_to_file(
       calibration, arguments_.flight, arguments_.output,

@@ -13,6 +13,8 @@ namespace sepcal::app {
 
 struct Arguments {
   std::string flight;
+  std::vector<std::string> more_flights;
+  std::vector<std::string> own;  // of fit: each flight's own parameters
   std::string calibration;
   std::string output;
   std::string truth;
@@ -47,6 +49,20 @@ class Verbs {
  private:
   /// Reads FLIGHT with its progress shown, by so many threads (0: one a core).
   Flight read_flight(int threads = 0) const;
+  Flight read_flight(const std::string& file, int threads) const;
+  /// FLIGHT and those after it.
+  std::vector<Flight> read_flights(int threads = 0) const;
+  std::vector<std::string> flight_files() const;
+
+  /// A calibration and what it is asked about: the flights of a joint fit, joined, or one flight
+  /// with the calibration on it.
+  struct Subject {
+    Calibration calibration;
+    Flight flight;
+  };
+  Subject read_subject() const;
+  /// read_subject() where one flight of a joint fit won't do.
+  Subject read_whole_subject() const;
 
   /// Reads CALIBRATION; the options that choose of the log and the probe's own override what it
   /// says.

@@ -36,8 +36,8 @@ Vector3d draw_direction(sepcal::test::Draws& draws) {
   return Vector3d(draws.normal_matrix(3, 1)).normalized();
 }
 
-Vec<double, 7> reading(const Vector3d& m) {
-  Vec<double, 7> u = Vec<double, 7>::Zero();
+Vec<double, 8> reading(const Vector3d& m) {
+  Vec<double, 8> u = Vec<double, 8>::Zero();
   u.head<3>() = m;
   return u;
 }
@@ -97,7 +97,7 @@ TEST_CASE("mu is what noise adds to |y| on average: Gauss-Hermite quadrature of 
 }
 
 TEST_CASE("ports add to the diagonal of C") {
-  Vec<double, 7> u = reading({30, -25, 41});
+  Vec<double, 8> u = reading({30, -25, 41});
   u[3] = 0.01;
   u[4] = 0.02;
   u[5] = -0.03;
@@ -109,14 +109,24 @@ TEST_CASE("ports add to the diagonal of C") {
   const double at = AttitudeIndependentMagnetometer{strength, 0.0}.at(u, xi2).b[0];
   CHECK(-at == Approx((y.norm() - strength) / gain).epsilon(1e-12));
   const sepcal::Tables tables = sepcal::tables_of<AttitudeIndependentMagnetometer>();
-  for (std::size_t i = 3; i < 7; ++i) CHECK(tables.inputs[i].absent == 0.0);
+  for (std::size_t i = 3; i < 8; ++i) CHECK(tables.inputs[i].absent == 0.0);
+}
+
+TEST_CASE("a field that has changed by so much is a field of that strength") {
+  Vec<double, 8> u = reading({30, -25, 41});
+  const double plain = AttitudeIndependentMagnetometer{strength - 2.5, 0.8}.at(u, xi2).b[0];
+  u[7] = -2.5;
+  const double changed = AttitudeIndependentMagnetometer{strength, 0.8}.at(u, xi2).b[0];
+  CHECK(changed == Approx(plain).epsilon(1e-12));
+  u[7] = 1.0;
+  CHECK(std::abs(AttitudeIndependentMagnetometer{strength, 0.8}.at(u, xi2).b[0] - changed) > 0.1);
 }
 
 TEST_CASE("derivatives are those of the values, with noise too") {
   const sepcal::StaticModel<AttitudeIndependentMagnetometer> model({strength, 0.8});
   sepcal::test::Draws draws(34);
   for (int i = 0; i < 30; ++i) {
-    const Vec<double, 7> u = reading(50 * draws.normal_matrix(3, 1));
+    const Vec<double, 8> u = reading(50 * draws.normal_matrix(3, 1));
     std::vector<const double*> inputs;
     for (const double& value : u) inputs.push_back(&value);
     Eigen::MatrixXd rows(1, 10);
@@ -134,7 +144,7 @@ TEST_CASE("derivatives are those of the values, with noise too") {
 
 TEST_CASE("a reading of n itself, which has no direction, is finite") {
   const sepcal::StaticModel<AttitudeIndependentMagnetometer> model({strength, 0.8});
-  const Vec<double, 7> u = reading(xi2.tail<3>());
+  const Vec<double, 8> u = reading(xi2.tail<3>());
   std::vector<const double*> inputs;
   for (const double& value : u) inputs.push_back(&value);
   Eigen::MatrixXd rows(1, 10);

@@ -121,16 +121,18 @@ TEST_CASE("the field's strength alone needs neither attitude nor field") {
   for (const char* header : {"roll_rad", "pitch_rad", "yaw_rad"}) log.erase(header);
   log.rename("mx_ut", "mx_nt");
   log["temp_degc"].assign(5, 20);
-  const auto prepared = sepcal::prepare_attitude_independent(log.build());
+  const auto prepared = sepcal::prepare_attitude_independent(log.build(), 50.0);
   CHECK(prepared.record.names() ==
         std::vector<std::string>{"time", "mx", "my", "mz", "field", "temp_degc"});
   CHECK(column(prepared, "mx")[1] == 0.002);
   CHECK(column(prepared, "field") == std::vector<double>(5));
   log["my_ut"][2] = not_a_number;
-  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()), Contains("log row 2"),
-                       Error);
-  CHECK(sepcal::prepare_attitude_independent(log.build(), {.drop_invalid = true}).rows_used() == 4);
-  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.erase("time_s").build()),
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build(), 50.0),
+                       Contains("log row 2"), Error);
+  CHECK(
+      sepcal::prepare_attitude_independent(log.build(), 50.0, {.drop_invalid = true}).rows_used() ==
+      4);
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.erase("time_s").build(), 50.0),
                        Contains("column 'time_s' is missing"), Error);
 }
 
@@ -150,16 +152,17 @@ TEST_CASE("applying a magnetometer calibration needs its readings only") {
 TEST_CASE("a number that its unit's conversion makes infinite is none") {
   Log log = make_magnetometer_log();
   log.rename("mx_ut", "mx_gauss")["mx_gauss"][2] = 1e308;  // 1 gauss is 100 uT
-  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()),
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build(), 50.0),
                        Contains("log row 2: column 'mx_gauss' holds 1e+308, too large to convert"),
                        Error);
-  const auto prepared = sepcal::prepare_attitude_independent(log.build(), {.drop_invalid = true});
+  const auto prepared =
+      sepcal::prepare_attitude_independent(log.build(), 50.0, {.drop_invalid = true});
   CHECK(prepared.rows_used() == 4);
   log.rename("mx_gauss", "mx_ut");
-  CHECK(sepcal::prepare_attitude_independent(log.build()).rows_used() == 5);
+  CHECK(sepcal::prepare_attitude_independent(log.build(), 50.0).rows_used() == 5);
   for (const char* rate : {"p_degps", "q_degps", "r_degps"}) log[rate].assign(5, 1.0);
   log["q_degps"][1] = -1e308;
-  const auto without_rates = sepcal::prepare_attitude_independent(log.build());
+  const auto without_rates = sepcal::prepare_attitude_independent(log.build(), 50.0);
   CHECK_FALSE(without_rates.record.has("q"));
   CHECK(mentions(without_rates.notes, "column 'q_degps' is not used: holds -1e+308, too large"));
 }
@@ -169,7 +172,7 @@ TEST_CASE("times that differ as logged and are one in seconds do not increase") 
   // A double of this size tells quarters of a microsecond apart, and in seconds only halves.
   log.rename("time_s", "time_us")["time_us"] = {0, 2200000000000000.25, 2200000000000000.50, 2.3e15,
                                                 2.4e15};
-  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build()),
+  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build(), 50.0),
                        Contains("log row 2: time_us repeats at"), Error);
 }
 

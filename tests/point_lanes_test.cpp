@@ -368,7 +368,7 @@ TEST_CASE("what lanes can't tell is left to the scalar way: squares that underfl
 TEST_CASE("an entry of A that is zero where it was looked for, and not everywhere") {
   const Simulated flight = sepcal::test::simulate_magnetometer(6'000);
   const Simulated one_row =
-      with_column(flight, "hx", [](double hx, std::size_t row) { return row == 100 ? hx : 0.0; });
+      with_column(flight, "hx", [](double hx, std::size_t row) { return row == 300 ? hx : 0.0; });
   Draws draws(74);
   const MatrixXd points = 0.05 * draws.normal_matrix(6, 9);
   CHECK(factors_in_lanes(one_row, points).factor(0) == std::nullopt);

@@ -49,6 +49,7 @@ from sepcal.flight import Flight, read_csv
 from sepcal.geomagnetism import EarthField, earth_field
 from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
+from sepcal.joint import fit_jointly
 from sepcal.logs import LogContents, LoggedFlight, list_log, read_log
 from sepcal.many import fit_many
 from sepcal.many_results import ManyFit
@@ -151,6 +152,7 @@ __all__ = [
     "earth_field",
     "effects",
     "fit",
+    "fit_jointly",
     "fit_many",
     "fit_trials",
     "list_log",

@@ -22,6 +22,7 @@ __all__: list[str] = [
     "Fit",
     "Flight",
     "FlightCheck",
+    "FlightDeparture",
     "FlightFigures",
     "FlightFit",
     "HistoryEntry",
@@ -50,6 +51,7 @@ __all__: list[str] = [
     "autocorrelation",
     "bin_means",
     "calibrate",
+    "calibrate_jointly",
     "channels",
     "check",
     "effects",
@@ -1234,6 +1236,33 @@ class Diagnosed:
     @property
     def text(self) -> str: ...
 
+class FlightDeparture:
+    """
+    Whether a flight agrees with the others of a joint fit; NaN where nothing can be tested.
+    """
+    @property
+    def difference(self) -> float:
+        """
+        The flight's own estimate less that of the others.
+        """
+    @property
+    def flight(self) -> str:
+        """
+        Its label.
+        """
+    @property
+    def p(self) -> float:
+        """
+        Of a larger difference by chance, by Holm for the number of flights.
+        """
+    @property
+    def parameter(self) -> str:
+        """
+        Shared, the most different in standard errors; may be empty.
+        """
+    @property
+    def standard_error(self) -> float: ...
+
 class Calibration:
     def add(
         self,
@@ -1259,17 +1288,23 @@ class Calibration:
         arg1: typing.SupportsFloat | typing.SupportsIndex,
         arg2: collections.abc.Sequence[str],
     ) -> Intervals: ...
+    def on_flight(self, arg0: Flight, arg1: bool) -> Calibration: ...
     def predict(
         self, arg0: Flight, arg1: typing.SupportsFloat | typing.SupportsIndex
     ) -> Prediction: ...
+    def rejoin(self, arg0: collections.abc.Sequence[Flight]) -> Flight: ...
     def save(self, arg0: str) -> None: ...
     def to_json(self) -> str: ...
+    @property
+    def departures(self) -> list[FlightDeparture]: ...
     @property
     def derived(self) -> dict[str, Derived]: ...
     @property
     def file(self) -> str: ...
     @property
     def fit(self) -> Fit: ...
+    @property
+    def flights(self) -> list[str]: ...
     @property
     def history(self) -> list[HistoryEntry]: ...
     @property
@@ -1981,6 +2016,13 @@ def calibrate(
     arg2: Options,
     arg3: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
 ) -> Calibration: ...
+def calibrate_jointly(
+    arg0: Model,
+    arg1: collections.abc.Sequence[Flight],
+    arg2: collections.abc.Sequence[str],
+    arg3: Options,
+    arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+) -> tuple[Calibration, Flight]: ...
 def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
 def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...

@@ -29,11 +29,14 @@ class Calibration(Fit):
     """
 
     core: _core.Calibration
-    flight: Flight | None  # that was fitted; None where the calibration was loaded
+    flight: Flight | None  # that was fitted, or several, joined; None where it was loaded
     own_effects: list[Effect]  # of the caller's making, among `effects`
 
     def __init__(
-        self, core: _core.Calibration, flight: Flight | None = None, own: Sequence[Effect] = ()
+        self,
+        core: _core.Calibration,
+        flight: Flight | None = None,
+        own: Sequence[Effect] = (),
     ) -> None:
         super().__init__(core.fit)
         self.core = core
@@ -67,6 +70,21 @@ class Calibration(Fit):
         return self.core.history
 
     @property
+    def flights(self) -> list[str]:
+        """The labels of a joint fit's flights, "w_n@monday" by its label; of one flight, none."""
+        return self.core.flights
+
+    @property
+    def departures(self) -> dict[str, _core.FlightDeparture]:
+        """Of a joint fit: whether a flight, by its label, agrees with the others."""
+        return {one.flight: one for one in self.core.departures}
+
+    def departed(self, level: float = 0.01) -> list[str]:
+        """Labels of flights that depart from the others, by p below `level`; the surest first."""
+        found = [label for label, one in self.departures.items() if one.p < level]
+        return sorted(found, key=lambda label: self.departures[label].p)
+
+    @property
     def notes(self) -> list[str]:
         """What was dropped or ignored, one line each, for people."""
         return self.core.notes
@@ -84,17 +102,20 @@ class Calibration(Fit):
         """The fit alone."""
         return Fit(self)
 
-    def compare(self, flight: Flight | None = None) -> Comparison:
+    def compare(self, flight: Flight | Sequence[Flight] | None = None) -> Comparison:
         """Residuals on a flight, by default the fitted one, by maneuver and output.
+
+        Of a joint fit: on all its flights, or on one of them.
 
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
-        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core))
+        core, chosen = self._on(flight, "compare(", known=True)
+        return Comparison(core.compare(chosen._core))
 
     def diagnose(
         self,
-        flight: Flight | None = None,
+        flight: Flight | Sequence[Flight] | None = None,
         *,
         effects: Sequence[Effect] = (),
         inject: Mapping[str, float | Sequence[float]] | None = None,
@@ -125,7 +146,9 @@ class Calibration(Fit):
         )
         return Diagnosis._of(described)
 
-    def add(self, effect: str | Effect, flight: Flight | None = None) -> "Calibration":
+    def add(
+        self, effect: str | Effect, flight: Flight | Sequence[Flight] | None = None
+    ) -> "Calibration":
         """The calibration with one more effect, refitted from these estimates.
 
         Args:
@@ -147,7 +170,7 @@ class Calibration(Fit):
 
     def intervals(
         self,
-        flight: Flight | None = None,
+        flight: Flight | Sequence[Flight] | None = None,
         *,
         level: float = 0.95,
         names: Sequence[str] | None = None,
@@ -166,7 +189,9 @@ class Calibration(Fit):
         chosen = self._or_fitted(flight, "intervals(")
         return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
 
-    def predict(self, flight: Flight | None = None, *, level: float = 0.95) -> Prediction:
+    def predict(
+        self, flight: Flight | Sequence[Flight] | None = None, *, level: float = 0.95
+    ) -> Prediction:
         """The calibrated model on a flight, by default the fitted one, with its bands.
 
         Raises:
@@ -175,9 +200,28 @@ class Calibration(Fit):
         chosen = self._or_fitted(flight, "predict(")
         return Prediction(self.core.predict(chosen._core, level))
 
-    def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
-        """A flight. Raises Error, which shows how to call again, for none and for anything else."""
+    def join(self, flights: Sequence[Flight]) -> Flight:
+        """The flights of a joint fit, in any order, as the one that it is of.
+
+        Raises:
+            Error: Other flights than those, or one that was changed; a fit of one flight.
+        """
+        return Flight._of(self.core.rejoin([to_flight(one, "join([")._core for one in flights]))
+
+    def _on(
+        self, flight: Flight | Sequence[Flight] | None, call: str, *, known: bool
+    ) -> tuple[_core.Calibration, Flight]:
+        """The calibration on a flight; `known`: with what is the flight's own."""
+        chosen = self._or_fitted(flight, call)
+        if not self.flights or chosen is self.flight or not isinstance(flight, Flight):
+            return self.core, chosen
+        return self.core.on_flight(chosen._core, known), chosen
+
+    def _or_fitted(self, flight: Flight | Sequence[Flight] | None, call: str) -> Flight:
+        """A flight, or several joined. Raises Error, which shows how to call again, for none."""
         flight = flight if flight is not None else self.flight
+        if isinstance(flight, Sequence) and not isinstance(flight, str):
+            return self.join(flight)
         if flight is None:
             raise _core.Error(
                 "a loaded calibration has no flight; give one: "
@@ -195,7 +239,8 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
         """
-        return self.core.apply(to_flight(flight, "apply(")._core)
+        core, chosen = self._on(to_flight(flight, "apply("), "apply(", known=False)
+        return core.apply(chosen._core)
 
     def apply_to_file(self, file: Path, output: Path) -> _core.Applied:
         """Copies a CSV log and adds the corrected columns; `output` appears whole or not at all.

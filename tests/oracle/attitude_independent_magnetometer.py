@@ -29,7 +29,8 @@ class Ellipsoid(NamedTuple):
 class AttitudeIndependentMagnetometer(Model):
     """xi = (| lambda_x..z, alpha_xy, alpha_xz, alpha_yz, n_x..z): nothing is linear.
 
-    Columns scale, axis_scale_x..z [1] add to the diagonal of C; zero if absent.
+    Columns scale, axis_scale_x..z [1] add to the diagonal of C, field_change [uT] to the field's
+    strength; zero if absent.
     """
 
     outputs: ClassVar = ("field",)
@@ -52,14 +53,14 @@ class AttitudeIndependentMagnetometer(Model):
     def predict(self, record: Record, xi: Array) -> Array:
         """-residual [uT], so that measured - predict is the residual; shape (1, N)."""
         at = self._find_ellipsoid(record, xi)
-        misfit = at.strength - self.field_strength - at.mean_error
+        misfit = at.strength - self._strength_of(record) - at.mean_error
         return -(misfit / np.sqrt(at.gain))[np.newaxis]
 
     def jacobian(self, record: Record, xi: Array) -> Array:
         """Its derivative, shape (1, N, 9), by dG = -G dC G and du = (dy - u u'dy) / |y|."""
         at = self._find_ellipsoid(record, xi)
         square = at.inverse @ at.inverse.transpose(0, 2, 1)  # M
-        misfit = at.strength - self.field_strength - at.mean_error
+        misfit = at.strength - self._strength_of(record) - at.mean_error
         columns = []
         for by_matrix, by_bias in zip(*_derivatives(xi), strict=True):
             by_inverse = -at.inverse @ by_matrix @ at.inverse
@@ -71,7 +72,7 @@ class AttitudeIndependentMagnetometer(Model):
             by_gain = _form(at.direction, by_square, at.direction)
             by_gain = by_gain + 2 * _form(by_direction, square, at.direction)
             by_trace = np.trace(by_square, axis1=1, axis2=2)
-            by_mean_error = self._error_of(by_trace - by_gain)
+            by_mean_error = self._error_of(by_trace - by_gain, self._strength_of(record))
             columns.append(
                 (by_strength - by_mean_error) / np.sqrt(at.gain)
                 - misfit * by_gain / (2 * at.gain**1.5)
@@ -91,11 +92,16 @@ class AttitudeIndependentMagnetometer(Model):
         direction = field / strength[:, np.newaxis]
         gain = np.sum(_times(inverse.transpose(0, 2, 1), direction) ** 2, axis=-1)
         trace = np.sum(inverse**2, axis=(1, 2))
-        return Ellipsoid(inverse, field, direction, strength, gain, self._error_of(trace - gain))
+        error = self._error_of(trace - gain, self._strength_of(record))
+        return Ellipsoid(inverse, field, direction, strength, gain, error)
 
-    def _error_of(self, spread: Array) -> Array:
+    def _strength_of(self, record: Record) -> Array:
+        """Of each row's field [uT], shape (N,)."""
+        return self.field_strength + record.get("field_change", np.zeros(record["mx"].size))
+
+    def _error_of(self, spread: Array, strength: Array) -> Array:
         """The mean error mu of tr M - u' M u."""
-        return self.noise**2 * spread / (2 * self.field_strength)
+        return self.noise**2 * spread / (2 * strength)
 
 
 def _derivatives(xi: Array) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import sepcal
-from apps import Bench, Log
+from apps import Bench, Log, parse_json
 from oracle.model import Array
 from studies.field_strength import (
     CAPS,
@@ -149,3 +149,34 @@ def test_readings_in_a_unit_that_the_header_does_not_say(magnetometer: Bench) ->
 def test_a_small_cap_in_noise_is_no_result() -> None:
     """On one heading at 1 uT: exit 4, whatever converged; the study has thirty of them."""
     assert one_heading([is_refused(seed) for seed in range(1000, 1002)]).holds
+
+
+def test_a_field_that_falls_with_height_is_followed(magnetometer: Bench) -> None:
+    """A balloon's, by 6 %: taken for constant, it is a scale error and more noise."""
+    folder = magnetometer.folder
+    made = magnetometer.run("simulate", "-o", "flight.csv", "--truth", "t.json", "--rows", "2000")
+    assert made.code == 0, made.err
+    truth = parse_json((folder / "t.json").read_text())["parameters"]
+    log = magnetometer.read_log()
+    field = np.linalg.norm([log.column(f"b{axis}_ut") for axis in "ned"], axis=0)
+    lost = 0.06 * np.linspace(0, 1, field.size)
+    for axis in "xyz":
+        reading = log.column(f"m{axis}_ut")
+        log.replace(f"m{axis}_ut", reading - lost * (reading - truth[f"n_{axis}"]))
+    (folder / "constant.csv").write_text(log.text())
+    log.add("field_strength_ut", field * (1 - lost))
+    (folder / "balloon.csv").write_text(log.text())
+    strength = ("--field-strength", f"{field[0]:.6f}", "--json")
+    constant = magnetometer.run("fit", "constant.csv", *strength)
+    balloon = magnetometer.run("fit", "balloon.csv", *strength)
+    assert balloon.code == 0, balloon.err
+    assert "field_strength is logged and gives each row's field" in balloon.err
+    level = magnetometer.run("fit", "flight.csv", *strength)
+    for axis in "xyz":
+        found = balloon.result["parameters"][f"lambda_{axis}"]
+        expected = level.result["parameters"][f"lambda_{axis}"]["value"]
+        assert abs(found["value"] - expected) < 0.3 * found["standard_error"]
+        assert abs(constant.result["parameters"][f"lambda_{axis}"]["value"] - found["value"]) > 0.02
+    assert balloon.result["rmse"]["field"] < 0.7 * constant.result["rmse"]["field"]
+    ignored = magnetometer.run("fit", "balloon.csv", *strength, "--ignore", "field_strength_ut")
+    assert ignored.result["parameters"] == constant.result["parameters"]

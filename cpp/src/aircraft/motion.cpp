@@ -6,7 +6,7 @@
 
 #include "base/short_number.hpp"
 #include "numerics/local_cubic.hpp"
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/flight_path.hpp"
 

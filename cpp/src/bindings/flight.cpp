@@ -19,6 +19,7 @@
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
+#include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 #include "structs.hpp"
 
@@ -147,7 +148,9 @@ Applied apply_file(const Calibration& calibration, const std::string& file,
                    const std::string& output) {
   const Released released;
   need_own_effects(calibration);
-  return apply_to_file(calibration, file, output);
+  const bool is_joint = joint_setup(*calibration.probe) != nullptr;
+  return apply_to_file(is_joint ? for_flight(calibration, read_csv(file)) : calibration, file,
+                       output);
 }
 
 Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
@@ -155,6 +158,31 @@ Calibration calibrate_probe(const Model& model, const Flight& flight, Calibratio
   options.own_effects = own_effects(own, effect_kit(probe_of(model).name()));
   const Released released;
   return calibrate(model.probe, flight, options);
+}
+
+/// Flights fitted together, and these joined.
+std::pair<Calibration, Flight> calibrate_flights(const Model& model,
+                                                 const std::vector<Flight>& flights,
+                                                 const std::vector<std::string>& own,
+                                                 CalibrationOptions options,
+                                                 const std::vector<PythonEffect>& own_made) {
+  options.own_effects = own_effects(own_made, effect_kit(probe_of(model).name()));
+  const Released released;
+  std::vector<std::string> notes;  // calibrate_jointly() gives them with the calibration
+  Flight joined = join_flights(flights, options.log, notes);
+  return {calibrate_jointly(model.probe, flights, own, options), std::move(joined)};
+}
+
+/// A joint calibration on one flight, whose own parameters must be known where `known`.
+Calibration on_flight(const Calibration& calibration, const Flight& flight, bool known) {
+  const Calibration one = for_flight(calibration, flight);
+  if (known) check_known(one, flight);
+  return one;
+}
+
+Flight rejoin(const Calibration& calibration, const std::vector<Flight>& flights) {
+  std::vector<std::string> notes;
+  return rejoin_flights(calibration, flights, notes);
 }
 
 FlightPrediction predict_flight(const Calibration& calibration, const Flight& flight,
@@ -169,7 +197,9 @@ Calibration add_to(const Calibration& base, const Flight& flight, const std::str
   const OwnEffects makers = own_effects(own, effect_kit(base.probe->name()));
   const Released released;
   need_own_effects(base);
-  return add(base, flight, effect, makers);
+  Calibration next = add(base, flight, effect, makers);
+  find_departures(next, flight);
+  return next;
 }
 
 /// A number that is None where it is undefined.
@@ -329,13 +359,37 @@ py::dict restated_of(const Calibration& calibration) {
   return all;
 }
 
+/// The labels of a joint calibration's flights; none of another one.
+std::vector<std::string> labels_of(const Calibration& calibration) {
+  std::vector<std::string> labels;
+  if (const JointSetup* const joint = joint_setup(*calibration.probe)) {
+    for (const JoinedFlight& flight : joint->flights) labels.push_back(flight.label);
+  }
+  return labels;
+}
+
 void define_calibration(py::module_& module) {
+  BoundStruct<FlightDeparture>(
+      module, "FlightDeparture",
+      "Whether a flight agrees with the others of a joint fit; NaN where nothing can be tested.")
+      .field("flight", &FlightDeparture::flight, "Its label.")
+      .field("p", &FlightDeparture::p,
+             "Of a larger difference by chance, by Holm for the number of flights.")
+      .field("parameter", &FlightDeparture::parameter,
+             "Shared, the most different in standard errors; may be empty.")
+      .field("difference", &FlightDeparture::difference,
+             "The flight's own estimate less that of the others.")
+      .field("standard_error", &FlightDeparture::standard_error, "");
   py::class_<Calibration>(module, "Calibration")
       .def_property_readonly("fit", &fit_of)
       .def_readonly("derived", &Calibration::derived)
       .def_property_readonly("restated", &restated_of)
       .def_readonly("history", &Calibration::history)
       .def_readonly("notes", &Calibration::notes)
+      .def_readonly("departures", &Calibration::departures)
+      .def_property_readonly("flights", &labels_of)
+      .def("on_flight", &on_flight)
+      .def("rejoin", &rejoin, WithoutGil())
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
       .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt)
       .def("diagnose", &diagnose_on)
@@ -365,6 +419,7 @@ void define_flight(py::module_& module) {
   define_calibration_parts(module);
   define_calibration(module);
   module.def("calibrate", &calibrate_probe);
+  module.def("calibrate_jointly", &calibrate_flights);
   using Own = std::vector<PythonEffect>;
   module.def("parse_calibration",
              [](const std::string& json, const std::string& source, const Own& own) {

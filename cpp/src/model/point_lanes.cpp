@@ -76,7 +76,7 @@ PointLanes::PointLanes(const BlockModel& model, const Measurements& measurements
   if (kit_ == nullptr || most.size() > lanes::most_columns) width_ = 0;
 }
 
-/// In a block of every chunk, at two points.
+/// In a block of every chunk and where a segment starts, at two points.
 void PointLanes::find_zeros(const MatrixXd& points) {
   const Tables& tables = model_.tables();
   const Index n_1 = tables.n_1();
@@ -84,16 +84,19 @@ void PointLanes::find_zeros(const MatrixXd& points) {
   zero_.assign(static_cast<std::size_t>(n_z * n_1), 1);
   std::vector<const double*> pointers;
   for (const auto& chunk : measurements_.chunks()) {
-    const Measurements::Range& range = chunk.back();
-    const auto rows = static_cast<Index>(range.rows);
-    MatrixXd values(n_z * rows, n_1 + 1);
-    for (const Index point : {Index{0}, points.cols() - 1}) {
-      model_.evaluate(measurements_.block(range, pointers), points.col(point).data(), nullptr,
-                      nullptr, values);
-      for (Index j = 0; j < n_z; ++j) {
-        const auto own = values.block(j * rows, 0, rows, n_1);
-        for (Index c = 0; c < n_1; ++c) {
-          if (!(own.col(c).array() == 0.0).all()) zero_[static_cast<std::size_t>(j * n_1 + c)] = 0;
+    for (const Measurements::Range& range : chunk) {
+      if (!range.starts_segment && &range != &chunk.back()) continue;
+      const auto rows = static_cast<Index>(range.rows);
+      MatrixXd values(n_z * rows, n_1 + 1);
+      for (const Index point : {Index{0}, points.cols() - 1}) {
+        model_.evaluate(measurements_.block(range, pointers), points.col(point).data(), nullptr,
+                        nullptr, values);
+        for (Index j = 0; j < n_z; ++j) {
+          const auto own = values.block(j * rows, 0, rows, n_1);
+          for (Index c = 0; c < n_1; ++c) {
+            if (!(own.col(c).array() == 0.0).all())
+              zero_[static_cast<std::size_t>(j * n_1 + c)] = 0;
+          }
         }
       }
     }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/order_statistics.hpp"
 #include "numerics/quantiles.hpp"
 #include "numerics/toeplitz.hpp"
 #include "sepcal/quantity.hpp"
@@ -171,13 +172,6 @@ Curve find_spectrum(const VectorXd& residual, const std::vector<Segment>& runs, 
   const double low = frequency[0];
   const double high = frequency[inner - 1] * (1 + 1e-12);
   return average_between(even_ratios(low, high, bins), frequency, density, 1);
-}
-
-double quantile(std::span<const double> values, double share) {
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], at - std::floor(at));
 }
 
 Curve find_quantiles(const VectorXd& residual) {

@@ -37,9 +37,6 @@ Autocorrelation find_autocorrelation(const Eigen::VectorXd& residual,
 Curve find_spectrum(const Eigen::VectorXd& residual, const std::vector<Segment>& runs,
                     double interval);
 
-/// The quantile of ascending `values` (one or more) at `share` in [0, 1], linear between two.
-double quantile(std::span<const double> values, double share);
-
 /// Quantiles of the residual (y) over the standard normal's (x) at the same shares, 200 of them at
 /// most, denser in the tails, where they matter.
 Curve find_quantiles(const Eigen::VectorXd& residual);

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from sepcal._core import Error
-from sepcal.calibration import load
+from sepcal.calibration import Calibration, load
 from sepcal.flight import read_csv
 from sepcal.reporting import report
 from sepcal.whole_files import refuse_outputs
@@ -23,7 +23,11 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
         "every added effect, measured and modelled, where it fails, the ranked causes, the noise, "
         "the parameters, what the flight covered and what to fly next.",
     )
-    parser.add_argument("flight", metavar="FLIGHT.csv", help="the log to report on")
+    parser.add_argument(
+        "flight",
+        metavar="FLIGHT.csv",
+        help="the log to report on; of a joint fit all of them, one after the other",
+    )
     parser.add_argument(
         "calibrations",
         metavar="CAL.json",
@@ -47,8 +51,15 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
 def run(arguments: argparse.Namespace) -> int:
     """Writes the page; returns 0. Raises sepcal.Error on bad input."""
     refuse_outputs((arguments.output,), (arguments.flight, *arguments.calibrations))
+    more = [file for file in arguments.calibrations if file.endswith(".csv")]
+    files = [file for file in arguments.calibrations if file not in more]
+    if not files:
+        raise Error("no calibration is given; report FLIGHT.csv CAL.json")
     flight = read_csv(arguments.flight)
-    chain = [load(file) for file in arguments.calibrations]
+    chain = [load(file) for file in files]
+    last = chain[-1]
+    if isinstance(last, Calibration) and (more or last.flights):
+        flight = last.join([flight, *map(read_csv, more)])
     live = sys.stderr.isatty()
 
     def report_progress(what: str) -> None:
@@ -60,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
             chain,
             arguments.output,
             flight,
-            files=arguments.calibrations,
+            files=files,
             process_noise=read_noise(arguments.process_noise),
             progress=report_progress,
         )

@@ -54,6 +54,15 @@ struct HistoryEntry {
   double predicted_drop = not_a_number;
 };
 
+/// Of a joint fit: whether a flight agrees with the others. Undefined numbers are NaN.
+struct FlightDeparture {
+  std::string flight;       // its label
+  double p = not_a_number;  // of a larger difference by chance, by Holm for the number of flights
+  std::string parameter = {};        // shared, the most different in standard errors; may be empty
+  double difference = not_a_number;  // own estimate less that of the others
+  double standard_error = not_a_number;
+};
+
 struct Calibration {
   std::shared_ptr<const Probe> probe;
   CalibrationOptions options;
@@ -62,8 +71,9 @@ struct Calibration {
   std::vector<Derived> derived;  // in the probe's order
   std::vector<Restatement> restated;
   std::vector<HistoryEntry> history;
-  std::vector<std::string> notes;  // one line each, for people; not part of the JSON
-  std::string file = {};           // that it was read from; empty: it was just fitted
+  std::vector<FlightDeparture> departures = {};  // of a joint fit, in the order of its flights
+  std::vector<std::string> notes = {};           // one line each, for people; not part of the JSON
+  std::string file = {};                         // that it was read from; empty: it was just fitted
 };
 
 /// Fits `probe` to `flight`. Throws Error for bad input (prepare_five_hole() and its like), fewer

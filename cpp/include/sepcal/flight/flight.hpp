@@ -29,6 +29,12 @@ class Flight {
     std::string text;
   };
 
+  /// One of several flights that were joined, and its first row.
+  struct Part {
+    std::string name;
+    std::size_t first = 0;
+  };
+
   struct Column {
     std::string header;                 // "roll_deg"
     std::span<const double> values;     // rows() of them, in the header's unit; NaN for text
@@ -63,6 +69,9 @@ class Flight {
 
   /// The columns are mapped from files of `spool`, which may be longer than memory.
   Flight& map(std::shared_ptr<base::Spool> spool);
+
+  /// Says that the rows are of several flights, one after the other: messages name rows by them.
+  Flight& join(std::vector<Part> parts);
 
   /// Labels as stretches that cover the rows, instead of one a row, which maneuvers() then doesn't
   /// have.
@@ -114,6 +123,7 @@ class Flight {
   std::vector<Column> columns_;
   std::shared_ptr<const std::vector<std::string>> maneuvers_;  // copies share it
   std::vector<Segment> label_stretches_;
+  std::vector<Part> parts_;
   std::shared_ptr<base::Spool> spool_;
   std::size_t rows_ = 0;
 };

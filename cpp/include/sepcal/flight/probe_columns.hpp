@@ -88,8 +88,10 @@ struct MagnetometerColumns {
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options = {});
 
 /// time [s]; mx, my, mz [uT]; field [uT], zero in every row: what the attitude-independent model
-/// measures. The field and the attitude are not looked at, though they may be there.
-ProbeRecord prepare_attitude_independent(const Flight& flight, const LogChoice& log = {});
+/// measures; and, where the field's strength is logged, field_change [uT], what it is more than
+/// `field_strength` [uT]. The field and the attitude are not looked at, though they may be there.
+ProbeRecord prepare_attitude_independent(const Flight& flight, double field_strength,
+                                         const LogChoice& log = {});
 
 /// mx, my, mz [uT] of every row. Throws Error as prepare_magnetometer() does for these columns.
 ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log = {});

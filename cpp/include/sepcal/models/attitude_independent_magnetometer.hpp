@@ -17,14 +17,15 @@
 
 namespace sepcal {
 
-/// field_strength: F [uT]. noise: sigma [uT]; 0 leaves mu out. A rotation of the sensor is not seen
-/// in |y|, so C has no misalignment. n has no bounds of its own: they depend on the readings. The
+/// field_strength: F [uT]; where the field changes along the record, the input field_change is what
+/// a row's has more. noise: sigma [uT]; 0 leaves mu out. A rotation of the sensor is not seen in
+/// |y|, so C has no misalignment. n has no bounds of its own: they depend on the readings. The
 /// output `field` is zero in every row, and A has no columns.
 struct AttitudeIndependentMagnetometer {
   static constexpr std::array inputs{Quantity{"mx", "uT"},      Quantity{"my", "uT"},
                                      Quantity{"mz", "uT"},      port("scale", "1"),
                                      port("axis_scale_x", "1"), port("axis_scale_y", "1"),
-                                     port("axis_scale_z", "1")};
+                                     port("axis_scale_z", "1"), port("field_change", "uT")};
   static constexpr std::array outputs{Quantity{"field", "uT", -infinity, infinity, 0.0}};
   static constexpr std::array<Quantity, 0> linear{};
   static constexpr std::array nonlinear{Quantity{"lambda_x", "1", -0.5, 0.5},
@@ -48,16 +49,18 @@ struct AttitudeIndependentMagnetometer {
   struct Prepared {
     Vec<U, 3> m;
     Vec<U, 3> scale;  // the ports', beside lambda
-    bool plain;       // no port is driven
+    U field_change;
+    bool plain;  // no port is driven
   };
 
   template <class U>
-  static Prepared<U> prepare(const Vec<U, 7>& u) {
-    enum { mx, my, mz, scale, axis_scale };
+  static Prepared<U> prepare(const Vec<U, 8>& u) {
+    enum { mx, my, mz, scale, axis_scale, field_change = axis_scale + 3 };
     const Vec<U, 3> joined(u[scale] + u[axis_scale], u[scale] + u[axis_scale + 1],
                            u[scale] + u[axis_scale + 2]);
-    return {Vec<U, 3>(u[mx], u[my], u[mz]), joined,
-            vanishes(joined[0]) && vanishes(joined[1]) && vanishes(joined[2])};
+    return {Vec<U, 3>(u[mx], u[my], u[mz]), joined, u[field_change],
+            vanishes(joined[0]) && vanishes(joined[1]) && vanishes(joined[2]) &&
+                vanishes(u[field_change])};
   }
 
   /// What depends on xi2 alone.
@@ -77,15 +80,15 @@ struct AttitudeIndependentMagnetometer {
   template <class U, class X>
   Affine<X, 1, 0> combine(const Prepared<U>& row, const Settled<X>& settled) const {
     const Vec<X, 3> r(row.m[0] - settled.n[0], row.m[1] - settled.n[1], row.m[2] - settled.n[2]);
-    if (row.plain) return see(r, settled.W, settled.trace);
+    if (row.plain) return see(r, settled.W, settled.trace, field_strength);
     Eigen::Matrix<X, 3, 3> C = settled.C;
     for (int i = 0; i < 3; ++i) C(i, i) += X(row.scale[i]);
     const Settled<X> scaled = settle<X>(C, settled.n);
-    return see(r, scaled.W, scaled.trace);
+    return see<X, X>(r, scaled.W, scaled.trace, X(row.field_change) + field_strength);
   }
 
   template <class U, class X>
-  Affine<X, 1, 0> at(const Vec<U, 7>& u, const Vec<X, 9>& xi2) const {
+  Affine<X, 1, 0> at(const Vec<U, 8>& u, const Vec<X, 9>& xi2) const {
     return combine<U, X>(prepare<U>(u), settle<X>(xi2));
   }
 
@@ -110,9 +113,10 @@ struct AttitudeIndependentMagnetometer {
     return {C, n, W, W.trace()};
   }
 
-  /// r = m - n.
-  template <class X>
-  Affine<X, 1, 0> see(const Vec<X, 3>& r, const Eigen::Matrix<X, 3, 3>& W, const X& trace) const {
+  /// r = m - n, F the row's field.
+  template <class X, class Strength>
+  Affine<X, 1, 0> see(const Vec<X, 3>& r, const Eigen::Matrix<X, 3, 3>& W, const X& trace,
+                      const Strength& F) const {
     using std::sqrt;
     const Vec<X, 3> slope = W * r;
     // A reading of n itself has no direction: the floor keeps its derivative finite.
@@ -120,9 +124,9 @@ struct AttitudeIndependentMagnetometer {
     const X square = r.dot(slope) + floor * floor;
     const X slope_square = slope.squaredNorm() + floor * floor;
     const X length = sqrt(square);
-    const X mu = noise * noise / (2.0 * field_strength) * (trace - slope_square / square);
+    const X mu = noise * noise / (2.0 * F) * (trace - slope_square / square);
     Affine<X, 1, 0> z;
-    z.b[0] = -(length - field_strength - mu) * length / sqrt(slope_square);
+    z.b[0] = -(length - F - mu) * length / sqrt(slope_square);
     return z;
   }
 };

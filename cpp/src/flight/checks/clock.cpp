@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/gaps.hpp"
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/short_number.hpp"
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
 namespace {
@@ -93,7 +93,9 @@ LogNote note_on(const Log& log, std::string_view kind, Concern concern,
 }
 
 std::string name_row(const Log& log, std::size_t row) {
-  return log.flight().locate(row).substr(log.flight().name().size() + 1);
+  const std::string place = log.flight().locate(row);
+  const std::string name = log.flight().name() + " ";
+  return place.starts_with(name) ? place.substr(name.size()) : place;  // of flights joined: in one
 }
 
 std::string list_headers(const std::vector<std::string>& headers) {
@@ -102,8 +104,7 @@ std::string list_headers(const std::vector<std::string>& headers) {
 
 double median(std::vector<double> values) {
   if (values.empty()) return not_a_number;
-  std::ranges::sort(values);
-  return numerics::quantile(values, 0.5);
+  return numerics::select_quantile(values, 0.5);
 }
 
 }  // namespace sepcal::checks

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "flight/probes/air_columns.hpp"
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/rotation.hpp"
 
@@ -90,8 +90,7 @@ std::vector<std::size_t> find_moving_rows(const std::vector<double>& speed, doub
   std::ranges::copy_if(speed, std::back_inserter(ascending),
                        [](double value) { return std::isfinite(value); });
   if (ascending.empty()) return {};
-  std::ranges::sort(ascending);
-  const double least = share * numerics::quantile(ascending, 0.9);
+  const double least = share * numerics::select_quantile(ascending, 0.9);
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < speed.size(); ++row) {
     if (speed[row] > least) rows.push_back(row);

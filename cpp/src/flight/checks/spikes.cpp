@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
 namespace {
@@ -46,8 +46,7 @@ double usual_near(const std::vector<double>& errors, std::size_t k) {
     if (j + spoiled < k || j > k + spoiled) near.push_back(std::abs(errors[j]));
   }
   if (near.empty()) return infinity;
-  std::ranges::sort(near);
-  return numerics::quantile(near, 0.85);
+  return numerics::select_quantile(near, 0.85);
 }
 
 /// A spike goes and comes back: it stands on one side of both neighbours, by half of its error.

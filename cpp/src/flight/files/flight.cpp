@@ -108,6 +108,11 @@ Flight& Flight::map(std::shared_ptr<base::Spool> spool) {
   return *this;
 }
 
+Flight& Flight::join(std::vector<Part> parts) {
+  parts_ = std::move(parts);
+  return *this;
+}
+
 Flight& Flight::label_stretches(std::vector<Segment> stretches) {
   label_stretches_ = std::move(stretches);
   return *this;
@@ -129,8 +134,10 @@ const Flight::Column* Flight::find(std::string_view header) const {
 }
 
 std::string Flight::locate(std::size_t row) const {
-  return from_file() ? fmt::format("{} line {}", name_, row + 2)
-                     : fmt::format("{} row {}", name_, row);
+  const auto after = std::ranges::upper_bound(parts_, row, {}, &Part::first);
+  const Part part = parts_.empty() ? Part{name_, 0} : *std::prev(after);
+  return from_file() ? fmt::format("{} line {}", part.name, row - part.first + 2)
+                     : fmt::format("{} row {}", part.name, row - part.first);
 }
 
 std::string Flight::list_columns() const {

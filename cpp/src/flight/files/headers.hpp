@@ -14,6 +14,10 @@
 
 namespace sepcal::files {
 
+/// The column of flights that were joined: which of them a row is of, from 0 on. No effect can be
+/// driven by such a name.
+inline constexpr const char* flight_number = "flight number";
+
 /// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg.
 std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind);
 

@@ -7,10 +7,12 @@
 #include "flight/files/text_file.hpp"
 #include "flight/json/findings_json.hpp"
 #include "flight/json/fit_json.hpp"
+#include "flight/json/joint_json.hpp"
 #include "flight/json/options_json.hpp"
 #include "flight/json/output_values.hpp"
 #include "flight/json/version_1.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/joint.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal {
@@ -29,6 +31,7 @@ Calibration read(const Json& root) {
   Calibration calibration;
   calibration.options = read_options(root.at("options"));
   calibration.probe = read_probe(root.at("model").get<std::string>(), root.at("options"));
+  if (root.contains("joint")) read_joint(root.at("joint"), calibration);
   calibration.flight = read_inputs(root.at("inputs"));
   calibration.fit = read_fit(root, calibration.options, output_names(*calibration.probe));
   for (const Variable& own : calibration.probe->model().tables().parameters()) {
@@ -73,6 +76,7 @@ std::string to_json(const Calibration& calibration) {
   root["schema_version"] = schema_version;
   root["model"] = calibration.probe->name();
   root["inputs"] = write_inputs(calibration.flight);
+  if (joint_setup(*calibration.probe) != nullptr) root["joint"] = write_joint(calibration);
   root["options"] = write_options(calibration);
   write_estimates(calibration.fit, root);
   root["derived"] = write_derived(calibration.derived);

@@ -104,9 +104,20 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   return builder.finish();
 }
 
-ProbeRecord prepare_attitude_independent(const Flight& flight, const LogChoice& log) {
+ProbeRecord prepare_attitude_independent(const Flight& flight, double field_strength,
+                                         const LogChoice& log) {
   RecordBuilder builder(flight, quantities_of("magnetometer"), log);
   builder.need({"time", "mx", "my", "mz"});
+  if (builder.has({"field_strength"})) {
+    builder.consult({"field_strength"});
+    builder.compute("field_change",
+                    [=, logged = builder.logged("field_strength")](std::size_t row) {
+                      return logged.at(row) - field_strength;
+                    });
+    builder.note(
+        fmt::format("field_strength is logged and gives each row's field, not the {} uT given",
+                    field_strength));
+  }
   builder.keep_valid();
   builder.check_time();
   builder.compute("field", [](std::size_t) { return 0.0; });

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/parameter_values.hpp"
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/restatements.hpp"
+#include "numerics/order_statistics.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
@@ -45,7 +47,7 @@ class StrengthOnlyMagnetometer final : public Probe {
   }
 
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
-    return prepare_attitude_independent(flight, log);
+    return prepare_attitude_independent(flight, setup_.field_strength, log);
   }
 
   ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
@@ -70,7 +72,7 @@ class StrengthOnlyMagnetometer final : public Probe {
   }
 
   FitOptions complete(const FitOptions& options, const Record& record) const override {
-    return start_attitude_independent(options, record, setup_.field_strength);
+    return start_attitude_independent(options, record, usual_strength(record));
   }
 
   std::unique_ptr<const Probe> with_noise(double standard_deviation) const override {
@@ -92,6 +94,14 @@ class StrengthOnlyMagnetometer final : public Probe {
   }
 
  private:
+  /// In the middle of the record's rows.
+  double usual_strength(const Record& record) const {
+    if (!record.has("field_change")) return setup_.field_strength;
+    const auto changes = record.column("field_change");
+    std::vector<double> values(changes.begin(), changes.end());
+    return setup_.field_strength + numerics::select_quantile(values, 0.5);
+  }
+
   AttitudeIndependentMagnetometer setup_;
   StaticModel<AttitudeIndependentMagnetometer> model_;
 };

@@ -41,14 +41,23 @@ constexpr std::array tube_quantities{
 };
 
 constexpr std::array field_quantities{
-    ProbeQuantity{"time", UnitKind::time},   ProbeQuantity{"mx", UnitKind::field},
-    ProbeQuantity{"my", UnitKind::field},    ProbeQuantity{"mz", UnitKind::field},
-    ProbeQuantity{"hx", UnitKind::field},    ProbeQuantity{"hy", UnitKind::field},
-    ProbeQuantity{"hz", UnitKind::field},    ProbeQuantity{"roll", UnitKind::angle},
-    ProbeQuantity{"pitch", UnitKind::angle}, ProbeQuantity{"yaw", UnitKind::angle},
-    ProbeQuantity{"p", UnitKind::rate},      ProbeQuantity{"q", UnitKind::rate},
-    ProbeQuantity{"r", UnitKind::rate},      ProbeQuantity{"bn", UnitKind::field},
-    ProbeQuantity{"be", UnitKind::field},    ProbeQuantity{"bd", UnitKind::field},
+    ProbeQuantity{"time", UnitKind::time},
+    ProbeQuantity{"mx", UnitKind::field},
+    ProbeQuantity{"my", UnitKind::field},
+    ProbeQuantity{"mz", UnitKind::field},
+    ProbeQuantity{"hx", UnitKind::field},
+    ProbeQuantity{"hy", UnitKind::field},
+    ProbeQuantity{"hz", UnitKind::field},
+    ProbeQuantity{"roll", UnitKind::angle},
+    ProbeQuantity{"pitch", UnitKind::angle},
+    ProbeQuantity{"yaw", UnitKind::angle},
+    ProbeQuantity{"p", UnitKind::rate},
+    ProbeQuantity{"q", UnitKind::rate},
+    ProbeQuantity{"r", UnitKind::rate},
+    ProbeQuantity{"bn", UnitKind::field},
+    ProbeQuantity{"be", UnitKind::field},
+    ProbeQuantity{"bd", UnitKind::field},
+    ProbeQuantity{"field_strength", UnitKind::field},
 };
 
 }  // namespace

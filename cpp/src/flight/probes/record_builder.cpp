@@ -391,6 +391,8 @@ void RecordBuilder::take_drivers() {
           fmt::format("column '{}' can't drive an effect: it is named like a quantity "
                       "of the probe; rename it",
                       column.header));
+    } else if (column.header == files::flight_number) {
+      take(column.header, column, nullptr);
     } else if (!can_name(column.header)) {
       refused.push_back(fmt::format(
           "column '{}' can't drive an effect: a name has no blanks, brackets or ^; rename it, e.g. "

@@ -5,16 +5,16 @@
 #include <cmath>
 
 #include "base/gaps.hpp"
-#include "numerics/residual_curves.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::probes {
 namespace {
 
-using numerics::quantile;
+using numerics::select_quantile;
 
 constexpr std::size_t fewest_to_tell = 20;  // changes, bends or levels, of which a rule can be told
 
-/// Distances between the levels that the column takes, ascending.
+/// Distances between the levels that the column takes.
 std::vector<double> find_spacings(std::span<const double> values) {
   std::vector<double> levels;
   std::ranges::copy_if(values, std::back_inserter(levels),
@@ -24,16 +24,15 @@ std::vector<double> find_spacings(std::span<const double> values) {
   for (std::size_t i = 1; i < levels.size(); ++i) {
     if (levels[i] > levels[i - 1]) spacings.push_back(levels[i] - levels[i - 1]);
   }
-  std::ranges::sort(spacings);
   return spacings;
 }
 
 /// Steps show in levels that mostly lie one to three of them apart; what is continuous leaves
 /// spacings of all sizes. A sixth of a step is left to rounding: 0.1743 and 0.1747 degrees.
-double find_step(const std::vector<double>& spacings) {
+double find_step(std::vector<double>& spacings) {
   if (spacings.size() < 2) return not_a_number;
-  const double step = quantile(spacings, 0.1);
-  if (quantile(spacings, 0.5) > 3.5 * step) return not_a_number;
+  const double step = select_quantile(spacings, 0.1);
+  if (select_quantile(spacings, 0.5) > 3.5 * step) return not_a_number;
   const auto on_steps = std::ranges::count_if(spacings, [step](double spacing) {
     const double steps = spacing / step;
     return std::abs(steps - std::round(steps)) < 1.0 / 6 && steps > 0.5;
@@ -44,7 +43,7 @@ double find_step(const std::vector<double>& spacings) {
 
 /// Runs of equal values and the jumps from one to the next.
 struct Runs {
-  std::vector<double> lengths;  // of those that no end of a stretch cuts off
+  std::vector<double> lengths;  // of those that no end of a stretch cuts off, ascending
   std::vector<double> jumps;
   std::size_t rows = 0;   // that have a row before them
   std::size_t equal = 0;  // and repeat it
@@ -70,7 +69,6 @@ Runs find_equal_runs(std::span<const double> values, const std::vector<Segment>&
     }
   }
   std::ranges::sort(runs.lengths);
-  std::ranges::sort(runs.jumps);
   return runs;
 }
 
@@ -78,11 +76,11 @@ Runs find_equal_runs(std::span<const double> values, const std::vector<Segment>&
 /// what values stand apart by: a slow quantity on steps repeats too. A run of twenty usual ones is
 /// a quantity at rest, and repeats that are few on the whole and uneven are one that now and then
 /// rests.
-double find_hold(const Runs& runs, const std::vector<double>& spacings, double step) {
+double find_hold(Runs& runs, std::vector<double>& spacings, double step) {
   if (runs.lengths.size() < fewest_to_tell || runs.jumps.empty()) return 1.0;
   if (!std::isfinite(step) && spacings.empty()) return 1.0;
-  const double least = std::isfinite(step) ? 2.5 * step : 15 * quantile(spacings, 0.1);
-  if (quantile(runs.jumps, 0.5) < least) return 1.0;
+  const double least = std::isfinite(step) ? 2.5 * step : 15 * select_quantile(spacings, 0.1);
+  if (select_quantile(runs.jumps, 0.5) < least) return 1.0;
   const auto mean_of = [&](double longest) {
     double rows = 0;
     double count = 0;
@@ -94,16 +92,16 @@ double find_hold(const Runs& runs, const std::vector<double>& spacings, double s
     return rows / count;
   };
   const double hold = mean_of(20 * mean_of(infinity));
-  const bool even = quantile(runs.lengths, 0.2) > 0.7 * hold;
+  const bool even = numerics::quantile(runs.lengths, 0.2) > 0.7 * hold;
   return hold < 5.0 / 3.0 || (hold < 2.5 && !even) ? 1.0 : hold;
 }
 
 /// How far rows are from the line through their neighbours, where these differ.
 struct Bends {
   std::vector<std::size_t> knots;  // bent rows, of some in a row the first
-  std::vector<double> bent;        // farther than a digit, ascending
-  std::vector<double> between;  // rows from one to the next, of some in a row the first; ascending
-  double rows = 0.0;            // that neither stand still nor at an end
+  std::vector<double> bent;        // farther than a digit
+  std::vector<double> between;     // rows from one to the next, of some in a row the first
+  double rows = 0.0;               // that neither stand still nor at an end
 };
 
 Bends find_bends(std::span<const double> values, const std::vector<Segment>& stretches,
@@ -126,8 +124,6 @@ Bends find_bends(std::span<const double> values, const std::vector<Segment>& str
       bent_before = bent;
     }
   }
-  std::ranges::sort(bends.bent);
-  std::ranges::sort(bends.between);
   return bends;
 }
 
@@ -149,7 +145,7 @@ double find_digit(std::span<const double> values, const std::vector<double>& spa
   for (const double value : values) {
     if (std::isfinite(value)) widest = std::max(widest, std::abs(value));
   }
-  return std::max(1.05 * spacings.front(), 1e-12 * widest);
+  return std::max(1.05 * std::ranges::min(spacings), 1e-12 * widest);
 }
 
 /// Interpolated where most rows stand on the line of their neighbours to the last digit, the others
@@ -158,14 +154,14 @@ double find_knot_spacing(std::span<const double> values, const std::vector<Segme
                          const std::vector<double>& spacings) {
   if (spacings.size() < fewest_to_tell) return 1.0;
   const double digit = find_digit(values, spacings);
-  const Bends bends = find_bends(values, stretches, digit);
+  Bends bends = find_bends(values, stretches, digit);
   if (bends.between.size() < fewest_to_tell) return 1.0;
-  const double usual = quantile(bends.between, 0.5);
-  const bool even =
-      quantile(bends.between, 0.8) - quantile(bends.between, 0.2) <= std::max(1.0, 0.2 * usual);
+  const double usual = select_quantile(bends.between, 0.5);
+  const double middle = select_quantile(bends.between, 0.8) - select_quantile(bends.between, 0.2);
+  const bool even = middle <= std::max(1.0, 0.2 * usual);
   const bool throughout = static_cast<double>(bends.between.size()) * usual > 0.7 * bends.rows;
   const bool mostly_straight = static_cast<double>(bends.bent.size()) < 0.6 * bends.rows;
-  const bool far_off = quantile(bends.bent, 0.5) > 10 * digit;
+  const bool far_off = select_quantile(bends.bent, 0.5) > 10 * digit;
   if (!even || !throughout || !mostly_straight || !far_off) return 1.0;
   return mean_of_usual(bends.between, usual);
 }
@@ -177,18 +173,17 @@ bool is_coarse(const Runs& runs, std::span<const double> values, double step) {
   const auto small =
       std::ranges::count_if(runs.jumps, [step](double jump) { return jump < 1.5 * step; });
   if (runs.equal + static_cast<std::size_t>(small) < runs.rows * 8 / 10) return false;
-  std::vector<double> ascending;
-  std::ranges::copy_if(values, std::back_inserter(ascending),
+  std::vector<double> finite;
+  std::ranges::copy_if(values, std::back_inserter(finite),
                        [](double value) { return std::isfinite(value); });
-  std::ranges::sort(ascending);
-  return 250 * step > quantile(ascending, 0.95) - quantile(ascending, 0.05);
+  return 250 * step > select_quantile(finite, 0.95) - select_quantile(finite, 0.05);
 }
 
 }  // namespace
 
 Sequence find_sequence(std::span<const double> values, const std::vector<Segment>& stretches) {
-  const std::vector<double> spacings = find_spacings(values);
-  const Runs runs = find_equal_runs(values, stretches);
+  std::vector<double> spacings = find_spacings(values);
+  Runs runs = find_equal_runs(values, stretches);
   Sequence sequence;
   sequence.step = find_step(spacings);
   if (runs.rows == 0) return sequence;

@@ -6,6 +6,7 @@
 
 #include "flight/text/fit_text.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/joint.hpp"
 
 namespace sepcal {
 namespace {
@@ -43,14 +44,49 @@ std::string restated_lines(const Calibration& calibration) {
   return text;
 }
 
+/// What a joint fit says of its flights; empty where there is one.
+std::string departure_lines(const Calibration& calibration) {
+  constexpr double level = 0.01;
+  const std::vector<FlightDeparture>& flights = calibration.departures;
+  if (flights.empty()) return "";
+  std::string text = "\n";
+  for (const FlightDeparture& one : flights) {
+    if (!(one.p < level)) continue;
+    text += fmt::format("{} departs from the other flights (p {:.2g})", one.flight, one.p);
+    if (!one.parameter.empty()) {
+      text += fmt::format(": {} by {:.3g} +- {:.2g}", one.parameter, one.difference,
+                          one.standard_error);
+    }
+    text += "\n";
+  }
+  if (text.size() > 1) return text;
+  const auto least = std::ranges::min_element(
+      flights, {}, [](const FlightDeparture& one) { return std::isnan(one.p) ? infinity : one.p; });
+  return text + (std::isnan(least->p)
+                     ? "no flight could be tested for its departure from the others\n"
+                     : fmt::format("no flight departs from the others (least p {:.2g}: {})\n",
+                                   least->p, least->flight));
+}
+
+/// The fit without the parameters whose place each flight's own have taken.
+Fit shown_fit(const Calibration& calibration) {
+  Fit fit = calibration.fit;
+  if (const JointSetup* const joint = joint_setup(*calibration.probe)) {
+    std::erase_if(fit.parameters, [&](const Parameter& parameter) {
+      return std::ranges::find(joint->own, parameter.name) != joint->own.end();
+    });
+  }
+  return fit;
+}
+
 }  // namespace
 
 std::string to_text(const Calibration& calibration, Detail detail) {
   return fmt::format("{}: {} of {} rows of {}\n", calibration.probe->name(),
                      calibration.flight.rows_used, calibration.flight.rows,
                      calibration.flight.file) +
-         text::fit_table(calibration.fit, calibration.options, calibration.derived, detail) +
-         restated_lines(calibration) + history_table(calibration);
+         text::fit_table(shown_fit(calibration), calibration.options, calibration.derived, detail) +
+         restated_lines(calibration) + departure_lines(calibration) + history_table(calibration);
 }
 
 }  // namespace sepcal

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/flight/apply.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -51,6 +54,23 @@ std::optional<CorrectedColumn> find_outside(const Calibration& calibration, cons
   return outside;
 }
 
+/// Throws Error where a reading that can be corrected is not, as a parameter is not known of this
+/// flight.
+void check_corrected(const Calibration& calibration, const ProbeReadings& readings,
+                     const std::vector<CorrectedColumn>& columns, const Flight& flight) {
+  const auto unknown = std::ranges::find_if(
+      calibration.fit.parameters, [](const Parameter& one) { return std::isnan(one.value); });
+  if (unknown == calibration.fit.parameters.end()) return;
+  for (const CorrectedColumn& column : columns) {
+    for (std::size_t row = 0; row < column.values.size(); ++row) {
+      if (!readings.valid[row] || !std::isnan(column.values[row])) continue;
+      throw Error(fmt::format(
+          "{}: {} is each flight's own, and this one was not fitted; fit it with the others",
+          flight.name(), unknown->name));
+    }
+  }
+}
+
 std::vector<double> part_of(const std::vector<double>& values, std::size_t first,
                             std::size_t last) {
   return {values.begin() + static_cast<std::ptrdiff_t>(first),
@@ -79,6 +99,7 @@ std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight&
   ReadFlight read = read_as(flight, choice);
   ProbeReadings readings = calibration.probe->read(read.flight, choice);
   auto columns = correct_with_effects(calibration, read.flight, readings);
+  check_corrected(calibration, readings, columns, flight);
   if (auto outside = find_outside(calibration, read.flight, read.notes)) {
     columns.push_back(std::move(*outside));
   }
@@ -101,6 +122,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   ProbeReadings readings = probe.read(read.flight, choice);
   auto columns = stream ? std::vector<CorrectedColumn>()
                         : correct_with_effects(calibration, read.flight, readings);
+  check_corrected(calibration, readings, columns, flight);
 
   Applied applied{.output = output,
                   .rows = flight.rows(),

@@ -136,6 +136,7 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
           std::move(derived),
           std::move(restated),
           {},
+          {},
           flight.prepared.notes};
 }
 

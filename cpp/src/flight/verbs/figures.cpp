@@ -10,6 +10,7 @@
 #include "base/thread_pool.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/verbs/prepared_flight.hpp"
+#include "numerics/order_statistics.hpp"
 #include "numerics/quantiles.hpp"
 #include "numerics/residual_curves.hpp"
 #include "sepcal/noise_model.hpp"

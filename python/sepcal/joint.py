@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several flights of one probe, calibrated together."""
+
+from collections.abc import Sequence
+from typing import Unpack
+
+from sepcal import _core
+from sepcal.calibration import Calibration
+from sepcal.flight import Flight, to_flight
+from sepcal.models import Model
+from sepcal.options import FitOptions, spelled_out, to_core, to_names
+from sepcal.own_effect import Effect, name_effects, to_core_effects
+
+
+@spelled_out()
+def fit_jointly(
+    model: Model,
+    flights: Sequence[Flight],
+    *,
+    own: Sequence[str] = (),
+    **options: Unpack[FitOptions],
+) -> Calibration:
+    """Calibrates a probe on several flights together: one probe, a wind a flight.
+
+        fit = sepcal.fit_jointly(probe, [monday, tuesday], own=["wind"])
+        fit["w_n@monday"], fit.departed()
+
+    The result is a Calibration like another, of the flights joined: it is compared, diagnosed,
+    added to, saved and loaded. An effect is centred over all flights, so that its coefficient means
+    the same in each. For many flights, on many machines, there is fit_many().
+
+    Args:
+        model: A probe.
+        flights: Two or more, of different names. They need the same columns; what is not in all of
+            them is left out. A flight is called by its file's name without folder and ending.
+        own: Parameters that every flight has for itself, "wind" for w_n, w_e, w_d; the others are
+            shared.
+        **options: Those of fit(). Bounds, a start and a prior of an own parameter hold for each
+            flight's.
+
+    Raises:
+        Error: Bad input, as in fit(); one flight, two of one name, an own parameter that there
+            isn't.
+        TypeError: An option that there isn't, or of the wrong kind.
+    """
+    if isinstance(flights, Flight | str):
+        raise _core.Error("flights is one flight; give several in a list, or fit() the one")
+    effects = options.get("effects") or ()
+    options["effects"] = name_effects(effects)
+    core, joined = _core.calibrate_jointly(
+        model._core,
+        [to_flight(flight, "fit_jointly(model, [")._core for flight in flights],
+        to_names("own", own),
+        to_core(options),
+        to_core_effects(effects),
+    )
+    made = [effect for effect in effects if isinstance(effect, Effect)]
+    return Calibration(core, Flight._of(joined), made)
