@@ -90,7 +90,7 @@ class CommandLine {
     add_json(*check_);
 
     add_flight(*fit_);
-    add_more_flights(*fit_, "other flights, fitted jointly with it");
+    add_more_flights(*fit_, "other flights, fitted jointly with it; their names end in .csv");
     fit_->add_option("--own", typed_.own,
                      "of several flights: parameters that each has for itself, e.g. wind")
         ->type_name("NAME[,...]")
@@ -136,7 +136,7 @@ class CommandLine {
   CLI::App* add_later_verb(const char* name, const char* what, bool of_several = true) {
     CLI::App& verb = *cli_.add_subcommand(name, what);
     add_flight(verb);
-    if (of_several) add_other_flights(verb);
+    if (of_several) add_more_flights(verb, "the other flights of a joint fit, names in .csv");
     add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
     typed_.log.add_to(verb);
     add_explain(verb);
@@ -148,14 +148,11 @@ class CommandLine {
     add_file(verb, "FLIGHT", typed_.flight, "the log, a CSV file")->required();
   }
 
-  CLI::Option* add_more_flights(CLI::App& verb, const std::string& what) {
-    return verb.add_option("MORE", typed_.more_flights, what)->type_name("CSV");
-  }
-
-  /// Before CALIBRATION, from which their ending tells them.
-  void add_other_flights(CLI::App& verb) {
+  /// By their ending they are told from what may follow.
+  void add_more_flights(CLI::App& verb, const std::string& what) {
     verb.validate_positionals();
-    add_more_flights(verb, "the other flights of a joint fit, whose names end in .csv")
+    verb.add_option("MORE", typed_.more_flights, what)
+        ->type_name("CSV")
         ->check([](const std::string& file) {
           return std::string(file.ends_with(".csv") ? "" : "the name of a log ends in .csv");
         });

@@ -40,12 +40,22 @@ std::string explain_extras(const CLI::App& verb, const CLI::ParseError& error) {
   return numbers ? "; put commas and no blanks between an option's numbers" : "";
 }
 
+/// A log in the calibration's place is taken for another flight.
+std::string explain_missing(const CLI::App& verb, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return "";
+  const CLI::Option* const more = verb.get_option_no_throw("MORE");
+  if (more == nullptr || more->results().empty()) return "";
+  return fmt::format("; {} is a log, not a calibration: give the JSON that fit wrote with -o",
+                     more->results().back());
+}
+
 /// What is wrong with a command line; CLI11's words where a verb was given.
 std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
   if (!cli.get_subcommands().empty()) {
     std::string what = error.what();
     std::ranges::replace(what, '\n', ' ');
-    return what + explain_extras(*cli.get_subcommands().front(), error);
+    const CLI::App& verb = *cli.get_subcommands().front();
+    return what + explain_extras(verb, error) + explain_missing(verb, error);
   }
   const std::vector<std::string> words = cli.remaining();
   return (words.empty() ? "a verb is missing" : fmt::format("'{}' is no verb", words.front())) +

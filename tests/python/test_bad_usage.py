@@ -61,7 +61,8 @@ NONSENSE: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("--effect", "{port}[time]", "--effect", "{port}[time]"), ("'{port}[time].", "belongs to")),
     (("--effect", "time_offset", "--bounds", "time_offset.tau=-inf,1"), ("--bounds", "-inf")),
     (("--altitude", "3"), ("--altitude", "fit --help")),
-    (("another.csv",), ("another.csv", "fit --help")),
+    (("another.csv",), ("another.csv: no such file",)),
+    (("another.txt",), ("another.txt", "fit --help")),
 ]
 LAST = {"sepcal-pitot": "eps_phi", "sepcal-mag": "alpha_yz"}
 LABEL = {"sepcal-pitot": "wind_circle_1", "sepcal-mag": "figure_eight"}

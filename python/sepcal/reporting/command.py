@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     more = [file for file in arguments.calibrations if file.endswith(".csv")]
     files = [file for file in arguments.calibrations if file not in more]
     if not files:
-        raise Error("no calibration is given; report FLIGHT.csv CAL.json")
+        raise Error(f"{more[-1]} is a log, not a calibration; give the JSON that fit wrote with -o")
     flight = read_csv(arguments.flight)
     chain = [load(file) for file in files]
     last = chain[-1]

@@ -1,4 +1,5 @@
-// Puts the arrays back into the figures and draws them; says on <html> how many, and what failed.
+// Unpacks Plotly, puts the arrays back into the figures and draws them; says on <html> how many, and
+// what failed.
 "use strict";
 (() => {
   const root = document.documentElement;
@@ -10,8 +11,9 @@
   window.addEventListener("error", (event) => fail(event.message));
   window.addEventListener("unhandledrejection", (event) => fail(event.reason));
 
+  const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const decode = (text) => {
-    const bytes = Uint8Array.from(atob(text.slice(3)), (letter) => letter.charCodeAt(0));
+    const bytes = bytesOf(text.slice(3));
     return text.startsWith("f4") ? new Float32Array(bytes.buffer) : new Float64Array(bytes.buffer);
   };
   const pool = JSON.parse(document.getElementById("pool").textContent);
@@ -40,5 +42,18 @@
     if (places.length === 0) return;
     draw(places[0]).catch(fail).then(() => setTimeout(() => next(places.slice(1)), 0));
   };
-  next([...document.querySelectorAll("[data-figure]")]);
+  const loadPlotly = async () => {
+    if (typeof DecompressionStream === "undefined") {
+      throw new Error("this browser is older than 2023 and can't unpack the figures");
+    }
+    const packed = new Blob([bytesOf(document.getElementById("plotly").textContent)]);
+    const unpacked = packed.stream().pipeThrough(new DecompressionStream("gzip"));
+    const script = document.createElement("script");
+    script.textContent = await new Response(unpacked).text();
+    document.head.append(script);
+  };
+  loadPlotly().then(() => next([...document.querySelectorAll("[data-figure]")]), (error) => {
+    fail(error);
+    for (const place of document.querySelectorAll("[data-figure]")) place.textContent = String(error);
+  });
 })();

@@ -2,12 +2,14 @@
 """A page as plain data, and its HTML: nothing here knows about calibrations.
 
 Figures are Plotly's, as dictionaries of data and layout. Their arrays stand in a pool, each once,
-as base64 of float32, or of float64 where rounding would show; draw.js puts them back.
+as base64 of float32, or of float64 where rounding would show; draw.js puts them back. Plotly itself
+is compressed, which makes the page a third as large.
 """
 
 from __future__ import annotations
 
 import base64
+import gzip
 import json
 from dataclasses import dataclass, field
 from html import escape
@@ -103,7 +105,7 @@ def encode_array(values: Array) -> str:
 
 
 def build_page(page: Page, plotly: str) -> str:
-    """The HTML, with Plotly's JavaScript inside."""
+    """The HTML, with Plotly as read_plotly() gives it inside."""
     pool = Pool()
     entries = "".join(
         f'<li><a href="#s{number}">{escape(section.title)}</a></li>'
@@ -130,7 +132,7 @@ def build_page(page: Page, plotly: str) -> str:
 <nav aria-label="Contents"><ol>{entries}</ol></nav>
 {sections}
 </main>
-<script>{plotly}</script>
+<script type="application/octet-stream" id="plotly">{plotly}</script>
 <script type="application/json" id="pool">{pool.to_json()}</script>
 <script>
 {read_asset("draw.js")}</script>
@@ -165,11 +167,14 @@ def read_asset(name: str) -> str:
 
 
 def read_plotly() -> str:
-    """Plotly's JavaScript. Raises Error that says how to install it where it is missing."""
+    """Plotly's JavaScript, compressed by gzip and as base64, the same each time.
+
+    Raises Error that says how to install it where it is missing.
+    """
     try:
         from plotly.offline import get_plotlyjs
     except ImportError as error:
         raise _core.Error(
             "the report needs plotly, which is not installed: pip install sepcal[report]"
         ) from error
-    return str(get_plotlyjs())
+    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode()
