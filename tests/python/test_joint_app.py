@@ -2,6 +2,8 @@
 """Several flights fitted together by the app: against fit_many(), and through every verb."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -163,3 +165,17 @@ def test_a_fourth_flight_has_no_wind_to_compare_with(fleet: Bench) -> None:
     assert_one_line(
         fleet, outcome, "thu.csv: none of the flights that were fitted", "w_n, w_e, w_d"
     )
+
+
+def test_a_report_is_of_all_flights(fleet: Bench) -> None:
+    """With their winds in words, whether each agrees with the others, and how to make it again."""
+    pytest.importorskip("plotly", reason="the report draws with plotly: pip install sepcal[report]")
+    command = [sys.executable, "-m", "sepcal", "report", *FILES, "joint.json", "-o", "joint.html"]
+    subprocess.run(command, cwd=fleet.folder, check=True, capture_output=True)
+    page = (fleet.folder / "joint.html").read_text()
+    for label in WINDS:
+        assert f"<b>wind@{label}</b>: from " in page
+        assert f"wind, north, of {label}" in page
+    assert "Does a flight depart from the others?" in page
+    assert f"sepcal report {' '.join(FILES)} joint.json -o joint.html" in page
+    assert len(page) < 3_000_000

@@ -16,6 +16,8 @@ from sepcal.reporting.gather import Material
 from sepcal.reporting.words import number, with_unit
 from sepcal.results import Fit
 
+BEYOND_ALL = 1e6  # of a port's unit: nothing that would have shown is so large
+DEPARTS = 0.01  # of p
 TWINS = 4  # effects that would do as well, or pairs, that are named
 
 
@@ -72,12 +74,7 @@ def advise(material: Material) -> str:
                 f"least a part of it does (visibility {number(effect.visibility, 2)}), and will be "
                 "poorly determined once it is added."
             )
-    for at in last.unobservable:
-        lines.append(
-            f"<b>Fly</b> what separates {escape(', '.join(at.parameters))}, or hold one of them "
-            "with <code>--fix NAME=VALUE</code>: their combination "
-            f"<code>{escape(at.text)}</code> is open."
-        )
+    lines += advise_on_open(last)
     for at in last.weak:
         lines.append(
             f"<b>Fly</b> more of what separates {escape(', '.join(at.parameters[:TWINS]))}: they "
@@ -98,17 +95,62 @@ def advise(material: Material) -> str:
     return tables.bullets(lines) if lines else "<p>Nothing stands out.</p>"
 
 
+def advise_on_open(last: Fit) -> list[str]:
+    """What to do about each combination that the flight leaves open."""
+    lines = []
+    absent = []
+    for at in last.unobservable:
+        names = escape(", ".join(at.parameters))
+        if not set(at.parameters) <= set(last.parameters):
+            absent.append(names)
+        elif len(at.parameters) == 1:
+            lines.append(
+                f"<b>Fly</b> what shows {names}, or hold it with <code>--fix {names}=VALUE</code>."
+            )
+        else:
+            lines.append(
+                f"<b>Fly</b> what separates {names}, or hold one of them with "
+                "<code>--fix NAME=VALUE</code>: their combination "
+                f"<code>{escape(at.text)}</code> is open."
+            )
+    if absent:
+        lines.append(f"No flight shows {', '.join(absent)} to this model, which lacks them.")
+    return lines
+
+
 def list_limits(material: Material) -> str:
     """The smallest slow effect of each port that would have shown."""
     limits = material.diagnosis.limits
     if not limits:
         return ""
     rows = [
-        [f"<b>{escape(port)}</b>", with_unit(limit["size"], limit["unit"])]
+        [
+            f"<b>{escape(port)}</b>",
+            with_unit(limit["size"], limit["unit"]) if limit["size"] < BEYOND_ALL else "none",
+        ]
         for port, limit in limits.items()
     ]
     head = [("enters at", False), ("smallest slow effect that would have shown", True)]
     return f"<h3>How small an effect this flight could show</h3>{tables.table(head, rows)}"
+
+
+def list_flights(material: Material) -> str:
+    """Of a joint fit: whether each flight agrees with the others; empty of one flight."""
+    departures = material.last.departures
+    if not departures:
+        return ""
+    rows = []
+    for label, one in departures.items():
+        off = f"{number(one.difference, 3)} ± {number(one.standard_error, 2)}"
+        told = f"{escape(one.parameter)} by {off}" if one.parameter else ""
+        departs = "departs" if one.p < DEPARTS else ""
+        rows.append([f"<b>{escape(label)}</b>", number(one.p, 2), told, departs])
+    head = [("flight", False), ("p", True), ("most different", False), ("", False)]
+    return (
+        "<h3>Does a flight depart from the others?</h3><p>Its own estimate of what all share, "
+        "against that of the others; p is of a larger difference by chance, adjusted for the "
+        f"number of flights.</p>{tables.table(head, rows)}"
+    )
 
 
 def advised(material: Material) -> EffectFinding | None:
@@ -123,14 +165,15 @@ def next_command(material: Material, file: str) -> str:
     if effect is None or not file or not material.flight.sha256:
         return ""
     app = "sepcal-mag" if material.model.startswith("magnetometer") else "sepcal-pitot"
-    words = [app, "add", material.flight.name, file, effect.name]
+    words = [app, "add", *material.flight_files, file, effect.name]
     return f"{shlex.join(words)} -o NEXT.json"
 
 
 def report_command(material: Material, file: str) -> str:
     """What makes this page again."""
     if material.files and material.flight.sha256:
-        words = ["python", "-m", "sepcal", "report", material.flight.name, *material.files]
+        flights = material.flight_files
+        words = ["python", "-m", "sepcal", "report", *flights, *material.files]
         return shlex.join([*words, "-o", file])
     return f"sepcal.report(calibrations, {file!r}, flight)"
 

@@ -61,9 +61,16 @@ class Material:
         return [(label, float(time[a]), float(time[b - 1])) for label, a, b in segments]
 
     @property
+    def flight_files(self) -> list[str]:
+        """The flight's file, or those of a joint fit's flights."""
+        if not self.last.flights or not self.is_fitted_flight:
+            return [self.flight.name]
+        return [str(flight["file"]) for flight in self.description["joint"]["flights"]]
+
+    @property
     def title(self) -> str:
-        """The flight's name without its folder."""
-        return os.path.basename(self.flight.name) or self.flight.name
+        """The flight's name without its folder; of several, all of them."""
+        return " + ".join(os.path.basename(file) or file for file in self.flight_files)
 
     @property
     def model(self) -> str:

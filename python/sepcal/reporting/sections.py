@@ -255,6 +255,11 @@ def show_trials(material: Material) -> Section:
     return Section("What the first candidates explain", lead, blocks)
 
 
+def shared_of_own(material: Material) -> list[str]:
+    """Parameters in whose place each flight of a joint fit has its own."""
+    return list(material.description.get("joint", {}).get("own", []))
+
+
 def show_parameters(material: Material) -> Section:
     """Estimates, errors, what can't be told apart."""
     lead = (
@@ -262,7 +267,9 @@ def show_parameters(material: Material) -> Section:
         "would be if they were white. Neither covers a cause that the model lacks."
     )
     blocks: list[str | Figure | Grid] = [
-        tables.list_parameters(material.last, material.last.derived),
+        tables.list_parameters(material.last, material.last.derived, shared_of_own(material)),
+        tables.list_restated(material.last.restated),
+        advice.list_flights(material),
         tables.list_directions(material.last.unobservable, material.last.weak),
     ]
     return Section("Parameters", lead, blocks)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from html import escape
+from typing import Any
 
 import numpy as np
 
@@ -227,8 +228,20 @@ def list_parameters(
     return table(head, rows)
 
 
+def list_restated(restated: Mapping[str, Mapping[str, Any]]) -> str:
+    """Estimates in other words, a line each; empty where there are none."""
+    lines = [
+        f"<b>{escape(name)}</b>: {escape(str(entry['sentence']))}"
+        for name, entry in restated.items()
+    ]
+    return f"<h3>In other words</h3>{bullets(lines)}" if lines else ""
+
+
 def meaning(parameter: Parameter, calibration: Fit) -> str:
     """In a few words; an effect's coefficient is named after the effect."""
+    name, _, flight = parameter.name.partition("@")
+    if flight:
+        return f"{MEANINGS.get(name, name)}, of {flight}"
     for effect in calibration.effects:
         if parameter.name.startswith(f"{effect.name}."):
             return "of the added effect"
