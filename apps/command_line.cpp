@@ -154,7 +154,8 @@ class CommandLine {
     verb.add_option("MORE", typed_.more_flights, what)
         ->type_name("CSV")
         ->check([](const std::string& file) {
-          return std::string(file.ends_with(".csv") ? "" : "the name of a log ends in .csv");
+          const bool is_log = file.ends_with(".csv") || file.ends_with(".CSV");
+          return std::string(is_log ? "" : "the name of a log ends in .csv");
         });
   }
 

@@ -100,10 +100,15 @@ int Verbs::fit(CalibrationOptions options) const {
   }
   ProgressLine line;
   options.fit.progress = shown_on(line);
-  const auto probe = instrument_.probe(read_as(flight, options.log).flight);
-  const Calibration calibration = flights.size() == 1
-                                      ? calibrate(probe, flight, options)
-                                      : calibrate_jointly(probe, flights, arguments_.own, options);
+  const auto fit_one = [&] {
+    return calibrate(instrument_.probe(read_as(flight, options.log).flight), flight, options);
+  };
+  const auto fit_all = [&] {
+    std::vector<std::string> notes;  // calibrate_jointly() gives them with the calibration
+    const auto probe = instrument_.probe(join_flights(flights, options.log, notes));
+    return calibrate_jointly(probe, flights, arguments_.own, options);
+  };
+  const Calibration calibration = flights.size() == 1 ? fit_one() : fit_all();
   line.clear();
   delivery.deliver(calibration);
   return exit_code(calibration.fit.status);

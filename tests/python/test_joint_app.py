@@ -68,6 +68,37 @@ def test_it_is_fit_many(fleet: Bench) -> None:
         assert departures[label] == pytest.approx(flight.departure.p_holm, rel=1e-3)
 
 
+def test_logs_may_differ_in_units_clocks_and_names(fleet: Bench, tmp_path: Path) -> None:
+    """Fitted as the clean ones: to what rounding leaves of nine digits."""
+    spoilt = Bench("sepcal-pitot", tmp_path, PROBE, None)
+    monday, tuesday, wednesday = (Log(fleet.folder / file) for file in FILES)
+    tuesday.replace("roll_rad", np.degrees(tuesday.column("roll_rad")), to="roll_deg")
+    tuesday.replace("vn_mps", tuesday.column("vn_mps") * 3600 / 1852, to="vn_kt")
+    tuesday.replace("pt_pa", tuesday.column("pt_pa") / 100, to="pt_hpa")
+    tuesday.replace("time_s", 1000 * (tuesday.column("time_s") + 1.772e9), to="time_ms")
+    wednesday.replace("ps_pa", wednesday.column("ps_pa"), to="Static")
+    for file, log in zip(FILES, (monday, tuesday, wednesday), strict=True):
+        (tmp_path / file).write_text(log.text())
+    command = (*FILES, "--own", "wind", "--map", "ps_pa=Static", "--json", *PROBE)
+    fitted = spoilt.run("fit", *command, "-o", "joint.json")
+    assert fitted.code == 0, fitted.err
+    for name, expected in read(fleet)["parameters"].items():
+        found = fitted.result["parameters"][name]["value"]
+        assert abs(found - expected["value"]) < 1e-3 * (expected["standard_error"] or 1)
+    compared = spoilt.run("compare", *FILES, "joint.json", "--json")
+    assert compared.code == 0, compared.err
+    assert compared.result["rmse"]["vn"] == pytest.approx(fitted.result["rmse"]["vn"], rel=1e-9)
+
+
+def test_what_is_fixed_holds_in_every_flight(fleet: Bench) -> None:
+    fitted = fleet.run("fit", *FILES, "--own", "wind", "--fix", "w_d=0", "--json", *PROBE)
+    assert fitted.code == 0, fitted.err
+    for label in WINDS:
+        assert fitted.result["parameters"][f"w_d@{label}"]["value"] == 0
+        assert fitted.result["parameters"][f"w_d@{label}"]["standard_error"] is None
+    assert "flights are not tested for their departure" in fitted.err
+
+
 def test_each_wind_is_its_flights_own(fleet: Bench) -> None:
     parameters = read(fleet)["parameters"]
     for label, winds in WINDS.items():
@@ -149,8 +180,13 @@ def test_python_reads_what_the_app_wrote(fleet: Bench) -> None:
         (("fit", *FILES, "--own", "gusts", *PROBE), ("own gusts: there is no such parameter",)),
         (("fit", "mon.csv", "mon.csv", *PROBE), ("mon.csv is given twice",)),
         (
-            ("fit", *FILES, "--own", "wind", "--fix", "w_n=2", *PROBE),
-            ("--fix w_n: w_n is each flight's own", "w_n@mon"),
+            ("fit", *FILES, "--own", "wind", "--from", "20", *PROBE),
+            ("--from-time is of one clock", "each flight has its own", "--where"),
+        ),
+        (("fit", "mon.csv", "./mon.csv", *PROBE), ("mon.csv and ./mon.csv are the same file",)),
+        (
+            ("fit", *FILES, "--map", "pt_pa=TotalP", *PROBE),
+            ("--map pt_pa=TotalP: no flight has a column 'TotalP'",),
         ),
         (("diagnose", "mon.csv", "joint.json"), ("joint.json is of 3 flights; give them all",)),
         (("intervals", *FILES[:2], "joint.json"), ("wed.csv is missing, or changed since",)),
@@ -179,3 +215,17 @@ def test_a_report_is_of_all_flights(fleet: Bench) -> None:
     assert "Does a flight depart from the others?" in page
     assert f"sepcal report {' '.join(FILES)} joint.json -o joint.html" in page
     assert len(page) < 3_000_000
+
+
+def test_a_column_that_one_flight_lacks_is_named_with_those_that_have_it(
+    fleet: Bench, tmp_path: Path
+) -> None:
+    spoilt = Bench("sepcal-pitot", tmp_path, PROBE, None)
+    for file in FILES:
+        log = Log(fleet.folder / file)
+        if file == "tue.csv":
+            log.drop("vn_mps")
+        (tmp_path / file).write_text(log.text())
+    outcome = spoilt.run("fit", *FILES, "--own", "wind", *PROBE)
+    words = ("column 'vn_mps' is missing", "left out: vn_mps (mon.csv), vn_mps (wed.csv)")
+    assert_one_line(spoilt, outcome, *words)

@@ -10,12 +10,20 @@ namespace sepcal::model {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+namespace {
+
+/// By a sum, which vectorises, and which a number that isn't finite spoils.
+bool is_zero(const Eigen::Ref<const Eigen::VectorXd>& column) {
+  return column.cwiseAbs().sum() == 0.0;
+}
+
+}  // namespace
+
 RowLanes::RowLanes(int columns) : kit_(lanes::lane_kit()), beside_(columns) {}
 
 bool RowLanes::fits(const Eigen::Ref<MatrixXd>& rows) const {
-  return used_ && std::ranges::all_of(left_out_, [&](Index column) {
-           return (rows.col(column).array() == 0.0).all();
-         });
+  return used_ &&
+         std::ranges::all_of(left_out_, [&](Index column) { return is_zero(rows.col(column)); });
 }
 
 void RowLanes::begin_anew(const Eigen::Ref<MatrixXd>& rows) {
@@ -23,7 +31,7 @@ void RowLanes::begin_anew(const Eigen::Ref<MatrixXd>& rows) {
   kept_.clear();
   left_out_.clear();
   for (Index column = 0; column < rows.cols(); ++column) {
-    ((rows.col(column).array() == 0.0).all() ? left_out_ : kept_).push_back(column);
+    (is_zero(rows.col(column)) ? left_out_ : kept_).push_back(column);
   }
   triangles_.assign(kept_.size() * kept_.size() * kit_.width, 0.0);
   used_ = true;

@@ -126,7 +126,9 @@ def list_limits(material: Material) -> str:
     rows = [
         [
             f"<b>{escape(port)}</b>",
-            with_unit(limit["size"], limit["unit"]) if limit["size"] < BEYOND_ALL else "none",
+            with_unit(limit["size"], limit["unit"])
+            if limit["size"] is not None and limit["size"] < BEYOND_ALL
+            else "none",
         ]
         for port, limit in limits.items()
     ]

@@ -31,7 +31,8 @@ struct JointSetup {
 /// The flights' rows one after the other, a second or two gaps of their logs apart, each flight's
 /// labels its own. Columns that are not in all of them are left out, with a note. Throws Error for
 /// fewer than two, two of one name, or a flight without a time.
-/// `choice` says where the time is called otherwise; it is not applied.
+/// Each is read under the names of `choice`, as far as it has such columns, and in the units of the
+/// first; read_as() then leaves the names as they are.
 Flight join_flights(const std::vector<Flight>& flights, const LogChoice& choice,
                     std::vector<std::string>& notes);
 

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -13,8 +14,8 @@
 #include "flight/files/sha256.hpp"
 #include "flight/joint/own_by_flight.hpp"
 #include "flight/logs/chosen_columns.hpp"
-#include "sepcal/error.hpp"
 #include "sepcal/flight/joint.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -22,41 +23,125 @@ using namespace joint;  // this room's own
 
 namespace {
 
-/// The header under which a flight has its time, and a second in its unit. `choice` says what is
-/// called otherwise.
+constexpr std::array kinds{
+    files::UnitKind::time,     files::UnitKind::angle,       files::UnitKind::rate,
+    files::UnitKind::length,   files::UnitKind::speed,       files::UnitKind::acceleration,
+    files::UnitKind::pressure, files::UnitKind::temperature, files::UnitKind::density,
+    files::UnitKind::field,    files::UnitKind::share};
+
+/// "roll_deg" as a quantity and its unit; nothing of a header without a unit that is known.
+struct Headed {
+  std::string quantity;
+  const files::Unit* unit = nullptr;
+};
+
+std::optional<Headed> parse_header(const std::string& header) {
+  for (const files::UnitKind kind : kinds) {
+    for (const files::Unit& unit : files::known_units(kind)) {
+      const std::string ending = "_" + std::string(unit.suffix);
+      if (header.size() > ending.size() && header.ends_with(ending)) {
+        return Headed{header.substr(0, header.size() - ending.size()), &unit};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// What of the choice's map and ignored columns is of this flight's columns; the rest is of
+/// others'.
+LogChoice names_for(const LogChoice& choice, const Flight& flight) {
+  LogChoice own{.map = choice.map, .ignore = choice.ignore};
+  std::erase_if(own.map, [&](const auto& names) { return flight.find(names.second) == nullptr; });
+  std::erase_if(own.ignore, [&](const std::string& header) {
+    return flight.find(header) == nullptr && !own.map.contains(header);
+  });
+  return own;
+}
+
+/// Throws OptionError for a choice of columns that no flight has.
+void check_names(const LogChoice& choice, const std::vector<Flight>& flights) {
+  const auto nobody_has = [&](const std::string& header) {
+    return std::ranges::all_of(
+        flights, [&](const Flight& flight) { return flight.find(header) == nullptr; });
+  };
+  for (const auto& [header, logged] : choice.map) {
+    if (!nobody_has(logged)) continue;
+    throw OptionError({Option{"map"},
+                       fmt::format(" {}={}: no flight has a column '{}'", header, logged, logged)});
+  }
+  for (const std::string& header : choice.ignore) {
+    if (!nobody_has(header) || choice.map.contains(header)) continue;
+    throw OptionError({Option{"ignore"}, fmt::format(" {}: no flight has such a column", header)});
+  }
+}
+
+/// A flight under the names of the choice and, where a column of `first` is there in another unit,
+/// in that one.
+Flight align(const Flight& flight, const LogChoice& choice, const Flight* first) {
+  Flight aligned = flight;
+  logs::choose_columns(aligned, names_for(choice, flight));
+  if (first == nullptr) return aligned;
+  for (const Flight::Column& column : first->columns()) {
+    if (aligned.find(column.header) != nullptr) continue;
+    const auto headed = parse_header(column.header);
+    if (!headed) continue;
+    const auto found = files::find_quantity(aligned, headed->quantity, headed->unit->kind);
+    if (!found) continue;
+    std::vector<double> values = found->values();
+    const double none = headed->unit->convert(0.0);
+    const double one = headed->unit->convert(1.0) - none;
+    for (double& value : values) value = (value - none) / one;
+    const std::string before = found->column->header;
+    aligned.rename(before, column.header);
+    aligned.replace(column.header, std::move(values));
+  }
+  return aligned;
+}
+
+/// The header under which a flight has its time, and a second in its unit.
 struct TimeColumn {
   std::string header;
   double second = 1.0;
 };
 
-TimeColumn find_time(const Flight& flight, const LogChoice& choice) {
-  Flight named = flight;
-  logs::choose_columns(named, choice);
-  const auto logged = files::find_quantity(named, "time", files::UnitKind::time);
+TimeColumn find_time(const Flight& flight) {
+  const auto logged = files::find_quantity(flight, "time", files::UnitKind::time);
   if (!logged) {
-    throw Error(
-        fmt::format("{}: there is no column of time; flights are joined by it", flight.name()));
+    throw Error(fmt::format("{}: there is no column of time, as time_s; flights are joined by it",
+                            flight.name()));
   }
-  std::string header = logged->column->header;
-  if (const auto mapped = choice.map.find(header); mapped != choice.map.end()) {
-    header = mapped->second;
-  }
-  return {std::move(header), 1.0 / logged->unit->convert(1.0)};
+  return {logged->column->header, 1.0 / logged->unit->convert(1.0)};
 }
 
-void check_flights(const std::vector<Flight>& flights) {
+void check_flights(const std::vector<Flight>& flights, const LogChoice& choice) {
   if (flights.size() < 2) throw Error("a joint fit takes two flights or more");
-  std::set<std::string> names;
-  for (const Flight& flight : flights) {
-    if (flight.is_mapped()) throw Error("a streamed log can't be fitted jointly");
+  if (choice.from_time || choice.to_time) {
+    throw OptionError({Option{choice.from_time ? "from_time" : "to_time"},
+                       " is of one clock, and each flight has its own; choose rows of several "
+                       "flights by ",
+                       Option{"where"}, " or by labels"});
+  }
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    const Flight& flight = flights[k];
+    if (flight.is_mapped()) {
+      throw OptionError({Option{"stream"},
+                         ": streamed logs can't be fitted jointly; leave it out, or fit them one "
+                         "by one"});
+    }
     if (flight.rows() == 0) throw Error(flight.name() + ": there are no rows");
-    if (!names.insert(flight.name()).second) {
-      throw Error(fmt::format("{} is given twice; give each flight once", flight.name()));
+    for (std::size_t i = 0; i < k; ++i) {
+      const bool same_bytes = !flight.sha256().empty() && flight.sha256() == flights[i].sha256();
+      if (!same_bytes && flights[i].name() != flight.name()) continue;
+      throw Error(flights[i].name() == flight.name()
+                      ? flight.name() + " is given twice; give each flight once"
+                      : fmt::format("{} and {} are the same file; give each flight once",
+                                    flights[i].name(), flight.name()));
     }
   }
 }
 
-/// What of each flight's time is added, so that each begins after the one before has ended.
+/// What of each flight's time is added, so that each begins after the one before has ended, and
+/// within a day: clocks that are farther apart have nothing to do with each other.
 std::vector<double> find_offsets(const std::vector<Flight>& flights, const TimeColumn& time) {
   double gap = time.second;
   const auto values_of = [&](const Flight& flight) { return flight.find(time.header)->values; };
@@ -78,7 +163,9 @@ std::vector<double> find_offsets(const std::vector<Flight>& flights, const TimeC
       first = std::min(first, value);
       latest = std::max(latest, value);
     }
-    offsets.push_back(first >= last + gap ? 0.0 : last + gap - first);
+    const double day = 86'400.0 * time.second;
+    const bool follows = offsets.empty() || (first >= last + gap && first <= last + day);
+    offsets.push_back(follows ? 0.0 : last + gap - first);
     last = std::max(last, latest + offsets.back());
   }
   return offsets;
@@ -134,14 +221,20 @@ std::vector<JoinedFlight> describe_flights(const std::vector<Flight>& flights) {
   return described;
 }
 
-Flight join_flights(const std::vector<Flight>& flights, const LogChoice& choice,
+Flight join_flights(const std::vector<Flight>& given, const LogChoice& choice,
                     std::vector<std::string>& notes) {
-  check_flights(flights);
-  const TimeColumn time = find_time(flights.front(), choice);
+  check_flights(given, choice);
+  check_names(choice, given);
+  std::vector<Flight> flights;
+  for (const Flight& flight : given) {
+    flights.push_back(align(flight, choice, flights.empty() ? nullptr : &flights.front()));
+  }
+  const TimeColumn time = find_time(flights.front());
   const std::vector<std::string> headers = common_headers(flights, notes);
-  if (std::ranges::find(headers, time.header) == headers.end()) {
-    throw Error(
-        fmt::format("not every flight has its time as {}; rename it in the others", time.header));
+  for (const Flight& flight : flights) {
+    if (flight.find(time.header) != nullptr) continue;
+    throw Error(fmt::format("{}: there is no column {}; flights are joined by their time",
+                            flight.name(), time.header));
   }
   const std::vector<double> offsets = find_offsets(flights, time);
   std::vector<std::string> names;

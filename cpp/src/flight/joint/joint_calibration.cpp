@@ -21,24 +21,30 @@ using namespace joint;  // this room's own
 
 namespace {
 
-void refuse_own(const std::string& option, const std::string& name, const JointSetup& setup) {
-  throw OptionError(
-      {Option{option}, fmt::format(" {0}: {0} is each flight's own; say it of one flight, as {1}",
-                                   name, name_of_own(name, setup.flights.front().label))});
-}
-
 /// What holds for an own parameter holds for each flight's.
 CalibrationOptions of_each_flight(CalibrationOptions options, const JointSetup& setup) {
   for (const std::string& name : setup.own) {
-    if (options.fit.fixed.contains(name)) refuse_own("fix", name, setup);
-    if (std::ranges::find(options.free, name) != options.free.end()) {
-      refuse_own("free", name, setup);
-    }
+    if (std::ranges::find(options.free, name) == options.free.end()) continue;
+    throw OptionError(
+        {Option{"free"}, fmt::format(" {0}: {0} is each flight's own, and free", name)});
   }
+  spread_own(options.fit.fixed, setup);
   spread_own(options.fit.bounds, setup);
   spread_own(options.fit.start, setup);
   spread_own(options.fit.prior, setup);
   return options;
+}
+
+/// Whether something is said of flights' own parameters that a test without it would not know.
+bool is_said_of_own(const CalibrationOptions& options, const JointSetup& setup) {
+  const auto is_own = [&](const auto& entry) {
+    const std::size_t at = entry.first.find('@');
+    return at != std::string::npos &&
+           std::ranges::find(setup.own, entry.first.substr(0, at)) != setup.own.end();
+  };
+  return std::ranges::any_of(options.fit.bounds, is_own) ||
+         std::ranges::any_of(options.fit.prior, is_own) ||
+         std::ranges::any_of(options.fit.fixed, is_own);
 }
 
 template <class Value>
@@ -99,6 +105,18 @@ const JoinedFlight* find_flight(const JointSetup& setup, const Flight& flight) {
   return found == setup.flights.end() ? nullptr : &*found;
 }
 
+/// What is missing may be there in all flights but one.
+Calibration calibrate_or_say_why(const std::shared_ptr<const Probe>& probe, const Flight& joined,
+                                 const CalibrationOptions& options,
+                                 const std::vector<std::string>& notes) {
+  try {
+    return calibrate(probe, joined, options);
+  } catch (const Error& error) {
+    if (notes.empty()) throw;
+    throw_within("", error, "; " + notes.front());
+  }
+}
+
 }  // namespace
 
 void find_departures(Calibration& calibration, const Flight& joined) {
@@ -107,10 +125,12 @@ void find_departures(Calibration& calibration, const Flight& joined) {
   calibration.departures.clear();
   const JointSetup& setup = probe->setup();
   CalibrationOptions options = without_own(calibration.options, setup);
-  if (options.fit.loss != Loss::squares || probe->one()->with_noise(1.0)) {
+  if (options.fit.loss != Loss::squares || probe->one()->with_noise(1.0) ||
+      is_said_of_own(calibration.options, setup)) {
     calibration.notes.emplace_back(
         "flights are not tested for their departure from each other where a loss forgives "
-        "outliers, or where the model depends on its own noise");
+        "outliers, where the model depends on its own noise, or where bounds, a prior or a value "
+        "are given of what is each flight's own");
     return;
   }
   const verbs::PreparedFlight prepared = verbs::prepare(calibration, joined);
@@ -143,7 +163,8 @@ Calibration calibrate_jointly(const std::shared_ptr<const Probe>& probe,
   const Flight joined = join_flights(flights, options.log, notes);
   const std::shared_ptr<const Probe> joint =
       joint_probe(probe, {.own = own, .flights = describe_flights(flights)});
-  Calibration calibration = calibrate(joint, joined, of_each_flight(options, *joint_setup(*joint)));
+  Calibration calibration =
+      calibrate_or_say_why(joint, joined, of_each_flight(options, *joint_setup(*joint)), notes);
   std::ranges::move(notes, std::back_inserter(calibration.notes));
   find_departures(calibration, joined);
   return calibration;

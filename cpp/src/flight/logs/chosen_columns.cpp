@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "flight/files/headers.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal::logs {
@@ -42,6 +43,7 @@ void rename_columns(Flight& flight, const LogChoice& choice) {
 }  // namespace
 
 void choose_columns(Flight& flight, const LogChoice& choice) {
+  if (flight.find(files::flight_number) != nullptr) return;  // joined, each under these names
   const auto ignored_as_logged = [&](const std::string& header) {
     return is_ignored(choice, header) && flight.find(header) != nullptr;
   };

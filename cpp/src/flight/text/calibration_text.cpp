@@ -47,7 +47,10 @@ std::string restated_lines(const Calibration& calibration) {
 /// What a joint fit says of its flights; empty where there is one.
 std::string departure_lines(const Calibration& calibration) {
   constexpr double level = 0.01;
-  const std::vector<FlightDeparture>& flights = calibration.departures;
+  std::vector<FlightDeparture> flights = calibration.departures;
+  std::ranges::stable_sort(flights, {}, [](const FlightDeparture& one) {  // the surest first
+    return std::isnan(one.p) ? infinity : one.p;
+  });
   if (flights.empty()) return "";
   std::string text = "\n";
   for (const FlightDeparture& one : flights) {

@@ -126,6 +126,20 @@ std::string beside_rows(const Diagnosis& diagnosis) {
                    diagnosis.pairs, ", ");
 }
 
+/// A flight's file as the shell takes it, or those of flights that were joined, "a.csv + b.csv".
+std::string file_words(std::string files) {
+  constexpr std::string_view between = " + ";
+  std::string words;
+  while (true) {
+    const std::size_t at = files.find(between);
+    const std::string file = files.substr(0, at);
+    words += words.empty() ? "" : " ";
+    words += file.find(' ') == std::string::npos ? file : "'" + file + "'";
+    if (at == std::string::npos) return words;
+    files.erase(0, at + between.size());
+  }
+}
+
 std::string best_effect(const FlightDiagnosis& result) {
   const EffectFinding& best = result.diagnosis.effects.front();
   std::string text =
@@ -139,7 +153,7 @@ std::string best_effect(const FlightDiagnosis& result) {
   const std::string& effect = result.diagnosis.advice.effect;
   if (effect.empty()) return text;
   return text + fmt::format("next: {} add {} {} '{}' -o NEXT.json\n", result.app,
-                            result.flight.file,
+                            file_words(result.flight.file),
                             result.calibration.empty() ? "BASE.json" : result.calibration, effect);
 }
 
