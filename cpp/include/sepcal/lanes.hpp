@@ -110,7 +110,7 @@ template <class Arch, class M>
       double* to = scratch + i * width;
       for (int j = 0; j < n_z; ++j) {
         for (int c = 0; c < n_1; ++c) {
-          if (left_out[static_cast<std::size_t>(j * n_1 + c)]) {
+          if (left_out[static_cast<std::size_t>(j) * n_1 + static_cast<std::size_t>(c)]) {
             left_out_holds = left_out_holds && z.A(j, c) == Batch<Arch>(0.0);
           } else {
             z.A(j, c).store_aligned(to);

@@ -23,7 +23,7 @@ class RowLanes {
 
   /// As TriangularFactor::absorb(). Rows that are no whole number of lanes, or lie where registers
   /// don't load them, go to a factor beside the lanes.
-  void absorb(Eigen::Ref<Eigen::MatrixXd> rows) { absorb_outputs({this, 1}, rows); }
+  void absorb(const Eigen::Ref<Eigen::MatrixXd>& rows) { absorb_outputs({this, 1}, rows); }
   /// The same for several outputs at once, rows stacked output by output.
   static void absorb_outputs(std::span<RowLanes> outputs, Eigen::Ref<Eigen::MatrixXd> rows);
 

@@ -391,16 +391,14 @@ void RecordBuilder::take_drivers() {
           fmt::format("column '{}' can't drive an effect: it is named like a quantity "
                       "of the probe; rename it",
                       column.header));
-    } else if (column.header == files::flight_number) {
-      take(column.header, column, nullptr);
-    } else if (!can_name(column.header)) {
-      refused.push_back(fmt::format(
-          "column '{}' can't drive an effect: a name has no blanks, brackets or ^; rename it, e.g. "
-          "to throttle_pct",
-          column.header));
-      take(column.header, column, nullptr);  // compared all the same
     } else {
-      take(column.header, column, nullptr);
+      if (!can_name(column.header) && column.header != files::flight_number) {
+        refused.push_back(fmt::format(
+            "column '{}' can't drive an effect: a name has no blanks, brackets or ^; rename it, "
+            "e.g. to throttle_pct",
+            column.header));
+      }
+      take(column.header, column, nullptr);  // what can't be named is compared all the same
     }
   }
   const std::size_t told = std::min(refused.size(), most_notes);

@@ -60,7 +60,7 @@ std::string departure_lines(const Calibration& calibration) {
       text += fmt::format(": {} by {:.3g} +- {:.2g}", one.parameter, one.difference,
                           one.standard_error);
     }
-    text += "\n";
+    text += '\n';
   }
   if (text.size() > 1) return text;
   const auto least = std::ranges::min_element(
