@@ -53,28 +53,6 @@ struct StackedProbe {
   }
 };
 
-Record stack(const Flights& flights) {
-  Record stacked;
-  std::vector<Segment> segments;
-  for (const std::string& name : flights.front().second.names()) {
-    std::vector<double> column;
-    for (const auto& [label, record] : flights) {
-      const auto values = record.column(name);
-      column.insert(column.end(), values.begin(), values.end());
-    }
-    stacked.add(name, column);
-  }
-  std::vector<double> number;
-  for (std::size_t i = 0; i < flights.size(); ++i) {
-    const std::size_t first = number.size();
-    number.insert(number.end(), flights[i].second.length(), static_cast<double>(i));
-    segments.push_back({flights[i].first, first, number.size()});
-  }
-  stacked.add("flight", number);
-  stacked.cut(segments);
-  return stacked;
-}
-
 /// Of one parameter, to 1e-9 standard errors; its error to 1e-7.
 void check_same(const Parameter& found, const Parameter& expected) {
   CAPTURE(found.name);
@@ -132,7 +110,7 @@ void check_same(const ManyFit& joint, const Fit& stacked) {
 
 TEST_CASE("a joint fit of three flights is one fit of the stacked problem") {
   const Flights flights = simulate_fleet({});
-  const Record stacked = stack(flights);
+  const Record stacked = test::stack(flights, "flight");
   ManyOptions options = wind_a_flight();
   SUBCASE("with R estimated") {}
   SUBCASE("with R given") { options.fit.noise = {{"vn", 0.1}, {"ve", 0.25}, {"vd", 0.3}}; }
@@ -164,7 +142,7 @@ TEST_CASE("a bound of a flight's own parameter may be active in one flight and n
   stacked.bounds.clear();
   for (const char* name : {"w_n_0", "w_n_1", "w_n_2"}) stacked.bounds[name] = {-100.0, most};
   const ManyFit joint = fit_many(fleet_probe, flights, options);
-  check_same(joint, fit(StackedProbe{}, stack(flights), stacked));
+  check_same(joint, fit(StackedProbe{}, test::stack(flights, "flight"), stacked));
   const auto held = std::ranges::count_if(
       joint.flights, [](const FlightFit& flight) { return flight.own[0].at_bound; });
   CHECK(held == 1);
@@ -195,7 +173,7 @@ TEST_CASE("the prior of a shared parameter counts once, of an own one in every f
     stacked.prior.erase(prior);
   }
   const ManyFit joint = fit_many(fleet_probe, flights, options);
-  check_same(joint, fit(StackedProbe{}, stack(flights), stacked));
+  check_same(joint, fit(StackedProbe{}, test::stack(flights, "flight"), stacked));
   options.fit.prior.clear();
   const ManyFit ignorant = fit_many(fleet_probe, flights, options);
   const FlightFit& first = joint.flights.front();
@@ -216,7 +194,7 @@ TEST_CASE("a nonlinear parameter may be the flight's own, and all may be shared"
   CHECK(std::ranges::find(joint.shared, "b_alpha", &Parameter::name) == joint.shared.end());
 
   options.own.clear();
-  const Fit one = fit(fleet_probe, stack(flights), options.fit);
+  const Fit one = fit(fleet_probe, test::stack(flights, "flight"), options.fit);
   const ManyFit all_shared = fit_many(fleet_probe, flights, options);
   for (const Parameter& parameter : all_shared.shared) check_same(parameter, one[parameter.name]);
 }

@@ -54,28 +54,6 @@ struct FlightBlock {
   }
 };
 
-Record stack(const Flights& flights) {
-  Record stacked;
-  std::vector<Segment> segments;
-  std::vector<double> numbers;
-  for (const std::string& name : flights.front().second.names()) {
-    std::vector<double> column;
-    for (const auto& [label, record] : flights) {
-      const auto values = record.column(name);
-      column.insert(column.end(), values.begin(), values.end());
-    }
-    stacked.add(name, column);
-  }
-  for (std::size_t k = 0; k < flights.size(); ++k) {
-    const std::size_t first = numbers.size();
-    numbers.resize(first + flights[k].second.length(), static_cast<double>(k));
-    segments.push_back({flights[k].first, first, numbers.size()});
-  }
-  stacked.add(joint::flight_number, numbers);
-  stacked.cut(segments);
-  return stacked;
-}
-
 }  // namespace
 
 TEST_CASE("on a flight the model is the model at that flight's parameters") {
@@ -127,7 +105,7 @@ TEST_CASE("a fit with winds of their own is fit_many's, lanes and all") {
   CHECK(model.lane_width() == probe.lane_width());
   FitOptions options;
   options.fixed = {{"w_n", 0.0}, {"w_e", 0.0}, {"w_d", 0.0}};
-  const Fit stacked = fit(model, stack(flights), options);
+  const Fit stacked = fit(model, test::stack(flights, joint::flight_number), options);
   const ManyFit many = fit_many(fleet_probe, flights, test::wind_a_flight());
   REQUIRE(stacked.status == FitStatus::converged);
   REQUIRE(many.status == FitStatus::converged);
@@ -145,7 +123,7 @@ TEST_CASE("a fit with winds of their own is fit_many's, lanes and all") {
   // A sample asked for in lanes is one asked for by itself.
   options.samples = 40;
   options.descents = 1;
-  const Fit in_lanes = fit(model, stack(flights), options);
+  const Fit in_lanes = fit(model, test::stack(flights, joint::flight_number), options);
   CHECK(in_lanes.cost == Approx(stacked.cost).epsilon(1e-12));
 }
 

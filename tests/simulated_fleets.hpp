@@ -46,6 +46,30 @@ inline Flights simulate_fleet(const FleetSimulation& simulation) {
   return flights;
 }
 
+/// All flights' rows in one record, a segment each, with the flight's number in a column of its
+/// own.
+inline Record stack(const Flights& flights, const std::string& number) {
+  Record stacked;
+  std::vector<Segment> segments;
+  std::vector<double> numbers;
+  for (const std::string& name : flights.front().second.names()) {
+    std::vector<double> column;
+    for (const auto& [label, record] : flights) {
+      const auto values = record.column(name);
+      column.insert(column.end(), values.begin(), values.end());
+    }
+    stacked.add(name, column);
+  }
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    const std::size_t first = numbers.size();
+    numbers.resize(first + flights[k].second.length(), static_cast<double>(k));
+    segments.push_back({flights[k].first, first, numbers.size()});
+  }
+  stacked.add(number, numbers);
+  stacked.cut(segments);
+  return stacked;
+}
+
 inline ManyOptions wind_a_flight() {
   ManyOptions options;
   options.own = {"w_n", "w_e", "w_d"};
