@@ -54,6 +54,12 @@ std::vector<std::string> Verbs::flight_files() const {
   return files;
 }
 
+std::vector<std::string> Verbs::input_files() const {
+  std::vector<std::string> files = flight_files();
+  files.push_back(arguments_.calibration);
+  return files;
+}
+
 std::vector<Flight> Verbs::read_flights(int threads) const {
   std::vector<Flight> flights;
   for (const std::string& file : flight_files()) flights.push_back(read_flight(file, threads));
@@ -133,11 +139,7 @@ int Verbs::compare() const {
 }
 
 int Verbs::intervals() const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, [this] {
-    auto files = flight_files();
-    files.push_back(arguments_.calibration);
-    return files;
-  }());
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   const auto [base, flight] = read_whole_subject();
   ProgressLine line;
   const FlightIntervals intervals = find_intervals(
@@ -149,11 +151,7 @@ int Verbs::intervals() const {
 }
 
 int Verbs::diagnose() const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, [this] {
-    auto files = flight_files();
-    files.push_back(arguments_.calibration);
-    return files;
-  }());
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   std::optional<SizedEffect> injected;
   if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
   const auto [base, flight] = read_whole_subject();

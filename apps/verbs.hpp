@@ -53,6 +53,8 @@ class Verbs {
   /// FLIGHT and those after it.
   std::vector<Flight> read_flights(int threads = 0) const;
   std::vector<std::string> flight_files() const;
+  /// Those and CALIBRATION.
+  std::vector<std::string> input_files() const;
 
   /// A calibration and what it is asked about: the flights of a joint fit, joined, or one flight
   /// with the calibration on it.

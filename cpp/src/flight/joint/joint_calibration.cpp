@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "flight/joint/joint_probe.hpp"
-#include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/probe_effects.hpp"
@@ -37,21 +36,16 @@ CalibrationOptions of_each_flight(CalibrationOptions options, const JointSetup& 
 
 /// Whether something is said of flights' own parameters that a test without it would not know.
 bool is_said_of_own(const CalibrationOptions& options, const JointSetup& setup) {
-  const auto is_own = [&](const auto& entry) {
-    const std::size_t at = entry.first.find('@');
-    return at != std::string::npos &&
-           std::ranges::find(setup.own, entry.first.substr(0, at)) != setup.own.end();
-  };
-  return std::ranges::any_of(options.fit.bounds, is_own) ||
-         std::ranges::any_of(options.fit.prior, is_own) ||
-         std::ranges::any_of(options.fit.fixed, is_own);
+  const auto of_one = [&](const auto& entry) { return is_of_one_flight(setup, entry.first); };
+  return std::ranges::any_of(options.fit.bounds, of_one) ||
+         std::ranges::any_of(options.fit.prior, of_one) ||
+         std::ranges::any_of(options.fit.fixed, of_one);
 }
 
 template <class Value>
 void drop_own(std::map<std::string, Value>& by_name, const JointSetup& setup) {
   std::erase_if(by_name, [&](const auto& entry) {
-    const std::string stem = entry.first.substr(0, entry.first.find('@'));
-    return std::ranges::find(setup.own, stem) != setup.own.end();
+    return is_own(setup, entry.first) || is_of_one_flight(setup, entry.first);
   });
 }
 
@@ -92,16 +86,16 @@ FlightDeparture describe_departure(const FlightFit& flight) {
   return described;
 }
 
-/// Whether a flight is all of the calibration's, joined.
-bool is_joined(const Calibration& calibration, const Flight& flight) {
-  const FittedFlight& fitted = calibration.flight;
+/// Whether a flight is the one that was fitted, or all of them, joined: by its bytes, else its
+/// name.
+template <class Fitted>
+bool is_the_same(const Fitted& fitted, const Flight& flight) {
   return fitted.sha256.empty() ? fitted.file == flight.name() : fitted.sha256 == flight.sha256();
 }
 
 const JoinedFlight* find_flight(const JointSetup& setup, const Flight& flight) {
-  const auto found = std::ranges::find_if(setup.flights, [&](const JoinedFlight& one) {
-    return one.sha256.empty() ? one.file == flight.name() : one.sha256 == flight.sha256();
-  });
+  const auto found = std::ranges::find_if(
+      setup.flights, [&](const JoinedFlight& one) { return is_the_same(one, flight); });
   return found == setup.flights.end() ? nullptr : &*found;
 }
 
@@ -172,7 +166,7 @@ Calibration calibrate_jointly(const std::shared_ptr<const Probe>& probe,
 
 Calibration for_flight(const Calibration& calibration, const Flight& flight) {
   const JointProbe* const probe = as_joint(*calibration.probe);
-  if (probe == nullptr || is_joined(calibration, flight)) return calibration;
+  if (probe == nullptr || is_the_same(calibration.flight, flight)) return calibration;
   const JointSetup& setup = probe->setup();
   const JoinedFlight* const known = find_flight(setup, flight);
   Calibration one = calibration;
@@ -206,9 +200,8 @@ Flight rejoin_flights(const Calibration& calibration, const std::vector<Flight>&
   }
   std::vector<Flight> ordered;
   for (const JoinedFlight& one : setup->flights) {
-    const auto found = std::ranges::find_if(flights, [&](const Flight& flight) {
-      return one.sha256.empty() ? one.file == flight.name() : one.sha256 == flight.sha256();
-    });
+    const auto found = std::ranges::find_if(
+        flights, [&](const Flight& flight) { return is_the_same(one, flight); });
     if (found == flights.end()) {
       throw Error(fmt::format(
           "{} is missing, or changed since; give the flights of the fit: {}", one.file,

@@ -24,10 +24,6 @@ std::vector<std::string> labels_of(const JointSetup& setup) {
   return labels;
 }
 
-bool is_own(const JointSetup& setup, const std::string& name) {
-  return std::ranges::find(setup.own, name) != setup.own.end();
-}
-
 /// Rows and columns of a covariance, not-a-number where there is no place (-1); none of none.
 MatrixXd take(const MatrixXd& covariance, const std::vector<Index>& places) {
   if (covariance.size() == 0) return {};
@@ -45,6 +41,15 @@ MatrixXd take(const MatrixXd& covariance, const std::vector<Index>& places) {
 
 }  // namespace
 
+bool is_own(const JointSetup& setup, const std::string& name) {
+  return std::ranges::find(setup.own, name) != setup.own.end();
+}
+
+bool is_of_one_flight(const JointSetup& setup, const std::string& name) {
+  const std::size_t at = name.find('@');
+  return at != std::string::npos && is_own(setup, name.substr(0, at));
+}
+
 Fit fit_on_flight(const Fit& fit, const JointSetup& setup, const std::string& flight) {
   Fit one;
   one.status = fit.status;
@@ -60,8 +65,7 @@ Fit fit_on_flight(const Fit& fit, const JointSetup& setup, const std::string& fl
   };
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const Parameter& parameter = fit.parameters[k];
-    const auto stem = parameter.name.substr(0, parameter.name.find('@'));
-    if (stem != parameter.name && is_own(setup, stem)) {
+    if (is_of_one_flight(setup, parameter.name)) {
       if (static_cast<int>(k) < fit.n_1) --one.n_1;
       continue;
     }

@@ -12,6 +12,11 @@
 
 namespace sepcal::joint {
 
+/// Whether each flight has the parameter for itself; and whether this is one flight's,
+/// "w_n@monday".
+bool is_own(const JointSetup& setup, const std::string& name);
+bool is_of_one_flight(const JointSetup& setup, const std::string& name);
+
 /// The fit of a joint model on one flight, whose parameters are those of the model for one: shared
 /// ones and, under the model's names, what is the flight's own; not-a-numbers for no flight ("").
 Fit fit_on_flight(const Fit& fit, const JointSetup& setup, const std::string& flight);

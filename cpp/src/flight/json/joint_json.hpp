@@ -2,8 +2,6 @@
 // What a calibration is joint of, as JSON, and the departures of its flights.
 #pragma once
 
-#include <memory>
-
 #include "flight/json/output_values.hpp"
 #include "sepcal/flight/calibration.hpp"
 
