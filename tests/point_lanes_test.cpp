@@ -314,7 +314,7 @@ TEST_CASE("a factor in a lane is TriangularFactor's, down to a condition of 1e8"
         }
         const auto count = static_cast<std::size_t>(n);
         const Panel panel = sepcal::lanes::stack_panel(*kit, count, T.data(), rows.data(), m);
-        CHECK(sepcal::lanes::absorb_panels(*kit, count, {&panel, 1}, m));
+        CHECK(sepcal::lanes::absorb_panels(*kit, {&panel, 1}, m));
       }
       for (std::size_t lane = 0; lane < kit->width; ++lane) {
         MatrixXd own = MatrixXd::Zero(n, n);

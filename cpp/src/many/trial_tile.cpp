@@ -66,7 +66,7 @@ void TrialTile::factor() {
                                       rows_.data() + j * columns_ * stride, trials.rows);
     }
     // Whether lanes were safe, is_sound() tells of each by itself.
-    lanes::absorb_panels(kit_, columns_, panels_, trials.rows);
+    lanes::absorb_panels(kit_, panels_, trials.rows);
   }
 }
 

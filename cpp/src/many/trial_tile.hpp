@@ -73,7 +73,7 @@ class TrialTile {
   /// Returns whether every lane was safe.
   bool absorb(double* T, double* rows, std::size_t m) const {
     const lanes::Panel panel = lanes::stack_panel(kit_, columns_, T, rows, m);
-    return lanes::absorb_panels(kit_, columns_, {&panel, 1}, m);
+    return lanes::absorb_panels(kit_, {&panel, 1}, m);
   }
 
   std::size_t place(std::size_t row, std::size_t column) const {

@@ -70,16 +70,19 @@ const LaneKit& choose() {
 }  // namespace
 
 Panel stack_panel(const LaneKit& kit, std::size_t columns, double* T, double* rows, std::size_t m) {
-  Panel panel{T};
+  Panel panel{.T = T, .count = columns};
   for (std::size_t c = 0; c < columns; ++c) panel.columns[c] = rows + c * m * kit.width;
   return panel;
 }
 
-bool absorb_panels(const LaneKit& kit, std::size_t columns, std::span<const Panel> panels,
-                   std::size_t m) {
+bool absorb_panels(const LaneKit& kit, std::span<const Panel> panels, std::size_t m) {
   bool safe = true;
-  for (; !panels.empty(); panels = panels.subspan(std::min(most_panels, panels.size()))) {
-    safe = kit.absorb[columns](panels.data(), std::min(most_panels, panels.size()), m) && safe;
+  while (!panels.empty()) {
+    const std::size_t columns = panels.front().count;
+    std::size_t alike = 1;
+    while (alike < std::min(most_panels, panels.size()) && panels[alike].count == columns) ++alike;
+    safe = kit.absorb[columns](panels.data(), alike, m) && safe;
+    panels = panels.subspan(alike);
   }
   return safe;
 }

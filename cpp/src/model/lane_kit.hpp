@@ -27,6 +27,7 @@ inline constexpr std::size_t shipped_models = 6;
 /// that join it, column c's row i in the lanes from columns[c] + i * width on, left destroyed.
 struct Panel {
   double* T = nullptr;
+  std::size_t count = 0;  // of columns, n
   std::array<double*, most_columns> columns{};
 };
 
@@ -46,9 +47,8 @@ struct LaneKit {
 /// Columns of m rows one below the other, to join the factor T.
 Panel stack_panel(const LaneKit& kit, std::size_t columns, double* T, double* rows, std::size_t m);
 
-/// Absorbs any number of panels, of as many columns each, those side by side in step.
-bool absorb_panels(const LaneKit& kit, std::size_t columns, std::span<const Panel> panels,
-                   std::size_t m);
+/// Absorbs any number of panels, those that follow each other with as many columns in step.
+bool absorb_panels(const LaneKit& kit, std::span<const Panel> panels, std::size_t m);
 
 /// The kit that SEPCAL_ISA names ("baseline", "avx2", "avx512"), else the widest that the processor
 /// takes. Throws Error for a name that is unknown or that the processor can't run.

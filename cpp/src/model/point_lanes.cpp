@@ -35,17 +35,6 @@ void for_each_lane_block(const Measurements& measurements, const Measurements::R
   }
 }
 
-/// Outputs of as many columns, as far as they follow each other: the first of them and their count.
-template <class Visit>
-void for_each_alike(const std::vector<std::vector<Index>>& kept, const Visit& visit) {
-  for (std::size_t first = 0; first < kept.size();) {
-    std::size_t last = first;
-    while (last < kept.size() && kept[last].size() == kept[first].size()) ++last;
-    visit(first, last - first);
-    first = last;
-  }
-}
-
 /// Points by tile, parameter and lane; the last tile is filled up with its first point.
 AlignedDoubles pack(const MatrixXd& points, std::size_t tiles, std::size_t width) {
   AlignedDoubles packed;
@@ -130,7 +119,7 @@ bool PointLanes::merge(const double* by_output, double* merged) const {
     by_output += n * n * width_;
     if (wide.empty()) {
       const lanes::Panel panel = lanes::stack_panel(*kit_, columns, merged, rows.data(), n);
-      safe = lanes::absorb_panels(*kit_, columns, {&panel, 1}, n) && safe;
+      safe = lanes::absorb_panels(*kit_, {&panel, 1}, n) && safe;
       continue;
     }
     using Strided = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
@@ -179,12 +168,7 @@ PointFactors PointLanes::factor(const MatrixXd& points,
             panels[j] = lanes::stack_panel(*kit_, kept_[j].size(), T, rows, block.rows);
             rows += kept_[j].size() * block.rows * width_;
           }
-          for_each_alike(kept_, [&](std::size_t first, std::size_t alike) {
-            if (!lanes::absorb_panels(*kit_, kept_[first].size(),
-                                      std::span(panels).subspan(first, alike), block.rows)) {
-              clear[tile] = false;
-            }
-          });
+          if (!lanes::absorb_panels(*kit_, panels, block.rows)) clear[tile] = false;
         };
         if (!model_.evaluate_lanes(block, {packed.data(), tiles}, scratch.data(), absorb)) {
           zeros_hold = false;

@@ -2,7 +2,6 @@
 #include "model/row_lanes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 namespace sepcal::model {
@@ -49,26 +48,21 @@ std::optional<lanes::Panel> RowLanes::take_rows(Eigen::Ref<MatrixXd> rows) {
   }
   if (!fits(rows)) begin_anew(rows);
   if (kept_.empty()) return {};
-  lanes::Panel panel{triangles_.data()};
+  lanes::Panel panel{.T = triangles_.data(), .count = kept_.size()};
   for (std::size_t c = 0; c < kept_.size(); ++c) panel.columns[c] = rows.col(kept_[c]).data();
   return panel;
 }
 
 void RowLanes::absorb_outputs(std::span<RowLanes> outputs, Eigen::Ref<MatrixXd> rows) {
   const Index own = rows.rows() / static_cast<Index>(outputs.size());
-  std::array<std::vector<lanes::Panel>, lanes::most_columns + 1> panels;  // by columns
+  std::vector<lanes::Panel> panels;
   for (std::size_t j = 0; j < outputs.size(); ++j) {
     const auto panel = outputs[j].take_rows(rows.middleRows(static_cast<Index>(j) * own, own));
-    if (panel) panels[outputs[j].kept_.size()].push_back(*panel);
+    if (panel) panels.push_back(*panel);
   }
   const lanes::LaneKit& kit = outputs.front().kit_;
-  for (std::size_t columns = 1; columns < panels.size(); ++columns) {
-    const auto m = static_cast<std::size_t>(own) / kit.width;
-    if (lanes::absorb_panels(kit, columns, panels[columns], m)) continue;
-    for (RowLanes& output : outputs) {
-      if (output.kept_.size() == columns) output.safe_ = false;
-    }
-  }
+  if (lanes::absorb_panels(kit, panels, static_cast<std::size_t>(own) / kit.width)) return;
+  for (RowLanes& output : outputs) output.safe_ = false;  // whose rows are absorbed again together
 }
 
 TriangularFactor RowLanes::merge() const {
