@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 import sepcal
+from sepcal.dask_executor import with_sure_futures
 
 WIND = ("w_n", "w_e", "w_d")
 PROBE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
@@ -55,10 +56,13 @@ def check_same(found: sepcal.ManyFit, expected: sepcal.ManyFit) -> None:
 
 
 class Interrupted(Executor):
-    """Another executor, with something done before its n-th task is submitted."""
+    """Another executor, with something done before its n-th task is submitted.
+
+    Dask's gets the futures that sepcal gives it: its own may end in a TypeError as a worker dies.
+    """
 
     def __init__(self, executor: Executor, at: int, action: Callable[[], None]) -> None:
-        self.executor, self.at, self.action = executor, at, action
+        self.executor, self.at, self.action = with_sure_futures(executor), at, action
         self.submitted = 0
 
     def submit(self, function: Callable[..., Any], /, *items: Any, **named: Any) -> Future[Any]:
