@@ -84,11 +84,11 @@ TEST_CASE(
   WanderingNoise unit = fit.noise;
   unit.sigma = 1.0;
   const MatrixXd Sigma = dense(unit);
-  CHECK(fit.minus_two_log_likelihood ==
+  CHECK(fit.restricted.minus_two_log_likelihood ==
         Approx(contrast_likelihood(X, columns.col(4), Sigma)).epsilon(1e-8));
   CHECK((covariance_product(unit, runs, X) - X.transpose() * Sigma * X).norm() < 1e-10);
   const noise::WanderingFit white = noise::fit_white_rows(columns);
-  CHECK(white.minus_two_log_likelihood ==
+  CHECK(white.restricted.minus_two_log_likelihood ==
         Approx(contrast_likelihood(X, columns.col(4), MatrixXd::Identity(rows, rows))));
 }
 
@@ -105,7 +105,8 @@ TEST_CASE("a noise of free level and one without are held against each other by 
   MatrixXd columns(rows, 5);
   columns << levels, basis, draw_noise("random walk", rows, draws);
   NoiseModel walk{.d = 1.0 - 1e-12, .free_level = true};
-  const double free = noise::restricted_likelihood(columns.rightCols(3), runs, walk);
+  const double free =
+      noise::restricted_likelihood(columns.rightCols(3), runs, walk).minus_two_log_likelihood;
   const WanderingNoise slow{.rows = 1e7, .white = 0.0, .sigma = 1.0};
   MatrixXd bounded(rows, 4);
   bounded << levels, basis;
@@ -145,6 +146,49 @@ TEST_CASE("the noise found behind a residual has the variance that its columns a
   CHECK(ratios[30] > 0.75);
   CHECK(ratios[30] < 1.35);
   CHECK(plain_ratios[30] < 0.7);
+}
+
+TEST_CASE("noise that moves with a column is not taken for slow noise") {
+  // z = 2 x of an input that is logged with slow waves of noise: the column moves with it.
+  constexpr Index length = 3000;
+  const std::vector<Segment> whole{{"", 0, length}};
+  int told = 0;
+  std::vector<double> ratios;
+  for (int seed = 0; seed < 40; ++seed) {
+    Draws draws(static_cast<std::uint64_t>(seed));
+    VectorXd off = draw_autoregression(0.9, length, draws);
+    off = off.tail(length - 30) - off.head(length - 30);  // no slow waves, as smoothed fixes have
+    off.conservativeResize(length);
+    off.tail(30).setZero();
+    MatrixXd X(length, 2);
+    X.col(0).setOnes();
+    X.col(1) = 30.0 * VectorXd::LinSpaced(length, 0.0, 9.0).array().sin().matrix() + off;
+    const VectorXd z = 2.0 * (X.col(1) - off) + 0.1 * VectorXd(draws.normal_matrix(length, 1));
+    const VectorXd e = z - X * X.householderQr().solve(z);
+    const auto found = find_restricted_noise(e, X, whole);
+    REQUIRE(found);
+    told += found->moves_with_columns ? 1 : 0;
+    ratios.push_back(estimation::covariance_product(*found, 1.0, whole, X.col(0)).value() /
+                     static_cast<double>(length));
+  }
+  CHECK(told >= 36);
+  std::ranges::nth_element(ratios, ratios.begin() + 20);
+  CHECK(ratios[20] < 60.0);  // slow noise that lasts as long as the waves would be in the thousands
+  // Noise that knows nothing of the columns is never taken for such, be they slow or fast.
+  for (const std::string& kind : noise_kinds) {
+    CAPTURE(kind);
+    int taken = 0;
+    for (int seed = 0; seed < 40; ++seed) {
+      Draws draws(static_cast<std::uint64_t>(seed));
+      MatrixXd X = slow_columns(rows, 4);
+      if (seed % 2 == 0) X.col(3) = draws.normal_matrix(rows, 1);
+      const VectorXd z = draw_noise(kind, rows, draws);
+      const auto found = find_restricted_noise(z - X * X.householderQr().solve(z), X, runs);
+      REQUIRE(found);
+      taken += found->moves_with_columns ? 1 : 0;
+    }
+    CHECK(taken <= 1);
+  }
 }
 
 TEST_CASE("rows that were held or interpolated are told, and slow noise is not taken for them") {

@@ -88,6 +88,19 @@ std::string describe_strides(const Covariances& covariances, const model::Sweep&
          " rows count as one";
 }
 
+/// Outputs whose noise moves with what was fitted.
+std::string describe_moving(const Covariances& covariances, const model::Sweep& sweep) {
+  Names moving;
+  for (std::size_t j = 0; j < covariances.noise.size(); ++j) {
+    const auto& noise = covariances.noise[j];
+    if (noise && noise->moves_with_columns) moving.push_back(sweep.tables().outputs[j].name);
+  }
+  if (moving.empty()) return "";
+  return "noise of " + base::list_names(moving) +
+         " moves with the columns that were fitted, as a noisy input makes it: standard errors are "
+         "by blocks of the record where these say more";
+}
+
 /// A record in many short pieces, and one of very few rows.
 std::string describe_rows(const model::Sweep& sweep) {
   constexpr std::size_t few = 24;
@@ -108,6 +121,13 @@ std::string describe_rows(const model::Sweep& sweep) {
 
 }  // namespace
 
+double believed_from(const Covariances& covariances) {
+  const bool moves = std::ranges::any_of(
+      covariances.noise,
+      [](const std::optional<OutputNoise>& noise) { return noise && noise->moves_with_columns; });
+  return moves ? 1.0 : far_apart;
+}
+
 std::string describe_sample(const Covariances& covariances, const model::Sweep& sweep,
                             const model::Sweep& sampled) {
   const std::string rows = std::to_string(sampled.measurements().rows()) + " of " +
@@ -123,8 +143,9 @@ std::vector<std::string> describe_errors(const Names& parameters, const Covarian
                                          const VectorXd& blocks, const model::Sweep& sweep) {
   const VectorXd noise_model = covariances.noise_model.diagonal().cwiseSqrt();
   std::vector<std::string> sentences = describe_disagreement(parameters, noise_model, blocks);
-  for (const std::string& sentence : {describe_memory(covariances, sweep),
-                                      describe_strides(covariances, sweep), describe_rows(sweep)}) {
+  for (const std::string& sentence :
+       {describe_memory(covariances, sweep), describe_strides(covariances, sweep),
+        describe_moving(covariances, sweep), describe_rows(sweep)}) {
     if (!sentence.empty()) sentences.push_back(sentence);
   }
   return sentences;

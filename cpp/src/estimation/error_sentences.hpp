@@ -16,6 +16,9 @@ namespace sepcal::estimation {
 /// Blocks are believed from here on: so many times the noise model's standard error.
 inline constexpr double far_apart = 2.0;
 
+/// The same, but where an output's noise moves with the columns that were fitted: 1.
+double believed_from(const Covariances& covariances);
+
 /// `parameters`: those of the covariances, k. `blocks` (k): their block errors, NaN where
 /// undefined.
 std::vector<std::string> describe_errors(const std::vector<std::string>& parameters,

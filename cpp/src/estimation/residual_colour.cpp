@@ -49,6 +49,7 @@ MatrixXd levels_of(const std::vector<Segment>& runs, Index rows) {
 
 /// An orthonormal basis of what of X is orthogonal to `levels`.
 MatrixXd orthonormal(MatrixXd X, const MatrixXd& levels) {
+  if (X.cols() == 0) return X;
   const VectorXd lengths = X.colwise().norm();
   for (int twice = 0; twice < 2; ++twice) X -= levels * (levels.transpose() * X);
   for (Index k = 0; k < X.cols(); ++k) {
@@ -109,6 +110,18 @@ bool is_plainly_white(const VectorXd& e, const MatrixXd& columns, double of_whit
   return of_white - noise::scan_wandering(columns, runs) < little * cost;
 }
 
+/// Whether e follows the columns further than a noise allows: ordinary least squares have left of
+/// them what generalised ones would take by far.
+bool follows_columns(const OutputNoise& noise, const noise::Restricted& restricted,
+                     const MatrixXd& basis, const std::vector<Segment>& runs) {
+  constexpr double most_excess = 10.0;
+  if (basis.cols() == 0) return false;
+  OutputNoise unit = noise;
+  std::visit([](auto& model) { model.sigma = 1.0; }, unit.model);
+  return noise::excess_explained(restricted, covariance_product(unit, 1.0, runs, basis),
+                                 basis.rows()) > most_excess;
+}
+
 /// find_restricted_noise() of rows that need not be summed.
 std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd& X,
                                               const std::vector<Segment>& runs) {
@@ -120,7 +133,7 @@ std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd&
     MatrixXd columns(e.size(), basis.cols() + 1);
     columns << basis, e;
     const noise::WanderingFit white = noise::fit_white_rows(columns);
-    if (is_plainly_white(e, columns, white.minus_two_log_likelihood, runs)) {
+    if (is_plainly_white(e, columns, white.restricted.minus_two_log_likelihood, runs)) {
       return OutputNoise{white.noise};
     }
   }
@@ -141,17 +154,26 @@ std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd&
   columns << levels, basis, e;
   const noise::WanderingFit white = noise::fit_white_rows(columns);
   const noise::WanderingFit wandering = noise::fit_wandering(columns, runs);
-  const double likelihood =
+  const noise::Restricted of_fraction =
       noise::restricted_likelihood(columns.rightCols(basis.cols() + 1), runs, fractional);
   const Index left = e.size() - spent;
-  const double of_white = criterion(white.minus_two_log_likelihood, 1.0, left);
+  const double of_white = criterion(white.restricted.minus_two_log_likelihood, 1.0, left);
   constexpr double none = 1e-3;  // of the variance: an AR(1) has no white share to estimate
   const double parameters = wandering.noise.white < none ? 2.0 : 3.0;
-  const double of_wandering = criterion(wandering.minus_two_log_likelihood, parameters, left);
-  const double of_fractional = criterion(likelihood, fractional.order() + 2.0, left);
+  const double of_wandering =
+      criterion(wandering.restricted.minus_two_log_likelihood, parameters, left);
+  const double of_fractional =
+      criterion(of_fraction.minus_two_log_likelihood, fractional.order() + 2.0, left);
   if (!(std::min(of_wandering, of_fractional) < of_white)) return OutputNoise{white.noise};
-  if (of_fractional < of_wandering) return OutputNoise{fractional};
-  return OutputNoise{wandering.noise};
+  const bool is_fractional = of_fractional < of_wandering;
+  OutputNoise found = is_fractional ? OutputNoise{fractional} : OutputNoise{wandering.noise};
+  if (free ||
+      !follows_columns(found, is_fractional ? of_fraction : wandering.restricted, basis, runs)) {
+    return found;
+  }
+  std::optional<OutputNoise> alone = find_noise_of_rows(e, MatrixXd(e.size(), 0), runs);
+  if (alone) alone->moves_with_columns = true;
+  return alone;
 }
 
 }  // namespace

@@ -26,11 +26,14 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
 
 /// Noise behind the residual of a fit: of two families, the one of less BIC. It is that of
 /// sums of `stride` rows that follow each other in a run, over sqrt(stride): where a residual is
-/// held or interpolated, `held` rows count as one; of a long one only slow noise matters.
+/// held or interpolated, `held` rows count as one; of a long one only slow noise matters. Where the
+/// columns that were fitted move with the noise, as those made of a noisy input do, restricted
+/// likelihood takes that for very slow noise, and it is the noise of the residual by itself.
 struct OutputNoise {
   std::variant<NoiseModel, noise::WanderingNoise> model;
   Eigen::Index stride = 1;
   Eigen::Index held = 1;
+  bool moves_with_columns = false;
 };
 
 /// Rows after which the noise's autocorrelation is below 1/e (but for the share of it that is

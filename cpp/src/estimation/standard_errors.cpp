@@ -97,14 +97,14 @@ MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, con
   return covariance;
 }
 
-/// The noise model's covariance, but with the blocks' errors where these are far larger: what a
-/// noise model can't say makes its errors too small; blocks that don't see slow noise make theirs
-/// too small.
-MatrixXd believe(const MatrixXd& noise_model, const VectorXd& blocks) {
+/// The noise model's covariance, but with the blocks' errors where these are more than `from` times
+/// as large: what a noise model can't say makes its errors too small; blocks that don't see slow
+/// noise make theirs too small.
+MatrixXd believe(const MatrixXd& noise_model, const VectorXd& blocks, double from) {
   VectorXd scale = VectorXd::Ones(blocks.size());
   for (Index k = 0; k < blocks.size(); ++k) {
     const double ratio = blocks[k] / std::sqrt(noise_model(k, k));
-    if (ratio > far_apart) scale[k] = ratio;
+    if (ratio > from) scale[k] = ratio;
   }
   return scale.asDiagonal() * noise_model * scale.asDiagonal();
 }
@@ -123,7 +123,7 @@ StandardErrors find_standard_errors(const Problem& problem, const model::Sweep& 
   if (!defined || !problem.options().coloured_errors) return errors;
   errors.blocks = block_covariance(problem, sweep, two, covariances);
   const VectorXd blocks = errors.blocks.diagonal().cwiseSqrt();
-  errors.believed = believe(covariances.noise_model, blocks);
+  errors.believed = believe(covariances.noise_model, blocks, believed_from(covariances));
   std::vector<std::string> names;
   for (const Index at : covariances.inside) {
     names.push_back(problem.parameters()[static_cast<std::size_t>(at)].name);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "noise/noise_room.hpp"
 #include "numerics/decompositions.hpp"
@@ -20,12 +21,6 @@ using Eigen::Ref;
 using Eigen::VectorXd;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// -2 ln L of `white`, [X | e] whitened but for sigma, whose square is returned beside it.
-struct Restricted {
-  double minus_two_log_likelihood = infinity;
-  double sigma = 0.0;
-};
-
 Restricted restrict(const MatrixXd& gram, Index rows, double log_determinant) {
   const Index p = gram.cols() - 1;
   const Eigen::LLT<MatrixXd> factor(gram);
@@ -34,7 +29,7 @@ Restricted restrict(const MatrixXd& gram, Index rows, double log_determinant) {
   if (factor.info() != Eigen::Success || !(diagonal[p] > 0.0)) return {};
   const double variance = diagonal[p] * diagonal[p] / n;
   return {n * std::log(variance) + log_determinant + 2.0 * diagonal.head(p).array().log().sum(),
-          std::sqrt(variance)};
+          std::sqrt(variance), gram};
 }
 
 /// The restricted likelihood of wandering noises of unit variance, by a Kalman filter over all
@@ -126,6 +121,16 @@ MatrixXd covariance_product(const WanderingNoise& noise, const std::vector<Segme
   return noise.sigma * noise.sigma * (X.transpose() * X + crossed + crossed.transpose());
 }
 
+double excess_explained(const Restricted& restricted, const MatrixXd& covariance, Index rows) {
+  const Index k = covariance.cols();
+  const auto G = restricted.gram.topLeftCorner(k, k);
+  const VectorXd b = restricted.gram.col(k).head(k);
+  const double explained = b.dot(G.llt().solve(b));
+  const double left = (restricted.gram(k, k) - explained) / static_cast<double>(rows - k);
+  // Of generalised less ordinary least squares, in the metric of the first: tr(G X'SX) - k.
+  return explained / (left * G.cwiseProduct(covariance).sum());
+}
+
 WanderingFit fit_wandering(const MatrixXd& columns, const std::vector<Segment>& runs) {
   constexpr double least_step = 0.06;  // of ln(rows): less moves a standard error by 3 %
   // A memory longer than the record can't be told from one as long.
@@ -138,9 +143,9 @@ WanderingFit fit_wandering(const MatrixXd& columns, const std::vector<Segment>& 
   const auto try_point = [&](Point point) {
     point[0] = std::clamp(point[0], shortest, longest);
     point[1] = std::clamp(point[1], -widest, widest);
-    const Restricted tried = filter.evaluate(noise_at(point));
+    Restricted tried = filter.evaluate(noise_at(point));
     if (!(tried.minus_two_log_likelihood < lowest.minus_two_log_likelihood)) return false;
-    lowest = tried;
+    lowest = std::move(tried);
     best = point;
     return true;
   };
@@ -153,30 +158,32 @@ WanderingFit fit_wandering(const MatrixXd& columns, const std::vector<Segment>& 
     }
     if (!found) step = {0.5 * step[0], 0.5 * step[1]};
   }
-  WanderingFit fit{noise_at(best), lowest.minus_two_log_likelihood};
-  fit.noise.sigma = lowest.sigma;
+  WanderingFit fit{noise_at(best), std::move(lowest)};
+  fit.noise.sigma = fit.restricted.sigma;
   return fit;
 }
 
 WanderingFit fit_white_rows(const MatrixXd& columns) {
-  const Restricted white = restrict(columns.transpose() * columns, columns.rows(), 0.0);
-  return {{.rows = 1.0, .white = 1.0, .sigma = white.sigma}, white.minus_two_log_likelihood};
+  Restricted white = restrict(columns.transpose() * columns, columns.rows(), 0.0);
+  const double sigma = white.sigma;
+  return {{.rows = 1.0, .white = 1.0, .sigma = sigma}, std::move(white)};
 }
 
-double restricted_likelihood(const MatrixXd& columns, const std::vector<Segment>& runs,
-                             NoiseModel& model) {
+Restricted restricted_likelihood(const MatrixXd& columns, const std::vector<Segment>& runs,
+                                 NoiseModel& model) {
   model.sigma = 1.0;
   const Whitener whitener(model, runs);
   MatrixXd white = columns;
   whitener.apply(white);
-  const Restricted restricted =
+  Restricted restricted =
       restrict(white.transpose() * white, whitener.informative_rows(), whitener.log_determinant());
   model.sigma = restricted.sigma;
-  double levels = 0.0;  // of the differences' covariance: that of their sums is not so scaled
-  if (model.level_is_free()) {
-    for (const Segment& run : runs) levels += std::log(static_cast<double>(run.rows()));
+  if (model.level_is_free()) {  // the differences' covariance: that of their sums is not so scaled
+    for (const Segment& run : runs) {
+      restricted.minus_two_log_likelihood -= std::log(static_cast<double>(run.rows()));
+    }
   }
-  return restricted.minus_two_log_likelihood - levels;
+  return restricted;
 }
 
 }  // namespace sepcal::noise

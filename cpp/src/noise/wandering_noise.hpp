@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sepcal/noise_model.hpp"
+#include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::noise {
@@ -28,10 +29,22 @@ struct WanderingNoise {
 Eigen::MatrixXd covariance_product(const WanderingNoise& noise, const std::vector<Segment>& runs,
                                    const Eigen::Ref<const Eigen::MatrixXd>& X);
 
-/// A noise with its restricted -2 ln L, less what does not depend on the noise.
+/// The restricted -2 ln L of a noise at its best sigma, less what does not depend on the noise.
+struct Restricted {
+  double minus_two_log_likelihood = infinity;
+  double sigma = 0.0;
+  Eigen::MatrixXd gram = {};  // the products of [X | e], whitened but for sigma
+};
+
+/// How much more of e the columns X explain by generalised least squares than the noise allows,
+/// where e is what ordinary least squares left: no more than 1 on average, `covariance` being X' S
+/// X of sigma 1. Far more is noise that moves with the columns, as that of a logged input does.
+double excess_explained(const Restricted& restricted, const Eigen::MatrixXd& covariance,
+                        Eigen::Index rows);
+
 struct WanderingFit {
   WanderingNoise noise;
-  double minus_two_log_likelihood = 0.0;
+  Restricted restricted;
 };
 
 /// `columns`: [X | e], X orthonormal, of fewer columns than rows.
@@ -43,9 +56,8 @@ double scan_wandering(const Eigen::MatrixXd& columns, const std::vector<Segment>
 /// The same as fit_wandering() of white noise.
 WanderingFit fit_white_rows(const Eigen::MatrixXd& columns);
 
-/// The restricted -2 ln L of a noise model with a distribution of its own, at its best sigma, which
-/// it is given.
-double restricted_likelihood(const Eigen::MatrixXd& columns, const std::vector<Segment>& runs,
-                             NoiseModel& model);
+/// That of a noise model with a distribution of its own, which is given its best sigma.
+Restricted restricted_likelihood(const Eigen::MatrixXd& columns, const std::vector<Segment>& runs,
+                                 NoiseModel& model);
 
 }  // namespace sepcal::noise
