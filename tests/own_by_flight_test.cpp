@@ -98,6 +98,31 @@ TEST_CASE("on a flight the model is the model at that flight's parameters") {
   }
 }
 
+TEST_CASE("no output moves with a flight's number, and with other inputs as the model's do") {
+  const StaticModel<FiveHoleProbe> probe(fleet_probe);
+  const OwnByFlight joint(probe, {"w_n", "b_alpha"}, flight_names);
+  const Record record = test::simulate_fleet({}).front().second;
+  const FlightBlock alone(probe, record, 40, 0.0);
+  const FlightBlock on_first(joint, record, 40, 0.0);
+  Draws draws(9);
+  const VectorXd xi1 = draws.normal_matrix(joint.tables().n_1(), 1);
+  const VectorXd xi2 = 0.02 * VectorXd(draws.normal_matrix(joint.tables().n_2(), 1));
+  const int number = probe.tables().n_u();
+  const std::vector<int> inputs{number, 0, 7, number, 11};
+  MatrixXd found(120, 5);
+  joint.input_tangent(on_first.block, xi2.data(), xi1.data(), inputs, found);
+  CHECK(found.col(0).isZero(0.0));
+  CHECK(found.col(3).isZero(0.0));
+  VectorXd own_1 = xi1.head(probe.tables().n_1());
+  VectorXd own_2 = xi2.head(probe.tables().n_2());
+  own_1[2] += xi1[probe.tables().n_1()];  // w_n
+  own_2[1] += xi2[probe.tables().n_2()];  // b_alpha
+  MatrixXd expected(120, 3);
+  probe.input_tangent(alone.block, own_2.data(), own_1.data(), std::vector<int>{0, 7, 11},
+                      expected);
+  CHECK((found(Eigen::all, std::vector<int>{1, 2, 4}) - expected).norm() < 1e-12 * expected.norm());
+}
+
 TEST_CASE("a fit with winds of their own is fit_many's, lanes and all") {
   const Flights flights = test::simulate_fleet({});
   const StaticModel<FiveHoleProbe> probe(fleet_probe);

@@ -175,8 +175,19 @@ void OwnByFlight::input_tangent(const Block& block, const double* xi2, const dou
   const Index flight = flight_of(block.inputs.data());
   const VectorXd of_flight_2 = on_flight(xi2, model_.tables().n_2(), own_2_, flight);
   const VectorXd of_flight_1 = on_flight(xi1, model_.tables().n_1(), own_1_, flight);
+  const int number = model_.tables().n_u();
+  std::vector<int> moving;
+  std::vector<Index> places;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i] == number) continue;  // a row is of its flight whatever else moves
+    moving.push_back(inputs[i]);
+    places.push_back(static_cast<Index>(i));
+  }
+  MatrixXd slopes(columns.rows(), static_cast<Index>(moving.size()));
   model_.input_tangent(without_number(block), values_of(of_flight_2), values_of(of_flight_1),
-                       inputs, columns);
+                       moving, slopes);
+  columns.setZero();
+  columns(Eigen::all, places) = slopes;
 }
 
 bool OwnByFlight::add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
