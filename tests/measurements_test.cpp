@@ -8,8 +8,10 @@
 #include <limits>
 #include <numeric>
 
+#include "model/fixed_model.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/static_model.hpp"
+#include "simulated_records.hpp"
 #include "small_models.hpp"
 
 namespace measurements_test {
@@ -119,6 +121,42 @@ TEST_CASE("a block views the record's memory at its rows") {
   CHECK_FALSE(block.starts_segment);
   CHECK(measurements.output(0, range).data() ==
         record.column("z").data() + Measurements::block_rows);
+}
+
+TEST_CASE("what of the rows depends on u alone is kept of a short record, and not of a long one") {
+  const sepcal::test::Simulated flight = sepcal::test::simulate_five_hole(1000);
+  const sepcal::model::FixedModel fixed(*flight.model, {{"w_d", 0.0}, {"b_beta", 0.01}});
+  for (const sepcal::BlockModel* model :
+       {flight.model.get(), static_cast<const sepcal::BlockModel*>(&fixed)}) {
+    Record record = flight.record;
+    record.cut({{"a", 3, 390}, {"b", 400, 401}, {"c", 500, 999}});
+    const Measurements measurements(*model, record);
+    std::vector<const double*> pointers;
+    const Eigen::VectorXd xi = Eigen::VectorXd::Constant(5, 0.02);
+    for (const auto& range : measurements.chunks().front()) {
+      sepcal::Block block = measurements.block(range, pointers);
+      REQUIRE(block.kept != nullptr);
+      const auto evaluate = [&] {
+        const sepcal::Tables& tables = model->tables();
+        Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(range.rows),
+                             tables.n_1() + tables.n_2() + 1);
+        model->evaluate(block, xi.data(), xi.data(), nullptr, rows);
+        return rows;
+      };
+      CHECK(measurements.block({range.first, 1, range.offset}, pointers).kept == nullptr);
+      block = measurements.block(range, pointers);
+      const Eigen::MatrixXd from_kept = evaluate();
+      block.kept = nullptr;
+      CHECK(from_kept == evaluate());
+    }
+  }
+  const std::size_t row = flight.model->kept_bytes(8) / 8;
+  REQUIRE(row > 0);
+  const Measurements many(
+      *flight.model,
+      sepcal::test::simulate_five_hole(Measurements::most_kept_bytes / row + 1000).record);
+  std::vector<const double*> pointers;
+  CHECK(many.block(many.chunks().front().front(), pointers).kept == nullptr);
 }
 
 TEST_CASE("the sum of squares is over the selected rows alone") {

@@ -119,7 +119,17 @@ double largest_difference(const sepcal::LaneKernel& kernel, const void* of_model
 template <class M>
 struct WithoutLanes : M {};
 
-/// A kernel's [A | D | b] and [A | b] against evaluate()'s, relative to the largest of a column.
+/// What of the rows the kernel keeps; empty where it keeps nothing.
+AlignedDoubles kept_rows(const sepcal::LaneKernel& kernel, const void* of_model,
+                         const std::vector<const double*>& inputs, std::size_t rows) {
+  const std::size_t groups = (rows + kernel.width - 1) / kernel.width;
+  AlignedDoubles kept(groups * kernel.kept_bytes / sizeof(double));
+  if (!kept.empty()) kernel.keep(of_model, inputs.data(), rows, kept.data());
+  return kept;
+}
+
+/// A kernel's [A | D | b] and [A | b] against evaluate()'s, relative to the largest of a column;
+/// from rows that are kept they are the same to the last bit.
 double largest_row_difference(const sepcal::LaneKernel& kernel, const void* of_model,
                               const BlockModel& model, const VectorXd& xi2, Draws& draws) {
   const Index n_1 = model.tables().n_1();
@@ -135,18 +145,23 @@ double largest_row_difference(const sepcal::LaneKernel& kernel, const void* of_m
     const auto count = static_cast<std::size_t>(rows);
     const Block block{inputs, count, 0, true};
     const auto stride = static_cast<std::size_t>(n_z * rows) + 3;
+    const AlignedDoubles kept = kept_rows(kernel, of_model, inputs, count);
     for (const bool tangent : {false, true}) {
       const Index columns = n_1 + 1 + (tangent ? n_2 : 0);
       MatrixXd expected(n_z * rows, columns);
       model.evaluate(block, xi2.data(), tangent ? sepcal::values_of(xi1) : nullptr, nullptr,
                      expected);
-      MatrixXd got = MatrixXd::Constant(static_cast<Index>(stride), columns, 7.0);
-      if (tangent) {
-        kernel.fill_tangent(of_model, inputs.data(), count, xi2.data(), xi1.data(), got.data(),
-                            stride);
-      } else {
-        kernel.fill_values(of_model, inputs.data(), count, xi2.data(), got.data(), stride);
-      }
+      const auto fill = [&](const sepcal::LaneRows& lanes) {
+        MatrixXd filled = MatrixXd::Constant(static_cast<Index>(stride), columns, 7.0);
+        if (tangent) {
+          kernel.fill_tangent(of_model, lanes, xi2.data(), xi1.data(), filled.data(), stride);
+        } else {
+          kernel.fill_values(of_model, lanes, xi2.data(), filled.data(), stride);
+        }
+        return filled;
+      };
+      const MatrixXd got = fill({inputs.data(), count});
+      if (!kept.empty()) CHECK(fill({nullptr, count, kept.data()}) == got);
       CHECK((got.bottomRows(3).array() == 7.0).all());  // nothing beyond the rows
       for (Index c = 0; c < columns; ++c) {
         const double scale = std::max(1.0, expected.col(c).cwiseAbs().maxCoeff());
@@ -177,7 +192,7 @@ double largest_slope_difference(const sepcal::LaneKernel& kernel, const void* of
     MatrixXd got(n_z * rows, 2);
     model.input_tangent({inputs, rows, 0, true}, xi2.data(), sepcal::values_of(xi1), which,
                         expected);
-    kernel.fill_input_tangent(of_model, inputs.data(), rows, xi2.data(), sepcal::values_of(xi1),
+    kernel.fill_input_tangent(of_model, {inputs.data(), rows}, xi2.data(), sepcal::values_of(xi1),
                               which.data(), 2, got.data(), static_cast<std::size_t>(n_z * rows));
     for (const Index c : {0, 1}) {
       const double scale = std::max(1.0, expected.col(c).cwiseAbs().maxCoeff());

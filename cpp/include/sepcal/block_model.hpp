@@ -27,6 +27,7 @@ struct Block {
   std::size_t rows = 0;
   std::size_t first = 0;       // the record's row at which the block begins
   bool starts_segment = true;  // no history before this block's first row
+  const void* kept = nullptr;  // what keep_rows() made of just these inputs, or nullptr
 };
 
 /// What a trajectory model carries from block to block. Plain models have none.
@@ -71,6 +72,13 @@ class BlockModel {
   virtual void evaluate_points(const Block& block, const Eigen::MatrixXd& points,
                                std::span<const std::unique_ptr<Carry>> carries,
                                Eigen::MatrixXd& scratch, const VisitRows& visit) const;
+
+  /// Bytes that keep_rows() writes of a block of so many rows; 0 where nothing is worth keeping.
+  virtual std::size_t kept_bytes(std::size_t rows) const;
+
+  /// What of a block depends on u alone, to `to`, aligned to 64 bytes: evaluate() is faster where
+  /// the block has it.
+  virtual void keep_rows(const Block& block, void* to) const;
 
   /// Lanes of evaluate_lanes(); 0 where points can't be evaluated side by side.
   virtual std::size_t lane_width() const { return 0; }

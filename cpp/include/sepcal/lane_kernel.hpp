@@ -47,6 +47,13 @@ struct TrialRows {
   std::size_t z_stride = 0;
 };
 
+/// Consecutive rows, as many at a time as lanes.
+struct LaneRows {
+  const double* const* inputs = nullptr;  // n_u columns of `rows` values
+  std::size_t rows = 0;
+  const void* kept = nullptr;  // what LaneKernel::keep made of them, or nullptr
+};
+
 /// How one model is evaluated in lanes. `evaluate` returns whether all that was left out is zero;
 /// `model` is what the kernel is for, `scratch`, aligned to 64 bytes, has room for a tile.
 struct LaneKernel {
@@ -55,16 +62,20 @@ struct LaneKernel {
                    double* scratch, TileVisit visit, void* visitor) = nullptr;
   /// What BlockModel::evaluate() gives at one point, rows in the lanes: [A | b], or with xi1
   /// [A | D | b], column after column, `stride` values from one to the next.
-  void (*fill_values)(const void* model, const double* const* inputs, std::size_t rows,
-                      const double* xi2, double* to, std::size_t stride) = nullptr;
-  void (*fill_tangent)(const void* model, const double* const* inputs, std::size_t rows,
-                       const double* xi2, const double* xi1, double* to,
-                       std::size_t stride) = nullptr;
+  void (*fill_values)(const void* model, const LaneRows& rows, const double* xi2, double* to,
+                      std::size_t stride) = nullptr;
+  void (*fill_tangent)(const void* model, const LaneRows& rows, const double* xi2,
+                       const double* xi1, double* to, std::size_t stride) = nullptr;
   /// What BlockModel::input_tangent() gives of `count` inputs, inputs_at_a_time at most; nullptr
   /// where the model isn't differentiated by its inputs.
-  void (*fill_input_tangent)(const void* model, const double* const* inputs, std::size_t rows,
-                             const double* xi2, const double* xi1, const int* which,
-                             std::size_t count, double* to, std::size_t stride) = nullptr;
+  void (*fill_input_tangent)(const void* model, const LaneRows& rows, const double* xi2,
+                             const double* xi1, const int* which, std::size_t count, double* to,
+                             std::size_t stride) = nullptr;
+  /// What of the rows depends on u alone, for passes to come, aligned to 64 bytes: so many bytes
+  /// for every `width` rows, or fewer at the end; 0 of a model that tells of no such part.
+  std::size_t kept_bytes = 0;
+  void (*keep)(const void* model, const double* const* inputs, std::size_t rows,
+               void* to) = nullptr;
   /// Bytes that `prepare` writes of a row, aligned to 64 at the first; 0: trials have no lanes.
   std::size_t prepared_bytes = 0;
   void (*prepare)(const void* model, const double* const* inputs, std::size_t rows,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cstddef>
 #include <new>
@@ -126,37 +127,62 @@ template <class Arch, class M>
   return xsimd::all(left_out_holds);
 }
 
-/// The inputs of the `count` rows from `row` on, no more than lanes; the last one fills up the
-/// rest.
+/// The inputs of as many rows as lanes, from `row` on.
 template <class Arch, int n_u>
-Vec<Batch<Arch>, n_u> load_rows(const double* const* inputs, std::size_t row, std::size_t count) {
-  constexpr std::size_t width = Batch<Arch>::size;
+Vec<Batch<Arch>, n_u> load_rows(const double* const* inputs, std::size_t row) {
   Vec<Batch<Arch>, n_u> u;
-  for (int k = 0; k < n_u; ++k) {
-    if (count == width) {
-      u[k] = Batch<Arch>::load_unaligned(inputs[k] + row);
-      continue;
-    }
-    alignas(Arch::alignment()) double padded[width];
-    for (std::size_t i = 0; i < width; ++i) {
-      padded[i] = inputs[k][row + (i < count ? i : count - 1)];
-    }
-    u[k] = Batch<Arch>::load_aligned(padded);
-  }
+  for (int k = 0; k < n_u; ++k) u[k] = Batch<Arch>::load_unaligned(inputs[k] + row);
   return u;
 }
 
-template <class Arch>
-void store_rows(const Batch<Arch>& values, std::size_t count, double* to) {
+/// visit(row) of as many rows as lanes from each on; the last ones are begun early enough to be as
+/// many. No fewer rows than lanes.
+template <class Arch, class Visit>
+void for_each_group(std::size_t rows, const Visit& visit) {
   constexpr std::size_t width = Batch<Arch>::size;
-  if (count == width) {
-    values.store_unaligned(to);
-    return;
+  for (std::size_t row = 0; row < rows; row += width) {
+    visit(row + width <= rows ? row : rows - width);
   }
-  alignas(Arch::alignment()) double all[width];
-  values.store_aligned(all);
-  for (std::size_t i = 0; i < count; ++i) to[i] = all[i];
 }
+
+/// Fewer rows than lanes as if they were as many, the last one repeated.
+template <class Arch, int n_u>
+class FewRows {
+  static constexpr std::size_t width = Batch<Arch>::size;
+
+ public:
+  explicit FewRows(const LaneRows& rows) : rows_(rows) {
+    for (std::size_t k = 0; k < n_u && rows.inputs != nullptr; ++k) {
+      double* const own = values_.data() + k * width;
+      for (std::size_t i = 0; i < width; ++i) {
+        own[i] = rows.inputs[k][i < rows.rows ? i : rows.rows - 1];
+      }
+      inputs_[k] = own;
+    }
+  }
+  FewRows(const FewRows&) = delete;
+  FewRows& operator=(const FewRows&) = delete;
+
+  LaneRows all() const { return {inputs_.data(), width, rows_.kept}; }
+
+  /// fill(rows, to, stride) of `columns` columns of n_z outputs, and of these what belongs to
+  /// the few.
+  template <int n_z, int columns, class Fill>
+  void fill(double* to, std::size_t stride, const Fill& fill) const {
+    alignas(Arch::alignment()) double filled[static_cast<std::size_t>(n_z * columns) * width];
+    fill(all(), filled, n_z * width);
+    for (std::size_t c = 0; c < columns; ++c) {
+      for (std::size_t j = 0; j < n_z; ++j) {
+        std::copy_n(filled + (c * n_z + j) * width, rows_.rows, to + c * stride + j * rows_.rows);
+      }
+    }
+  }
+
+ private:
+  LaneRows rows_;
+  std::array<double, static_cast<std::size_t>(n_u) * width> values_;
+  std::array<const double*, static_cast<std::size_t>(n_u)> inputs_;
+};
 
 /// n numbers, each in every lane.
 template <class Arch, int n>
@@ -166,29 +192,89 @@ Vec<Batch<Arch>, n> same_in_all(const double* values) {
   return x;
 }
 
-/// As LaneKernel::fill_values.
+/// What prepare() gives of as many rows as lanes.
 template <class Arch, class M>
-[[gnu::flatten]] void fill_values(const void* of_model, const double* const* inputs,
-                                  std::size_t rows, const double* xi2, double* to,
-                                  std::size_t stride) {
-  constexpr std::size_t width = Batch<Arch>::size;
-  constexpr int n_z = Sizes<M>::n_z;
-  constexpr int n_1 = Sizes<M>::n_1;
+using PreparedLanes =
+    decltype(hoisting::prepare(std::declval<const M&>(), Vec<Batch<Arch>, Sizes<M>::n_u>()));
+
+/// Prepared rows are bytes to those that keep them: one that owns something can't be kept so.
+template <class Arch, class M>
+constexpr bool can_keep() {
+  return HoistedModel<M> && std::is_trivially_destructible_v<PreparedLanes<Arch, M>>;
+}
+
+/// As LaneKernel::keep.
+template <class Arch, class M>
+void keep_rows(const void* of_model, const double* const* inputs, std::size_t rows, void* to) {
+  constexpr int n_u = Sizes<M>::n_u;
+  using Row = PreparedLanes<Arch, M>;
+  if (rows < Batch<Arch>::size) {
+    const FewRows<Arch, n_u> few({inputs, rows});
+    return keep_rows<Arch, M>(of_model, few.all().inputs, few.all().rows, to);
+  }
   const M& model = *static_cast<const M*>(of_model);
-  const auto settled = hoisting::settle(model, same_in_all<Arch, Sizes<M>::n_2>(xi2));
-  for (std::size_t row = 0; row < rows; row += width) {
-    const std::size_t count = std::min(width, rows - row);
-    const auto z = hoisting::combine(
-        model, hoisting::prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)),
-        settled);
-    for (int j = 0; j < n_z; ++j) {
-      double* const own = to + static_cast<std::size_t>(j) * rows + row;
-      for (int c = 0; c < n_1; ++c) {
-        store_rows<Arch>(z.A(j, c), count, own + static_cast<std::size_t>(c) * stride);
+  auto* own = static_cast<std::byte*>(to);
+  for_each_group<Arch>(rows, [&](std::size_t row) {
+    ::new (static_cast<void*>(own))
+        Row(hoisting::prepare(model, load_rows<Arch, n_u>(inputs, row)));
+    own += sizeof(Row);
+  });
+}
+
+/// visit(row, prepared) of as many rows as lanes at a time, no fewer than lanes: those that are
+/// kept, or a few at a time made on the way.
+template <class Arch, class M, class Visit>
+void for_each_prepared(const M& model, const LaneRows& rows, const Visit& visit) {
+  constexpr std::size_t width = Batch<Arch>::size;
+  constexpr std::size_t groups = 8;
+  using Row = PreparedLanes<Arch, M>;
+  const std::size_t last = rows.rows - width;
+  for (std::size_t first = 0; first < rows.rows; first += groups * width) {
+    const std::size_t end = std::min(rows.rows, first + groups * width);
+    Row made[groups];
+    const Row* prepared = made;
+    if (rows.kept != nullptr) {
+      prepared = static_cast<const Row*>(rows.kept) + first / width;
+    } else {
+      Row* next = made;
+      for (std::size_t row = first; row < end; row += width) {
+        *next++ = hoisting::prepare(
+            model, load_rows<Arch, Sizes<M>::n_u>(rows.inputs, std::min(row, last)));
       }
-      store_rows<Arch>(z.b[j], count, own + n_1 * stride);
+    }
+    for (std::size_t row = first; row < end; row += width) {
+      visit(std::min(row, last), *prepared++);
     }
   }
+}
+
+/// fill_values() of no fewer rows than lanes.
+template <class Arch, class M>
+[[gnu::flatten]] void fill_groups(const M& model, const LaneRows& rows, const double* xi2,
+                                  double* to, std::size_t stride) {
+  constexpr int n_z = Sizes<M>::n_z;
+  constexpr int n_1 = Sizes<M>::n_1;
+  const auto settled = hoisting::settle(model, same_in_all<Arch, Sizes<M>::n_2>(xi2));
+  for_each_prepared<Arch>(model, rows, [&](std::size_t row, const auto& of_row) {
+    const auto z = hoisting::combine(model, of_row, settled);
+    for (int j = 0; j < n_z; ++j) {
+      double* own = to + static_cast<std::size_t>(j) * rows.rows + row;
+      for (int c = 0; c < n_1; ++c, own += stride) z.A(j, c).store_unaligned(own);
+      z.b[j].store_unaligned(own);
+    }
+  });
+}
+
+/// As LaneKernel::fill_values.
+template <class Arch, class M>
+void fill_values(const void* of_model, const LaneRows& rows, const double* xi2, double* to,
+                 std::size_t stride) {
+  const M& model = *static_cast<const M*>(of_model);
+  if (rows.rows >= Batch<Arch>::size) return fill_groups<Arch>(model, rows, xi2, to, stride);
+  FewRows<Arch, Sizes<M>::n_u>(rows).template fill<Sizes<M>::n_z, Sizes<M>::n_1 + 1>(
+      to, stride, [&](const LaneRows& all, double* filled, std::size_t apart) {
+        fill_groups<Arch>(model, all, xi2, filled, apart);
+      });
 }
 
 /// The tangent of any row at one point: by hand where the model has it so, else by dual numbers.
@@ -241,47 +327,54 @@ class TangentAt {
   decltype(settle(std::declval<const M&>(), Vec<B, n_2>())) settled_;
 };
 
-/// As LaneKernel::fill_tangent.
+/// fill_tangent() of no fewer rows than lanes.
 template <class Arch, class M>
-[[gnu::flatten]] void fill_tangent(const void* of_model, const double* const* inputs,
-                                   std::size_t rows, const double* xi2, const double* xi1,
-                                   double* to, std::size_t stride) {
-  constexpr std::size_t width = Batch<Arch>::size;
+[[gnu::flatten]] void fill_tangent_groups(const M& model, const LaneRows& rows, const double* xi2,
+                                          const double* xi1, double* to, std::size_t stride) {
   constexpr int n_z = Sizes<M>::n_z;
   constexpr int n_1 = Sizes<M>::n_1;
   constexpr int n_2 = Sizes<M>::n_2;
-  const M& model = *static_cast<const M*>(of_model);
   const TangentAt<Arch, M> tangent(model, same_in_all<Arch, n_1>(xi1), same_in_all<Arch, n_2>(xi2));
-  for (std::size_t row = 0; row < rows; row += width) {
-    const std::size_t count = std::min(width, rows - row);
-    const auto [z, D] =
-        tangent.of(hoisting::prepare(model, load_rows<Arch, Sizes<M>::n_u>(inputs, row, count)));
+  for_each_prepared<Arch>(model, rows, [&](std::size_t row, const auto& of_row) {
+    const auto [z, D] = tangent.of(of_row);
     for (int j = 0; j < n_z; ++j) {
-      double* own = to + static_cast<std::size_t>(j) * rows + row;
-      for (int c = 0; c < n_1; ++c, own += stride) store_rows<Arch>(z.A(j, c), count, own);
-      for (int i = 0; i < n_2; ++i, own += stride) store_rows<Arch>(D(j, i), count, own);
-      store_rows<Arch>(z.b[j], count, own);
+      double* own = to + static_cast<std::size_t>(j) * rows.rows + row;
+      for (int c = 0; c < n_1; ++c, own += stride) z.A(j, c).store_unaligned(own);
+      for (int i = 0; i < n_2; ++i, own += stride) D(j, i).store_unaligned(own);
+      z.b[j].store_unaligned(own);
     }
-  }
+  });
 }
 
-/// As LaneKernel::fill_input_tangent.
+/// As LaneKernel::fill_tangent.
 template <class Arch, class M>
-[[gnu::flatten]] void fill_input_tangent(const void* of_model, const double* const* inputs,
-                                         std::size_t rows, const double* xi2, const double* xi1,
-                                         const int* which, std::size_t moving, double* to,
-                                         std::size_t stride) {
-  constexpr std::size_t width = Batch<Arch>::size;
+void fill_tangent(const void* of_model, const LaneRows& rows, const double* xi2, const double* xi1,
+                  double* to, std::size_t stride) {
+  const M& model = *static_cast<const M*>(of_model);
+  if (rows.rows >= Batch<Arch>::size) {
+    return fill_tangent_groups<Arch>(model, rows, xi2, xi1, to, stride);
+  }
+  constexpr int columns = Sizes<M>::n_1 + Sizes<M>::n_2 + 1;
+  FewRows<Arch, Sizes<M>::n_u>(rows).template fill<Sizes<M>::n_z, columns>(
+      to, stride, [&](const LaneRows& all, double* filled, std::size_t apart) {
+        fill_tangent_groups<Arch>(model, all, xi2, xi1, filled, apart);
+      });
+}
+
+/// fill_input_tangent() of no fewer rows than lanes.
+template <class Arch, class M>
+[[gnu::flatten]] void fill_input_tangent_groups(const M& model, const LaneRows& rows,
+                                                const double* xi2, const double* xi1,
+                                                const int* which, std::size_t moving, double* to,
+                                                std::size_t stride) {
   constexpr int n_u = Sizes<M>::n_u;
   constexpr int n_2 = Sizes<M>::n_2;
   using Dual = LaneDual<Arch, inputs_at_a_time>;
-  const M& model = *static_cast<const M*>(of_model);
   Vec<Dual, n_2> x;
   for (int k = 0; k < n_2; ++k) x[k] = Dual(xi2[k]);
   const auto settled = hoisting::settle(model, x);
-  for (std::size_t row = 0; row < rows; row += width) {
-    const std::size_t count = std::min(width, rows - row);
-    const Vec<Batch<Arch>, n_u> values = load_rows<Arch, n_u>(inputs, row, count);
+  for_each_group<Arch>(rows.rows, [&](std::size_t row) {
+    const Vec<Batch<Arch>, n_u> values = load_rows<Arch, n_u>(rows.inputs, row);
     Vec<Dual, n_u> u;
     for (int k = 0; k < n_u; ++k) u[k] = Dual(values[k]);
     for (std::size_t i = 0; i < moving; ++i) u[which[i]].v[i] = Batch<Arch>(1.0);
@@ -293,11 +386,28 @@ template <class Arch, class M>
           slopes[i] = xsimd::fma(Batch<Arch>(xi1[c]), z.A(j, c).v[i], slopes[i]);
         }
       }
-      double* const own = to + static_cast<std::size_t>(j) * rows + row;
-      for (std::size_t i = 0; i < moving; ++i) {
-        store_rows<Arch>(slopes[i], count, own + i * stride);
-      }
+      double* own = to + static_cast<std::size_t>(j) * rows.rows + row;
+      for (std::size_t i = 0; i < moving; ++i, own += stride) slopes[i].store_unaligned(own);
     }
+  });
+}
+
+/// As LaneKernel::fill_input_tangent.
+template <class Arch, class M>
+void fill_input_tangent(const void* of_model, const LaneRows& rows, const double* xi2,
+                        const double* xi1, const int* which, std::size_t moving, double* to,
+                        std::size_t stride) {
+  const M& model = *static_cast<const M*>(of_model);
+  if (rows.rows >= Batch<Arch>::size) {
+    return fill_input_tangent_groups<Arch>(model, rows, xi2, xi1, which, moving, to, stride);
+  }
+  // One input after the other, as the columns' number is known when this runs alone.
+  const FewRows<Arch, Sizes<M>::n_u> few(rows);
+  for (std::size_t i = 0; i < moving; ++i) {
+    few.template fill<Sizes<M>::n_z, 1>(
+        to + i * stride, stride, [&](const LaneRows& all, double* filled, std::size_t apart) {
+          fill_input_tangent_groups<Arch>(model, all, xi2, xi1, which + i, 1, filled, apart);
+        });
   }
 }
 
@@ -306,7 +416,7 @@ template <class M>
 using Prepared =
     decltype(hoisting::prepare(std::declval<const M&>(), Vec<double, Sizes<M>::n_u>()));
 
-/// Prepared rows are bytes to those that keep them: one that owns something can't be kept so.
+/// As can_keep().
 template <class M>
 constexpr std::size_t prepared_bytes() {
   return std::is_trivially_destructible_v<Prepared<M>> ? sizeof(Prepared<M>) : 0;
@@ -365,6 +475,10 @@ constexpr LaneKernel make_kernel() {
                     &fill_tangent<Arch, M>};
   if constexpr (Sizes<M>::n_u > 0 && has_dual_inputs<M>()) {
     kernel.fill_input_tangent = &fill_input_tangent<Arch, M>;
+  }
+  if constexpr (can_keep<Arch, M>()) {
+    kernel.kept_bytes = sizeof(PreparedLanes<Arch, M>);
+    kernel.keep = &keep_rows<Arch, M>;
   }
   kernel.prepared_bytes = prepared_bytes<M>();
   kernel.prepare = &prepare_rows<M>;

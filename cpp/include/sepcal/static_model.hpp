@@ -50,17 +50,33 @@ class StaticModel final : public BlockModel {
     if constexpr (has_lanes<M>()) {
       const LaneKernel& kernel = lane_kernel<M>();
       const auto stride = static_cast<std::size_t>(rows.outerStride());
-      const double* const* inputs = block.inputs.data();
+      const LaneRows lanes{block.inputs.data(), block.rows, block.kept};
       if (tangent) {
-        kernel.fill_tangent(&model_, inputs, block.rows, xi2, xi1, rows.data(), stride);
+        kernel.fill_tangent(&model_, lanes, xi2, xi1, rows.data(), stride);
       } else {
-        kernel.fill_values(&model_, inputs, block.rows, xi2, rows.data(), stride);
+        kernel.fill_values(&model_, lanes, xi2, rows.data(), stride);
       }
     } else {
       if constexpr (n_2 > 0) {
         if (tangent) return fill_tangent(block, xi2, xi1, rows);
       }
       fill_values(block, xi2, rows);
+    }
+  }
+
+  std::size_t kept_bytes(std::size_t rows) const override {
+    if constexpr (has_lanes<M>()) {
+      const LaneKernel& kernel = lane_kernel<M>();
+      return (rows + kernel.width - 1) / kernel.width * kernel.kept_bytes;
+    }
+    return BlockModel::kept_bytes(rows);
+  }
+
+  void keep_rows(const Block& block, void* to) const override {
+    if constexpr (has_lanes<M>()) {
+      lane_kernel<M>().keep(&model_, block.inputs.data(), block.rows, to);
+    } else {
+      BlockModel::keep_rows(block, to);
     }
   }
 
@@ -112,7 +128,7 @@ class StaticModel final : public BlockModel {
         const std::size_t count = std::min<std::size_t>(inputs_at_a_time, inputs.size() - first);
         const std::span<const int> some = inputs.subspan(first, count);
         if constexpr (has_lanes<M>()) {
-          lane_kernel<M>().fill_input_tangent(&model_, block.inputs.data(), block.rows, xi2, xi1,
+          lane_kernel<M>().fill_input_tangent(&model_, {block.inputs.data(), block.rows}, xi2, xi1,
                                               some.data(), count,
                                               columns.col(static_cast<Eigen::Index>(first)).data(),
                                               static_cast<std::size_t>(columns.outerStride()));

@@ -28,6 +28,12 @@ void BlockModel::evaluate_points(const Block& block, const MatrixXd& points,
   }
 }
 
+std::size_t BlockModel::kept_bytes(std::size_t /*rows*/) const { return 0; }
+
+void BlockModel::keep_rows(const Block& /*block*/, void* /*to*/) const {
+  throw Error("the model keeps nothing of its rows");
+}
+
 bool BlockModel::evaluate_lanes(const LaneBlock& /*block*/, const PointTiles& /*points*/,
                                 double* /*scratch*/, const VisitTile& /*visit*/) const {
   throw Error("the model has no lanes");

@@ -24,6 +24,9 @@ class FixedModel final : public BlockModel {
                        std::span<const std::unique_ptr<Carry>> carries, Eigen::MatrixXd& scratch,
                        const VisitRows& visit) const override;
 
+  std::size_t kept_bytes(std::size_t rows) const override { return model_.kept_bytes(rows); }
+  void keep_rows(const Block& block, void* to) const override { model_.keep_rows(block, to); }
+
   std::size_t lane_width() const override { return model_.lane_width(); }
   bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
                       const VisitTile& visit) const override;

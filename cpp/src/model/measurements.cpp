@@ -74,6 +74,29 @@ Measurements::Measurements(const BlockModel& model, const Record& record)
     });
     output_squares_.push_back(sum);
   }
+  keep_rows(model);
+}
+
+void Measurements::keep_rows(const BlockModel& model) {
+  constexpr std::size_t line = 64;  // bytes that blocks begin at
+  if (record_.is_mapped()) return;
+  std::size_t bytes = 0;
+  for (std::vector<Range>& chunk : chunks_) {
+    for (Range& range : chunk) {
+      range.kept = bytes;
+      bytes += (model.kept_bytes(range.rows) + line - 1) / line * line;
+    }
+  }
+  if (bytes == 0 || bytes > most_kept_bytes) return;
+  base::AlignedDoubles kept(bytes / sizeof(double));
+  std::vector<const double*> pointers;
+  for (const std::vector<Range>& chunk : chunks_) {
+    for (const Range& range : chunk) {
+      model.keep_rows(block(range, pointers), reinterpret_cast<std::byte*>(kept.data()) +  // NOLINT
+                                                  range.kept);
+    }
+  }
+  kept_ = std::move(kept);
 }
 
 Block Measurements::block(const Range& range, std::vector<const double*>& pointers) const {
@@ -81,7 +104,11 @@ Block Measurements::block(const Range& range, std::vector<const double*>& pointe
   for (const Input& input : inputs_) {
     pointers.push_back(input.constant ? input.values : input.values + range.first);
   }
-  return {pointers, range.rows, range.first, range.starts_segment};
+  Block block{pointers, range.rows, range.first, range.starts_segment};
+  if (!kept_.empty() && range.kept != Range::nowhere) {
+    block.kept = reinterpret_cast<const std::byte*>(kept_.data()) + range.kept;  // NOLINT: bytes
+  }
+  return block;
 }
 
 void Measurements::release(const std::vector<Range>& chunk) const {

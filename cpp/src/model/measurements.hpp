@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/aligned_doubles.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/record.hpp"
 
@@ -25,6 +27,10 @@ class Measurements {
     std::size_t rows = 0;
     std::size_t offset = 0;  // selected rows before it
     bool starts_segment = true;
+    /// Where its kept rows begin, in bytes: of a whole block alone.
+    std::size_t kept = nowhere;
+
+    static constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
   };
 
   /// Finds the model's inputs and outputs by name; the record's memory must outlive this. An input
@@ -44,7 +50,8 @@ class Measurements {
   /// order. The grouping depends on the record alone, never on the number of threads.
   const std::vector<std::vector<Range>>& chunks() const { return chunks_; }
 
-  /// The model's view of a range; `pointers` is scratch that the block refers to.
+  /// The model's view of a range; `pointers` is scratch that the block refers to. What is kept in
+  /// it is for the model that this was made for, and for what it is made of.
   Block block(const Range& range, std::vector<const double*>& pointers) const;
 
   /// What a pass does at a chunk's end: where the record is mapped, its pages may go.
@@ -59,6 +66,9 @@ class Measurements {
   /// Sum of z^2 of output j.
   double output_square(int j) const { return output_squares_[static_cast<std::size_t>(j)]; }
 
+  /// What of the rows depends on u alone is kept where it takes no more: beyond the caches it comes
+  /// as fast from arithmetic as from memory.
+  static constexpr std::size_t most_kept_bytes = 4 << 20;
   static constexpr std::size_t block_rows = 128;   // all outputs' [A D r] stay in the first cache
   static constexpr std::size_t chunk_rows = 4096;  // enough work to be worth a thread's while
 
@@ -69,6 +79,9 @@ class Measurements {
     bool constant = false;
   };
 
+  /// Where the model has something to keep and there is room for it.
+  void keep_rows(const BlockModel& model);
+
   Record record_;  // whose memory this views
   std::vector<Input> inputs_;
   std::vector<std::vector<double>> constants_;
@@ -77,6 +90,7 @@ class Measurements {
   std::vector<std::vector<Range>> chunks_;
   std::vector<Segment> runs_;
   std::size_t rows_ = 0;
+  base::AlignedDoubles kept_;
 };
 
 }  // namespace sepcal::model

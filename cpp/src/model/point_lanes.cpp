@@ -24,6 +24,7 @@ void for_each_lane_block(const Measurements& measurements, const Measurements::R
   std::vector<const double*> pointers;
   for (std::size_t row = 0; row < range.rows; row += most_lane_rows) {
     Measurements::Range part = range;
+    part.kept = Measurements::Range::nowhere;
     part.first += row;
     part.rows = std::min(most_lane_rows, range.rows - row);
     const Block block = measurements.block(part, pointers);

@@ -28,6 +28,11 @@ class OwnByFlight final : public BlockModel {
   void evaluate(const Block& block, const double* xi2, const double* xi1, Carry* carry,
                 Eigen::Ref<Eigen::MatrixXd> rows) const override;
 
+  std::size_t kept_bytes(std::size_t rows) const override { return model_.kept_bytes(rows); }
+  void keep_rows(const Block& block, void* to) const override {
+    model_.keep_rows(without_number(block), to);
+  }
+
   std::size_t lane_width() const override { return own_2_.empty() ? model_.lane_width() : 0; }
   bool evaluate_lanes(const LaneBlock& block, const PointTiles& points, double* scratch,
                       const VisitTile& visit) const override;
