@@ -24,7 +24,8 @@ std::string miss_roll(const std::string& header) {
 }  // namespace
 
 TEST_CASE("a quantity's headers, the unit used inside first") {
-  CHECK(accepted_headers("vn", UnitKind::speed) == Headers{"vn_mps", "vn_kt", "vn_kmh", "vn_ftps"});
+  CHECK(accepted_headers("vn", UnitKind::speed) ==
+        Headers{"vn_mps", "vn_kt", "vn_kmh", "vn_ftps", "vn_fpm"});
   CHECK(accepted_headers("rho", UnitKind::density) == Headers{"rho_kgpm3", "rho_slugpft3"});
 }
 

@@ -39,7 +39,7 @@ TEST_CASE("each kind has its units, the inside one first") {
   CHECK(list_suffixes(UnitKind::time) == "s ms us ");
   CHECK(list_suffixes(UnitKind::angle) == "rad deg ");
   CHECK(list_suffixes(UnitKind::rate) == "radps degps ");
-  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ftps ");
+  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ftps fpm ");
   CHECK(list_suffixes(UnitKind::pressure) == "pa hpa kpa psi psf torr ");
   CHECK(list_suffixes(UnitKind::field) == "ut nt gauss mgauss ");
   CHECK(list_suffixes(UnitKind::temperature) == "k degc ");
@@ -74,6 +74,7 @@ TEST_CASE("conversions") {
   CHECK(convert(UnitKind::mass, "lb", 1) == exactly(0.45359237));
   CHECK(convert(UnitKind::force, "lbf", 1) == exactly(4.4482216152605));
   CHECK(convert(UnitKind::speed, "ftps", 10) == exactly(3.048));
+  CHECK(convert(UnitKind::speed, "fpm", 1000) == exactly(5.08));
   CHECK(convert(UnitKind::acceleration, "g", 1) == exactly(9.80665));
   CHECK(convert(UnitKind::acceleration, "ftps2", 100) == exactly(30.48));
   CHECK(convert(UnitKind::length, "ft", 1000) == exactly(304.8));

@@ -326,3 +326,47 @@ def test_held_positions_give_every_row_a_velocity(tube: Bench) -> None:
     log.replace("lat_deg", latitude * 1e7)
     (tube.folder / "flight.csv").write_text(log.text())
     assert_refused(tube, "fit", "flight.csv", words=("lat_deg is", "beyond 90 degrees"))
+
+
+def test_check_describes_the_rows_that_are_taken(tube: Bench) -> None:
+    """As it describes a file of these rows; fit's notes are of them, too."""
+    log = tube.read_log()
+    speed = log.column("airspeed_mps")
+    limit = float(np.median(speed))
+    taken = speed > limit
+    options = ("--where", f"airspeed > {limit!r}")
+    by_option = tube.run("check", "flight.csv", *options, "--json")
+    assert by_option.code == 0, by_option.err
+    told = by_option.result
+    assert told["inputs"]["rows_used"] == np.count_nonzero(taken)
+    columns = {column["column"]: column for column in told["columns"]}
+    assert columns["airspeed_mps"]["least"] > limit
+    assert columns["airspeed_mps"]["missing"] == 0
+    wind = log.column("vn_mps")[taken]
+    assert columns["vn_mps"]["median"] == pytest.approx(np.median(wind))
+    assert not [note for note in told["notes"] if note["kind"] == "at_rest"]
+    whole = tube.run("check", "flight.csv", "--json").result
+    assert {column["column"]: column for column in whole["columns"]}["airspeed_mps"][
+        "least"
+    ] < limit
+
+
+def test_climb_is_read_as_velocity_down(tube: Bench) -> None:
+    log = tube.read_log()
+    clean = tube.fit("-o", "clean.json")
+    log.replace("vd_mps", -log.column("vd_mps") / 0.3048 * 60)
+    text = log.text().replace("vd_mps", "climb rate", 1)
+    (tube.folder / "climb.csv").write_text(text)
+    read = tube.fit("--map", "vu_fpm=climb rate", "-o", "climb.json", flight="climb.csv")
+    assert read.code == 0, read.err
+    assert "vd is vu_fpm turned downwards" in read.err
+    assert values_of(read.result) == pytest.approx(values_of(clean.result), rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("opening", "name"), [(b"\xa3\x95\x80\x80", "DataFlash"), (b"ULog\x01\x12\x35", "ULog")]
+)
+def test_an_autopilots_log_is_told(tube: Bench, opening: bytes, name: str) -> None:
+    (tube.folder / "flight.log").write_bytes(opening + bytes(range(200)))
+    words = (name, "python -m sepcal log flight.log -o flight.csv")
+    assert_refused(tube, "fit", "flight.log", words=words)

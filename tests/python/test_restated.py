@@ -33,6 +33,12 @@ def test_a_wind_is_told_as_pilots_tell_it(pitot: Bench) -> None:
     assert loaded.restated["wind"] == wind
 
 
+def test_a_wind_at_its_bound_is_none(pitot: Bench) -> None:
+    held = pitot.run("fit", "flight.csv", *pitot.options, "--bounds", "w_n=40,60", "--json")
+    assert held.result["parameters"]["w_n"]["at_bound"]
+    assert "wind" not in held.result.get("restated", {})
+
+
 def test_results_of_before_have_none(pitot: Bench) -> None:
     """A file without them is read, and later verbs go on."""
     old = pitot.base

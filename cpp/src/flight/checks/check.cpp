@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flight/checks/clock.hpp"
 #include "flight/checks/cross_checks.hpp"
 #include "flight/checks/excitation.hpp"
 #include "flight/checks/samples.hpp"
 #include "flight/checks/spikes.hpp"
+#include "flight/logs/chosen_rows.hpp"
+#include "flight/probes/quantities.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/read_as.hpp"
 #include "sepcal/option_error.hpp"
@@ -46,6 +49,38 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
   return described;
 }
 
+/// The flight without what `where` and the times leave out: such rows keep their time alone.
+struct TakenRows {
+  Flight flight;
+  std::size_t left_out = 0;
+};
+
+TakenRows take_rows(const Probe& probe, const Flight& flight, const LogChoice& choice) {
+  const auto quantities = probes::quantities_of(probe.name());
+  const auto find = [&](const std::string& name) -> std::optional<files::LoggedQuantity> {
+    const auto quantity = std::ranges::find(quantities, name, &probes::ProbeQuantity::name);
+    if (quantity == quantities.end()) return std::nullopt;
+    return files::find_quantity(flight, quantity->name, quantity->kind);
+  };
+  const logs::RowTruth within = logs::rows_within_times(flight, choice);
+  const logs::RowTruth holds = logs::rows_where(flight, choice, find);
+  TakenRows taken{flight};
+  if (!within && !holds) return taken;
+  std::vector<std::size_t> left_out;
+  for (std::size_t row = 0; row < flight.rows(); ++row) {
+    if ((within && !within(row)) || (holds && !holds(row))) left_out.push_back(row);
+  }
+  taken.left_out = left_out.size();
+  const auto time = files::find_quantity(flight, "time", files::UnitKind::time);
+  for (const Flight::Column& column : flight.columns()) {
+    if (time && time->column->header == column.header) continue;
+    std::vector<double> values(column.values.begin(), column.values.end());
+    for (const std::size_t row : left_out) values[row] = std::numeric_limits<double>::quiet_NaN();
+    taken.flight.replace(column.header, std::move(values));
+  }
+  return taken;
+}
+
 /// What a fit would make of the flight.
 void describe_use(const Probe& probe, const Flight& flight, const LogChoice& choice,
                   const std::function<std::string(const std::string& name)>& spell,
@@ -73,7 +108,9 @@ FlightCheck check(const Probe& probe, const Flight& logged, const LogChoice& cho
                     .sha256 = flight.sha256(),
                     .rows = flight.rows()};
   describe_use(probe, flight, choice, spell, check);
-  const Log log(probe.name(), flight);
+  const TakenRows taken =
+      check.refused.empty() ? take_rows(probe, flight, choice) : TakenRows{flight};
+  const Log log(probe.name(), taken.flight);
   check.rate = 1 / log.interval();
   if (std::isfinite(check.rate)) {
     std::vector<double> stamps;
@@ -82,8 +119,10 @@ FlightCheck check(const Probe& probe, const Flight& logged, const LogChoice& cho
     const auto [first, last] = std::ranges::minmax(stamps);
     check.duration = last - first;
   }
-  for (const Flight::Column& column : flight.columns()) {
+  for (const Flight::Column& column : taken.flight.columns()) {
     check.columns.push_back(describe_column(column, log));
+    std::size_t& missing = check.columns.back().missing;
+    missing -= std::min(missing, check.columns.back().quantity == "time" ? 0 : taken.left_out);
   }
   const Settings settings = probe.settings();
   check_across(log, settings, check.notes);

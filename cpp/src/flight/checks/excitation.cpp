@@ -67,7 +67,10 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
   std::vector<std::size_t> rest;
   std::size_t first = speed.size();
   std::size_t last = 0;
+  std::size_t read = 0;
   for (std::size_t row = 0; row < speed.size(); ++row) {
+    if (!std::isfinite(speed[row]) || !std::isfinite(airspeed.values[row])) continue;
+    ++read;
     if (!moves[row]) {
       rest.push_back(row);
     } else {
@@ -75,13 +78,13 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
       last = row;
     }
   }
-  if (rest.size() < 5 || 200 * rest.size() < speed.size() || first >= last) return;
+  if (rest.size() < 5 || 200 * rest.size() < read || first >= last) return;
   std::vector<std::string> columns = airspeed.headers;
   columns.push_back(log.find("vn")->header());
   columns.push_back(log.find("ve")->header());
   LogNote note = note_on(log, "at_rest", Concern::matters, std::move(columns), rest);
-  note.found = fmt::format("{} of {} rows stand on the ground: no speed in {}", rest.size(),
-                           speed.size(), list_headers(note.columns));
+  note.found = fmt::format("{} of {} rows stand on the ground: no speed in {}", rest.size(), read,
+                           list_headers(note.columns));
   note.effect =
       "the tube reads what its zero is there, not the air of the flight: the bias and the "
       "wind are pulled";

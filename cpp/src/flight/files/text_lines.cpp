@@ -175,6 +175,13 @@ void TextLines::check_text(std::string_view text, std::uint64_t offset) const {
   if (text[at] == '\r') {
     fail("a carriage return inside the line; end lines with LF or CRLF");
   }
+  for (const auto& [opening, format] : {std::pair{"\xa3\x95", "DataFlash"}, {"ULog", "ULog"}}) {
+    if (offset > 0 || !text.starts_with(opening)) continue;
+    fail(fmt::format(
+        "this is an autopilot's log ({}), no CSV file; convert it: python -m sepcal log "
+        "{} -o flight.csv",
+        format, file_));
+  }
   fail(fmt::format("byte 0x{:02x} (byte {} of the file) is no UTF-8 text; is this a CSV file?",
                    static_cast<unsigned char>(text[at]), offset + at));
 }

@@ -28,6 +28,7 @@ constexpr std::array units{
     Unit{"kt", speed, 1852, 3600},  // the international nautical mile an hour
     Unit{"kmh", speed, 1000, 3600},
     Unit{"ftps", speed, 0.3048, 1},
+    Unit{"fpm", speed, 0.3048, 60},
     Unit{"mps2", acceleration},
     Unit{"g", acceleration, 9.80665, 1},
     Unit{"ftps2", acceleration, 0.3048, 1},

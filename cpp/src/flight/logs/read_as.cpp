@@ -13,6 +13,7 @@ ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
   logs::choose_columns(read.flight, choice);
   logs::join_clock(read.flight, read.notes);
   logs::convert_quaternion(read.flight, read.notes);
+  logs::turn_climb(read.flight, read.notes);
   logs::derive_velocity(read.flight, read.notes);
   return read;
 }

@@ -208,4 +208,15 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
       north.velocity_error, east.velocity_error, down.velocity_error));
 }
 
+void turn_climb(Flight& flight, std::vector<std::string>& notes) {
+  const auto climb = files::find_quantity(flight, "vu", UnitKind::speed);
+  if (!climb || flight.is_mapped()) return;
+  if (files::find_quantity(flight, "vd", UnitKind::speed)) return;
+  std::vector<double> down = climb->values();
+  for (double& value : down) value = -value;
+  notes.push_back(
+      fmt::format("{}: vd is {} turned downwards", flight.name(), climb->column->header));
+  flight.add("vd_mps", std::move(down));
+}
+
 }  // namespace sepcal::logs

@@ -15,4 +15,7 @@ namespace sepcal::logs {
 /// memory stay as they are.
 void derive_velocity(Flight& flight, std::vector<std::string>& notes);
 
+/// Where vu is there, positive up, and no vd: adds vd_mps, with a note.
+void turn_climb(Flight& flight, std::vector<std::string>& notes);
+
 }  // namespace sepcal::logs

@@ -60,6 +60,7 @@ std::optional<Restatement> restate_wind(const Fit& fit) {
   const Parameter& north = fit["w_n"];
   const Parameter& east = fit["w_e"];
   if (north.fixed && east.fixed) return std::nullopt;
+  if (north.at_bound || east.at_bound) return std::nullopt;  // a bound is no wind
   const double speed = std::hypot(north.value, east.value);
   const double from = bearing(-north.value, -east.value, 360.0);
   Restatement wind{.name = "wind",

@@ -183,7 +183,10 @@ void note_check(const Probe& probe, const PreparedFlight& prepared,
         flight.name()));
     return;
   }
-  FlightCheck seen = check(probe, flight);
+  FlightCheck seen = check(probe, flight,
+                           {.where = options.log.where,
+                            .from_time = options.log.from_time,
+                            .to_time = options.log.to_time});
   std::erase_if(seen.notes, [&](const LogNote& note) {
     return is_followed(note, options, flight, prepared.readings.flight_rows);
   });
