@@ -10,7 +10,6 @@
 #include "flight/checks/excitation.hpp"
 #include "flight/checks/samples.hpp"
 #include "flight/checks/spikes.hpp"
-#include "flight/logs/chosen_rows.hpp"
 #include "flight/probes/quantities.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/read_as.hpp"
@@ -56,19 +55,12 @@ struct TakenRows {
 };
 
 TakenRows take_rows(const Probe& probe, const Flight& flight, const LogChoice& choice) {
-  const auto quantities = probes::quantities_of(probe.name());
-  const auto find = [&](const std::string& name) -> std::optional<files::LoggedQuantity> {
-    const auto quantity = std::ranges::find(quantities, name, &probes::ProbeQuantity::name);
-    if (quantity == quantities.end()) return std::nullopt;
-    return files::find_quantity(flight, quantity->name, quantity->kind);
-  };
-  const logs::RowTruth within = logs::rows_within_times(flight, choice);
-  const logs::RowTruth holds = logs::rows_where(flight, choice, find);
+  const logs::RowTruth is_taken = probes::rows_taken(probe.name(), flight, choice);
   TakenRows taken{flight};
-  if (!within && !holds) return taken;
+  if (!is_taken) return taken;
   std::vector<std::size_t> left_out;
   for (std::size_t row = 0; row < flight.rows(); ++row) {
-    if ((within && !within(row)) || (holds && !holds(row))) left_out.push_back(row);
+    if (!is_taken(row)) left_out.push_back(row);
   }
   taken.left_out = left_out.size();
   const auto time = files::find_quantity(flight, "time", files::UnitKind::time);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/probes/quantities.hpp"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 #include "sepcal/error.hpp"
@@ -67,6 +69,19 @@ std::span<const ProbeQuantity> quantities_of(std::string_view model) {
   if (model == "pitot-static") return tube_quantities;
   if (model == "magnetometer" || model == "magnetometer-norm") return field_quantities;
   throw Error("there is no model '" + std::string(model) + "'");
+}
+
+logs::RowTruth rows_taken(std::string_view model, const Flight& flight, const LogChoice& choice) {
+  const auto quantities = quantities_of(model);
+  const auto find = [&](const std::string& name) -> std::optional<files::LoggedQuantity> {
+    const auto quantity = std::ranges::find(quantities, name, &ProbeQuantity::name);
+    if (quantity == quantities.end()) return std::nullopt;
+    return files::find_quantity(flight, quantity->name, quantity->kind);
+  };
+  const logs::RowTruth within = logs::rows_within_times(flight, choice);
+  const logs::RowTruth holds = logs::rows_where(flight, choice, find);
+  if (!within || !holds) return within ? within : holds;
+  return [within, holds](std::size_t row) { return within(row) && holds(row); };
 }
 
 }  // namespace sepcal::probes

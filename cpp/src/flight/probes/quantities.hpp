@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "flight/files/units.hpp"
+#include "flight/logs/chosen_rows.hpp"
 
 namespace sepcal::probes {
 
@@ -18,5 +19,9 @@ struct ProbeQuantity {
 
 /// Of the model by that name, needed or not. Throws Error where there is no such model.
 std::span<const ProbeQuantity> quantities_of(std::string_view model);
+
+/// Whether a choice takes a row by what it holds and when it was logged; empty where it takes all.
+/// `flight` as read_as() gives it. Throws OptionError as the choice's condition and times do.
+logs::RowTruth rows_taken(std::string_view model, const Flight& flight, const LogChoice& choice);
 
 }  // namespace sepcal::probes

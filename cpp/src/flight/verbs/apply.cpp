@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/excerpt.hpp"
-#include "flight/logs/chosen_rows.hpp"
 #include "flight/probes/quantities.hpp"
 #include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/effect_readings.hpp"
@@ -37,19 +36,11 @@ LogChoice every_row(const Calibration& calibration, const Flight& flight) {
 std::optional<CorrectedColumn> find_outside(const Calibration& calibration, const Flight& flight,
                                             std::vector<std::string>& notes) {
   const LogChoice choice = choice_for(calibration, flight, notes);
-  const auto quantities = probes::quantities_of(calibration.probe->name());
-  const auto find = [&](const std::string& name) -> std::optional<files::LoggedQuantity> {
-    const auto quantity = std::ranges::find(quantities, name, &probes::ProbeQuantity::name);
-    if (quantity == quantities.end()) return std::nullopt;
-    return files::find_quantity(flight, quantity->name, quantity->kind);
-  };
-  const logs::RowTruth within = logs::rows_within_times(flight, choice);
-  const logs::RowTruth holds = logs::rows_where(flight, choice, find);
-  if (!within && !holds) return std::nullopt;
+  const logs::RowTruth is_taken = probes::rows_taken(calibration.probe->name(), flight, choice);
+  if (!is_taken) return std::nullopt;
   CorrectedColumn outside{"outside_fit", std::vector<double>(flight.rows(), 0.0)};
   for (std::size_t row = 0; row < flight.rows(); ++row) {
-    const bool inside = (!within || within(row)) && (!holds || holds(row));
-    outside.values[row] = inside ? 0.0 : 1.0;
+    outside.values[row] = is_taken(row) ? 0.0 : 1.0;
   }
   return outside;
 }
