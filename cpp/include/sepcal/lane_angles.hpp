@@ -34,12 +34,15 @@ std::pair<B, B> cos_sin_of_small(const B& x) {
   return {xsimd::fnma(cosine, z, B(1.0)), xsimd::fma(sine * z, x, x)};
 }
 
-/// [cos x, sin x].
+/// [cos x, sin x]. Those of a small angle are the same whatever the lanes beside it hold.
 template <class B>
 std::pair<B, B> cos_sin(const B& x) {
-  if (xsimd::all(xsimd::abs(x) <= B(0.25 * std::numbers::pi))) return cos_sin_of_small(x);
+  const auto is_small = xsimd::abs(x) <= B(0.25 * std::numbers::pi);
+  const auto small = cos_sin_of_small(x);
+  if (xsimd::all(is_small)) return small;
   const auto [sine, cosine] = xsimd::sincos(x);
-  return {cosine, sine};
+  return {xsimd::select(is_small, small.first, cosine),
+          xsimd::select(is_small, small.second, sine)};
 }
 
 }  // namespace sepcal::lanes
