@@ -10,6 +10,7 @@
 #include "sepcal/fit_many.hpp"
 #include "sepcal/models/short_period.hpp"
 #include "short_periods.hpp"
+#include "simulated_fleets.hpp"
 #include "trajectories.hpp"
 
 namespace output_error_test {
@@ -25,6 +26,7 @@ using sepcal::ShortPeriod;
 using sepcal::TrajectoryModel;
 using sepcal::test::fly_short_period;
 using sepcal::test::ShortPeriodFlight;
+using sepcal::test::stack;
 
 namespace {
 
@@ -52,26 +54,6 @@ void check_same(const sepcal::Parameter& one, const sepcal::Parameter& other) {
   INFO(one.name << " " << one.value << " +- " << one.standard_error << " and " << other.value);
   CHECK(std::abs(one.value - other.value) < 1e-8 * one.standard_error);
   CHECK(one.standard_error == Approx(other.standard_error).epsilon(1e-6));
-}
-
-/// Rows of several records one after another, a segment each.
-Record stack(const std::vector<std::pair<std::string, Record>>& flights) {
-  Record stacked;
-  for (const std::string& name : flights.front().second.names()) {
-    std::vector<double> column;
-    for (const auto& [label, record] : flights) {
-      const auto values = record.column(name);
-      column.insert(column.end(), values.begin(), values.end());
-    }
-    stacked.add(name, column);
-  }
-  std::vector<sepcal::Segment> segments;
-  std::size_t first = 0;
-  for (const auto& [label, record] : flights) {
-    segments.push_back({label, first, first + record.length()});
-    first += record.length();
-  }
-  return stacked.cut(segments);
 }
 
 }  // namespace

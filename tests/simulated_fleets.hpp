@@ -46,12 +46,11 @@ inline Flights simulate_fleet(const FleetSimulation& simulation) {
   return flights;
 }
 
-/// All flights' rows in one record, a segment each, with the flight's number in a column of its
-/// own.
-inline Record stack(const Flights& flights, const std::string& number) {
+/// All flights' rows in one record, a segment each.
+inline Record stack(const Flights& flights) {
   Record stacked;
   std::vector<Segment> segments;
-  std::vector<double> numbers;
+  std::size_t first = 0;
   for (const std::string& name : flights.front().second.names()) {
     std::vector<double> column;
     for (const auto& [label, record] : flights) {
@@ -60,13 +59,22 @@ inline Record stack(const Flights& flights, const std::string& number) {
     }
     stacked.add(name, column);
   }
-  for (std::size_t k = 0; k < flights.size(); ++k) {
-    const std::size_t first = numbers.size();
-    numbers.resize(first + flights[k].second.length(), static_cast<double>(k));
-    segments.push_back({flights[k].first, first, numbers.size()});
+  for (const auto& [label, record] : flights) {
+    segments.push_back({label, first, first + record.length()});
+    first += record.length();
   }
-  stacked.add(number, numbers);
   stacked.cut(segments);
+  return stacked;
+}
+
+/// The same, with the flight's number in a column of its own.
+inline Record stack(const Flights& flights, const std::string& number) {
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    numbers.resize(numbers.size() + flights[k].second.length(), static_cast<double>(k));
+  }
+  Record stacked = stack(flights);
+  stacked.add(number, numbers);
   return stacked;
 }
 
