@@ -156,10 +156,9 @@ TEST_CASE("noise that moves with a column is not taken for slow noise") {
   std::vector<double> ratios;
   for (int seed = 0; seed < 40; ++seed) {
     Draws draws(static_cast<std::uint64_t>(seed));
-    VectorXd off = draw_autoregression(0.9, length, draws);
-    off = off.tail(length - 30) - off.head(length - 30);  // no slow waves, as smoothed fixes have
-    off.conservativeResize(length);
-    off.tail(30).setZero();
+    const VectorXd wandering = draw_autoregression(0.9, length, draws);
+    VectorXd off = VectorXd::Zero(length);  // no slow waves, as smoothed fixes have
+    off.head(length - 30) = wandering.tail(length - 30) - wandering.head(length - 30);
     MatrixXd X(length, 2);
     X.col(0).setOnes();
     X.col(1) = 30.0 * VectorXd::LinSpaced(length, 0.0, 9.0).array().sin().matrix() + off;
