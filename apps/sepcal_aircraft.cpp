@@ -34,10 +34,18 @@ class ModelArguments {
  public:
   void add_model_to(CLI::App& verb) {
     verb.add_option("--model", model_,
-                    "path: flight path reconstruction; longitudinal, lateral, six-dof: output "
-                    "error; aero: equation error")
+                    "path: flight path reconstruction; longitudinal, lateral, six-dof: the "
+                    "aircraft; aero: its coefficients by equation error")
         ->type_name("MODEL")
         ->required();
+    verb.add_option("--method", method_,
+                    "output-error: states are integrated; filter-error: noise drives them too, and "
+                    "its size is estimated")
+        ->type_name("HOW")
+        ->capture_default_str();
+    verb.add_option("--hessian", hessian_, "of filter error's standard errors: fisher or observed")
+        ->type_name("WHICH")
+        ->capture_default_str();
   }
 
   /// The file of it, or empty.
@@ -90,11 +98,21 @@ class ModelArguments {
     options.trajectory.outputs = split_names(outputs_);
     if (shoot_) options.trajectory.shoot = *shoot_;
     options.calibration = std::move(calibration);
+    options.calibration.fit.method = choice_of<FitMethod>("--method", method_);
+    options.calibration.fit.hessian = choice_of<Hessian>("--hessian", hessian_);
+    if (options.model == AircraftModel::aero &&
+        options.calibration.fit.method == FitMethod::filter_error) {
+      throw Error(
+          "--model aero is fitted by equation error; filter error is for path, longitudinal, "
+          "lateral and six-dof");
+    }
     return options;
   }
 
  private:
   std::string model_ = "aero";
+  std::string method_ = std::string(to_string(FitMethod::output_error));
+  std::string hessian_ = std::string(to_string(Hessian::fisher));
   std::string geometry_;
   std::string inputs_ = "linear";
   std::string measured_;
@@ -110,9 +128,16 @@ class TrackArguments {
   void add_to(CLI::App& verb) {
     verb.add_option("--method", method_,
                     "rls: recursive least squares linearised at the start; ekf, iekf: the extended "
-                    "and the iterated extended filter; srif: as square-root information")
+                    "and the iterated extended filter; srif: as square-root information; rml: "
+                    "recursive maximum likelihood, which estimates the noises' sizes too")
         ->type_name("HOW")
         ->capture_default_str();
+    verb.add_option("--forgetting", options_.how.forgetting,
+                    "of rml: what a sample counts for after the next")
+        ->type_name("MU")
+        ->capture_default_str();
+    add_whole_number(verb, "--every", options_.how.every,
+                     "of rml: samples from a step of the parameters to the next");
     add_whole_number(verb, "--start-rows", options_.start_rows,
                      "fits so many first rows, and goes on after them; 0: starts from the fit, of "
                      "another flight");
@@ -178,7 +203,8 @@ class AircraftApp {
           *verb, "--process-noise", process_noise_,
           "root of the spectral density of a noise that drives the states, in the unit "
           "of the model's table (ax of a path: m/s^2/sqrt(Hz)); a fit allows for it in its "
-          "intervals, apply then adds smoothed states; may be repeated");
+          "intervals, by filter error it holds it; apply then adds smoothed states; may be "
+          "repeated");
     }
     tracking_.add_to(track_);
     add_deviations(track_, "--initial-state", initial_states_,

@@ -154,7 +154,8 @@ TEST_CASE("the score's covariance is the sum over all pairs of rows, pieces and 
     const MatrixXd all = sepcal::test::rows_of(model, record, xi.tail(n - 2), &xi1);
     const auto steps = model.steps(record, xi);
     MatrixXd expected = MatrixXd::Zero(n, n);
-    // A push held from row j to the next: its mark on every later reading of its piece, summed.
+    // A push from row j to the next, its mean or its slope: its mark on every later reading of its
+    // piece, summed.
     std::vector<sepcal::StateSteps::Step> taken;
     std::vector<MatrixXd> H;
     std::vector<int> piece;
@@ -171,8 +172,9 @@ TEST_CASE("the score's covariance is the sum over all pairs of rows, pieces and 
       taken.push_back(steps->advance(k, x));
       x = taken.back().x;
     }
-    for (std::size_t j = 0; j + 1 < rows; ++j) {
-      MatrixXd mark = taken[j].Gamma;  // 2 x 1
+    for (std::size_t part = 0; part < 2 * (rows - 1); ++part) {
+      const std::size_t j = part / 2;
+      MatrixXd mark = taken[j].Gamma.col(static_cast<Index>(part % 2));  // 2 x 1
       VectorXd score = VectorXd::Zero(n);
       for (std::size_t k = j + 1; k < rows && piece[k] == piece[j]; ++k) {
         for (Index output = 0; output < 2; ++output) {

@@ -41,7 +41,8 @@ inline double excitation(double t) {
 }
 
 inline Record fly_short_period(const ShortPeriodFlight& flight) {
-  // z = [x; u; du] : x' = F x + B u, u' = du / dt; noise enters ten times a row.
+  // z = [x; u; du] : x' = F x + B u, u' = du / dt; noise enters ten times a row, in the middle of a
+  // part.
   const bool stirred = !flight.process_noise.isZero();
   const int parts = stirred ? 10 : 1;
   const double dt = flight.interval / parts;
@@ -49,7 +50,7 @@ inline Record fly_short_period(const ShortPeriodFlight& flight) {
   block.topLeftCorner<2, 2>() = flight.F * dt;
   block.block<2, 1>(0, 2) = flight.B * dt;
   block(2, 3) = 1.0;
-  const Eigen::Matrix4d step = block.exp();
+  const Eigen::Matrix4d half = (0.5 * block).exp();
   Draws draws(flight.seed);
   std::vector<double> time;
   std::vector<double> elevator;
@@ -71,10 +72,12 @@ inline Record fly_short_period(const ShortPeriodFlight& flight) {
     const double next = excitation(t + flight.interval) + flight.feedback.dot(x);
     Eigen::Vector4d whole(x[0], x[1], u, (next - u) / parts);
     for (int part = 0; part < parts; ++part) {
-      whole = step * whole;
-      if (!stirred) continue;
-      const Eigen::Vector2d w = draws.normal_matrix(2, 1);
-      whole.head<2>() += std::sqrt(dt) * flight.process_noise.cwiseProduct(w);
+      whole = half * whole;
+      if (stirred) {
+        const Eigen::Vector2d w = draws.normal_matrix(2, 1);
+        whole.head<2>() += std::sqrt(dt) * flight.process_noise.cwiseProduct(w);
+      }
+      whole = half * whole;
     }
     x = whole.head<2>();
     u = next;

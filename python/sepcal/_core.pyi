@@ -34,6 +34,7 @@ __all__: list[str] = [
     "ManyFit",
     "Misfit",
     "Model",
+    "NoiseSize",
     "Options",
     "Parameter",
     "ParameterInterval",
@@ -81,8 +82,10 @@ __all__: list[str] = [
 class Options:
     coloured_errors: bool
     drop_invalid: bool
+    hessian: str
     jacobian: str
     loss: str
+    method: str
     sampling: str
     search: str
     second_stage: str
@@ -246,6 +249,44 @@ class Parameter:
     def upper(self) -> float: ...
     @property
     def value(self) -> float: ...
+
+class NoiseSize:
+    """
+    A noise's size that filter error estimated, or was given.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("name", "unit", "value", "standard_error", "at_floor")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def at_floor(self) -> bool:
+        """
+        Nothing but the floor stopped it.
+        """
+    @property
+    def name(self) -> str:
+        """
+        "q_alpha" of a process noise, "r_alpha_m" of an output.
+        """
+    @property
+    def standard_error(self) -> float:
+        """
+        NaN: given, or at its floor.
+        """
+    @property
+    def unit(self) -> str: ...
+    @property
+    def value(self) -> float:
+        """
+        Root of the spectral density; of an output the standard deviation.
+        """
 
 class Combination:
     """
@@ -489,6 +530,10 @@ class Fit:
         "noise",
         "rmse",
         "cost",
+        "by",
+        "noise_sizes",
+        "log_likelihood",
+        "log_likelihood_without",
         "rows",
         "unobservable",
         "weak",
@@ -510,6 +555,11 @@ class Fit:
         {field: value}, as of a named tuple.
         """
     @property
+    def by(self) -> str:
+        """
+        "output-error" or "filter-error".
+        """
+    @property
     def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         (n, n).
@@ -517,7 +567,7 @@ class Fit:
     @property
     def cost(self) -> float:
         """
-        J of Eq. 6.
+        J of Eq. 6; by filter error V_m, S 5.7.
         """
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -557,6 +607,16 @@ class Fit:
         Of stage two's minimisations.
         """
     @property
+    def log_likelihood(self) -> float:
+        """
+        By filter error; else NaN.
+        """
+    @property
+    def log_likelihood_without(self) -> float:
+        """
+        Output error's, from which filter error began; else NaN.
+        """
+    @property
     def message(self) -> str:
         """
         One line; empty where there is nothing to say.
@@ -580,6 +640,11 @@ class Fit:
     def noise_iterations(self) -> int:
         """
         Of R against the parameters.
+        """
+    @property
+    def noise_sizes(self) -> dict[str, NoiseSize]:
+        """
+        By filter error, by name: process noises, then outputs; else empty.
         """
     @property
     def parameters(self) -> dict[str, Parameter]:

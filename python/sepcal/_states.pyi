@@ -157,6 +157,8 @@ class Fit:
         arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         arg6: sepcal._core.IterationOptions,
+        arg7: typing.SupportsFloat | typing.SupportsIndex,
+        arg8: typing.SupportsInt | typing.SupportsIndex,
     ) -> tuple[sepcal._core.Track, list[str]]: ...
     @property
     def equations(self) -> dict[str, list[str]]: ...
@@ -241,5 +243,7 @@ def track(
     arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     arg9: sepcal._core.IterationOptions,
+    arg10: typing.SupportsFloat | typing.SupportsIndex,
+    arg11: typing.SupportsInt | typing.SupportsIndex,
 ) -> sepcal._core.Track: ...
 def two_steps(arg0: sepcal._core.Flight, arg1: Options) -> Steps: ...

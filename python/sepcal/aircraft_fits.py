@@ -134,7 +134,9 @@ class AircraftFit(Fit):
         given = dict(process_noise or {})
         return self.core.apply_to_file(os.fspath(file), os.fspath(output), given)
 
-    def smooth(self, process_noise: Mapping[str, float], flight: Flight | None = None) -> Smoothed:
+    def smooth(
+        self, process_noise: Mapping[str, float] | None = None, flight: Flight | None = None
+    ) -> Smoothed:
         """States and process noise, given all of a flight, at the fit's parameters.
 
         Args:
@@ -147,19 +149,21 @@ class AircraftFit(Fit):
             Error: No process noise, another name; equation error, which has no state.
         """
         chosen = self._or_fitted(flight, "smooth({...}, ")
-        return Smoothed(self.core.smooth(chosen._core, dict(process_noise)))
+        return Smoothed(self.core.smooth(chosen._core, dict(process_noise or {})))
 
     def track(
         self,
         flight: Flight | None = None,
         *,
         start_rows: int = 0,
-        method: Literal["rls", "ekf", "iekf", "srif"] | str = "ekf",
+        method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
         noise: Mapping[str, float] | None = None,
         process_noise: Mapping[str, float] | None = None,
         initial_states: Mapping[str, float] | None = None,
         row_iterations: int = 20,
         tolerance: float = 1e-8,
+        forgetting: float = 1.0,
+        every: int = 10,
     ) -> Track:
         """States and parameters against time, as a filter in flight estimates them.
 
@@ -174,6 +178,8 @@ class AircraftFit(Fit):
                 unknown].
             row_iterations: Of iekf, at most so many a row.
             tolerance: Of iekf.
+            forgetting: Of rml: what a sample counts for after the next, above 0, at most 1.
+            every: Of rml: samples from a step of the parameters to the next.
 
         Raises:
             Error: The fit's own flight without start_rows, whose rows must not count twice; rows
@@ -188,6 +194,8 @@ class AircraftFit(Fit):
             dict(process_noise or {}),
             dict(initial_states or {}),
             _core.IterationOptions(row_iterations, tolerance),
+            forgetting,
+            every,
         )
         return Track(core)
 

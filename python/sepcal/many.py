@@ -24,7 +24,7 @@ Executors: TypeAlias = Executor | Callable[[], Executor] | None
 TASKS = 64  # that one pass over all flights is cut into, at most
 
 
-@spelled_out(without=("effects", "loss", "loss_width", "process_noise"))
+@spelled_out(without=("effects", "loss", "loss_width", "process_noise", "method", "hessian"))
 def fit_many(
     model: AnyModel,
     flights: Mapping[str, Source] | Sequence[Source],

@@ -64,6 +64,10 @@ class FitOptions(TypedDict, total=False):
             ["auto"].
         jacobian: Of a projected stage two: Kaufman's, or Golub and Pereyra's, "golub_pereyra"
             ["kaufman"].
+        method: Of a model with a state: "output-error", or "filter-error", where noise drives the
+            states too and its size is estimated ["output-error"].
+        hessian: Of filter error's standard errors and last steps: "fisher", the expected one, or
+            "observed", where that is positive definite ["fisher"].
         loss: What a whitened residual costs: "squares", or "huber" or "cauchy", which forgive
             outliers and make stage two joint ["squares"].
         loss_width: Where the loss begins to forgive, in standard deviations of the noise [1.345 for
@@ -77,8 +81,9 @@ class FitOptions(TypedDict, total=False):
             the white ones [True].
         process_noise: Of a model with a state: noise that drives it, by the names of its table
             `noise`, as roots of spectral densities in the table's unit (in discrete time: standard
-            deviations a row). It has no part in the fit; standard errors allow for it [none; of a
-            FlightPath the white noise of the inertial unit's readings].
+            deviations a row). By output error it has no part in the fit, and standard errors allow
+            for it [none; of a FlightPath the white noise of the inertial unit's readings]; by
+            filter error these are held [all are estimated].
         threads: The caller's included; 0: one a core [0]. The result does not depend on it.
         free: For flights: parameters freed that the probe holds by default [none].
         map: For flights: headers as sepcal reads them, and the log's own for them,
@@ -110,6 +115,8 @@ class FitOptions(TypedDict, total=False):
     seed: int | None
     second_stage: Literal["auto", "joint", "projected"] | str | None
     jacobian: Literal["kaufman", "golub_pereyra"] | str | None
+    method: Literal["output-error", "filter-error"] | str | None
+    hessian: Literal["fisher", "observed"] | str | None
     loss: Literal["squares", "huber", "cauchy"] | str | None
     loss_width: float | None
     noise_tolerance: float | None

@@ -47,7 +47,7 @@ def smooth(
     model: AnyModel,
     data: Columns,
     fit: Fit,
-    process_noise: Mapping[str, float],
+    process_noise: Mapping[str, float] | None = None,
     *,
     noise: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
@@ -62,7 +62,8 @@ def smooth(
         data: As for the fit; outputs may be missing, NaN.
         fit: The fit.
         process_noise: Roots of the noises' spectral densities, {name: sd}, by the names and in the
-            units of the model's table of noises; those not named are none.
+            units of the model's table of noises; those not named are none [of a fit by filter error
+            those that it found].
         noise: Standard deviation of every output [the fit's].
         start: Standard deviation of states at the start about the fit's [ten times the largest
             value of the state on the way, as good as unknown].
@@ -85,13 +86,18 @@ def smooth(
     parameters = {parameter.name: parameter.value for parameter in fit.parameters.values()}
     laid = model._core.along(columns, labels)
     outputs = dict(fit.noise if noise is None else noise)
+    found = {
+        size.name[2:]: size.value
+        for size in fit.noise_sizes.values()
+        if size.name.startswith("q_") and size.value > 0
+    }
     return Smoothed(
         states_module().smooth(
             laid,
             columns,
             labels,
             parameters,
-            dict(process_noise),
+            dict(found if process_noise is None else process_noise),
             outputs,
             dict(start or {}),
             fit if parameter_errors else None,

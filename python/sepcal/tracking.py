@@ -39,18 +39,20 @@ class Track(_core.Track):
         return f"<sepcal.Track {', '.join(self.names)}: {len(self.rows)} rows>"
 
 
-@spelled_out(without=(*REFUSED, "process_noise"))
+@spelled_out(without=(*REFUSED, "process_noise", "method"))
 def track(  # type: ignore[misc]  # its process_noise drives the filter, not errors of a fit
     model: AnyModel,
     data: Columns,
     *,
     fitted: Fit | None = None,
     start_rows: int | None = None,
-    method: Literal["rls", "ekf", "iekf", "srif"] | str = "ekf",
+    method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
     process_noise: Mapping[str, float] | None = None,
     initial_states: Mapping[str, float] | None = None,
     row_iterations: int = 20,
     tolerance: float = 1e-8,
+    forgetting: float = 1.0,
+    every: int = 10,
     **options: Unpack[FitOptions],
 ) -> Track:
     """Runs a recursive estimator along a record, from a calibration or from its own first rows.
@@ -65,13 +67,18 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
         fitted: A fit of other data to start from.
         start_rows: Fits so many rows first, by the options, and goes on after them.
         method: "rls", recursive least squares linearised at the start; "ekf", the extended filter;
-            "iekf", iterated; "srif", the extended filter as square-root information.
+            "iekf", iterated; "srif", the extended filter as square-root information; "rml",
+            recursive maximum likelihood, S 5.10 to 5.13, from a start by filter error: sizes of the
+            noises are estimated too, `q_alpha`, `r_alpha_m`.
         process_noise: Of a model with a state: roots of the noises' spectral densities, {name: sd},
-            by the names and in the units of its table of noises; those not named are none.
+            by the names and in the units of its table of noises; those not named are none. By rml
+            these are held, and those not named are estimated, as `noise` is of outputs.
         initial_states: Of states where a segment begins that `start_rows` hasn't fitted: {name: sd}
             [ten times the largest value of the state on the way, as good as unknown].
         row_iterations: Of iekf, at most so many a row.
         tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the estimate.
+        forgetting: Of rml: what a sample counts for after the next, above 0, at most 1.
+        every: Of rml: samples from a step of the parameters to the next.
         **options: FitOptions.
 
     Returns:
@@ -119,5 +126,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             dict(process_noise or {}),
             dict(initial_states or {}),
             _core.IterationOptions(row_iterations, tolerance),
+            forgetting,
+            every,
         )
     )

@@ -82,27 +82,34 @@ class Walk:
 
         Returns:
             x at the later row (f,) of the f states that are integrated, from x (f,) at the former,
-            and its derivatives with respect to x and the seeds, places in p, (f, f + seeds) and to
-            a noise that is held meanwhile (f, n_w).
+            and its derivatives with respect to x and the seeds, places in p, (f, f + seeds); and
+            noise_input(), (f, n_w), in continuous time the mean of that at both rows.
         """
         with np.errstate(all="ignore"):
-            plan = self._seeds(p[:, np.newaxis], seeds)
             whole = self._whole(x, known[0])
-            noises = Fan([CENTRAL] * self._layout.noises)
-            delta, steps = self._deltas(whole, plan)
-            stages, dt = self._stages(known)
-            n = delta.shape[2]
-            count = n + noises.offsets.shape[1]
-            points = np.repeat(whole, count, axis=1)
-            points[:, :n] += delta[:, 0]
-            w = np.concatenate([np.zeros((len(noises.offsets), n)), noises.offsets], axis=1)
-            at = np.broadcast_to(stages[0, ..., np.newaxis], (*stages.shape[1:], count))
-            parameters = np.repeat(p[:, np.newaxis], count, axis=1)
-            parameters[:, :n] = plan.p[:, 0]
-            end = self._advance(points, parameters, at, dt[0], w)
-            end = end[self._free]
-            Phi = end[:, :n] @ plan.fan.weights / steps[0]
-            return end[:, 0], Phi, end[:, n:] @ noises.weights
+            end, Phi, G = self._steps(known, whole, p[:, np.newaxis], seeds)
+            return end[:, 0], Phi[:, 0], G[..., 0]
+
+    def bend_step(
+        self, known: Array, x: Array, p: Array, seeds: list[int]
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """As step(), with second derivatives, by differences of differences.
+
+        Returns:
+            What step() does, and the derivatives with respect to x and the seeds of dx+/dx, to
+            (f, f, f + seeds), and of noise_input(), (f, n_w, f + seeds).
+        """
+        with np.errstate(all="ignore"):
+            plan, points, steps = self._fan_out(x, known[0], p, seeds)
+            end, Phi, G = self._steps(known, points, plan.p[:, 0], seeds)
+            f = len(self._free)
+            return (
+                end[:, 0],
+                Phi[:, 0],
+                G[..., 0],
+                np.einsum("ipk,pw->ikw", Phi[..., :f], plan.fan.weights) / steps,
+                G @ plan.fan.weights / steps,
+            )
 
     def read(
         self, known: Array, x: Array, p: Array, xi1: Array, seeds: list[int]
@@ -113,12 +120,81 @@ class Walk:
             b + A xi1 (n_z,), its derivatives by x and the seeds (n_z, f + seeds), and A (n_z, n_1).
         """
         with np.errstate(all="ignore"):
-            plan = self._seeds(p[:, np.newaxis], seeds)
             whole = self._whole(x, known[0])
-            S = np.zeros((1, 1, self._layout.states, len(self._free) + len(seeds)))
-            S[0, 0, self._free, range(len(self._free))] = 1.0
-            A, b, slopes, _ = self._read(whole[np.newaxis], S, known, plan, xi1[:, np.newaxis])
-            return b[:, 0, 0] + A[:, :, 0, 0] @ xi1, slopes[:, 0, 0], A[:, :, 0, 0]
+            z, slopes, A = self._readings(known, whole, p[:, np.newaxis], xi1, seeds)
+            return z[:, 0], slopes[:, 0], A[..., 0]
+
+    def bend_reading(
+        self, known: Array, x: Array, p: Array, xi1: Array, seeds: list[int]
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """As read(), with second derivatives.
+
+        Returns:
+            What read() does, and the derivatives with respect to x and the seeds of that by x,
+            (n_z, f, f + seeds), and of A by x, (n_z, n_1, f).
+        """
+        with np.errstate(all="ignore"):
+            plan, points, steps = self._fan_out(x, known[0], p, seeds)
+            z, slopes, A = self._readings(known, points, plan.p[:, 0], xi1, seeds)
+            f = len(self._free)
+            return (
+                z[:, 0],
+                slopes[:, 0],
+                A[..., 0],
+                np.einsum("jpk,pw->jkw", slopes[..., :f], plan.fan.weights) / steps,
+                (A @ plan.fan.weights / steps)[..., :f],
+            )
+
+    # --- many points of one row
+
+    def _fan_out(
+        self, x: Array, known: Array, p: Array, seeds: list[int]
+    ) -> tuple[Seeds, Array, Array]:
+        """The fan about x (f,) and p (n_p,): its points (n_x, K) and its steps (w,)."""
+        plan = self._seeds(p[:, np.newaxis], seeds)
+        whole = self._whole(x, known)
+        delta, steps = self._deltas(whole, plan)
+        return plan, whole + delta[:, 0], steps[0]
+
+    def _steps(
+        self, known: Array, x: Array, p: Array, seeds: list[int]
+    ) -> tuple[Array, Array, Array]:
+        """What step() returns, of P points x (n_x, P) and p (n_p, P): (f, P, ...), (f, n_w, P)."""
+        plan = self._seeds(p, seeds)
+        delta, steps = self._deltas(x, plan)
+        stages, dt = self._stages(known)
+        P, K = x.shape[1], delta.shape[2]
+        at = np.broadcast_to(stages[0, ..., np.newaxis], (*stages.shape[1:], P * K))
+        points = (x[:, :, np.newaxis] + delta).reshape(len(x), P * K)
+        end = self._advance(points, plan.p.reshape(len(p), P * K), at, dt[0])
+        end = end.reshape(len(x), P, K)
+        if self._measured:
+            end[self._measured] = known[1, len(self._layout.inputs) + 1 :, np.newaxis, np.newaxis]
+        G = self._noise_input(x, stages[0, 0], p)
+        if not self._layout.discrete:
+            G = 0.5 * (G + self._noise_input(end[..., 0], stages[0, -1], p))
+        end = end[self._free]
+        return end[..., 0], end @ plan.fan.weights / steps, G[self._free]
+
+    def _noise_input(self, x: Array, known: Array, p: Array) -> Array:
+        """G (n_x, n_w, P) at P points of a row."""
+        u = np.broadcast_to(
+            known[: len(self._layout.inputs), np.newaxis], (len(self._layout.inputs), x.shape[1])
+        )
+        return self._model.noise_input(x.copy(), u, p)
+
+    def _readings(
+        self, known: Array, x: Array, p: Array, xi1: Array, seeds: list[int]
+    ) -> tuple[Array, Array, Array]:
+        """What read() returns, at P points: (n_z, P), (n_z, P, f + seeds), (n_z, n_1, P)."""
+        P = x.shape[1]
+        plan = self._seeds(p, seeds)
+        S = np.zeros((1, P, self._layout.states, len(self._free) + len(seeds)))
+        S[0][:, self._free, range(len(self._free))] = 1.0
+        linear = np.repeat(xi1[:, np.newaxis], P, axis=1)
+        A, b, slopes, _ = self._read(x[np.newaxis], S, known, plan, linear)
+        A, b = A[:, :, 0], b[:, 0]
+        return b + np.einsum("jkp,kp->jp", A, linear), slopes[:, 0], A
 
     # --- differences
 
@@ -172,8 +248,8 @@ class Walk:
             between[..., at] = begin[..., n_u] + shares[:, 0] * change[..., n_u]
         return between, change[:, 0, n_u]
 
-    def _advance(self, x: Array, p: Array, known: Array, dt: float, w: Array | None) -> Array:
-        """X (n_x, N) at the next row, by Runge and Kutta's fourth order; w (n_w, N) is held.
+    def _advance(self, x: Array, p: Array, known: Array, dt: float) -> Array:
+        """X (n_x, N) at the next row, by Runge and Kutta's fourth order.
 
         `known`, (stages, n, N), is that of _stages() at every point.
         """
@@ -183,10 +259,7 @@ class Walk:
             u = known[stage, :n_u]
             if self._measured:
                 at[self._measured] = known[stage, n_u + 1 :]
-            if w is None:
-                return self._model.rate(at, u, p)
-            noise = np.einsum("iwn,wn->in", self._model.noise_input(at.copy(), u, p), w)
-            return np.asarray(self._model.rate(at, u, p) + noise)
+            return self._model.rate(at, u, p)
 
         if self._layout.discrete:
             return rate(x.copy(), 0)
@@ -219,7 +292,7 @@ class Walk:
             elif path.x is not None and path.S is not None and np.isfinite(path.x).any():
                 delta, steps = fan = fan or self._deltas(path.x, seeds)
                 points = (path.x[:, :, np.newaxis] + delta).reshape(n_x, P * K)
-                end = self._advance(points, p, stages[row], dt[row], None).reshape(n_x, P, K)
+                end = self._advance(points, p, stages[row], dt[row]).reshape(n_x, P, K)
                 self._go_on(path, end, seeds, steps)
             if path.x is not None and path.S is not None:
                 if self._measured:

@@ -5,6 +5,7 @@
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/joseph_form.hpp"
+#include "sepcal/states/recursive_likelihood.hpp"
 
 namespace {
 
@@ -59,6 +60,24 @@ double run_jointly(const double* y, int count) {
   return cost + filter.filter().covariance().trace() + samples.filter().covariance().trace();
 }
 
+double run_likelihood(const double* y, int count) {
+  using Likelihood = sepcal::RecursiveLikelihood<Body>;
+  Likelihood::Theta theta = Likelihood::Theta::Zero();
+  const Likelihood::Theta bound = Likelihood::Theta::Constant(1e3);
+  Likelihood likelihood({}, theta, Likelihood::Root::Identity(), -bound, bound,
+                        Likelihood::Free::Constant(true));
+  sepcal::StateRow<Body> row;
+  for (int k = 0; k < count; ++k) {
+    const sepcal::StateRow<Body> last = row;
+    row.time = 0.1 * k;
+    row.u[0] = y[k];
+    if (k > 0) likelihood.predict(last, row);
+    likelihood.update(row.u, Eigen::Vector<double, 1>(y[k]), 0.999);
+    likelihood.step();
+  }
+  return likelihood.theta().sum() + likelihood.recursion().cost();
+}
+
 }  // namespace
 
 double run_all(const double* y, int count);
@@ -66,5 +85,5 @@ double run_all(const double* y, int count);
 double run_all(const double* y, int count) {
   return run_jointly<sepcal::SquareRootForm<4>>(y, count) +
          run_jointly<sepcal::InformationForm<4>>(y, count) +
-         run_jointly<sepcal::JosephForm<4>>(y, count);
+         run_jointly<sepcal::JosephForm<4>>(y, count) + run_likelihood(y, count);
 }

@@ -319,3 +319,30 @@ def test_headings_that_wrap_go_on(flights: list[sepcal.Flight]) -> None:
     assert np.ptp(np.angle(np.exp(1j * turned))) > 6.0
     for one, other in zip(fits[0].parameters.values(), fits[1].parameters.values(), strict=True):
         assert other.value == pytest.approx(one.value, abs=1e-6 * (one.standard_error or 1.0))
+
+
+def test_filter_error_of_an_aircraft(
+    aircraft: sepcal.Aircraft, flights: list[sepcal.Flight], fits: Fits, tmp_path: Path
+) -> None:
+    """Calm air: output error's numbers, and noises of measured states are none."""
+    model = sepcal.RigidAircraft(aircraft, "longitudinal")
+    fit = sepcal.fit(model, flights[0], method="filter-error")
+    assert fit.status == "converged", fit.message
+    sizes = fit.noise_sizes
+    assert {name for name in sizes if sizes[name].value == 0} == {"q_v", "q_p", "q_r"}
+    plain = fits("longitudinal")
+    for name in ("CZ_alpha", "Cm_alpha", "Cm_q", "Cm_elevator"):
+        off = fit[name].value - plain[name].value
+        assert abs(off) < 0.5 * plain[name].standard_error_white
+    assert -0.1 < 2 * (fit.log_likelihood - fit.log_likelihood_without) < 12
+    fit.save(tmp_path / "fit.json")
+    again = sepcal.load(tmp_path / "fit.json")
+    assert again.noise_sizes["r_q"].value == pytest.approx(sizes["r_q"].value)
+    assert again.by == "filter-error"
+    assert "by filter-error" in str(fit)
+    smoothed = fit.smooth()
+    assert np.isfinite(smoothed["w"]).any()
+    track = fit.track(flights[1], method="rml")
+    place = track.names.index("Cm_q")
+    off = track.estimates[-1, place] - fit["Cm_q"].value
+    assert abs(off) < 4 * np.hypot(track.standard_deviations[-1, place], fit["Cm_q"].standard_error)

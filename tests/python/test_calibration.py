@@ -62,7 +62,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "drop_invalid": True,
         "drop_repeats": ("vn_mps",),
     }
-    of_states = {"process_noise"}  # tests/python/test_aircraft.py
+    of_states = {"process_noise", "method", "hessian"}  # tests/python/test_aircraft.py
     assert set(options) == set(sepcal.FitOptions.__annotations__) - of_states
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
     stored["fixed"] = stored.pop("fix")

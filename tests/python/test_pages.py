@@ -224,6 +224,8 @@ def test_every_option_stands_in_the_signature_with_its_default():
         "search": "sampling",
         "second_stage": "auto",
         "jacobian": "kaufman",
+        "method": "output-error",
+        "hessian": "fisher",
         "loss": "squares",
         "seed": 0,
         "descents": 8,

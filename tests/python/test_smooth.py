@@ -52,7 +52,12 @@ def matrices(fit: sepcal.Fit, data: dict, k: int) -> tuple[np.ndarray, ...]:
     dt = data["time"][k + 1] - data["time"][k]
     A = F * dt
     Phi = np.eye(2) + A + A @ A / 2 + A @ A @ A / 6 + A @ A @ A @ A / 24
-    Gamma = dt * (np.eye(2) + A / 2 + A @ A / 6 + A @ A @ A / 24)
+    mean = dt * (np.eye(2) + A / 2 + A @ A / 6 + A @ A @ A / 24)  # of noise that is held
+    ramp = np.array([[-np.sqrt(3.0)], [np.sqrt(3.0)]])  # and of noise that rises from row to row
+    slope = [
+        step(lambda x, w, i=i: F @ x + np.eye(2)[i] * w, np.zeros(2), ramp, dt) for i in (0, 1)
+    ]
+    Gamma = np.hstack([mean, np.stack(slope, axis=1)])
     shift = step(lambda x, e: F @ x + B * e, np.zeros(2), u[k : k + 2], dt)
     return C, offset, Phi, shift, Gamma, dt
 
@@ -60,7 +65,7 @@ def matrices(fit: sepcal.Fit, data: dict, k: int) -> tuple[np.ndarray, ...]:
 def condition(fit: sepcal.Fit, data: dict) -> tuple[np.ndarray, np.ndarray, float, int]:
     """Mean and covariance of (x0, w, x) given y, all at once; ln L; where x begins."""
     N = len(data["time"])
-    size = 2 + 2 * (N - 1)
+    size = 2 + 4 * (N - 1)  # of two noises means and slopes
     Sigma = np.zeros((size, size))
     Sigma[:2, :2] = np.diag([START["alpha"] ** 2, START["q"] ** 2])
     rows, mean = [np.eye(2, size)], [np.array([fit["alpha_0"].value, fit["q_0"].value])]
@@ -72,8 +77,8 @@ def condition(fit: sepcal.Fit, data: dict) -> tuple[np.ndarray, np.ndarray, floa
         if not to:
             break
         Phi, shift, Gamma, dt = to
-        w = slice(2 + 2 * k, 4 + 2 * k)
-        Sigma[w, w] = np.diag([DENSITY["alpha"] ** 2, DENSITY["q"] ** 2]) / dt
+        w = slice(2 + 4 * k, 6 + 4 * k)
+        Sigma[w, w] = np.diag(np.square([*DENSITY.values(), *DENSITY.values()])) / dt
         row = Phi @ rows[k]
         row[:, w] += Gamma
         rows.append(row)
@@ -93,10 +98,13 @@ def condition(fit: sepcal.Fit, data: dict) -> tuple[np.ndarray, np.ndarray, floa
 
 @pytest.mark.parametrize("model", [sepcal.ShortPeriod(), ShortPeriod()], ids=["cpp", "python"])
 def test_it_is_conditioning(model: object, fit: sepcal.Fit) -> None:
-    """Rows that lie unevenly, outputs that are missing, one row without any."""
+    """Rows that lie unevenly, outputs that are missing, one row without any.
+
+    So close that the series which says what a noise does from row to row is exact.
+    """
     rng = np.random.default_rng(2)
     N = 9
-    time = np.cumsum(rng.uniform(0.01, 0.08, N))
+    time = np.cumsum(rng.uniform(0.0002, 0.001, N))
     data = {"time": time, "elevator": 0.05 * rng.standard_normal(N), "airspeed": 25 + rng.random(N)}
     data |= {name: 0.1 * rng.standard_normal(N) for name in ("alpha_m", "q_m", "az_m")}
     data["alpha_m"][[2, 5]] = data["az_m"][5] = data["q_m"][5] = np.nan
@@ -105,13 +113,14 @@ def test_it_is_conditioning(model: object, fit: sepcal.Fit) -> None:
     assert smoothed.states == ("alpha", "q")
     assert smoothed.noises == ("alpha", "q")
     assert_allclose(smoothed.x.ravel(), mean[begin:], rtol=0, atol=1e-12)
-    assert_allclose(smoothed.w[:-1].ravel(), mean[2:begin], rtol=0, atol=1e-11)
+    noises = mean[2:begin].reshape(-1, 4)[:, :2]
+    assert_allclose(smoothed.w[:-1], noises, rtol=1e-9, atol=1e-9)
     for k in range(N):
         at = slice(begin + 2 * k, begin + 2 * k + 2)
-        assert_allclose(smoothed.covariance[k], covariance[at, at], rtol=1e-9)
+        assert_allclose(smoothed.covariance[k], covariance[at, at], rtol=1e-8)
         if k + 1 < N:
-            w = slice(2 + 2 * k, 4 + 2 * k)
-            assert_allclose(smoothed.w_covariance[k], covariance[w, w], rtol=1e-9)
+            w = slice(2 + 4 * k, 4 + 4 * k)
+            assert_allclose(smoothed.w_covariance[k], covariance[w, w], rtol=1e-9, atol=1e-12)
     assert smoothed.log_likelihood == pytest.approx(log_likelihood, abs=1e-9)
     assert smoothed.readings == 3 * N - 4
     assert np.isnan(smoothed.innovations[5]).all()
@@ -121,7 +130,10 @@ def test_it_is_conditioning(model: object, fit: sepcal.Fit) -> None:
 
 
 def test_an_extended_smoother_by_hand() -> None:
-    """The pendulum's, its Jacobians by complex steps; filter and smoother as in any textbook."""
+    """The pendulum's, its Jacobians by complex steps; filter and smoother as in any textbook.
+
+    What a noise does is told from Phi as if the pendulum's stiffness stayed from row to row.
+    """
     data = swing(rows=150)
     fit = sepcal.fit(Pendulum(), data, samples=20)
     smoothed = sepcal.smooth(
@@ -134,7 +146,7 @@ def test_an_extended_smoother_by_hand() -> None:
         return np.array([x[1], -(at["w"] ** 2) * np.sin(x[0]) - at["d"] * x[1] + at["g"] * u + w])
 
     def move(k, x, w):
-        known = np.array([[data["u"][k], w], [data["u"][k + 1], w]])
+        known = np.array([[data["u"][k], w[0]], [data["u"][k + 1], w[1]]])
         return step(slope, x, known, data["time"][k + 1] - data["time"][k])
 
     N, h = len(data["time"]), 1e-30
@@ -148,19 +160,24 @@ def test_an_extended_smoother_by_hand() -> None:
         filtered.append((x, P))
         if k + 1 == N:
             break
-        Phi = np.stack([move(k, x + 1j * h * np.eye(2)[i], 0.0).imag / h for i in range(2)], axis=1)
-        Gamma = move(k, x.astype(complex), 1j * h).imag[:, np.newaxis] / h
+        none = (0.0, 0.0)
+        Phi = np.stack(
+            [move(k, x + 1j * h * np.eye(2)[i], none).imag / h for i in range(2)], axis=1
+        )
+        ramps = ((1.0, 1.0), (-np.sqrt(3.0), np.sqrt(3.0)))  # a noise's mean, and its slope
+        driven = [move(k, x.astype(complex), 1j * h * np.array(ramp)).imag / h for ramp in ramps]
+        Gamma = np.stack(driven, axis=1)
         Q = 0.3**2 / (data["time"][k + 1] - data["time"][k])
-        x, P = move(k, x, 0.0), Phi @ P @ Phi.T + Q * Gamma @ Gamma.T
+        x, P = move(k, x, none), Phi @ P @ Phi.T + Q * Gamma @ Gamma.T
         predicted.append((x, P, Phi, Gamma * Q))
     for k in range(N - 2, -1, -1):
         ahead, P_ahead, Phi, noise = predicted[k]
         (x_k, P_k), inverse = filtered[k], np.linalg.inv(P_ahead)
         C = P_k @ Phi.T @ inverse
-        assert_allclose(smoothed.w[k], noise.T @ inverse @ (x - ahead), rtol=0, atol=1e-7)
+        assert_allclose(smoothed.w[k], (noise.T @ inverse @ (x - ahead))[:1], rtol=0, atol=1e-3)
         x, P = x_k + C @ (x - ahead), P_k + C @ (P - P_ahead) @ C.T
-        assert_allclose(smoothed.x[k], x, rtol=0, atol=1e-9)
-        assert_allclose(smoothed.covariance[k], P, rtol=1e-6, atol=1e-12)
+        assert_allclose(smoothed.x[k], x, rtol=0, atol=1e-4)
+        assert_allclose(smoothed.covariance[k], P, rtol=1e-2, atol=1e-7)
 
 
 def test_bands_hold_the_states(fit: sepcal.Fit) -> None:

@@ -75,11 +75,10 @@ def test_an_extended_filter_by_hand() -> None:
     for k in range(1, len(data["time"])):
         u = data["aileron"][k - 1]
         Phi = differences(lambda at, u=u: advance(at, u), s)
-        gamma = np.zeros(4)  # of a noise that is held meanwhile
-        F = s[3] * dt
-        gamma[0] = dt * (1 + F / 2 + F**2 / 6 + F**3 / 24)
+        Q = np.zeros((4, 4))  # of white noise that enters all the way
+        Q[0, 0] = 0.02**2 * np.expm1(2 * s[3] * dt) / (2 * s[3])
         s = advance(s, u)
-        P = Phi @ P @ Phi.T + np.outer(gamma, gamma) * 0.02**2 / dt
+        P = Phi @ P @ Phi.T + Q
         if k < batch:
             continue
         e = data["p_m"][k] - C[0] @ s
@@ -167,7 +166,7 @@ def test_bad_input_is_one_line() -> None:
     )
     refuse(
         lambda: sepcal.track(model, FLIGHT, start_rows=120, method="ukf"),
-        "method 'ukf' is unknown; known: 'rls', 'ekf', 'iekf', 'srif'",
+        "method 'ukf' is unknown; known: 'rls', 'ekf', 'iekf', 'srif', 'rml'",
     )
     refuse(
         lambda: sepcal.track(model, FLIGHT, start_rows=120, process_noise={"r": 1.0}),

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What equation error, the two-step method and output error find in flights with process noise and
-// noise of the sensors: how far they are off, and how often their intervals hold the truth. Short
-// periods of 20 s at 50 Hz, 3-2-1-1 both ways and a sweep; noise enters alpha' and q'.
+// What equation error, the two-step method, output error, filter error and recursive maximum
+// likelihood find in flights with process noise and noise of the sensors: how far they are off, and
+// how often their intervals hold the truth. Short periods of 20 s at 50 Hz, 3-2-1-1 both ways and a
+// sweep; noise enters alpha' and q'.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "aircraft_records.hpp"
+#include "draws.hpp"
 #include "sepcal/aircraft/output_error.hpp"
 #include "sepcal/aircraft/two_step.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/track.hpp"
 #include "short_periods.hpp"
 #include "studies/seeds.hpp"
 
@@ -53,6 +57,8 @@ const std::array<Conversion, 5> conversions{
 
 class Score {
  public:
+  explicit Score(int count = flights) : count_(count) {}
+
   void add(int i, double value, double error_white, double error_coloured) {
     const auto k = static_cast<std::size_t>(i);
     const double off = value - truth[k];
@@ -77,21 +83,23 @@ class Score {
     }
   }
 
-  double bias(std::size_t i) const { return 100 * sum_[i] / flights / truth[i]; }
+  double bias(std::size_t i) const { return 100 * sum_[i] / count_ / truth[i]; }
   double deviation(std::size_t i) const {
-    const double mean = sum_[i] / flights;
-    return 100 * std::sqrt(squares_[i] / flights - mean * mean) / std::abs(truth[i]);
+    const double mean = sum_[i] / count_;
+    return 100 * std::sqrt(squares_[i] / count_ - mean * mean) / std::abs(truth[i]);
   }
+  /// Of the mean, in deviations of one flight.
+  double relative_bias(std::size_t i) const { return std::abs(bias(i)) / deviation(i); }
   double rmse() const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < 5; ++i) sum += squares_[i] / flights / (truth[i] * truth[i]);
+    for (std::size_t i = 0; i < 5; ++i) sum += squares_[i] / count_ / (truth[i] * truth[i]);
     return 100 * std::sqrt(sum / 5);
   }
-  double coloured(std::size_t i) const { return static_cast<double>(coloured_[i]) / flights; }
-  double white(std::size_t i) const { return static_cast<double>(white_[i]) / flights; }
+  double coloured(std::size_t i) const { return static_cast<double>(coloured_[i]) / count_; }
+  double white(std::size_t i) const { return static_cast<double>(white_[i]) / count_; }
 
   void print(const std::string& method) const {
-    std::string line = method + ", " + std::to_string(flights) + " flights, Za Zd Ma Mq Md: bias %";
+    std::string line = method + ", " + std::to_string(count_) + " flights, Za Zd Ma Mq Md: bias %";
     const auto list = [&](auto figure, const char* form) {
       for (std::size_t i = 0; i < 5; ++i) {
         char text[32];
@@ -112,6 +120,7 @@ class Score {
   }
 
  private:
+  int count_;
   std::array<double, 5> sum_{};
   std::array<double, 5> squares_{};
   std::array<int, 5> white_{};
@@ -190,6 +199,62 @@ Errors errors_of_aircraft(sepcal::AircraftAxes axes, double turbulence) {
   return errors;
 }
 
+/// How often 95 % intervals of the noises' logarithms hold, as filter error names them.
+class NoiseScore {
+ public:
+  void add(std::size_t i, double value, double standard_error) {
+    held_[i] += std::abs(std::log(value / sizes[i])) < 1.96 * standard_error / value ? 1 : 0;
+  }
+  double held(std::size_t i, int of) const { return static_cast<double>(held_[i]) / of; }
+  void print(const std::string& method, int of) const {
+    std::string line = method + ", noises " + "q_alpha q_q r_alpha r_q r_az: hold";
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      char text[32];
+      std::snprintf(text, sizeof text, " %.2f", held(i, of));
+      line += text;
+    }
+    MESSAGE(line);
+  }
+
+ private:
+  static constexpr std::array<double, 5> sizes{0.003, 0.09, 0.005, 0.01, 0.15};
+  std::array<int, 5> held_{};
+};
+
+FitOptions by_filter_error() {
+  FitOptions options = one_thread();
+  options.method = sepcal::FitMethod::filter_error;
+  options.samples = 40;
+  return options;
+}
+
+Eigen::Index place_of(const sepcal::Track& track, const std::string& name) {
+  return std::ranges::find(track.names, name) - track.names.begin();
+}
+
+/// Where nobody has fitted anything: parameters off by a share of their size either way, noises by
+/// half in their logarithms, and both known to be.
+sepcal::StreamStart poor_start(double off, std::uint64_t seed) {
+  sepcal::test::Draws draws(seed);
+  sepcal::StreamStart start;
+  start.names = {"b_alpha", "b_q", "b_az", "Zd", "Md", "Za", "Ma", "Mq"};
+  start.xi.resize(8);
+  start.xi << 0.0, 0.0, 0.0, -0.35, -45.0, -4.0, -40.0, -5.0;
+  Eigen::VectorXd sd(8);
+  sd << 0.05, 0.05, 1.0, off * start.xi.tail(5).cwiseAbs();
+  for (Eigen::Index k = 3; k < 8; ++k) {
+    start.xi[k] *= 1.0 + off * (draws.uniform(-1.0, 1.0) < 0.0 ? -1.0 : 1.0);
+  }
+  for (int k = 0; k < 8; ++k) start.free.push_back(k);
+  start.R = sd.cwiseInverse().asDiagonal();
+  const auto moved = [&](double size) {
+    return size * std::exp(draws.uniform(-1.0, 1.0) < 0.0 ? -0.5 : 0.5);
+  };
+  start.noise = Eigen::Vector3d(moved(0.005), moved(0.01), moved(0.15));
+  start.process_noise = Eigen::Vector2d(moved(0.003), moved(0.09));
+  return start;
+}
+
 }  // namespace
 
 TEST_CASE("an aircraft's intervals hold where nothing but the outputs has noise" *
@@ -237,6 +302,88 @@ TEST_CASE("output error is right on the whole, and its coloured intervals hold")
   for (std::size_t i = 0; i < 5; ++i) {
     CHECK(output_error.coloured(i) >= (whole_study ? 0.8 : 0.5));
     CHECK(std::abs(output_error.bias(i)) < 6.0);
+  }
+}
+
+TEST_CASE("filter error is right, and its intervals hold") {
+  Score filter_error;
+  NoiseScore noises;
+  for (int seed = 0; seed < flights; ++seed) {
+    const Record record = fly(seed);
+    const sepcal::TrajectoryModel<sepcal::ShortPeriod> model(sepcal::ShortPeriod{}, record);
+    const Fit fit = sepcal::fit(model, record, by_filter_error());
+    CHECK(fit.status == FitStatus::converged);
+    filter_error.add(fit);
+    for (std::size_t i = 0; i < 5; ++i) {
+      noises.add(i, fit.noise_sizes[i].value, fit.noise_sizes[i].standard_error);
+    }
+  }
+  filter_error.print("filter error");
+  noises.print("filter error", flights);
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(filter_error.coloured(i) >= (whole_study ? 0.90 : 0.6));
+    CHECK(filter_error.relative_bias(i) < (whole_study ? 0.25 : 1.2));
+    if (whole_study) CHECK(filter_error.coloured(i) <= 0.99);
+    CHECK(noises.held(i, flights) >= (whole_study ? 0.90 : 0.6));
+  }
+}
+
+TEST_CASE("recursive maximum likelihood ends near filter error, from the first rows' fit") {
+  constexpr int streams = whole_study ? 100 : 6;
+  Score recursive(streams);
+  Score whole(streams);
+  NoiseScore noises;
+  for (int seed = 0; seed < streams; ++seed) {
+    const Record record = fly(seed);
+    const sepcal::TrajectoryModel<sepcal::ShortPeriod> model(sepcal::ShortPeriod{}, record);
+    whole.add(sepcal::fit(model, record, by_filter_error()));
+    const sepcal::StreamStart start =
+        sepcal::start_from_rows(sepcal::ShortPeriod{}, record, 250, by_filter_error());
+    const sepcal::Track track =
+        sepcal::track(sepcal::ShortPeriod{}, record, start, {.method = sepcal::TrackMethod::rml});
+    const Eigen::Index last = track.estimates.rows() - 1;
+    for (int i = 0; i < 5; ++i) {
+      const Eigen::Index k = place_of(track, names[static_cast<std::size_t>(i)]);
+      const double sd = track.standard_deviations(last, k);
+      recursive.add(i, track.estimates(last, k), sd, sd);
+      const Eigen::Index noise = place_of(track, "q_alpha") + i;
+      noises.add(static_cast<std::size_t>(i), track.estimates(last, noise),
+                 track.standard_deviations(last, noise));
+    }
+  }
+  recursive.print("recursive, from 5 s");
+  noises.print("recursive, from 5 s", streams);
+  whole.print("filter error of the same");
+  MESSAGE("rms of the recursive over filter error's: ", recursive.rmse() / whole.rmse());
+  CHECK(recursive.rmse() < (whole_study ? 1.25 : 2.0) * whole.rmse());
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(recursive.coloured(i) >= (whole_study ? 0.85 : 0.5));
+    CHECK(noises.held(i, streams) >= (whole_study ? 0.85 : 0.5));
+  }
+}
+
+TEST_CASE("how often recursive maximum likelihood fails from poor starts" *
+          doctest::skip(!whole_study)) {
+  constexpr int streams = 100;
+  for (const double off : {0.2, 0.5, 0.8}) {
+    int failed = 0;
+    for (int seed = 0; seed < streams; ++seed) {
+      const Record record = fly(seed);
+      const sepcal::Track track = sepcal::track(
+          sepcal::ShortPeriod{}, record, poor_start(off, static_cast<std::uint64_t>(seed)),
+          {.method = sepcal::TrackMethod::rml, .initial_states = {{"alpha", 0.05}, {"q", 0.2}}});
+      const Eigen::Index last = track.estimates.rows() - 1;
+      bool near = true;
+      for (std::size_t i = 0; i < 5; ++i) {
+        const Eigen::Index k = place_of(track, names[i]);
+        const double error = std::abs(track.estimates(last, k) - truth[i]);
+        near = near && error < 4.0 * track.standard_deviations(last, k);
+      }
+      failed += near ? 0 : 1;
+    }
+    MESSAGE("recursive, parameters ", 100.0 * off, " % off, noises 0.5 in ln: ", failed, " of ",
+            streams, " end more than 4 standard deviations off");
+    if (off < 0.3) CHECK(failed <= 5);
   }
 }
 

@@ -39,6 +39,8 @@ class Carry {
   virtual ~Carry() = default;
 };
 
+class InnovationModel;  // innovation_model.hpp
+
 /// Where the values of x begin, never nullptr: to evaluate(), a null xi1 means "no tangent asked
 /// for", which an empty xi1 (n_1 = 0) is not.
 inline const double* values_of(const Eigen::VectorXd& x) {
@@ -146,6 +148,10 @@ class BlockModel {
   virtual Eigen::MatrixXd score_noise(const Record& record, const Eigen::VectorXd& xi,
                                       const Eigen::VectorXd& noise,
                                       const Eigen::VectorXd& density) const;
+
+  /// The likelihood of a record where noise drives the states, which filter error maximises; model
+  /// and record must outlive it. nullptr of a model without a state.
+  virtual std::unique_ptr<InnovationModel> innovations(const Record& record) const;
 
   /// A trajectory model returns its state here; its blocks then come in order, one pass a carry,
   /// and the model forgets the state where block.starts_segment. nullptr: samples are independent.

@@ -46,6 +46,19 @@ enum class Loss {
   cauchy,   // k^2 ln(1 + s^2 / k^2): the farther an outlier lies, the less it pulls
 };
 
+/// What a model with a state takes the residual for.
+enum class FitMethod {
+  output_error,  // noise of the outputs alone: states are integrated
+  filter_error,  // noise that drives the states too: the likelihood of a filter's innovations, with
+                 // the noises' sizes among what is estimated
+};
+
+/// What filter error's standard errors and last steps come from.
+enum class Hessian {
+  fisher,    // the expected one, of the score's rows
+  observed,  // differences of the gradient, where that is positive definite (Newton-Raphson)
+};
+
 template <class Choice>
 struct ChoiceNames;
 
@@ -68,6 +81,15 @@ struct ChoiceNames<ProjectedJacobian> {
 template <>
 struct ChoiceNames<Loss> {
   static constexpr std::array<std::string_view, 3> names{"squares", "huber", "cauchy"};
+};
+
+template <>
+struct ChoiceNames<FitMethod> {
+  static constexpr std::array<std::string_view, 2> names{"output-error", "filter-error"};
+};
+template <>
+struct ChoiceNames<Hessian> {
+  static constexpr std::array<std::string_view, 2> names{"fisher", "observed"};
 };
 
 template <class T>

@@ -48,6 +48,15 @@ struct OutputValue {
   double value = 0.0;
 };
 
+/// A noise's size that filter error estimated, or was given.
+struct NoiseSize {
+  std::string name;  // "q_alpha" of a process noise, "r_alpha_m" of an output
+  std::string unit;
+  double value = 0.0;           // root of the spectral density; of an output the standard deviation
+  double standard_error = 0.0;  // NaN: given, or at its floor
+  bool at_floor = false;        // nothing but the floor stopped it: see Fit::message
+};
+
 struct Fit {
   FitStatus status = FitStatus::not_converged;
   std::string message;  // one line; empty where there is nothing to say
@@ -72,8 +81,15 @@ struct Fit {
   Eigen::MatrixXd covariance_blocks;
 
   std::vector<OutputValue> noise;  // standard deviation: given, or from R-hat = SSE / N
-  std::vector<OutputValue> rmse;   // unwhitened, in the output's unit
-  double cost = 0.0;               // J of Eq. 6
+  std::vector<OutputValue>
+      rmse;           // unwhitened, in the output's unit; by filter error of innovations
+  double cost = 0.0;  // J of Eq. 6; by filter error V_m (S 5.7)
+
+  FitMethod by = FitMethod::output_error;
+  std::vector<NoiseSize> noise_sizes = {};       // by filter error: process noises, then outputs
+  double log_likelihood = not_a_number;          // by filter error
+  double log_likelihood_without = not_a_number;  // output error's from which it began: without the
+                                                 // process noises
   Identifiability identifiability;
 
   StageOne stage_one;
@@ -91,6 +107,8 @@ struct Fit {
   std::map<std::string, double> by_name() const;
   /// The nonlinear parameters that were estimated: where another fit begins (FitOptions::start).
   std::map<std::string, double> nonlinear_estimates() const;
+  /// By filter error, each process noise by its name: root of the spectral density.
+  std::map<std::string, double> process_noise() const;
   Eigen::VectorXd xi1() const { return values().head(n_1); }
   Eigen::VectorXd xi2() const { return values().tail(values().size() - n_1); }
 };

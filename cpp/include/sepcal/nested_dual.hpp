@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A number with its first and second derivatives by N variables: a dual number whose parts are dual
-// numbers. Ceres' Jet nests, but not with a plain double beside it, which models are full of.
+// A number with its first and second derivatives: a dual number whose parts are dual numbers, by N
+// variables within and M without, which may be the same ones. Ceres' Jet nests, but not with a
+// plain double beside it, which models are full of.
 #pragma once
 
 #include <ceres/jet.h>
@@ -14,22 +15,31 @@
 
 namespace sepcal {
 
-template <int N>
+template <int N, int M = N>
 class NestedDual {
  public:
   using Dual = ceres::Jet<double, N>;
-  using Jet = ceres::Jet<Dual, N>;
+  using Jet = ceres::Jet<Dual, M>;
 
   NestedDual() = default;
   explicit NestedDual(double value) : jet_(Dual(value)) {}
   explicit NestedDual(Jet jet) : jet_(std::move(jet)) {}
   /// The variable k at `value`.
-  NestedDual(double value, int k) : jet_(Dual(value, k), k) {}
+  NestedDual(double value, int k)
+    requires(N == M)
+      : jet_(Dual(value, k), k) {}
+  /// The variable `inner` and `outer` at `value`; none where that is no place among N or M.
+  NestedDual(double value, int inner, int outer) : jet_(Dual(value)) {
+    if (inner >= 0 && inner < N) jet_.a.v[inner] = 1.0;
+    if (outer >= 0 && outer < M) jet_.v[outer] = Dual(1.0);
+  }
 
   double value() const { return jet_.a.a; }
-  /// The derivative by variable k.
+  /// The derivative by the inner variable k.
   double slope(int k) const { return jet_.a.v[k]; }
-  /// The second derivative by variables i and k.
+  /// The derivative by the outer variable i.
+  double outer_slope(int i) const { return jet_.v[i].a; }
+  /// The second derivative by the outer variable i and the inner one k.
   double second_derivative(int i, int k) const { return jet_.v[i].v[k]; }
 
   NestedDual& operator+=(const NestedDual& y) { return *this = *this + y; }
@@ -130,9 +140,9 @@ class NestedDual {
 namespace Eigen {
 
 /// So that matrices of them can be multiplied and inverted, as those of Ceres' Jets.
-template <int N>
-struct NumTraits<sepcal::NestedDual<N>> : GenericNumTraits<sepcal::NestedDual<N>> {
-  using Number = sepcal::NestedDual<N>;
+template <int N, int M>
+struct NumTraits<sepcal::NestedDual<N, M>> : GenericNumTraits<sepcal::NestedDual<N, M>> {
+  using Number = sepcal::NestedDual<N, M>;
   using Real = Number;
   using NonInteger = Number;
   using Nested = Number;
@@ -145,13 +155,13 @@ struct NumTraits<sepcal::NestedDual<N>> : GenericNumTraits<sepcal::NestedDual<N>
   static int digits10() { return std::numeric_limits<double>::digits10; }
 };
 
-template <typename BinaryOp, int N>
-struct ScalarBinaryOpTraits<sepcal::NestedDual<N>, double, BinaryOp> {
-  using ReturnType = sepcal::NestedDual<N>;
+template <typename BinaryOp, int N, int M>
+struct ScalarBinaryOpTraits<sepcal::NestedDual<N, M>, double, BinaryOp> {
+  using ReturnType = sepcal::NestedDual<N, M>;
 };
-template <typename BinaryOp, int N>
-struct ScalarBinaryOpTraits<double, sepcal::NestedDual<N>, BinaryOp> {
-  using ReturnType = sepcal::NestedDual<N>;
+template <typename BinaryOp, int N, int M>
+struct ScalarBinaryOpTraits<double, sepcal::NestedDual<N, M>, BinaryOp> {
+  using ReturnType = sepcal::NestedDual<N, M>;
 };
 
 }  // namespace Eigen

@@ -91,9 +91,13 @@ struct FitOptions {
   /// false: they equal the white ones, and the fit does without that pass.
   bool coloured_errors = true;
 
+  /// Of a model with a state.
+  FitMethod method = FitMethod::output_error;
+  Hessian hessian = Hessian::fisher;  // of filter error
   /// Of a model with a state: noise that drives it, by the names of its table `noise`, as the root
   /// of the spectral density in the table's unit (of a model in discrete time as the standard
-  /// deviation a row). It takes no part in the fit; standard errors allow for it.
+  /// deviation a row). By output error it takes no part in the fit, and standard errors allow for
+  /// it; by filter error these are held, and those not named are estimated.
   std::map<std::string, double> process_noise = {};
 
   /// Threads, the caller's included; 0: one a core. The result does not depend on it.

@@ -95,14 +95,17 @@ AppliedColumns apply_to(const AircraftFit& fitted, const Flight& flight,
 std::pair<Tracked, std::vector<std::string>> track_on(
     const AircraftFit& fitted, const Flight& flight, const std::string& method,
     std::size_t start_rows, const Values& noise, const Values& process_noise,
-    const Values& initial_states, const IterationOptions& iterations) {
+    const Values& initial_states, const IterationOptions& iterations, double forgetting,
+    int every) {
   TrackedAircraft tracked =
       track_aircraft(fitted, flight,
                      {.how = {.method = choice_of<TrackMethod>("method", method),
                               .noise = noise,
                               .process_noise = process_noise,
                               .initial_states = initial_states,
-                              .iterations = iterations},
+                              .iterations = iterations,
+                              .forgetting = forgetting,
+                              .every = every},
                       .start_rows = start_rows});
   Tracked result{std::move(tracked.track), {}};
   result.track.rows = tracked.flight_rows;
@@ -147,8 +150,7 @@ void define_fits(py::module_& module) {
       .def_property_readonly("fit", &fit_of)
       .def_property_readonly("model",
                              [](const AircraftFit& self) { return to_string(self.options.model); })
-      .def_property_readonly("method",
-                             [](const AircraftFit& self) { return method_of(self.options.model); })
+      .def_property_readonly("method", [](const AircraftFit& self) { return method_of(self); })
       .def_property_readonly("equations", &equations_of)
       .def_property_readonly("history", &history_of)
       .def_readonly("initial_states", &AircraftFit::initial_states)

@@ -92,6 +92,11 @@ struct type_caster<sepcal::FitStatus>
     : WordCaster<sepcal::FitStatus, sepcal::FitStatus::converged, sepcal::FitStatus::not_converged,
                  sepcal::FitStatus::not_identifiable> {};
 template <>
+struct type_caster<sepcal::FitMethod>
+    : WordCaster<sepcal::FitMethod, sepcal::FitMethod::output_error,
+                 sepcal::FitMethod::filter_error> {};
+
+template <>
 struct type_caster<sepcal::SecondStage>
     : WordCaster<sepcal::SecondStage, sepcal::SecondStage::automatic, sepcal::SecondStage::joint,
                  sepcal::SecondStage::projected> {};
@@ -111,6 +116,8 @@ struct type_caster<std::vector<sepcal::LeftOut>>
 
 template <>
 struct type_caster<std::vector<sepcal::Parameter>> : NamedCaster<sepcal::Parameter> {};
+template <>
+struct type_caster<std::vector<sepcal::NoiseSize>> : NamedCaster<sepcal::NoiseSize> {};
 template <>
 struct type_caster<std::vector<sepcal::Derived>> : NamedCaster<sepcal::Derived> {};
 template <>

@@ -108,6 +108,8 @@ void define_options(py::module_& module) {
   define_named<&FitOptions::second_stage>(options, "second_stage");
   define_named<&FitOptions::jacobian>(options, "jacobian");
   define_named<&FitOptions::loss>(options, "loss");
+  define_named<&FitOptions::method>(options, "method");
+  define_named<&FitOptions::hessian>(options, "hessian");
   define_choice<&FitOptions::loss_width>(options, "loss_width");
   define_choice<&FitOptions::fixed>(options, "fixed");
   define_choice<&FitOptions::noise>(options, "noise");

@@ -267,14 +267,12 @@ class PythonStateModel::Steps final : public StateSteps {
             arrays[1].cast<MatrixXd>()(plan_.outputs(), Eigen::all)};
   }
 
-  /// The noise is held from row to row: its covariance over the step is density / dt (S 3.7).
   JointStep advance_jointly(std::size_t row, const VectorXd& x,
                             const VectorXd& density) const override {
     const Step taken = step(row, x, seeds_);
-    const std::span<const double> time = record_.column("time");
-    const double held = plan_.discrete() ? 1.0 : time[row + 1] - time[row];
+    const VectorXd variances = plan_.noise_variances(density, duration(row));
     return {taken.x, in_columns(taken.Phi),
-            taken.Gamma * (density / held).asDiagonal() * taken.Gamma.transpose()};
+            taken.Gamma * variances.asDiagonal() * taken.Gamma.transpose()};
   }
 
   Reading read_jointly(std::size_t row, const VectorXd& x) const override {
@@ -291,6 +289,52 @@ class PythonStateModel::Steps final : public StateSteps {
     return {arrays[0].cast<VectorXd>()(plan_.outputs()), std::move(H)};
   }
 
+  BentStep advance_bent(std::size_t row, const VectorXd& x) const override {
+    BentStep step;
+    BentNoise noise;
+    {
+      const py::gil_scoped_acquire gil;
+      const py::tuple arrays = model_.walk_->attr("bend_step")(known_at(row, 2), x, p_, seeds_);
+      const MatrixXd slopes = in_columns(arrays[1].cast<MatrixXd>());
+      step.x = arrays[0].cast<VectorXd>();
+      step.Phi = slopes.leftCols(n_x());
+      step.Pi = acting(slopes).rightCols(acting_count());
+      step.Phi_slopes = acting(in_columns(flatten(arrays[3].cast<Numbers>())));
+      noise.G = arrays[2].cast<MatrixXd>();
+      noise.constant = false;
+      noise.slopes = acting(in_columns(flatten(arrays[4].cast<Numbers>())));
+    }
+    add_noise(step, noise, duration(row), plan_.discrete());
+    return step;
+  }
+
+  BentReading read_bent(std::size_t row, const VectorXd& x) const override {
+    const py::gil_scoped_acquire gil;
+    const py::tuple arrays =
+        model_.walk_->attr("bend_reading")(known_at(row, 1), x, p_, xi1_, seeds_);
+    const std::vector<int>& outputs = plan_.outputs();
+    const auto n_z = static_cast<Index>(outputs.size());
+    const auto A = arrays[2].cast<MatrixXd>();
+    const auto A_slopes = arrays[4].cast<Numbers>();
+    MatrixXd slopes = in_columns(arrays[1].cast<MatrixXd>()(outputs, Eigen::all));
+    MatrixXd bends = in_columns(flatten(arrays[3].cast<Numbers>(), outputs));
+    for (std::size_t j = 0; j < outputs.size(); ++j) {
+      for (const int k : plan_.acting(j)) {
+        const int linear = plan_.linear()[static_cast<std::size_t>(k)];
+        slopes(static_cast<Index>(j), n_x() + k) += A(outputs[j], linear);
+        for (Index i = 0; i < n_x(); ++i) {
+          bends(i * n_z + static_cast<Index>(j), n_x() + k) += A_slopes.at(outputs[j], linear, i);
+        }
+      }
+    }
+    BentReading reading;
+    reading.z = arrays[0].cast<VectorXd>()(outputs);
+    reading.H = slopes.leftCols(n_x());
+    reading.J = acting(slopes).rightCols(acting_count());
+    reading.H_slopes = acting(bends);
+    return reading;
+  }
+
   VectorXd start(std::size_t row) const override {
     const py::gil_scoped_acquire gil;
     const py::object answer = model_.start_at(record_, row);
@@ -304,7 +348,19 @@ class PythonStateModel::Steps final : public StateSteps {
   Step step(std::size_t row, const VectorXd& x, const std::vector<int>& seeds) const {
     const py::gil_scoped_acquire gil;
     const py::tuple arrays = model_.walk_->attr("step")(known_at(row, 2), x, p_, seeds);
-    return {arrays[0].cast<VectorXd>(), arrays[1].cast<MatrixXd>(), arrays[2].cast<MatrixXd>()};
+    auto Phi = arrays[1].cast<MatrixXd>();
+    auto G = arrays[2].cast<MatrixXd>();
+    if (plan_.discrete()) return {arrays[0].cast<VectorXd>(), std::move(Phi), std::move(G)};
+    const NoiseResponse<Eigen::Dynamic> response(Phi.leftCols(n_x()), duration(row));
+    MatrixXd Gamma(n_x(), 2 * G.cols());
+    Gamma << response.mean() * G, response.slope() * G;
+    return {arrays[0].cast<VectorXd>(), std::move(Phi), std::move(Gamma)};
+  }
+
+  /// To the next row, s.
+  double duration(std::size_t row) const {
+    const std::span<const double> time = record_.column("time");
+    return time[row + 1] - time[row];
   }
 
   py::tuple ask(std::size_t row, const VectorXd& x, const std::vector<int>& seeds) const {
@@ -322,6 +378,37 @@ class PythonStateModel::Steps final : public StateSteps {
       if (column >= 0) result.col(n + column) = derivative.col(n + static_cast<Index>(i));
     }
     return result;
+  }
+
+  Index acting_count() const { return static_cast<Index>(plan_.acting_columns().size()); }
+
+  /// Of columns by x and all parameters those by x and the parameters that act.
+  MatrixXd acting(const MatrixXd& all) const {
+    MatrixXd result(all.rows(), n_x() + acting_count());
+    result.leftCols(n_x()) = all.leftCols(n_x());
+    result.rightCols(acting_count()) =
+        all.rightCols(all.cols() - n_x())(Eigen::all, plan_.acting_columns());
+    return result;
+  }
+
+  /// (rows, columns, w), of some of the rows, to (columns * rows, w), column by column.
+  static MatrixXd flatten(const Numbers& array, const std::vector<int>& rows) {
+    const auto values = array.unchecked<3>();
+    const auto count = static_cast<Index>(rows.size());
+    MatrixXd flat(values.shape(1) * count, values.shape(2));
+    for (py::ssize_t column = 0; column < values.shape(1); ++column) {
+      for (Index row = 0; row < count; ++row) {
+        for (py::ssize_t w = 0; w < values.shape(2); ++w) {
+          flat(column * count + row, w) = values(rows[static_cast<std::size_t>(row)], column, w);
+        }
+      }
+    }
+    return flat;
+  }
+  static MatrixXd flatten(const Numbers& array) {
+    std::vector<int> all(static_cast<std::size_t>(array.shape(0)));
+    std::iota(all.begin(), all.end(), 0);
+    return flatten(array, all);
   }
 
   MatrixXd known_at(std::size_t row, std::size_t rows) const {

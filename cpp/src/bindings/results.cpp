@@ -44,6 +44,17 @@ void define_parameters(py::module_& module) {
       .def_property_readonly("remark", &remark,
                              "Fixed, at its lower or at its upper bound; else nothing.");
 
+  BoundStruct<NoiseSize>(module, "NoiseSize",
+                         "A noise's size that filter error estimated, or was given.")
+      .field("name", &NoiseSize::name, R"("q_alpha" of a process noise, "r_alpha_m" of an output.)")
+      .field("unit", &NoiseSize::unit, "")
+      .field("value", &NoiseSize::value,
+             "Root of the spectral density; of an output the standard deviation.")
+      .field("standard_error", &NoiseSize::standard_error, "NaN: given, or at its floor.")
+      .field("at_floor", &NoiseSize::at_floor, "Nothing but the floor stopped it.")
+      .comparable()
+      .finish();
+
   BoundStruct<Combination>(
       module, "Combination",
       "A linear combination of parameters that the record leaves open or determines poorly.")
@@ -136,7 +147,14 @@ void define_results(py::module_& module) {
       .field("noise", &FittedModel::fit, &Fit::noise,
              "By output: standard deviation, given or from R-hat = SSE / N.")
       .field("rmse", &FittedModel::fit, &Fit::rmse, "By output, unwhitened, in its unit.")
-      .field("cost", &FittedModel::fit, &Fit::cost, "J of Eq. 6.")
+      .field("cost", &FittedModel::fit, &Fit::cost, "J of Eq. 6; by filter error V_m, S 5.7.")
+      .field("by", &FittedModel::fit, &Fit::by, R"("output-error" or "filter-error".)")
+      .field("noise_sizes", &FittedModel::fit, &Fit::noise_sizes,
+             "By filter error, by name: process noises, then outputs; else empty.")
+      .field("log_likelihood", &FittedModel::fit, &Fit::log_likelihood,
+             "By filter error; else NaN.")
+      .field("log_likelihood_without", &FittedModel::fit, &Fit::log_likelihood_without,
+             "Output error's, from which filter error began; else NaN.")
       .field("rows", &FittedModel::fit, &Fit::rows, "That stage two used.")
       .field(
           "unobservable",

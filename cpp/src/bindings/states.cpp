@@ -148,16 +148,20 @@ Tracked track_columns(const Model& model, const py::dict& columns,
                       const std::optional<FittedModel>& start, const CalibrationOptions& options,
                       const std::map<std::string, double>& process_noise,
                       const std::map<std::string, double>& initial_states,
-                      const IterationOptions& iterations) {
+                      const IterationOptions& iterations, double forgetting, int every) {
   TrackOptions how{.method = choice_of<TrackMethod>("method", method),
                    .noise = options.fit.noise,
                    .process_noise = process_noise,
                    .initial_states = initial_states,
-                   .iterations = iterations};
+                   .iterations = iterations,
+                   .forgetting = forgetting,
+                   .every = every};
   const Record record = record_of(columns, labels);
   const Released released;
+  CalibrationOptions batch = options;
+  if (how.method == TrackMethod::rml) batch.fit.method = FitMethod::filter_error;
   const StreamStart begin = start ? start_from_fit(start->fit)
-                                  : start_of_rows(model, record, start_rows.value_or(0), options);
+                                  : start_of_rows(model, record, start_rows.value_or(0), batch);
   const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&record) : model.block;
   Tracked tracked{track(*laid, record, begin, how), {}};
   for (const Variable& output : laid->tables().outputs) tracked.outputs.push_back(output.name);

@@ -10,6 +10,8 @@
 #include "base/sentences.hpp"
 #include "estimation/bend.hpp"
 #include "estimation/covariance.hpp"
+#include "estimation/filter_error.hpp"
+#include "estimation/fitted_parameters.hpp"
 #include "estimation/likelihood.hpp"
 #include "estimation/minima.hpp"
 #include "estimation/model_trial.hpp"
@@ -31,72 +33,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
-  std::vector<OutputValue> result;
-  for (Index j = 0; j < values.size(); ++j) {
-    result.push_back({tables.outputs[static_cast<std::size_t>(j)].name, values[j]});
-  }
-  return result;
-}
-
-/// Spreads the free parameters' estimate and covariances over all of the model's parameters.
-void fill_parameters(Fit& result, const BlockModel& model, const Problem& problem,
-                     const StageTwo& two, const Covariances& covariances,
-                     const StandardErrors& errors) {
-  const std::vector<Variable> all = model.tables().parameters();
-  const auto n = static_cast<Index>(all.size());
-  result.n_1 = model.tables().n_1();
-  std::vector<Index> place;  // of each free parameter among all
-  for (const Variable& variable : all) {
-    Parameter parameter{.name = variable.name, .unit = variable.unit};
-    const auto fixed = problem.options().fixed.find(variable.name);
-    if (fixed != problem.options().fixed.end()) {
-      parameter.fixed = true;
-      parameter.value = parameter.lower = parameter.upper = fixed->second;
-    } else {
-      const auto k = place.size();
-      place.push_back(static_cast<Index>(result.parameters.size()));
-      parameter.value = two.x[static_cast<Index>(k)];
-      parameter.lower = problem.parameters()[k].lower;
-      parameter.upper = problem.parameters()[k].upper;
-      parameter.at_bound = two.at_bound[k];
-    }
-    result.parameters.push_back(std::move(parameter));
-  }
-  std::vector<Index> places;
-  for (const Index k : covariances.inside) places.push_back(place[static_cast<std::size_t>(k)]);
-  result.covariance = spread(errors.believed, places, n);
-  result.covariance_white = spread(covariances.white, places, n);
-  result.covariance_noise_model = spread(covariances.noise_model, places, n);
-  result.covariance_blocks = spread(errors.blocks, places, n);
-  result.correlation = correlation_of(result.covariance);
-  for (Index k = 0; k < n; ++k) {
-    Parameter& parameter = result.parameters[static_cast<std::size_t>(k)];
-    parameter.standard_error = std::sqrt(result.covariance(k, k));
-    parameter.standard_error_white = std::sqrt(result.covariance_white(k, k));
-    parameter.standard_error_noise_model = std::sqrt(result.covariance_noise_model(k, k));
-    parameter.standard_error_blocks = std::sqrt(result.covariance_blocks(k, k));
-  }
-}
-
-/// What the record leaves open. Nothing but its bound stopped a parameter that lies on one: where
-/// it is exchanged for others, they are as open as it is unless two of its standard errors, not
-/// one, fit into half the width.
-Identifiability judge(const MatrixXd& tangent, const std::vector<std::string>& names,
-                      const VectorXd& scale, const std::vector<bool>& at_bound) {
-  constexpr double noise_factor = 1.0;  // the tangent's rows are over the noise that was judged
-  Identifiability plain = identify(tangent, names, scale, noise_factor);
-  if (std::ranges::find(at_bound, true) == at_bound.end()) return plain;
-  VectorXd halved = scale;
-  for (Index k = 0; k < halved.size(); ++k) {
-    if (at_bound[static_cast<std::size_t>(k)]) halved[k] *= 0.5;
-  }
-  Identifiability strict = identify(tangent, names, halved, noise_factor);
-  const bool exchanged = std::ranges::any_of(
-      strict.unobservable, [](const Combination& open) { return open.parameters.size() > 1; });
-  return exchanged ? strict : plain;
-}
 
 /// What takes rows all at once gets an excerpt of a record that may be longer than memory; not of a
 /// model with a state, whose trajectories an excerpt would cut.
@@ -126,13 +62,15 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
                             rows / static_cast<double>(sample.measurements().rows())};
   const Covariances covariances = find_covariances(problem, sweep, sampled, two);
   const StandardErrors errors = find_standard_errors(problem, sweep, sampled, two, covariances);
-  fill_parameters(result, model, problem, two, covariances, errors);
+  fill_parameters(result, model, problem,
+                  {two.x, two.at_bound, covariances.inside, errors.believed, covariances.white,
+                   covariances.noise_model, errors.blocks});
 
   // With the columns of parameters at a bound: a bound may hold what the record leaves open.
   std::vector<std::string> names;
   for (const Variable& parameter : problem.parameters()) names.push_back(parameter.name);
   const VectorXd scale = plausible_scale(problem.parameters(), two.factors, measurements);
-  result.identifiability = judge(covariances.tangent, names, scale, two.at_bound);
+  result.identifiability = judge_identifiability(covariances.tangent, names, scale, two.at_bound);
 
   const Index n_1 = problem.model().tables().n_1();
   const Index n_2 = problem.model().tables().n_2();
@@ -166,10 +104,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
                                                                : FitStatus::not_converged;
 }
 
-}  // namespace
-
-Fit fit(const BlockModel& model, const Record& record, const FitOptions& given) {
-  check_process_noise(model, given);
+Fit fit_output_error(const BlockModel& model, const Record& record, const FitOptions& given) {
   const FitOptions options = with_starting_values(model, record, given.stage_two_segments, given);
   const Problem problem(model, options);
   base::ThreadPool pool(options.threads);
@@ -193,6 +128,14 @@ Fit fit(const BlockModel& model, const Record& record, const FitOptions& given) 
   warn_of_coarse_steps(result, model, fitted);
   warn_of_runaway(result, model, fitted);
   return result;
+}
+
+}  // namespace
+
+Fit fit(const BlockModel& model, const Record& record, const FitOptions& options) {
+  check_process_noise(model, options);
+  if (options.method == FitMethod::filter_error) return fit_filter_error(model, record, options);
+  return fit_output_error(model, record, options);
 }
 
 }  // namespace sepcal

@@ -40,6 +40,14 @@ std::map<std::string, double> Fit::by_name() const {
   return result;
 }
 
+std::map<std::string, double> Fit::process_noise() const {
+  std::map<std::string, double> sizes;
+  for (const NoiseSize& size : noise_sizes) {
+    if (size.name.starts_with("q_") && size.value > 0.0) sizes[size.name.substr(2)] = size.value;
+  }
+  return sizes;
+}
+
 std::map<std::string, double> Fit::nonlinear_estimates() const {
   std::map<std::string, double> result;
   for (auto k = static_cast<std::size_t>(n_1); k < parameters.size(); ++k) {

@@ -11,6 +11,7 @@
 #include "base/sentences.hpp"
 #include "estimation/covariance.hpp"
 #include "estimation/plausibility.hpp"
+#include "intervals/filter_error_profile.hpp"
 #include "intervals/profile_path.hpp"
 #include "numerics/quantiles.hpp"
 #include "sepcal/error.hpp"
@@ -259,6 +260,10 @@ std::string_view to_string(IntervalEnd end) {
 std::vector<ProfileInterval> profile_intervals(const BlockModel& model, const Record& record,
                                                const Fit& fit, const FitOptions& options,
                                                const ProfileOptions& asked) {
+  if (fit.by == FitMethod::filter_error) {
+    const Record fitted = record.select(options.stage_two_segments);
+    return profile_filter_error(model, fitted, fit, as_fitted(options, fit), asked);
+  }
   const estimation::Problem problem(model, as_fitted(options, fit));
   const std::vector<Index> places = find_places(problem, fit, asked.names);
   const Record second = record.select(options.stage_two_segments);

@@ -76,6 +76,10 @@ ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& optio
   if (!options.fit.process_noise.empty()) {
     throw Error("process_noise is for one record's fit; many flights are fitted without");
   }
+  if (options.fit.method == FitMethod::filter_error) {
+    throw Error(
+        "many flights are fitted jointly by output error; fit their segments as one record");
+  }
   if (options.fit.loss != Loss::squares) {
     throw Error("many flights are fitted jointly by least squares alone, without loss '" +
                 std::string(to_string(options.fit.loss)) +

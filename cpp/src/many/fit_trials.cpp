@@ -77,7 +77,8 @@ bool go_in_lanes(const Problem& problem, std::size_t rows) {
   const FitOptions& options = problem.options();
   const bool one_start = options.samples == 0 || !options.start.empty();
   const bool plain = !options.coloured_errors && options.loss == Loss::squares &&
-                     options.prior.empty() && options.process_noise.empty() && !options.screens &&
+                     options.prior.empty() && options.process_noise.empty() &&
+                     options.method == FitMethod::output_error && !options.screens &&
                      options.unsampled.empty() && (one_start || options.descents == 1) &&
                      options.search == Search::sampling &&
                      options.stage_one_segments == options.stage_two_segments;

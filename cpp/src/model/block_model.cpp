@@ -5,6 +5,7 @@
 
 #include "model/differences.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/innovation_model.hpp"
 
 namespace sepcal {
 
@@ -86,6 +87,10 @@ double BlockModel::coarseness(const Record& /*record*/, const VectorXd& /*xi*/) 
 MatrixXd BlockModel::score_noise(const Record& /*record*/, const VectorXd& xi,
                                  const VectorXd& /*noise*/, const VectorXd& /*density*/) const {
   return MatrixXd::Zero(xi.size(), xi.size());
+}
+
+std::unique_ptr<InnovationModel> BlockModel::innovations(const Record& /*record*/) const {
+  return nullptr;
 }
 
 bool BlockModel::add_second_derivatives(

@@ -93,7 +93,7 @@ class ScoreNoise {
     const double held = plan_.discrete() ? 1.0 : time_[row + 1] - time_[row];
     x_ = step.x;
     P_ = step.Phi * P_ * step.Phi.transpose() +
-         step.Gamma * (density_ / held).asDiagonal() * step.Gamma.transpose();
+         step.Gamma * plan_.noise_variances(density_, held).asDiagonal() * step.Gamma.transpose();
     C_ = step.Phi * C_;
   }
 

@@ -179,7 +179,7 @@ class Smoothing {
       Transition<Dynamic, Dynamic>& next = pass.back().stage.next;
       const bool last = row + 1 == segment.last;
       const double held = plan_.discrete() || last ? 1.0 : time_[row + 1] - time_[row];
-      next.Q_d = (density_ / held).asDiagonal();
+      next.Q_d = plan_.noise_variances(density_, held).asDiagonal();
       if (last) break;
       if (in_doubt()) {
         moved = pass.back().predicted =
@@ -235,9 +235,11 @@ class Smoothing {
             const MatrixXd& moved_w) {
     const auto at = static_cast<Index>(row);
     result_.x.row(at) = smoothed.x.transpose();
-    result_.w.row(at) = smoothed.w.transpose();
+    const Index n_w = density_.size();  // means; behind them stand slopes
+    result_.w.row(at) = smoothed.w.head(n_w).transpose();
     result_.P[row] = smoothed.P + moved_x * moved_x.transpose();
-    result_.Q[row] = smoothed.Q + moved_w * moved_w.transpose();
+    result_.Q[row] = smoothed.Q.topLeftCorner(n_w, n_w) +
+                     moved_w.topRows(n_w) * moved_w.topRows(n_w).transpose();
   }
 
   bool in_doubt() const { return axes_.cols() > 0; }

@@ -31,6 +31,12 @@ std::vector<int> places_of(const Fit& fit, const auto& keep) {
 /// What a fit says of its parameters and outputs, without R.
 StreamStart begin(const Fit& fit) {
   StreamStart start;
+  if (fit.by == FitMethod::filter_error) {
+    std::vector<double> sizes;
+    for (const NoiseSize& size : fit.noise_sizes) sizes.push_back(size.value);
+    const auto n_w = static_cast<Index>(sizes.size() - fit.noise.size());  // outputs are behind
+    start.process_noise = Eigen::Map<const VectorXd>(sizes.data(), n_w);
+  }
   for (const Parameter& parameter : fit.parameters) start.names.push_back(parameter.name);
   start.xi = fit.values();
   start.noise.resize(static_cast<Index>(fit.noise.size()));
@@ -105,6 +111,11 @@ StreamStart start_from_rows(const BlockModel& model, const Record& record, std::
     throw Error("the first " + std::to_string(rows) + " rows leave " + open_in(fit) +
                 " open: take more of them, hold parameters or give a prior" +
                 (fit.message.empty() ? "" : " (" + fit.message + ")"));
+  }
+  if (options.method == FitMethod::filter_error) {
+    StreamStart start = start_from_fit(fit);
+    start.rows = rows;
+    return start;
   }
   StreamStart start = begin(fit);
   start.free = places_of(fit, [](const Parameter& parameter) { return !parameter.fixed; });

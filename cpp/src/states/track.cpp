@@ -18,6 +18,7 @@
 #include "sepcal/triangular_factor.hpp"
 #include "states/information_track.hpp"
 #include "states/joint_track.hpp"
+#include "states/likelihood_track.hpp"
 
 namespace sepcal {
 namespace {
@@ -197,6 +198,12 @@ void track_filtered(Samples& samples, const StreamStart& start, const TrackOptio
 Track track(const BlockModel& model, const Record& record, const StreamStart& start,
             const TrackOptions& options) {
   const auto* along = dynamic_cast<const StateBlockModel*>(&model);
+  if (options.method == TrackMethod::rml) {
+    if (along == nullptr) {
+      throw Error("rml is for models with a state that noise drives; take rls, ekf, iekf or srif");
+    }
+    return states::track_likelihood(*along, record, start, options);
+  }
   if (along != nullptr && options.method != TrackMethod::rls) {
     return states::track_jointly(*along, record, start, options);
   }

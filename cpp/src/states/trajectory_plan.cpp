@@ -183,6 +183,11 @@ void TrajectoryPlan::place_columns(const StateTables& model) {
     const auto at = std::ranges::find(all, parameter.name, &Variable::name);
     parameter_columns_.push_back(at == all.end() ? -1 : static_cast<int>(at - all.begin()));
   }
+  const int starts = start_stride_ * trajectories();
+  const int end = separable_ ? tables_.n_1() : tables_.n_1() + tables_.n_2();  // of the starts
+  for (int column = 0; column < tables_.n_1() + tables_.n_2(); ++column) {
+    if (column < end - starts || column >= end) acting_columns_.push_back(column);
+  }
 }
 
 std::vector<std::size_t> TrajectoryPlan::starts_in(const Record& record) const {

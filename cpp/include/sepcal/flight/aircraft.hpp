@@ -31,9 +31,6 @@ std::string_view to_string(AircraftModel model);
 /// The model of that name. Throws Error listing the names.
 AircraftModel find_aircraft_model(std::string_view name);
 
-/// "output-error", or "equation-error" of aero.
-std::string_view method_of(AircraftModel model);
-
 struct AircraftOptions {
   AircraftModel model = AircraftModel::path;
   /// Needed by all models but path, which takes of it where the vane is.
@@ -68,6 +65,9 @@ struct AircraftFit {
   std::string file = {};                // that it was read from
 };
 
+/// "output-error", "filter-error", or "equation-error" of aero.
+std::string_view method_of(const AircraftFit& fitted);
+
 /// "Cm=1,alpha,q_hat". Throws Error, which says how to write it.
 AeroEquation parse_equation(std::string_view text);
 
@@ -100,10 +100,10 @@ using ProcessNoise = std::map<std::string, double>;
 /// What was flown, a column each with a value a row of the flight, NaN outside the segments: of
 /// every model the outputs as modelled (`alpha_model_rad`); of a path also the inertial unit's
 /// readings corrected (`ax_cal_mps2`), the states (`u_mps`), and, where there is a geometry, the
-/// coefficients. With process noise also what the smoother says (smooth_record.hpp): states and
-/// noises with their standard deviations (`u_smooth_mps`, `u_sd_mps`, `w_ax_mps2`,
-/// `w_ax_sd_mps2`), and the filter's innovations (`alpha_innovation_rad`). What there is to note is
-/// added to `notes`.
+/// coefficients. With process noise, given or that of a fit by filter error, also what the smoother
+/// says (smooth_record.hpp): states and noises with their standard deviations (`u_smooth_mps`,
+/// `u_sd_mps`, `w_ax_mps2`, `w_ax_sd_mps2`), and the filter's innovations (`alpha_innovation_rad`).
+/// What there is to note is added to `notes`.
 std::vector<CorrectedColumn> apply_aircraft(const AircraftFit& fitted, const Flight& flight,
                                             const ProcessNoise& process_noise,
                                             std::vector<std::string>& notes);

@@ -105,33 +105,4 @@ Vec<T, StateSizes<M>::n_x> step(const M& model, Vec<T, StateSizes<M>::n_x> x,
   return x;
 }
 
-/// The same with a process noise w that is held meanwhile: x' = f + G w, or x+ = next + G w.
-template <StateModel M, class T>
-Vec<T, StateSizes<M>::n_x> noisy_step(const M& model, Vec<T, StateSizes<M>::n_x> x,
-                                      const Vec<T, StateSizes<M>::n_p>& p,
-                                      const Vec<T, StateSizes<M>::n_w>& w,
-                                      const Between<M>& between, int substeps) {
-  using State = Vec<T, StateSizes<M>::n_x>;
-  const auto noise = [&](const State& at, const auto& u) -> State {
-    if constexpr (StateSizes<M>::n_w == 0) {
-      return State::Zero();
-    } else {
-      return noise_input<M, T>(model, at, u, p) * w;
-    }
-  };
-  if constexpr (is_discrete<M>()) {
-    const auto u = between.u(0.0);
-    x = (State(model.next(x, u, p)) + noise(x, u)).eval();
-  } else {
-    const auto rate = [&](State at, double s) -> State {
-      between.put_measured(at, s);
-      const auto u = between.u(s);
-      return State(model.rate(at, u, p)) + noise(at, u);
-    };
-    x = states::integrate(rate, std::move(x), between.duration(), substeps);
-  }
-  between.put_measured_at_end(x);
-  return x;
-}
-
 }  // namespace sepcal

@@ -4,11 +4,16 @@
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <type_traits>
 #include <vector>
 
+#include "sepcal/states/bent_step.hpp"
 #include "sepcal/states/integration.hpp"
+#include "sepcal/states/noise_response.hpp"
 #include "sepcal/states/state_model.hpp"
 #include "sepcal/states/state_steps.hpp"
 #include "sepcal/states/step_noise.hpp"
@@ -58,6 +63,7 @@ class ModelSteps final : public StateSteps {
       constants_.push_back(input.absent);
       columns_.push_back(absent ? std::span<const double>() : record.column(input.name));
     }
+    find_directions();
   }
 
   void set_parameters(const Eigen::VectorXd& xi) override {
@@ -71,23 +77,32 @@ class ModelSteps final : public StateSteps {
   }
 
   Step advance(std::size_t row, const Eigen::VectorXd& x) const override {
-    using Number = ceres::Jet<double, n_x + n_w>;
+    using Number = ceres::Jet<double, n_x>;
     const StateRow<M> from = row_at(row);
     const StateRow<M> to = row_at(row + 1);
     const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
-    Vec<Number, n_w> w = Vec<Number, n_w>::Zero();
-    for (int j = 0; j < n_w; ++j) w[j].v[n_x + j] = 1.0;
-    const Vec<Number, n_x> next =
-        noisy_step<M, Number>(model_, whole<Number>(from, x), p_.template cast<Number>(), w,
-                              between, plan_.options().substeps);
+    const Vec<double, n_x> begin = whole<double>(from, x);
+    const Vec<Number, n_x> end =
+        step<M, Number>(model_, whole<Number>(from, x), p_.template cast<Number>(), between,
+                        plan_.options().substeps);
     const std::vector<int>& free = plan_.integrated();
     const auto n = static_cast<Eigen::Index>(free.size());
-    Step step{Eigen::VectorXd(n), Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n_w)};
+    Vec<double, n_x> next;
+    for (int i = 0; i < n_x; ++i) next[i] = end[i].a;
+    Step step{next(free), Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n_v)};
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Number& state = next[free[static_cast<std::size_t>(i)]];
-      step.x[i] = state.a;
-      step.Phi.row(i) = state.v(free).transpose();
-      step.Gamma.row(i) = state.v.template tail<n_w>().transpose();
+      step.Phi.row(i) = end[free[static_cast<std::size_t>(i)]].v(free).transpose();
+    }
+    Eigen::Matrix<double, n_x, n_w> G = noise_input<M, double>(model_, begin, between.u(0.0), p_);
+    if constexpr (is_discrete<M>()) {
+      step.Gamma = pick(G, free, noises_);
+    } else {
+      if constexpr (has_noise_input<M>()) {
+        G = (0.5 * (G + noise_input<M, double>(model_, next, between.u(1.0), p_))).eval();
+      }
+      const Eigen::MatrixXd own = pick(G, free, noises_);
+      const NoiseResponse<Eigen::Dynamic> response(step.Phi, between.duration());
+      step.Gamma << response.mean() * own, response.slope() * own;
     }
     return step;
   }
@@ -97,7 +112,7 @@ class ModelSteps final : public StateSteps {
     const auto n = static_cast<Eigen::Index>(free.size());
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n);
     if constexpr (!is_discrete<M>()) {
-      using Number = ceres::Jet<double, n_x + n_w>;  // as advance() has it
+      using Number = ceres::Jet<double, n_x>;  // as advance() has it
       const StateRow<M> here = row_at(row);
       const Vec<Number, n_p> p = p_.template cast<Number>();
       const Vec<Number, n_x> rate = model_.rate(whole<Number>(here, x), here.u, p);
@@ -109,7 +124,7 @@ class ModelSteps final : public StateSteps {
   }
 
   Reading read(std::size_t row, const Eigen::VectorXd& x) const override {
-    using Number = ceres::Jet<double, n_x + n_w>;  // as advance() has it
+    using Number = ceres::Jet<double, n_x>;  // as advance() has it
     const auto expected = affine<Number>(row, x, p_.template cast<Number>());
     const std::vector<int>& free = plan_.integrated();
     Reading reading = empty_reading(static_cast<Eigen::Index>(free.size()));
@@ -162,6 +177,42 @@ class ModelSteps final : public StateSteps {
     return reading;
   }
 
+  BentStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const override {
+    const StateRow<M> from = row_at(row);
+    const StateRow<M> to = row_at(row + 1);
+    const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
+    const Vec<double, n_x> begin = whole<double>(from, x);
+    const std::vector<int>& free = plan_.integrated();
+    const auto all =
+        bend_step<M>(model_, begin, p_, between, plan_.options().substeps, free, directions_);
+    BentStep step;
+    step.x = pick(all.x, free, {0});
+    step.Phi = pick(all.Phi, free, free);
+    step.Pi = pick(all.Pi, free, parameters_);
+    step.Phi_slopes = pick(all.Phi_slopes, transition_entries_, slope_columns_);
+    const auto noise = bend_noise<M>(model_, begin, p_, between, all);
+    BentNoise own;
+    own.G = pick(noise.G, free, noises_);
+    own.constant = noise.constant;
+    if (!noise.constant) own.slopes = pick(noise.slopes, noise_entries_, slope_columns_);
+    add_noise(step, own, between.duration(), plan_.discrete());
+    return step;
+  }
+
+  BentReading read_bent(std::size_t row, const Eigen::VectorXd& x) const override {
+    const StateRow<M> here = row_at(row);
+    const auto all = bend_reading<M>(model_, whole<double>(here, x), here.u, xi1_, p_,
+                                     plan_.integrated(), directions_);
+    const std::vector<int>& free = plan_.integrated();
+    const std::vector<int>& outputs = plan_.outputs();
+    BentReading reading;
+    reading.z = pick(all.z, outputs, {0});
+    reading.H = pick(all.H, outputs, free);
+    reading.J = pick(all.J, outputs, parameters_);
+    reading.H_slopes = pick(all.H_slopes, reading_entries_, slope_columns_);
+    return reading;
+  }
+
   Eigen::VectorXd start(std::size_t row) const override {
     return start_of_model(model_, record_, row)(plan_.integrated());
   }
@@ -173,6 +224,7 @@ class ModelSteps final : public StateSteps {
   static constexpr int n_1 = StateSizes<M>::n_1;
   static constexpr int n_p = StateSizes<M>::n_p;
   static constexpr int n_w = StateSizes<M>::n_w;
+  static constexpr int n_v = noise_parts<M>();
   using Joint = ceres::Jet<double, n_x + n_p>;
 
   double input(int place, std::size_t row) const {
@@ -199,9 +251,66 @@ class ModelSteps final : public StateSteps {
     for (const int i : plan_.measured()) all[i] = Number(row.measured[i]);
     for (std::size_t i = 0; i < plan_.integrated().size(); ++i) {
       const int state = plan_.integrated()[i];
-      all[state] = Number(x[static_cast<Eigen::Index>(i)], state);
+      const double value = x[static_cast<Eigen::Index>(i)];
+      if constexpr (std::is_same_v<Number, double>) {
+        all[state] = value;
+      } else {
+        all[state] = Number(value, state);
+      }
     }
     return all;
+  }
+
+  /// Which derivatives a bent step is asked for, and where they go among the columns that act. A
+  /// step that is linear in the state bends by no state.
+  void find_directions() {
+    const std::vector<int>& acting = plan_.acting_columns();
+    const auto place = [&acting](int column) {
+      return static_cast<std::size_t>(std::ranges::find(acting, column) - acting.begin());
+    };
+    parameters_.resize(acting.size());
+    for (std::size_t k = 0; k < plan_.linear().size(); ++k) {
+      parameters_[place(static_cast<int>(k))] = plan_.linear()[k];
+    }
+    for (const int i : plan_.integrated()) {
+      if (!has_linear_dynamics<M>()) directions_.push_back(i);
+      slope_columns_.push_back(i);
+    }
+    for (int i = 0; i < n_p; ++i) {
+      if (plan_.column_of_parameter(i) < 0) continue;
+      directions_.push_back(n_x + i);
+      parameters_[place(plan_.column_of_parameter(i))] = n_1 + i;
+    }
+    for (const int parameter : parameters_) slope_columns_.push_back(n_x + parameter);
+    noises_.resize(n_w);
+    std::iota(noises_.begin(), noises_.end(), 0);
+    transition_entries_ = flat(plan_.integrated(), plan_.integrated(), n_x);
+    noise_entries_ = flat(plan_.integrated(), noises_, n_x);
+    reading_entries_ = flat(plan_.outputs(), plan_.integrated(), n_z);
+  }
+
+  /// Where the entries of a matrix's part stand in the whole, column by column of `height` each.
+  static std::vector<int> flat(const std::vector<int>& rows, const std::vector<int>& columns,
+                               int height) {
+    std::vector<int> entries;
+    for (const int column : columns) {
+      for (const int row : rows) entries.push_back(column * height + row);
+    }
+    return entries;
+  }
+
+  /// Rows and columns of a matrix of fixed size, which Eigen's own indexing can't take in every
+  /// case.
+  template <class Matrix>
+  static Eigen::MatrixXd pick(const Matrix& all, const std::vector<int>& rows,
+                              const std::vector<int>& columns) {
+    Eigen::MatrixXd part(rows.size(), columns.size());
+    for (Eigen::Index k = 0; k < part.cols(); ++k) {
+      for (Eigen::Index i = 0; i < part.rows(); ++i) {
+        part(i, k) = all(rows[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(k)]);
+      }
+    }
+    return part;
   }
 
   /// p, differentiated by.
@@ -260,6 +369,13 @@ class ModelSteps final : public StateSteps {
   Vec<double, n_1> xi1_ = Vec<double, n_1>::Zero();
   std::vector<std::span<const double>> columns_;
   std::vector<double> constants_;  // of inputs that the record doesn't have
+  std::vector<int> directions_;    // of bend_step()
+  std::vector<int> parameters_;    // of the acting columns: places among the model's n_1 + n_p
+  std::vector<int> noises_;        // 0 to n_w - 1
+  std::vector<int> transition_entries_;  // entries of the parts that are integrated or measured
+  std::vector<int> noise_entries_;
+  std::vector<int> reading_entries_;
+  std::vector<int> slope_columns_;  // the integrated states, then these, among its slopes' columns
 };
 
 }  // namespace sepcal

@@ -52,10 +52,9 @@ struct SmoothedRecord {
 };
 
 /// `model` is one for this record (or for any), `parameters` are all of its own, by name. Outputs
-/// may be missing, NaN. A noise is held from row to row, with the density over the interval for its
-/// variance (S 3.7). Throws Error where there is no process noise or a name is unknown, for a
-/// parameter or an output's noise that is missing, for an input that is not finite, and where the
-/// filter can't go on, naming the row.
+/// may be missing, NaN. Between rows a noise is a mean and a slope (noise_parts()). Throws Error
+/// where there is no process noise or a name is unknown, for a parameter or an output's noise that
+/// is missing, for an input that is not finite, and where the filter can't go on, naming the row.
 /// With `errors` P and Q are those of x and w whose parameters are as uncertain as said, to first
 /// order: what each axis of the errors does to the states goes along with them, by the derivatives
 /// of every step, with the gains as they are (which change only what the innovations do). Initial

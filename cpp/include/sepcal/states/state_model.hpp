@@ -82,23 +82,35 @@ constexpr int place_of(std::string_view name, const Table& table) {
   return -1;
 }
 
+/// Whether a model has a noise_input() of its own.
+template <class M>
+constexpr bool has_noise_input() {
+  return requires(const M& model, const Vec<double, StateSizes<M>::n_x>& x,
+                  const Vec<double, StateSizes<M>::n_u>& u,
+                  const Vec<double, StateSizes<M>::n_p>& p) { model.noise_input(x, u, p); };
+}
+
+/// The state that noise k of M::noise drives, whose name it has.
+template <class M>
+constexpr int noise_place(int k) {
+  static_assert(std::ranges::all_of(
+                    M::noise, [](const Quantity& w) { return place_of(w.name, M::states) >= 0; }),
+                "a noise that is no state's own needs noise_input(x, u, p)");
+  return place_of(M::noise[static_cast<std::size_t>(k)].name, M::states);
+}
+
 /// G (n_x x n_w): the model's noise_input(x, u, p), or by default the columns of the identity that
 /// belong to the states named in M::noise.
 template <StateModel M, class X>
 Eigen::Matrix<X, StateSizes<M>::n_x, StateSizes<M>::n_w> noise_input(
     const M& model, const Vec<X, StateSizes<M>::n_x>& x, const Vec<double, StateSizes<M>::n_u>& u,
     const Vec<X, StateSizes<M>::n_p>& p) {
-  if constexpr (requires { model.noise_input(x, u, p); }) {
+  if constexpr (has_noise_input<M>()) {
     return model.noise_input(x, u, p);
   } else {
     using Columns = Eigen::Matrix<X, StateSizes<M>::n_x, StateSizes<M>::n_w>;
-    static_assert(std::ranges::all_of(
-                      M::noise, [](const Quantity& w) { return place_of(w.name, M::states) >= 0; }),
-                  "a noise that is no state's own needs noise_input(x, u, p)");
     Columns G = Columns::Zero();
-    for (int k = 0; k < StateSizes<M>::n_w; ++k) {
-      G(place_of(M::noise[static_cast<std::size_t>(k)].name, M::states), k) = X(1.0);
-    }
+    for (int k = 0; k < StateSizes<M>::n_w; ++k) G(noise_place<M>(k), k) = X(1.0);
     return G;
   }
 }

@@ -9,6 +9,7 @@
 #include "sepcal/block_model.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/states/bent_step.hpp"
 #include "sepcal/states/trajectory_plan.hpp"
 
 namespace sepcal {
@@ -21,7 +22,7 @@ class StateSteps {
   struct Step {
     Eigen::VectorXd x;      // n_x, at the next row
     Eigen::MatrixXd Phi;    // n_x x n_x, its derivative by x
-    Eigen::MatrixXd Gamma;  // n_x x n_w, by a process noise that is held from row to row
+    Eigen::MatrixXd Gamma;  // n_x x n_v, by the parts of process noises (noise_parts())
   };
   /// What is expected of the outputs, A xi1 + b.
   struct Reading {
@@ -55,6 +56,13 @@ class StateSteps {
                                     const Eigen::VectorXd& density) const = 0;
   virtual Reading read_jointly(std::size_t row, const Eigen::VectorXd& x) const = 0;  // n_x + n
 
+  /// With second derivatives. Their parameters are those of TrajectoryPlan::acting_columns().
+  using BentStep = sepcal::BentStep<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
+  using BentReading = sepcal::BentReading<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
+  using BentNoise = sepcal::BentNoise<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
+  virtual BentStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
+  virtual BentReading read_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
+
   /// n_x, what the model's start(u, z) says of a row; zero where it has none.
   virtual Eigen::VectorXd start(std::size_t row) const = 0;
 };
@@ -83,6 +91,8 @@ class StateBlockModel : public BlockModel {
   Eigen::MatrixXd score_noise(const Record& record, const Eigen::VectorXd& xi,
                               const Eigen::VectorXd& noise,
                               const Eigen::VectorXd& density) const override;
+
+  std::unique_ptr<InnovationModel> innovations(const Record& record) const override;
 };
 
 }  // namespace sepcal

@@ -22,7 +22,10 @@ struct StreamStart {
   std::vector<int> free;           // k places in xi: those that are estimated, not held
   Eigen::MatrixXd R;      // k x k, upper triangular: (R'R)^-1 is the covariance of xi(free)
   Eigen::VectorXd noise;  // n_z standard deviations of the outputs
-  std::size_t rows = 0;   // of the record's segments, in order, that went into it
+  /// Roots of the process noises' densities (n_w, in the table's order): filter error's. Else
+  /// empty.
+  Eigen::VectorXd process_noise = {};
+  std::size_t rows = 0;  // of the record's segments, in order, that went into it
 
   /// R of all parameters, for a filter of fixed size. Throws Error where one of them is held.
   template <int N>

@@ -22,29 +22,36 @@ enum class TrackMethod {
   ekf,   // extended filter: every row linearised at the estimate before it
   iekf,  // iterated extended filter: at the estimate after it
   srif,  // the extended filter as square-root information
+  rml,   // recursive maximum likelihood: sizes of the noises are estimated too. Of models with a
+         // state, from a start by filter error
 };
 
 template <>
 struct ChoiceNames<TrackMethod> {
-  static constexpr std::array<std::string_view, 4> names{"rls", "ekf", "iekf", "srif"};
+  static constexpr std::array<std::string_view, 5> names{"rls", "ekf", "iekf", "srif", "rml"};
 };
 
 struct TrackOptions {
   TrackMethod method = TrackMethod::ekf;
-  /// Noise standard deviation of every output; empty: the start's.
+  /// Noise standard deviation of every output; empty: the start's. By rml these are held.
   std::map<std::string, double> noise = {};
   /// Of a model with a state: standard deviation by the names and in the units of its table
-  /// `noise`, per sqrt(s); those not named have none.
+  /// `noise`, per sqrt(s); those not named have none. By rml these are held, and those not named
+  /// are estimated, from the start's on.
   std::map<std::string, double> process_noise = {};
   /// Standard deviation of states where a segment begins that no mini-batch has fitted, about the
   /// model's start(u, z); of those not named ten times the largest value that the state has on the
   /// way, as good as unknown.
   std::map<std::string, double> initial_states = {};
   IterationOptions iterations = {};  // of iekf
+  double forgetting = 1.0;  // of rml: what a sample counts for after the next, above 0, at most 1
+  int every = 10;           // of rml: samples from a step of the parameters to the next
 };
 
 struct Track {
-  std::vector<std::string> names;       // n: integrated states, then parameters, linear ones first
+  /// n: integrated states, then parameters, linear ones first; by rml then "q_alpha" ...
+  /// "r_alpha_m" of the noises' sizes.
+  std::vector<std::string> names;
   std::vector<std::size_t> rows;        // of the record, one an estimate
   std::vector<double> time;             // s; empty where the record has none
   Eigen::MatrixXd estimates;            // rows x n

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/eigen.hpp"
 #include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/states/trajectory_options.hpp"
@@ -55,11 +56,20 @@ class TrajectoryPlan {
 
   bool separable() const { return separable_; }
   bool discrete() const { return model_.discrete; }
+  /// The variance of each part of the process noises (n_v, noise_parts()) between rows that lie so
+  /// far apart [s], from their densities (n_w, of a model in discrete time variances).
+  Eigen::VectorXd noise_variances(const Eigen::VectorXd& densities, double duration) const {
+    if (discrete()) return densities;
+    return densities.replicate(2, 1) / duration;
+  }
 
   /// The column of tables().inputs of the model's input i; -1 where it isn't in use.
   int input(int i) const { return input_places_[static_cast<std::size_t>(i)]; }
   /// The column among [A | D | b] of parameter i of p; -1 where it isn't in use.
   int column_of_parameter(int i) const { return parameter_columns_[static_cast<std::size_t>(i)]; }
+  /// The columns of [A | D | b] that are no initial state's, in order: what acts on steps and
+  /// outputs.
+  const std::vector<int>& acting_columns() const { return acting_columns_; }
   /// The same of a state at the start of a trajectory; -1 where it is measured.
   int column_of_start(int state, int trajectory) const {
     const int first = start_columns_[static_cast<std::size_t>(state)];
@@ -98,6 +108,7 @@ class TrajectoryPlan {
   int time_input_ = 0;
   bool separable_ = false;
   std::vector<int> parameter_columns_;
+  std::vector<int> acting_columns_;
   std::vector<int> start_columns_;
   int start_stride_ = 0;
   std::vector<std::size_t> starts_;

@@ -74,8 +74,9 @@ AircraftModel find_aircraft_model(std::string_view name) {
   return static_cast<AircraftModel>(found - model_names.begin());
 }
 
-std::string_view method_of(AircraftModel model) {
-  return model == AircraftModel::aero ? "equation-error" : "output-error";
+std::string_view method_of(const AircraftFit& fitted) {
+  if (fitted.options.model == AircraftModel::aero) return "equation-error";
+  return to_string(fitted.options.calibration.fit.method);
 }
 
 AeroEquation parse_equation(std::string_view text) {
@@ -190,6 +191,10 @@ Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAi
   }
   std::erase_if(options.start,
                 [&](const auto& entry) { return options.fixed.contains(entry.first); });
+  if (fitted.fit.by == FitMethod::filter_error) {
+    options.process_noise = fitted.fit.process_noise();
+    for (const OutputValue& noise : fitted.fit.noise) options.noise[noise.name] = noise.value;
+  }
   return fit(*laid.model, laid.record, options);
 }
 

@@ -67,7 +67,7 @@ Json write_fitted(const AircraftFit& fitted) {
   Json root;
   root["schema_version"] = schema_version;
   root["model"] = to_string(fitted.options.model);
-  root["method"] = method_of(fitted.options.model);
+  root["method"] = method_of(fitted);
   if (fitted.options.geometry) {
     root["rate_reference"] = to_string(fitted.options.geometry->rate_reference);
   }

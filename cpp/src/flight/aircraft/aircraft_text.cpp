@@ -12,8 +12,7 @@ namespace sepcal {
 namespace {
 
 std::string heading(const AircraftFit& fitted) {
-  std::string text =
-      fmt::format("{} by {}", to_string(fitted.options.model), method_of(fitted.options.model));
+  std::string text = fmt::format("{} by {}", to_string(fitted.options.model), method_of(fitted));
   if (fitted.options.model != AircraftModel::aero) {
     text += fmt::format(", inputs {} between rows", to_string(fitted.options.trajectory.inputs));
   }

@@ -135,7 +135,8 @@ SmoothedRecord aircraft_log::smooth_laid(const AircraftFit& fitted, const Fit& f
 }
 
 SmoothedRecord smooth_aircraft(const AircraftFit& fitted, const Flight& flight,
-                               const ProcessNoise& process_noise) {
+                               const ProcessNoise& given) {
+  const ProcessNoise process_noise = given.empty() ? fitted.fit.process_noise() : given;
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   const Fit fit = fit_on(flight, fitted, laid);
   const SmoothedRecord on_record =
@@ -165,8 +166,9 @@ SmoothedRecord smooth_aircraft(const AircraftFit& fitted, const Flight& flight,
 }
 
 std::vector<CorrectedColumn> apply_aircraft(const AircraftFit& fitted, const Flight& flight,
-                                            const ProcessNoise& process_noise,
+                                            const ProcessNoise& given,
                                             std::vector<std::string>& notes) {
+  const ProcessNoise process_noise = given.empty() ? fitted.fit.process_noise() : given;
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   const Fit fit = fit_on(flight, fitted, laid);
   Columns columns;

@@ -47,6 +47,10 @@ void lay_along_path(const AircraftOptions& options, LaidAircraft& laid) {
   laid.record = std::move(path.record);
   laid.fit = std::move(path.fit);
   laid.initial_states = std::move(path.initial_states);
+  if (laid.fit.method == FitMethod::filter_error) {
+    laid.warning = "filter error takes the inertial unit's errors for white noise, not for drift";
+    return;
+  }
   const bool told = laid.fit.process_noise.empty();
   if (told) laid.fit.process_noise = noise_of_readings(laid.record);
   laid.warning = fmt::format(

@@ -28,6 +28,9 @@ StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const Laid
     return start_from_fit(fitted.fit);
   }
   AircraftOptions options = fitted.options;
+  if (how.how.method == TrackMethod::rml) {
+    options.calibration.fit.method = FitMethod::filter_error;
+  }
   if (!how.how.noise.empty()) options.calibration.fit.noise = how.how.noise;
   if (laid.initial_states.empty()) {
     return start_from_rows(*laid.model, laid.record, rows, options.calibration.fit);
@@ -45,6 +48,12 @@ std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
   if (const auto* along = dynamic_cast<const StateBlockModel*>(&model)) {
     const auto& states = along->plan().model().states;
     known.insert(known.begin(), states.begin(), states.end());
+    for (const Variable& noise : along->plan().model().noise) {
+      known.emplace_back("q_" + noise.name, noise.unit);
+    }
+    for (const Variable& output : model.tables().outputs) {
+      known.emplace_back("r_" + output.name, output.unit);
+    }
   }
   std::vector<Variable> table;
   for (const std::string& name : track.names) {

@@ -107,6 +107,34 @@ void read_correlation(const Json& correlation, Fit& fit) {
   fit.covariance = errors.asDiagonal() * fit.correlation * errors.asDiagonal();
 }
 
+// --- filter error
+
+Json write_filter_error(const Fit& fit) {
+  Json sizes = Json::object();
+  for (const NoiseSize& size : fit.noise_sizes) {
+    sizes[size.name] = {{"value", number(size.value)},
+                        {"unit", size.unit},
+                        {"standard_error", number(size.standard_error)},
+                        {"at_floor", size.at_floor}};
+  }
+  return {{"noise_sizes", sizes},
+          {"log_likelihood", number(fit.log_likelihood)},
+          {"log_likelihood_without", number(fit.log_likelihood_without)}};
+}
+
+void read_filter_error(const Json& object, Fit& fit) {
+  fit.by = FitMethod::filter_error;
+  fit.log_likelihood = number_or(object.at("log_likelihood"), undefined);
+  fit.log_likelihood_without = number_or(object.at("log_likelihood_without"), undefined);
+  for (const auto& [name, entry] : entries_of(object.at("noise_sizes"))) {
+    fit.noise_sizes.push_back({.name = name,
+                               .unit = entry.at("unit").get<std::string>(),
+                               .value = entry.at("value").get<double>(),
+                               .standard_error = number_or(entry.at("standard_error"), undefined),
+                               .at_floor = entry.at("at_floor").get<bool>()});
+  }
+}
+
 // --- stages
 
 Json write_stage_one(const Fit& fit, const FitOptions& options) {
@@ -175,6 +203,7 @@ void write_rest(const Fit& fit, const FitOptions& options, Json& root) {
   root["cost"] = number(fit.cost);
   root["rmse"] = by_name(fit.rmse);
   root["noise"] = by_name(fit.noise);
+  if (fit.by == FitMethod::filter_error) root["filter_error"] = write_filter_error(fit);
   root["iterations"] = fit.iterations;
   root["stage_one"] = write_stage_one(fit, options);
   root["stage_two"] = {{"method", to_string(fit.method)}, {"r_iterations", fit.noise_iterations}};
@@ -192,6 +221,7 @@ Fit read_fit(const Json& root, const CalibrationOptions& options,
   fit.cost = number_or(root.at("cost"), undefined);
   fit.rmse = values_by_name(outputs, root.at("rmse"));
   fit.noise = values_by_name(outputs, root.at("noise"));
+  if (root.contains("filter_error")) read_filter_error(root.at("filter_error"), fit);
   fit.iterations = whole_number<int>(root.at("iterations"));
   fit.stage_one = read_stage_one(root.at("stage_one"), fit);
   fit.method = choice_of<SecondStage>("stage_two.method",

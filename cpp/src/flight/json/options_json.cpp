@@ -144,6 +144,10 @@ Json write_options(const CalibrationOptions& chosen) {
   options["noise_iterations"] = fit.noise_iterations;
   options["iterations"] = fit.iterations;
   options["coloured_errors"] = fit.coloured_errors;
+  if (fit.method != FitMethod::output_error) {
+    options["method"] = to_string(fit.method);
+    options["hessian"] = to_string(fit.hessian);
+  }
   if (!fit.process_noise.empty()) options["process_noise"] = fit.process_noise;
   options["threads"] = fit.threads;
   write_choice(chosen.log, options);
@@ -181,6 +185,10 @@ CalibrationOptions read_options(const Json& options) {
   fit.noise_iterations = whole_number<int>(options.at("noise_iterations"));
   fit.iterations = whole_number<int>(options.at("iterations"));
   fit.coloured_errors = options.at("coloured_errors").get<bool>();
+  if (options.contains("method")) {
+    read_choice(options, "method", fit.method);
+    read_choice(options, "hessian", fit.hessian);
+  }
   if (options.contains("process_noise")) {
     fit.process_noise = options.at("process_noise").get<std::map<std::string, double>>();
   }

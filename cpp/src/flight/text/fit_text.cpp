@@ -90,6 +90,25 @@ std::string output_table(const Fit& fit) {
   return text;
 }
 
+/// Sizes of the noises that filter error estimated, and whether the record asks for process noise:
+/// twice the rise of ln L beside output error, on as many degrees of freedom as there are, halved
+/// as none may be negative.
+std::string noise_table(const Fit& fit) {
+  std::string text =
+      fmt::format("\n{:<14} {:>13} {:>12}  {}\n", "noise", "size", "std. error", "unit");
+  for (const NoiseSize& size : fit.noise_sizes) {
+    text += fmt::format("{:<14} {:>13.4g} {:>12}  {}{}\n", size.name, size.value,
+                        defined(size.standard_error, "{:.2g}"), size.unit,
+                        size.at_floor       ? "  AT ITS FLOOR"
+                        : size.value == 0.0 ? "  shown by no output"
+                                            : "");
+  }
+  const double rise = 2.0 * (fit.log_likelihood - fit.log_likelihood_without);
+  if (!std::isfinite(rise)) return text;
+  return text + fmt::format("ln L {:.6g}; process noise raises 2 ln L by {:.3g}\n",
+                            fit.log_likelihood, rise);
+}
+
 }  // namespace
 
 std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
@@ -120,7 +139,13 @@ std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
     add_row(quantity.name, fmt::format("{:.6g}", quantity.value), error_columns(quantity, detail),
             quantity.unit, "derived");
   }
-  return text + output_table(fit) + "\n" + stage_line(fit, options);
+  text += output_table(fit);
+  if (fit.by == FitMethod::filter_error) {
+    return text + noise_table(fit) +
+           fmt::format("\nfilter error: {} step{} of scoring\n", fit.iterations,
+                       fit.iterations == 1 ? "" : "s");
+  }
+  return text + "\n" + stage_line(fit, options);
 }
 
 std::string to_text(const Fit& fit, const CalibrationOptions& options, Detail detail) {

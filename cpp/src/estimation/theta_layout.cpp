@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/theta_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sepcal::estimation {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+ThetaLayout::ThetaLayout(const BlockModel& model, const Problem& problem,
+                         const InnovationModel& innovations)
+    : model_(model),
+      problem_(problem),
+      innovations_(innovations),
+      all_(model.tables().parameters()),
+      n_(static_cast<Index>(all_.size())) {
+  const auto& fixed = problem.options().fixed;
+  for (Index k = 0; k < size(); ++k) {
+    const bool held =
+        k < n_ ? fixed.contains(all_[static_cast<std::size_t>(k)].name) : is_given(k - n_);
+    if (!held) free_.push_back(k);
+  }
+}
+
+Index ThetaLayout::free_parameters() const {
+  return std::ranges::count_if(free_, [this](Index k) { return k < n_; });
+}
+
+void ThetaLayout::hold_silent(const VectorXd& theta) {
+  std::erase_if(free_, [&](Index k) { return k >= n_ && theta[k] == -infinity; });
+}
+
+std::string ThetaLayout::name_of(Index place) const {
+  if (place < n_) return all_[static_cast<std::size_t>(place)].name;
+  return (place - n_ < noises() ? "q_" : "r_") + noise(place - n_).name;
+}
+
+const Variable& ThetaLayout::noise(Index k) const {
+  if (k < noises()) return model_.process_noises()[static_cast<std::size_t>(k)];
+  return model_.tables().outputs[static_cast<std::size_t>(k - noises())];
+}
+
+bool ThetaLayout::is_given(Index k) const {
+  const auto& given = k < noises() ? problem_.options().process_noise : problem_.options().noise;
+  return given.contains(noise(k).name);
+}
+
+numerics::Box ThetaLayout::box(const VectorXd& floor) const {
+  numerics::Box box{VectorXd::Constant(size(), -infinity), VectorXd::Constant(size(), infinity)};
+  std::size_t next = 0;  // of the problem's parameters, which are the free ones
+  for (const Index k : free_) {
+    if (k >= n_) {
+      box.lower[k] = floor[k - n_];
+      continue;
+    }
+    box.lower[k] = problem_.parameters()[next].lower;
+    box.upper[k] = problem_.parameters()[next].upper;
+    ++next;
+  }
+  return box;
+}
+
+Prior ThetaLayout::prior() const {
+  Prior whole{VectorXd::Zero(size()), VectorXd::Zero(size())};
+  const std::vector<Prior> given = problem_.prior();
+  for (Index i = 0; !given.empty() && i < free_parameters(); ++i) {
+    const Index k = free_[static_cast<std::size_t>(i)];
+    whole.mean[k] = given.front().mean[i];
+    whole.weight[k] = given.front().weight[i];
+  }
+  return whole;
+}
+
+VectorXd ThetaLayout::theta_of(const Fit& fit) const {
+  VectorXd theta(size());
+  theta.head(n_) = fit.values();
+  for (Index k = n_; k < size(); ++k) {
+    theta[k] = std::log(fit.noise_sizes[static_cast<std::size_t>(k - n_)].value);
+  }
+  return theta;
+}
+
+VectorXd ThetaLayout::floor_of(const Fit& fit) const {
+  constexpr double far = 1e-4;
+  VectorXd floor(size() - n_);
+  for (Index k = 0; k < floor.size(); ++k) {
+    const NoiseSize& size = fit.noise_sizes[static_cast<std::size_t>(k)];
+    floor[k] = std::log(size.value * (size.at_floor ? 1.0 : far));
+  }
+  return floor;
+}
+
+}  // namespace sepcal::estimation

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Filter error from Python: the likelihood beside statsmodels', models of one's own, refusals."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.linalg import expm
+
+import sepcal
+from own_state_models import ShortPeriod
+from refusals import refuse
+from stirred_flights import SIZES, TRUTH, fly
+
+LOG = fly(11)
+
+
+@pytest.fixture(scope="module")
+def fit() -> sepcal.Fit:
+    return sepcal.fit(sepcal.ShortPeriod(), LOG, method="filter-error")
+
+
+def test_it_finds_what_was_flown(fit: sepcal.Fit) -> None:
+    assert fit.status == "converged", fit.message
+    assert fit.by == "filter-error"
+    for name, true in TRUTH.items():
+        assert abs(fit[name].value - true) < 4 * fit[name].standard_error
+    assert list(fit.noise_sizes) == list(SIZES)
+    for size in fit.noise_sizes.values():
+        assert abs(np.log(size.value / SIZES[size.name])) < 4 * size.standard_error / size.value
+    assert 2 * (fit.log_likelihood - fit.log_likelihood_without) > 100
+
+
+def test_the_likelihood_is_a_kalman_filters(fit: sepcal.Fit) -> None:
+    """Of the exact discrete system at the fit's parameters; Runge and Kutta's is near it."""
+    at = {name: fit[name].value for name in fit.names}
+    sizes = {size.name: size.value for size in fit.noise_sizes.values()}
+    F = np.array([[at["Za"], 1.0], [at["Ma"], at["Mq"]]])
+    block = np.zeros((4, 4))
+    block[:2, :2], block[:2, 2], block[2, 3] = F, [at["Zd"], at["Md"]], 1.0
+    step = expm(0.02 * block)
+    density = np.diag([sizes["q_alpha"] ** 2, sizes["q_q"] ** 2])
+    van_loan = expm(0.02 * np.block([[-F, density], [np.zeros((2, 2)), F.T]]))
+    Q = van_loan[2:, 2:].T @ van_loan[:2, 2:]
+    H = np.array([[1, 0], [0, 1], [25 * at["Za"], 0]])
+    R = np.diag([sizes[f"r_{name}"] ** 2 for name in ("alpha_m", "q_m", "az_m")])
+    y = np.stack([LOG["alpha_m"], LOG["q_m"], LOG["az_m"]], axis=1)
+    x, P, total = np.array([at["alpha_0"], at["q_0"]]), np.zeros((2, 2)), 0.0
+    u = LOG["elevator"]
+    for k in range(len(u)):
+        expected = H @ x + [at["b_alpha"], at["b_q"], at["b_az"] + 25 * at["Zd"] * u[k]]
+        e, S = y[k] - expected, H @ P @ H.T + R
+        total -= 0.5 * (e @ np.linalg.solve(S, e) + np.log(np.linalg.det(2 * np.pi * S)))
+        K = P @ H.T @ np.linalg.inv(S)
+        x, P = x + K @ e, (np.eye(2) - K @ H) @ P
+        if k + 1 < len(u):
+            x = (step @ [*x, u[k], (u[k + 1] - u[k]) / 0.02])[:2]
+            P = step[:2, :2] @ P @ step[:2, :2].T + Q
+    assert fit.log_likelihood == pytest.approx(total, abs=2e-3)
+
+
+def test_a_model_of_ones_own_is_the_same(fit: sepcal.Fit) -> None:
+    """Its derivatives are differences of differences."""
+    short = {name: values[:250] for name, values in LOG.items()}
+    ours = sepcal.fit(sepcal.ShortPeriod(), short, method="filter-error")
+    own = sepcal.fit(ShortPeriod(), short, method="filter-error")
+    for name in ours.names:
+        off = abs(own[name].value - ours[name].value) / ours[name].standard_error_white
+        assert off < 1e-3
+        assert own[name].standard_error_white == pytest.approx(
+            ours[name].standard_error_white, rel=1e-4
+        )
+    assert own.log_likelihood == pytest.approx(ours.log_likelihood, abs=1e-6)
+
+
+def test_what_is_given_is_held() -> None:
+    held = sepcal.fit(
+        sepcal.ShortPeriod(),
+        LOG,
+        method="filter-error",
+        process_noise={"q": 0.09},
+        fixed={"Za": -4.0},
+    )
+    size = held.noise_sizes["q_q"]
+    assert size.value == pytest.approx(0.09)
+    assert np.isnan(size.standard_error)
+    assert held["Za"].fixed
+
+
+def test_missing_readings_are_left_out(fit: sepcal.Fit) -> None:
+    gaps = {name: values.copy() for name, values in LOG.items()}
+    gaps["alpha_m"][200:400:2] = np.nan
+    found = sepcal.fit(sepcal.ShortPeriod(), gaps, method="filter-error")
+    assert found.status == "converged", found.message
+    for name in TRUTH:
+        assert abs(found.parameters[name].value - fit[name].value) < 2 * fit[name].standard_error
+
+
+def test_an_unstable_aircraft_is_fitted() -> None:
+    """Its trajectory can't be integrated: it starts from samples, and ends where flights do."""
+    rng = np.random.default_rng(4)
+    F = np.array([[-1.0, 1.0], [6.0, -1.5]])  # a pole at +1.2 1/s
+    rows, step = 1500, 0.02
+    x, u, columns = np.zeros(2), 0.0, []
+    for k in range(rows):
+        columns.append([u, *x])
+        u = (
+            0.3 * x[0]
+            + 0.25 * x[1]
+            + 0.03 * np.sign(np.sin(0.7 * k * step) + np.sin(2.2 * k * step))
+        )
+        for _ in range(10):
+            kick = np.sqrt(step / 10) * rng.standard_normal(2) * [0.002, 0.05]
+            x = x + step / 10 * (F @ x + np.array([-0.1, -20.0]) * u) + kick
+    flown = np.array(columns)
+    log = {"time": step * np.arange(rows), "elevator": flown[:, 0], "airspeed": np.full(rows, 25.0)}
+    log["alpha_m"] = flown[:, 1] + 0.003 * rng.standard_normal(rows)
+    log["q_m"] = flown[:, 2] + 0.005 * rng.standard_normal(rows)
+    log["az_m"] = 25 * (-1.0 * flown[:, 1] - 0.1 * flown[:, 0]) + 0.1 * rng.standard_normal(rows)
+    found = sepcal.fit(
+        sepcal.ShortPeriod(inputs="hold"),
+        log,
+        method="filter-error",
+        samples=100,
+        bounds={"Ma": (-50, 20)},
+    )
+    assert found.status == "converged", found.message
+    for name, true in {"Za": -1.0, "Ma": 6.0, "Mq": -1.5, "Md": -20.0}.items():
+        assert (
+            abs(found.parameters[name].value - true) < 4 * found.parameters[name].standard_error
+        ), name
+
+
+def test_profiles_are_near_the_gaussian(fit: sepcal.Fit) -> None:
+    found = sepcal.profile_intervals(
+        sepcal.ShortPeriod(), LOG, fit, names=["Za", "Mq"], method="filter-error"
+    )
+    for name in ("Za", "Mq"):
+        gaussian, profile = (
+            np.array(found.parameters[name].gaussian),
+            np.array(found.parameters[name].profile),
+        )
+        assert found.parameters[name].ends == ("crossed", "crossed")
+        assert_allclose(profile, gaussian, rtol=0, atol=0.1 * np.ptp(gaussian))
+    # Where the profile ends the others' best is as much less likely as it says.
+    held = sepcal.fit(
+        sepcal.ShortPeriod(),
+        LOG,
+        method="filter-error",
+        fixed={"Mq": float(found.parameters["Mq"].profile[1])},
+    )
+    stretch = fit["Mq"].standard_error / fit["Mq"].standard_error_white
+    rise = 2 * (fit.log_likelihood - held.log_likelihood)
+    assert rise == pytest.approx((1.959964 * stretch) ** 2, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"loss": "huber"}, "filter error takes squares alone"),
+        (
+            {"method": "maximum"},
+            "method 'maximum' is unknown; known: 'output-error', 'filter-error'",
+        ),
+        ({"process_noise": {"r": 0.1}}, "no process noise 'r'"),
+    ],
+)
+def test_refusals(options: dict, message: str) -> None:
+    asked = {"method": "filter-error"} | options
+    refuse(lambda: sepcal.fit(sepcal.ShortPeriod(), LOG, **asked), message)
+
+
+def test_a_model_without_a_state_is_refused() -> None:
+    data = {"eta": np.linspace(0, 1, 50), "z": np.ones(50)}
+    refuse(
+        lambda: sepcal.fit(sepcal.ScalarExample1(), data, method="filter-error"),
+        "filter error needs a model with a state",
+    )
