@@ -20,10 +20,11 @@ using noise::NoiseMember;
 /// Members for coefficients and coefficients for members, in turn until that gains little.
 /// `problem`:
 ///   NoiseMembers find_members(coefficients)  the likeliest for what these leave
+///   NoiseMembers differenced()               noise of the rows' differences
 ///   MatrixXd products(members)               [X e]' [X e] in their noise, of k columns
 /// The coefficients for the last members are left for finish_fit().
 template <class Problem>
-FamilyFit maximise(const Problem& problem, const VectorXd& start) {
+FamilyFit climb(const Problem& problem, const VectorXd& start) {
   constexpr int most_rounds = 5;
   constexpr double least_gain = 0.05;
   FamilyFit best;
@@ -47,6 +48,44 @@ FamilyFit maximise(const Problem& problem, const VectorXd& start) {
   return best;
 }
 
+/// The likelier; the first where they are as good.
+FamilyFit likelier(FamilyFit one, FamilyFit other) {
+  constexpr double least_gain = 0.05;
+  const double gain = one.minus_two_log_likelihood - other.minus_two_log_likelihood;
+  return gain > least_gain ? std::move(other) : std::move(one);
+}
+
+/// From least squares, and from those of the rows' differences, where what is slow has no say:
+/// columns that are noisy themselves make two maxima, one where they are loud and one where they
+/// are not.
+template <class Problem>
+FamilyFit maximise(const Problem& problem, const VectorXd& start) {
+  FamilyFit of_differences{.noise = problem.differenced(), .coefficients = start};
+  finish_fit([&](const NoiseMembers& noise) { return problem.products(noise); }, of_differences);
+  return likelier(climb(problem, start), climb(problem, of_differences.coefficients));
+}
+
+/// The same, and no less likely than the fit of the first of the columns alone: where all steps
+/// from the other starts end above it, that is the start.
+template <class Problem>
+FamilyFit maximise_beyond(const Problem& problem, const VectorXd& start, const FamilyFit& nested) {
+  FamilyFit found = maximise(problem, start);
+  if (found.minus_two_log_likelihood < nested.minus_two_log_likelihood) return found;
+  VectorXd without = VectorXd::Zero(start.size());
+  without.head(nested.coefficients.size()) = nested.coefficients;
+  return likelier(std::move(found), climb(problem, without));
+}
+
+NoiseMembers differenced_noise(const NoiseFamilies& families, const std::vector<int>& orders) {
+  NoiseMembers members;
+  for (const int order : orders) {
+    members.push_back({.family = NoiseFamily::fractional,
+                       .at = families.fractions() - 1,
+                       .partial = VectorXd::Zero(order)});
+  }
+  return members;
+}
+
 /// A residual of any length: its columns are made anew wherever they are asked for.
 struct OneResidual {
   const NoiseFamilies& families;
@@ -56,6 +95,8 @@ struct OneResidual {
   const VectorXd& residual;
   const std::vector<int>& orders;
   const WhiteProducts& products;
+
+  NoiseMembers differenced() const { return differenced_noise(families, orders); }
 
   NoiseMembers find_members(const VectorXd& coefficients) const {
     const VectorXd left = subtract(layout, residual, columns, coefficients);
@@ -72,14 +113,14 @@ struct OneResidual {
 
 std::array<FamilyFit, 2> fit_families(const NoiseFamilies& families, const RowLayout& layout,
                                       const Columns& columns, const VectorXd& residual,
-                                      const std::vector<int>& orders,
-                                      const WhiteProducts& products) {
+                                      const std::vector<int>& orders, const WhiteProducts& products,
+                                      const std::array<FamilyFit, 2>* nested) {
   const VectorXd start = multiply_transposed(layout, columns, residual);
   std::array<FamilyFit, 2> fits;
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    const NoiseFamily family = noise::noise_families[k];
-    fits[k] =
-        maximise(OneResidual{families, layout, family, columns, residual, orders, products}, start);
+    const OneResidual problem{families, layout,  noise::noise_families[k], columns, residual,
+                              orders,   products};
+    fits[k] = nested ? maximise_beyond(problem, start, (*nested)[k]) : maximise(problem, start);
   }
   return fits;
 }
@@ -152,6 +193,8 @@ struct FamilyRegression::Residual::InFamily {
   NoiseFamily family;
   Index count;  // columns
 
+  NoiseMembers differenced() const { return differenced_noise(all.families_, all.orders_); }
+
   NoiseMembers find_members(const VectorXd& coefficients) const {
     NoiseMembers members;
     for (std::size_t j = 0; j < all.outputs_.size(); ++j) {
@@ -175,7 +218,7 @@ struct FamilyRegression::Residual::InFamily {
   MatrixXd products(const NoiseMembers& members) const {
     MatrixXd sum = MatrixXd::Zero(count + 1, count + 1);
     for (std::size_t j = 0; j < members.size(); ++j) {
-      if (family == NoiseFamily::fractional) {
+      if (members[j].family == NoiseFamily::fractional) {
         add_fractional(members[j], j, sum);
       } else {
         add_wandering(members[j], j, sum);
@@ -224,9 +267,14 @@ FamilyFit FamilyRegression::Residual::fit(NoiseFamily family, Index count) const
   return fit;
 }
 
-double FamilyRegression::Residual::minus_two_log_likelihood(NoiseFamily family, Index count) const {
-  const VectorXd start = regression_->columns_.leftCols(count).transpose() * e_;
-  return maximise(InFamily{*regression_, *this, family, count}, start).minus_two_log_likelihood;
+FamilyRegression::Residual::Nested FamilyRegression::Residual::compare(NoiseFamily family,
+                                                                       Index fewer) const {
+  const VectorXd start = regression_->columns_.transpose() * e_;
+  const FamilyFit without =
+      maximise(InFamily{*regression_, *this, family, fewer}, start.head(fewer));
+  const FamilyFit with =
+      maximise_beyond(InFamily{*regression_, *this, family, start.size()}, start, without);
+  return {without.minus_two_log_likelihood, with.minus_two_log_likelihood};
 }
 
 }  // namespace sepcal::diagnosis

@@ -31,11 +31,12 @@ using WhiteProducts = std::function<Eigen::MatrixXd(const NoiseMembers& noise)>;
 
 /// The fit of orthonormal columns to a residual in each of noise::noise_families, as far as the
 /// likelihoods need it: finish_fit() does the rest. `orders`: of each output's autoregression in
-/// the fractional one; `products`: of these columns and this residual.
+/// the fractional one; `products`: of these columns and this residual; `nested`: the fits of the
+/// first of the columns, where there are some, than which these are no less likely.
 std::array<FamilyFit, 2> fit_families(const noise::NoiseFamilies& families, const RowLayout& layout,
                                       const Columns& columns, const Eigen::VectorXd& residual,
-                                      const std::vector<int>& orders,
-                                      const WhiteProducts& products);
+                                      const std::vector<int>& orders, const WhiteProducts& products,
+                                      const std::array<FamilyFit, 2>* nested = nullptr);
 
 /// The coefficients and their covariance in the noise that was found.
 void finish_fit(const WhiteProducts& products, FamilyFit& fit);
@@ -64,7 +65,13 @@ class FamilyRegression {
    public:
     /// In this family, of the first `count` columns.
     FamilyFit fit(noise::NoiseFamily family, Eigen::Index count) const;
-    double minus_two_log_likelihood(noise::NoiseFamily family, Eigen::Index count) const;
+
+    /// -2 ln L of the first `fewer` columns and of all of them, which are no less likely.
+    struct Nested {
+      double without = 0.0;
+      double with = 0.0;
+    };
+    Nested compare(noise::NoiseFamily family, Eigen::Index fewer) const;
 
    private:
     friend class FamilyRegression;

@@ -127,7 +127,8 @@ NoiseTest::NoiseTest(const TangentBasis& tangent, std::vector<int> orders)
 NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
   const Columns columns = join(basis_, added);
   const auto products = [&](const NoiseMembers& noise) { return known_->beside(noise, added); };
-  const auto with = fit_families(families_, fit_.layout, columns, fit_.residual, orders_, products);
+  const auto with =
+      fit_families(families_, fit_.layout, columns, fit_.residual, orders_, products, &nulls_);
   Ratios ratios;
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
     ratios.own[k] =
@@ -192,18 +193,17 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     std::vector<double> drawn(residuals.size());
     pool.for_each(residuals.size(), [&](std::size_t i) {
       const FamilyRegression::Residual drawn_residual = regression.take(residuals[i]);
-      const auto likelihood = [&](NoiseFamily family, Index count) {
-        return drawn_residual.minus_two_log_likelihood(family, count);
-      };
       if (which < 2) {
         const NoiseFamily family = noise::noise_families[which];
-        drawn[i] = likelihood(family, basis.cols()) - likelihood(family, regression.columns());
+        const auto [without, with] = drawn_residual.compare(family, basis.cols());
+        drawn[i] = without - with;
       } else {
         double without = infinity;
         double with = infinity;
         for (const NoiseFamily family : noise::noise_families) {
-          without = std::min(without, likelihood(family, basis.cols()));
-          with = std::min(with, likelihood(family, regression.columns()));
+          const auto nested = drawn_residual.compare(family, basis.cols());
+          without = std::min(without, nested.without);
+          with = std::min(with, nested.with);
         }
         drawn[i] = std::max(0.0, without - with);
       }
