@@ -115,10 +115,11 @@ TEST_CASE("a power that is none is refused with its limits") {
 
 TEST_CASE("a function that is none is refused with those that there are") {
   for (const char* driver : {"sin(time)", "Spline(time,6)", "spline2(time,6)"}) {
-    check_no_name(std::string("wind[") + driver + "]",
-                  {driver,
-                   "is no driver; known: x, x^2, x^n, spline(x,k), step(time), ramp(time), "
-                   "decay(time), delay(x)"});
+    check_no_name(
+        std::string("wind[") + driver + "]",
+        {driver,
+         "is no driver; known: x, x^2, x^n, x*y, abs(x), spline(x,k), step(time), ramp(time), "
+         "decay(time), delay(x)"});
   }
 }
 

@@ -64,9 +64,10 @@ DriverPointer power_driver(Variable input, double centre, int power, double mean
 DriverPointer exponent_driver(Variable input);
 
 /// phi_j: the cardinal natural splines of the knots but the first, each less its mean (one a
-/// function, or none to leave them zero at the first knot).
+/// function, or none to leave them zero at the first knot). Where the model has a straight line of
+/// the input, `bends_alone` leaves out the last: the others and a line are any such spline.
 DriverPointer spline_driver(Variable input, std::vector<double> knots,
-                            const std::vector<double>& means = {});
+                            const std::vector<double>& means = {}, bool bends_alone = false);
 
 /// phi_j = 1 where d is the code j = 1, 2, ...; `labels` are those of the codes 0, 1, 2, ...
 DriverPointer category_driver(Variable input, const std::vector<std::string>& labels);

@@ -50,6 +50,8 @@ struct Port {
   /// that keeps away from zero (a voltage) then go about their mean, so that the model's parameters
   /// stay those of the flight and not of a zero that nobody saw.
   bool constant_is_own = true;
+  /// Channels of which the model has a straight line there: their splines go without.
+  std::vector<std::string> lines = {};
 };
 
 /// What a model's effects can be made of.

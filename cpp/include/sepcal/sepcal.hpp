@@ -27,6 +27,7 @@
 #include "sepcal/static_effect.hpp"      // an effect written as a struct
 #include "sepcal/static_composition.hpp" // model + effects, while compiling
 #include "sepcal/composition.hpp"        // the same at run time
+#include "sepcal/channel_product.hpp"    // alpha*elevator
 #include "sepcal/effect_name.hpp"        // port[driver]
 #include "sepcal/named_effects.hpp"      // effects by name
 #include "sepcal/fit_with_effects.hpp"   // a fit of any model with them

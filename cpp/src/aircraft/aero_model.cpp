@@ -51,8 +51,8 @@ AeroModel::AeroModel(const std::vector<AeroEquation>& equations)
     for (const std::string& text : equations[j].regressors) {
       const Regressor regressor(text);
       Term term{static_cast<int>(j), {}};
-      for (const Regressor::Factor& factor : regressor.factors()) {
-        const auto at = std::ranges::find(tables().inputs, factor.variable, &Variable::name);
+      for (const ChannelFactor& factor : regressor.factors()) {
+        const auto at = std::ranges::find(tables().inputs, factor.channel, &Variable::name);
         term.factors.push_back({static_cast<std::size_t>(at - tables().inputs.begin()),
                                 factor.power, factor.absolute});
       }

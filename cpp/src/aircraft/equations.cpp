@@ -2,8 +2,6 @@
 #include "sepcal/aircraft/equations.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <set>
 
 #include "base/name_list.hpp"
@@ -12,43 +10,13 @@
 namespace sepcal {
 namespace {
 
-constexpr int highest_power = 9;
 constexpr std::array<std::string_view, 5> angles{"alpha", "beta", "elevator", "aileron", "rudder"};
 constexpr std::array<std::string_view, 3> rates{"p_hat", "q_hat", "r_hat"};
-
-bool is_name(std::string_view text) {
-  const auto is_part = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-  };
-  return !text.empty() && std::ranges::all_of(text, is_part) &&
-         std::isdigit(static_cast<unsigned char>(text.front())) == 0;
-}
 
 [[noreturn]] void refuse(std::string_view text) {
   throw Error("the regressor '" + std::string(text) +
               "' can't be read; write 1, x, x^2 to x^9, abs(x) or a product of these, as alpha^2 "
               "or beta*abs(beta)");
-}
-
-/// One factor of the product `whole`.
-Regressor::Factor read_factor(std::string_view text, std::string_view whole) {
-  Regressor::Factor factor;
-  const std::size_t caret = text.find('^');
-  if (caret != std::string_view::npos) {
-    const std::string_view power = text.substr(caret + 1);
-    const auto [end, error] =
-        std::from_chars(power.data(), power.data() + power.size(), factor.power);
-    const bool whole_number = error == std::errc{} && end == power.data() + power.size();
-    if (!whole_number || factor.power < 1 || factor.power > highest_power) refuse(whole);
-    text = text.substr(0, caret);
-  }
-  if (text.starts_with("abs(") && text.ends_with(')')) {
-    factor.absolute = true;
-    text = text.substr(4, text.size() - 5);
-  }
-  if (!is_name(text)) refuse(whole);
-  factor.variable = std::string(text);
-  return factor;
 }
 
 template <class List>
@@ -69,11 +37,9 @@ std::size_t find_coefficient(std::string_view name) {
 
 Regressor::Regressor(std::string text) : text_(std::move(text)) {
   if (text_ == "1") return;
-  for (std::size_t first = 0; first <= text_.size();) {
-    const std::size_t star = std::min(text_.find('*', first), text_.size());
-    factors_.push_back(read_factor(std::string_view(text_).substr(first, star - first), text_));
-    first = star + 1;
-  }
+  auto factors = read_product(text_);
+  if (!factors) refuse(text_);
+  factors_ = *std::move(factors);
 }
 
 std::vector<AeroEquation> standard_equations(const std::vector<std::string>& coefficients) {
@@ -108,11 +74,11 @@ std::string parameter_name(std::string_view coefficient, std::string_view regres
 std::string parameter_unit(const Regressor& regressor) {
   int radians = 0;
   std::string others;
-  for (const Regressor::Factor& factor : regressor.factors()) {
-    if (has(angles, factor.variable)) {
+  for (const ChannelFactor& factor : regressor.factors()) {
+    if (has(angles, factor.channel)) {
       radians += factor.power;
-    } else if (!has(rates, factor.variable)) {
-      others += "/" + factor.variable;
+    } else if (!has(rates, factor.channel)) {
+      others += "/" + factor.channel;
       if (factor.power > 1) others += "^" + std::to_string(factor.power);
     }
   }
@@ -125,8 +91,8 @@ std::vector<std::string> variables_of(const std::vector<AeroEquation>& equations
   for (const AeroEquation& equation : equations) {
     for (const std::string& text : equation.regressors) {
       const Regressor regressor(text);
-      for (const Regressor::Factor& factor : regressor.factors()) {
-        if (!has(variables, factor.variable)) variables.push_back(factor.variable);
+      for (const ChannelFactor& factor : regressor.factors()) {
+        if (!has(variables, factor.channel)) variables.push_back(factor.channel);
       }
     }
   }

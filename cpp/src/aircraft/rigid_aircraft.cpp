@@ -21,8 +21,8 @@ AeroTerms compile_equations(const std::vector<AeroEquation>& equations) {
     for (const std::string& text : equation.regressors) {
       const Regressor regressor(text);
       AeroTerms::Term term{find_coefficient(equation.coefficient), {}};
-      for (const Regressor::Factor& factor : regressor.factors()) {
-        term.factors.push_back({place(factor.variable), factor.power, factor.absolute});
+      for (const ChannelFactor& factor : regressor.factors()) {
+        term.factors.push_back({place(factor.channel), factor.power, factor.absolute});
       }
       aero.terms.push_back(std::move(term));
       aero.parameters.emplace_back(parameter_name(equation.coefficient, text),

@@ -250,9 +250,11 @@ Candidate CandidateRoom::make_anew(const std::string& name) {
   std::string joined;
   for (const EffectSetting& setting : candidate.settings) {
     joined += (joined.empty() ? "" : "+") + setting.name;
-    const std::string driver = parse_effect_name(setting.name).base;
-    if (!driver.empty() && std::ranges::find(candidate.drivers, driver) == candidate.drivers.end())
-      candidate.drivers.push_back(driver);
+    for (const std::string& driver : driver_channels(parse_effect_name(setting.name))) {
+      if (std::ranges::find(candidate.drivers, driver) == candidate.drivers.end()) {
+        candidate.drivers.push_back(driver);
+      }
+    }
   }
   candidate.name = joined;
   return candidate;

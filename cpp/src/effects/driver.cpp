@@ -55,24 +55,26 @@ std::vector<std::string> numbered(int functions) {
 
 class SplineDriver final : public Driver {
  public:
-  SplineDriver(Variable input, SplineBasis basis, const std::vector<double>& means)
-      : Driver(std::move(input), numbered(basis.functions())), basis_(std::move(basis)) {
-    means_ = Eigen::RowVectorXd::Zero(functions());
+  SplineDriver(Variable input, SplineBasis basis, const std::vector<double>& means,
+               bool bends_alone)
+      : Driver(std::move(input), numbered(basis.functions() - (bends_alone ? 1 : 0))),
+        basis_(std::move(basis)) {
+    const int all = basis_.functions();
+    means_ = Eigen::RowVectorXd::Zero(all);
     if (means.empty()) return;
-    if (static_cast<int>(means.size()) != functions()) {
-      throw Error("a spline of " + std::to_string(functions() + 1) + " knots has " +
-                  std::to_string(functions()) + " functions, but " + std::to_string(means.size()) +
-                  " means were given");
+    if (static_cast<int>(means.size()) != all) {
+      throw Error("a spline of " + std::to_string(all + 1) + " knots has " + std::to_string(all) +
+                  " functions, but " + std::to_string(means.size()) + " means were given");
     }
-    means_ = Eigen::Map<const Eigen::RowVectorXd>(means.data(), functions());
+    means_ = Eigen::Map<const Eigen::RowVectorXd>(means.data(), all);
   }
 
   void evaluate(const double* d, std::size_t /*first*/, double /*shape*/, Ref<MatrixXd> values,
                 MatrixXd* slopes) const override {
-    Eigen::RowVectorXd row(functions());
+    Eigen::RowVectorXd row(basis_.functions());
     for (Index i = 0; i < values.rows(); ++i) {
       basis_.evaluate(d[i], row);
-      values.row(i) = row - means_;
+      values.row(i) = (row - means_).head(functions());
     }
     if (slopes != nullptr) slopes->setZero();
   }
@@ -169,9 +171,9 @@ DriverPointer exponent_driver(Variable input) {
 }
 
 DriverPointer spline_driver(Variable input, std::vector<double> knots,
-                            const std::vector<double>& means) {
+                            const std::vector<double>& means, bool bends_alone) {
   return std::make_shared<const SplineDriver>(std::move(input), SplineBasis(std::move(knots)),
-                                              means);
+                                              means, bends_alone);
 }
 
 DriverPointer category_driver(Variable input, const std::vector<std::string>& labels) {

@@ -45,8 +45,8 @@ void read_function(EffectName& name, std::string_view driver, std::size_t open) 
       std::ranges::find(functions, driver.substr(0, open), [](const auto& at) { return at.first; });
   if (function == functions.end() || driver.back() != ')') {
     refuse(name.text, "'" + std::string(driver) +
-                          "' is no driver; known: x, x^2, x^n, spline(x,k), step(time), "
-                          "ramp(time), decay(time), delay(x)");
+                          "' is no driver; known: x, x^2, x^n, x*y, abs(x), spline(x,k), "
+                          "step(time), ramp(time), decay(time), delay(x)");
   }
   name.shape = function->second;
   std::string_view arguments = driver.substr(open + 1, driver.size() - open - 2);
@@ -67,6 +67,20 @@ void read_function(EffectName& name, std::string_view driver, std::size_t open) 
     refuse(name.text, std::string(function->first) + " takes time: write " +
                           std::string(function->first) + "(time)");
   }
+}
+
+/// Whether it is more than one channel's power.
+bool read_as_product(EffectName& name, std::string_view driver) {
+  if (driver.find('*') == std::string_view::npos && !driver.starts_with("abs(")) return false;
+  auto factors = read_product(driver);
+  if (!factors) return false;
+  name.shape = Shape::product;
+  name.base = driver;
+  name.factors = *std::move(factors);
+  if (std::ranges::find(name.factors, "maneuver", &ChannelFactor::channel) != name.factors.end()) {
+    refuse(name.text, "maneuver is a label, not a number; write port[maneuver]");
+  }
+  return true;
 }
 
 void read_power(EffectName& name, std::string_view driver) {
@@ -107,6 +121,7 @@ EffectName parse_effect_name(std::string_view text) {
   }
   const std::string_view driver = whole.substr(open + 1, whole.size() - open - 2);
   const std::size_t bracket = driver.find('(');
+  if (read_as_product(name, driver)) return name;
   if (bracket != std::string_view::npos && bracket > 0 && driver.back() == ')') {
     read_function(name, driver, bracket);
   } else {
@@ -119,8 +134,19 @@ EffectName parse_effect_name(std::string_view text) {
   return name;
 }
 
+std::vector<std::string> driver_channels(const EffectName& name) {
+  std::vector<std::string> channels;
+  for (const ChannelFactor& factor : name.factors) {
+    if (std::ranges::find(channels, factor.channel) == channels.end()) {
+      channels.push_back(factor.channel);
+    }
+  }
+  if (channels.empty() && !name.base.empty()) channels.push_back(name.base);
+  return channels;
+}
+
 bool can_name(std::string_view channel) {
-  return !channel.empty() && channel.find_first_of(" \t[]()^") == std::string_view::npos;
+  return !channel.empty() && channel.find_first_of(" \t[]()^*") == std::string_view::npos;
 }
 
 std::vector<std::string> split_effects(std::string_view text) {

@@ -35,6 +35,18 @@ std::string unit_of_channel(const std::string& header) {
   return found == known.end() ? "" : found->second;
 }
 
+/// "1 per rad m"; the port's own unit where that of a factor isn't known.
+std::string unit_of_product(const std::string& port_unit, const EffectName& name) {
+  std::string units;
+  for (const ChannelFactor& factor : name.factors) {
+    const std::string unit = unit_of_channel(factor.channel);
+    if (unit.empty()) return port_unit;
+    units.append(" ").append(unit);
+    if (factor.power > 1) units.append("^").append(std::to_string(factor.power));
+  }
+  return port_unit + " per" + units;
+}
+
 /// The values of a column in the record's segments.
 std::vector<double> selected(const Record& record, const std::string& name) {
   const std::span<const double> column = record.column(name);
@@ -66,12 +78,22 @@ std::vector<std::string> labels_of(const Record& record) {
   return labels;
 }
 
+void need_channel(const EffectName& name, const std::string& channel, const Record& record) {
+  if (record.has(channel)) return;
+  throw Error("effect " + name.text + ": there is no channel '" + channel +
+              "'; the record has: " + base::list_names(record.names()));
+}
+
+/// The product as a column of its own.
+void add_product(const EffectName& name, Record& record) {
+  if (record.has(name.base)) return;
+  for (const std::string& channel : driver_channels(name)) need_channel(name, channel, record);
+  record.add(name.base, multiply(name.factors, record));
+}
+
 void check_channel(const EffectName& name, const Record& record, bool known) {
   if (name.base == "maneuver") return;
-  if (!record.has(name.base)) {
-    throw Error("effect " + name.text + ": there is no channel '" + name.base +
-                "'; the record has: " + base::list_names(record.names()));
-  }
+  need_channel(name, name.base, record);
   const std::vector<double> values = selected(record, name.base);
   const auto is_number = [](double value) { return std::isfinite(value); };
   if (!std::ranges::all_of(values, is_number)) {
@@ -120,17 +142,18 @@ double mean_of(const std::vector<double>& values) {
 }
 
 DriverPointer make_spline(const EffectName& name, const Variable& channel,
-                          const std::vector<double>& values, bool about_mean,
+                          const std::vector<double>& values, const Port& port,
                           EffectSetting& setting) {
   if (setting.knots.empty()) {
     const auto [lowest, highest] = std::ranges::minmax(values);
     setting.knots = even_knots(lowest, highest, name.number);
     if (name.base == "time") setting.knots = resolved(std::move(setting.knots));
-    if (has_far_zero(name.base) || (about_mean && keep_from_zero(values))) {
+    if (has_far_zero(name.base) || (port.constant_is_own && keep_from_zero(values))) {
       setting.means = means_of(SplineBasis(setting.knots), values);
     }
   }
-  return spline_driver(channel, setting.knots, setting.means);
+  const bool has_line = std::ranges::find(port.lines, name.base) != port.lines.end();
+  return spline_driver(channel, setting.knots, setting.means, has_line);
 }
 
 DriverPointer make_power(const EffectName& name, const Variable& channel,
@@ -150,6 +173,7 @@ DriverPointer make_power(const EffectName& name, const Variable& channel,
 }  // namespace
 
 std::string coefficient_unit(const std::string& port_unit, const EffectName& name) {
+  if (name.shape == Shape::product) return unit_of_product(port_unit, name);
   const std::string channel = unit_of_channel(name.base);
   const bool as_it_is =
       name.shape != Shape::power && name.shape != Shape::ramp && name.shape != Shape::delay;
@@ -159,8 +183,9 @@ std::string coefficient_unit(const std::string& port_unit, const EffectName& nam
   return unit;
 }
 
-DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectSetting& setting,
+DriverPointer make_named_driver(const EffectName& name, const Port& port, EffectSetting& setting,
                                 Record& record) {
+  if (name.shape == Shape::product) add_product(name, record);
   check_channel(name, record, setting.known);
   if (name.base == "maneuver") {
     if (setting.labels.empty()) setting.labels = labels_of(record);
@@ -169,10 +194,12 @@ DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectS
   }
   const Variable channel(name.base, name.base == "time" ? "s" : "");
   const std::vector<double> values = selected(record, name.base);
-  if (name.shape == Shape::spline) return make_spline(name, channel, values, about_mean, setting);
+  if (name.shape == Shape::spline) return make_spline(name, channel, values, port, setting);
   if (name.shape == Shape::exponent) return exponent_driver(channel);
   if (name.shape == Shape::delay) return delay_driver(channel, record, longest_delay);
-  if (name.shape == Shape::power) return make_power(name, channel, values, about_mean, setting);
+  if (name.shape == Shape::power || name.shape == Shape::product) {
+    return make_power(name, channel, values, port.constant_is_own, setting);
+  }
   if (!setting.span) setting.span = {values.front(), values.back()};
   const auto [first, last] = *setting.span;
   if (name.shape == Shape::decay) return decay_driver(channel, first, last);

@@ -11,12 +11,12 @@
 
 namespace sepcal::effects {
 
-/// The driver, its gaps in `setting` filled in from `record`, which gets the column `maneuver` for
-/// labels. A power of a channel that keeps away from zero goes about its mean where
-/// `about_mean`. Throws Error for a channel that isn't
-/// there, holds no finite number somewhere or, in the record that the effect is first made for,
-/// doesn't vary.
-DriverPointer make_named_driver(const EffectName& name, bool about_mean, EffectSetting& setting,
+/// The driver on a port, its gaps in `setting` filled in from `record`, which gets the column
+/// `maneuver` for labels and one for a product. A power of a channel that keeps away from zero goes
+/// about its mean where the port takes a constant. Throws Error for a channel that isn't there,
+/// holds no finite number somewhere or, in the record that the effect is first made for, doesn't
+/// vary.
+DriverPointer make_named_driver(const EffectName& name, const Port& port, EffectSetting& setting,
                                 Record& record);
 
 /// "m/s per m", "uT per degC^2"; the port's own unit where the driver is a function without one.

@@ -45,12 +45,13 @@ Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting&
 
 Effect make_named(const std::string& owner, const EffectName& means, const Port& port,
                   const BlockModel& model, EffectSetting& setting, Record& record) {
-  if (std::ranges::find(model.tables().outputs, means.base, &Variable::name) !=
-      model.tables().outputs.end()) {
-    throw Error("effect " + means.text + ": '" + means.base +
+  for (const std::string& channel : driver_channels(means)) {
+    const auto& outputs = model.tables().outputs;
+    if (std::ranges::find(outputs, channel, &Variable::name) == outputs.end()) continue;
+    throw Error("effect " + means.text + ": '" + channel +
                 "' is what is measured; a driver must be another channel, or it explains itself");
   }
-  const DriverPointer driver = make_named_driver(means, port.constant_is_own, setting, record);
+  const DriverPointer driver = make_named_driver(means, port, setting, record);
   return make_driven(owner, port, driver, coefficient_unit(port.unit, means), model, record);
 }
 

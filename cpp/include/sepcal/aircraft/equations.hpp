@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sepcal/channel_product.hpp"
+
 namespace sepcal {
 
 /// Forces forward, right and down, moments to the right wing, nose up and nose right.
@@ -20,21 +22,15 @@ std::size_t find_coefficient(std::string_view name);
 /// A product of powers of variables: "1", "alpha", "alpha^2", "alpha*elevator", "beta*abs(beta)".
 class Regressor {
  public:
-  struct Factor {
-    std::string variable;
-    int power = 1;
-    bool absolute = false;
-  };
-
   /// Throws Error, which says how to write it, for what is no such product.
   explicit Regressor(std::string text);
 
   const std::string& text() const { return text_; }
-  const std::vector<Factor>& factors() const { return factors_; }  // none of "1"
+  const std::vector<ChannelFactor>& factors() const { return factors_; }  // none of "1"
 
  private:
   std::string text_;
-  std::vector<Factor> factors_;
+  std::vector<ChannelFactor> factors_;
 };
 
 /// One coefficient and what it is a sum of.

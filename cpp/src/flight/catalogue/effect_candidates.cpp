@@ -23,6 +23,8 @@ std::vector<std::string> list_drivers(const Record& record, const Flight& flight
   return drivers;
 }
 
+}  // namespace
+
 std::string describe_driver(const EffectName& name) {
   switch (name.shape) {
     case EffectName::Shape::spline:
@@ -30,6 +32,8 @@ std::string describe_driver(const EffectName& name) {
     case EffectName::Shape::power:
       return name.number > 1 ? fmt::format("with {}^{}", name.base, name.number)
                              : fmt::format("with {}", name.base);
+    case EffectName::Shape::product:
+      return fmt::format("with {}", name.base);
     case EffectName::Shape::exponent:
       return fmt::format("with a power of {}", name.base);
     case EffectName::Shape::step:
@@ -42,6 +46,8 @@ std::string describe_driver(const EffectName& name) {
       return fmt::format("with {}, delayed", name.base);
   }
 }
+
+namespace {
 
 std::string describe_one(const EffectTable& table, const std::string& name) {
   if (const EffectRow* own = table.find_effect(name)) return own->sentence;

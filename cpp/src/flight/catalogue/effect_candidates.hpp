@@ -22,4 +22,7 @@ std::vector<std::string> list_missing_channels(const EffectTable& table, const F
 /// What an effect means, in plain words without its size: "the wind changes with altitude_m".
 std::string describe_effect(const EffectTable& table, const std::string& name);
 
+/// How it changes with its driver: "smoothly with altitude_m".
+std::string describe_driver(const EffectName& name);
+
 }  // namespace sepcal::catalogue

@@ -91,8 +91,8 @@ bool add_channel(Record& record, const Flight& flight, const Probe& probe,
 /// What an effect reads beside the readings themselves.
 std::vector<std::string> channels_of(const EffectTable& table, const EffectName& name) {
   if (const EffectRow* own = table.find_effect(name.text)) return own->channels;
-  std::vector<std::string> channels;
-  if (!name.base.empty()) channels.push_back(name.base == "maneuver" ? "time" : name.base);
+  std::vector<std::string> channels = driver_channels(name);
+  if (name.base == "maneuver") channels = {"time"};
   if (name.shape == EffectName::Shape::delay) channels.emplace_back("time");
   if (const PortRow* row = table.find_port(name.port)) {
     channels.insert(channels.end(), row->channels.begin(), row->channels.end());
