@@ -17,6 +17,9 @@ COLUMNS = (  # of the table, one number a candidate
     "p_value",
     "p_adjusted",
     "p_listed",
+    "partial_f",
+    "sse_reduction",
+    "pse",
     "predicted_drop",
     "held_out_gain",
     "visibility",
@@ -38,7 +41,15 @@ class EffectFinding:
     log10_p: float  # of the same, which may be too small for a float
     p_adjusted: float  # after Holm: for the verdict
     p_listed: float  # after Benjamini & Hochberg: for the list
-    predicted_drop: float | None  # of the RMSE over all outputs, 1 - after / before
+    outputs: list[str]  # that it can reach: all where they share parameters
+    # As stepwise regression has it, residuals taken for white: sums of squares over `outputs`, each
+    # in units of its RMSE in the fit.
+    partial_f: float | None
+    sse: float | None  # without it
+    sse_reduction: float | None  # by orthogonal functions: what it takes of sse
+    pse: float | None  # predicted square error, SSE/N + 2 s2max p/N
+    pse_without: float | None
+    predicted_drop: float | None  # of the RMSE over these outputs, 1 - after / before
     held_out_gain: float | None  # the same on rows left out
     held_out_before: float | None  # RMSE of rows left out
     held_out_after: float | None
@@ -83,7 +94,10 @@ class Injection:
 class Diagnosis(Page):
     """A verdict and the ranked candidates. `print(diagnosis)` shows the table."""
 
-    _shown = ("name", "status", "p_adjusted", "predicted_drop", "held_out_gain", "visibility")
+    _shown = (
+        *("name", "status", "p_adjusted", "predicted_drop", "held_out_gain", "visibility"),
+        *("partial_f", "pse"),
+    )
 
     verdict: str  # "adequate", "effect_missing", "slow_change", "unexplained"
     advice: dict[str, Any]  # effect to add, None where none; withheld: why not another one
@@ -91,6 +105,7 @@ class Diagnosis(Page):
     sentence: str  # the verdict in one sentence
     rmse: float | None  # over all outputs, in their unit
     noise_floor: float | None  # innovations alone
+    pse: str  # what bounds the noise of the effects' pse: "sidpac" var(z)/2, "classic" var(z)
     effects: list[EffectFinding]  # best first
     residual: dict[str, dict[str, Any]]  # by output: rmse, lag_one, ljung_box_p, noise, floor
     where: list[dict[str, Any]]  # by segment and output

@@ -24,11 +24,12 @@ KEYS = {
         "advice",
     ),
     *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "unlogged"),
-    *("limits", "missing_channels"),
+    *("limits", "missing_channels", "pse"),
 }
 EFFECT_KEYS = {
     *("name", "sentence", "drivers", "estimate", "standard_error", "unit", "shapes", "p_value"),
     *("log10_p", "p_adjusted", "p_listed", "predicted_drop", "held_out_gain", "held_out_before"),
+    *("outputs", "partial_f", "sse", "sse_reduction", "pse", "pse_without"),
     "share_after_selection",
     *("held_out_after", "held_out_passed", "held_out_interleaved", "visibility", "absorbed_by"),
     *("status", "beside"),

@@ -5,6 +5,7 @@
 // on rows that were held out. docs/diagnosis.md has the statistics.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "sepcal/choices.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/named_effects.hpp"
@@ -59,6 +61,27 @@ struct Coefficient {
   double standard_error = 0.0;  // in the noise model with the effect
 };
 
+/// What bounds the noise of a predicted square error: sidpac half the variance of what is measured
+/// (as SIDPAC's swr has it), classic all of it.
+enum class PseBound { sidpac, classic };
+
+template <>
+struct ChoiceNames<PseBound> {
+  static constexpr std::array<std::string_view, 2> names{"sidpac", "classic"};
+};
+
+/// What stepwise regression asks of a candidate, residuals taken for white. Sums are over all N
+/// readings, those of each output in units of its RMSE in the fit: squares of a single output times
+/// rmse^2 are those of its unit. p are the model's parameters, q the candidate's that can be seen.
+/// NaN where undefined.
+struct Structure {
+  double partial_f = not_a_number;      // sse_reduction / q over (sse - sse_reduction)/(N - p - q)
+  double sse = not_a_number;            // without it
+  double sse_reduction = not_a_number;  // by orthogonal functions: what it takes of sse
+  double pse = not_a_number;  // predicted square error, SSE/N + 2 s2max (p + q)/N; s2max: PseBound
+  double pse_without = not_a_number;
+};
+
 /// What the record says about one candidate. Undefined numbers are NaN.
 struct EffectFinding {
   std::string name = {};  // what add() takes: "wind[altitude_m]", or "E1+E2"
@@ -76,13 +99,15 @@ struct EffectFinding {
   /// 1 unless it is barely found.
   double share_after_selection = 1.0;
 
-  double predicted_drop = 0.0;        // of the RMSE over all outputs, 1 - after / before
-  double held_out_before = 0.0;       // RMSE of rows left out, over all outputs
-  double held_out_after = 0.0;        // with the effect
-  double held_out_gain = 0.0;         // 1 - after / before
-  bool held_out_passed = false;       // the mean gain of a block exceeds its standard error
-  bool held_out_interleaved = false;  // blocks in between, not whole segments, were left out
+  std::vector<std::string> outputs = {};  // of the fit, that the figures are over
+  double predicted_drop = 0.0;            // of the RMSE over all of these, 1 - after / before
+  double held_out_before = 0.0;           // RMSE of rows left out, over these
+  double held_out_after = 0.0;            // with the effect
+  double held_out_gain = 0.0;             // 1 - after / before
+  bool held_out_passed = false;           // the mean gain of a block exceeds its standard error
+  bool held_out_interleaved = false;      // blocks in between, not whole segments, were left out
 
+  Structure structure = {};
   double visibility = 0.0;  // sine of the smallest angle to the model's own tangent
   std::map<std::string, double> absorbed_by = {};  // how far ignoring it shifts each parameter
   FindingStatus status = FindingStatus::not_seen;
@@ -149,6 +174,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   Advice advice = {};
   std::vector<EffectFinding> effects = {};  // ranked, best first
+  PseBound pse = PseBound::sidpac;          // of their structure
   /// Two causes at once: the pairs that explain it as well as anything does and better than either
   /// of the two alone, best first.
   std::vector<std::string> pairs = {};
@@ -172,6 +198,8 @@ struct DiagnosisOptions {
   double least_visibility = visible_from;
   int simulations = 80;                     // of the noise, that calibrate a test
   std::vector<std::string> preferred = {};  // come first among those as likely
+  PseBound pse = PseBound::sidpac;
+  std::size_t others = 0;  // candidates that are asked elsewhere at once: Holm counts them
   std::uint64_t seed = 0;
   int threads = 0;
   FitProgress progress = {};

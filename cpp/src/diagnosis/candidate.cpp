@@ -73,6 +73,23 @@ VectorXd values_in_order(const std::vector<Variable>& parameters,
   return ordered;
 }
 
+/// Of what an output measured about its mean, with N - 1.
+double variance_of(const model::Measurements& measurements, int output) {
+  double count = 0.0;
+  double mean = 0.0;
+  double square = 0.0;  // about it
+  for (const auto& chunk : measurements.chunks()) {
+    for (const model::Measurements::Range& range : chunk) {
+      for (const double value : measurements.output(output, range)) {
+        const double off = value - mean;
+        mean += off / ++count;
+        square += off * (value - mean);
+      }
+    }
+  }
+  return count > 1.0 ? square / (count - 1.0) : 0.0;
+}
+
 /// Whether the effect is a port's columns times a driver's functions and nothing else.
 bool is_driven(const Effect& effect, const EffectKit& kit) {
   return effect.driver && effect.terms.empty() && effect.delays.empty() &&
@@ -125,7 +142,7 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
         tangent.rightCols<1>().middleRows(j * layout.rows, layout.rows).norm() / std::sqrt(count);
     const double rms = std::sqrt(measurements.output_square(j) / count);
     if (!(rmse > rounding * rms) || !(rmse > 0)) continue;
-    layout.outputs.push_back({j, output.name, output.unit, rmse});
+    layout.outputs.push_back({j, output.name, output.unit, rmse, variance_of(measurements, j)});
   }
   scale_outputs(tangent);
   linearisation_.residual = tangent.rightCols<1>();

@@ -36,6 +36,10 @@ void rank(std::vector<EffectFinding>& findings) {
   });
 }
 
+double count_visible(const Trials& trials) {
+  return static_cast<double>(std::ranges::count(trials, true, &Trial::visible));
+}
+
 /// Of an effect found among `number` that could have been.
 double share_after_selection(const EffectFinding& finding, double significance, double number) {
   constexpr double beyond_doubt = 1e-60;
@@ -90,6 +94,7 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   std::size_t v = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
     EffectFinding finding = describe(bench_.room(), trials[i]);
+    finding.structure = structure_of(bench_.null(), trials[i], options_.pse);
     if (v < visible.size() && visible[v] == i) {
       finding.p_adjusted = holm[v];
       finding.p_listed = listed[v];
@@ -112,9 +117,7 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
 
 std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) const {
   bench_.hold_out_significant(trials);
-  const auto visible_trials =
-      static_cast<double>(std::ranges::count(trials, true, &Trial::visible));
-  const double number = std::max({1.0, visible_trials, tests});
+  const double number = std::max({1.0, count_visible(trials), tests});
   const double threshold = std::log10(options_.significance / number) + 0.3;  // about Holm's
   bench_.calibrate_significant(trials, threshold);
   bench_.confirm_best(trials, threshold);
@@ -139,7 +142,8 @@ void Recipe::try_pairs() {
   bench_.screen_all(pairs);
   bench_.test_best(pairs, most_pairs_tested);
   // The ten were chosen by what they explain: every pair of all candidates could have been.
-  std::vector<EffectFinding> findings = judge(pairs, 0.5 * visible * (visible - 1.0));
+  const double tests = 0.5 * (visible + static_cast<double>(options_.others)) * (visible - 1.0);
+  std::vector<EffectFinding> findings = judge(pairs, tests);
   std::erase_if(findings,
                 [](const EffectFinding& pair) { return pair.status != FindingStatus::found; });
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
@@ -189,6 +193,7 @@ void Recipe::advise() {
 }
 
 Diagnosis Recipe::run(const std::vector<std::string>& names) {
+  result_.pse = options_.pse;
   if (bench_.is_exact()) return result_;  // nothing is left to explain
   const CandidateRoom& room = bench_.room();
   result_.residual = describe_residual(bench_.null());
@@ -197,7 +202,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   trials_ = bench_.make(names);
   bench_.screen_all(trials_);
   bench_.test_best(trials_, most_tested);
-  result_.effects = judge(trials_, 0.0);
+  result_.effects = judge(trials_, count_visible(trials_) + static_cast<double>(options_.others));
   const auto has = [this](FindingStatus status) {
     return std::ranges::find(result_.effects, status, &EffectFinding::status) !=
            result_.effects.end();

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/finding.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "diagnosis/structure.hpp"
 
 namespace sepcal {
 
@@ -80,6 +83,7 @@ EffectFinding diagnosis::describe(const CandidateRoom& room, const Trial& trial)
                                     known ? std::sqrt(trial.covariance(at, at)) : not_a_number});
   }
   if (!trial.visible) return finding;
+  for (const UsedOutput& output : room.fit().layout.outputs) finding.outputs.push_back(output.name);
   finding.predicted_drop = trial.predicted_drop;
   if (!trial.candidate.shape.parameter.empty()) {
     finding.shapes[trial.candidate.shape.parameter] = trial.shape;
@@ -97,6 +101,14 @@ EffectFinding diagnosis::describe(const CandidateRoom& room, const Trial& trial)
     }
   }
   return finding;
+}
+
+Structure diagnosis::structure_of(const NullHypothesis& null, const Trial& trial, PseBound bound) {
+  if (!trial.visible) return {};
+  const auto score = std::ranges::find_if(trial.scores, [&](const ShapeScore& at) {
+    return at.shape == trial.shape || (std::isnan(at.shape) && std::isnan(trial.shape));
+  });
+  return measure_structure(null.fit(), null.residual, score->reduction, score->freedom, bound);
 }
 
 }  // namespace sepcal

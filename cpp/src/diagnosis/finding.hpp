@@ -11,4 +11,7 @@ namespace sepcal::diagnosis {
 /// the first.
 EffectFinding describe(const CandidateRoom& room, const Trial& trial);
 
+/// At the shape where a screened trial explains most.
+Structure structure_of(const NullHypothesis& null, const Trial& trial, PseBound bound);
+
 }  // namespace sepcal::diagnosis

@@ -18,7 +18,8 @@ struct UsedOutput {
   int index = 0;  // among the model's
   std::string name;
   std::string unit;
-  double scale = 1.0;  // RMSE of its residual, which all its rows are divided by
+  double scale = 1.0;     // RMSE of its residual, which all its rows are divided by
+  double variance = 0.0;  // of what is measured about its mean, in the unit's square
 };
 
 /// Where rows stand: N of each output, segment after segment, one output below the other.

@@ -176,14 +176,14 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
     trial.visibility = std::max(trial.visibility, visibility);
     if (directions.cols() == 0) continue;
     ShapeScore score{.shape = shape, .freedom = static_cast<int>(directions.cols())};
-    score.plain = (directions.transpose() * products.product()).squaredNorm();
+    score.reduction = (directions.transpose() * products.product()).squaredNorm();
     const VectorXd product = directions.transpose() * products.white_product;
     const MatrixXd covariance =
         pseudo_inverse(directions.transpose() * products.white_square * directions);
     const VectorXd step = covariance * product;
     score.white = product.dot(step);
     score.white = numerics::log10_chi_squared_tail(score.white, score.freedom);
-    score.plain = numerics::log10_chi_squared_tail(score.plain, score.freedom);
+    score.plain = numerics::log10_chi_squared_tail(score.reduction, score.freedom);
     best_plain = std::min(best_plain, score.plain);
     trial.scores.push_back(score);
     if (!(score.white < best_white)) continue;

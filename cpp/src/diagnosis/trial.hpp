@@ -18,9 +18,10 @@ namespace sepcal::diagnosis {
 /// A candidate at one of its shapes.
 struct ShapeScore {
   double shape = not_a_number;
-  int freedom = 0;     // directions that can be seen
-  double white = 0.0;  // log10 of the score's tail in the null's noise model
-  double plain = 0.0;  // the same as if the residual were white
+  int freedom = 0;         // directions that can be seen
+  double white = 0.0;      // log10 of the score's tail in the null's noise model
+  double plain = 0.0;      // the same as if the residual were white
+  double reduction = 0.0;  // of the residual's sum of squares, in units of the RMSE
 };
 
 struct Trial {

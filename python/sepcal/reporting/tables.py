@@ -133,14 +133,22 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> str:
             percent(effect.predicted_drop),
             held,
             seen,
+            number(effect.partial_f, 3),
+            percent(drop(effect.pse_without, effect.pse)),
+            percent(_share(effect.sse_reduction, effect.sse)),
             effect.beside_in_words,
             f'<span class="{"found" if effect.status == "found" else "pill"}">{status}</span>',
         ])  # fmt: skip
     head = [("", True), ("candidate", False), ("estimate ± standard error", False),
             ("p,<br>adjusted", True), ("predicted<br>drop", True), ("held-out<br>gain", True),
-            ("visi-<br>bility", True), ("beside<br>the first", False),
+            ("visi-<br>bility", True), ("partial<br>F", True), ("PSE<br>falls by", True),
+            ("SSE<br>falls by", True), ("beside<br>the first", False),
             ("status", False)]  # fmt: skip
     return table(head, rows)
+
+
+def _share(part: float | None, whole: float | None) -> float | None:
+    return None if part is None or whole is None or whole == 0 else part / whole
 
 
 def _coefficients(effect: EffectFinding, most: int = 4) -> str:

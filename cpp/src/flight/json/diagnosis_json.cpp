@@ -37,6 +37,12 @@ Json write_effect(const EffectFinding& effect, const std::string& sentence) {
           {"p_adjusted", number(effect.p_adjusted)},
           {"p_listed", number(effect.p_listed)},
           {"share_after_selection", number(effect.share_after_selection)},
+          {"outputs", effect.outputs},
+          {"partial_f", number(effect.structure.partial_f)},
+          {"sse", number(effect.structure.sse)},
+          {"sse_reduction", number(effect.structure.sse_reduction)},
+          {"pse", number(effect.structure.pse)},
+          {"pse_without", number(effect.structure.pse_without)},
           {"predicted_drop", number(effect.predicted_drop)},
           {"held_out_gain", number(effect.held_out_gain)},
           {"held_out_before", number(effect.held_out_before)},
@@ -112,6 +118,7 @@ std::string to_json(const FlightDiagnosis& result) {
   for (const ResidualNoise& residual : diagnosis.residual) {
     root["residual"][residual.output] = write_residual(residual);
   }
+  root["pse"] = to_string(diagnosis.pse);
   root["effects"] = Json::array();
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
     root["effects"].push_back(write_effect(diagnosis.effects[i], result.sentences[i]));

@@ -64,14 +64,33 @@ std::string estimates(const EffectFinding& effect) {
   return text;
 }
 
+/// "-41.9 %"
+std::string change(double from, double to) {
+  const double change = 100.0 * (to / from - 1.0);
+  return std::isfinite(change) ? fmt::format("{:+.1f} %", change) : "-";
+}
+
+/// As the verdict has it, then as stepwise regression has it.
+std::string effect_row(const EffectFinding& effect, std::size_t width) {
+  const Structure& structure = effect.structure;
+  const std::string partial_f =
+      std::isfinite(structure.partial_f) ? fmt::format("{:.3g}", structure.partial_f) : "-";
+  return fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f} {:>9} {:>9} {:>9}\n",
+                     effect.name, width, in_words(effect), probability(effect),
+                     percent(effect.predicted_drop), percent(effect.held_out_gain),
+                     effect.visibility, partial_f, change(structure.pse_without, structure.pse),
+                     change(structure.sse, structure.sse - structure.sse_reduction));
+}
+
 std::string effect_rows(const FlightDiagnosis& result) {
   const std::vector<EffectFinding>& effects = result.diagnosis.effects;
   std::size_t width = 6;
   for (std::size_t i = 0; i < std::min(most_shown, effects.size()); ++i) {
     width = std::max(width, effects[i].name.size());
   }
-  std::string text = fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10}\n", "effect", width,
-                                 "status", "p", "predicted", "held out", "visibility");
+  std::string text =
+      fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10} {:>9} {:>9} {:>9}\n", "effect", width,
+                  "status", "p", "predicted", "held out", "visibility", "F", "PSE", "SSE");
   std::size_t shown = 0;
   std::size_t refused = 0;
   std::size_t unseen = 0;
@@ -81,9 +100,7 @@ std::string effect_rows(const FlightDiagnosis& result) {
       break;
     }
     if (is_refused(effect)) ++refused;
-    text += fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}\n", effect.name, width,
-                        in_words(effect), probability(effect), percent(effect.predicted_drop),
-                        percent(effect.held_out_gain), effect.visibility);
+    text += effect_row(effect, width);
     ++shown;
   }
   const auto hidden =
