@@ -2,6 +2,7 @@
 // The command line that both apps share: verbs, options, exit codes.
 #include <CLI/App.hpp>
 
+#include "diagnose_arguments.hpp"
 #include "fit_arguments.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
@@ -38,9 +39,11 @@ void add_interval_options(CLI::App& intervals, Arguments& arguments) {
       ->type_name("I.json");
 }
 
-void add_diagnose_options(CLI::App& diagnose, Arguments& arguments) {
-  add_file(diagnose, "-o,--output", arguments.output, "writes the diagnosis there")
+void add_diagnose_options(CLI::App& diagnose, Arguments& arguments, DiagnoseArguments& asked) {
+  add_file(diagnose, "-o,--output", arguments.output,
+           "writes the diagnosis there, with --auto the calibration")
       ->type_name("D.json");
+  asked.add_to(diagnose);
   diagnose
       .add_option("--inject", arguments.inject,
                   "puts an effect into the measurements first: would it have been found?")
@@ -106,7 +109,7 @@ class CommandLine {
 
     instrument.add_flight_options(*compare_);
     add_interval_options(*intervals_, typed_);
-    add_diagnose_options(*diagnose_, typed_);
+    add_diagnose_options(*diagnose_, typed_, diagnosis_);
     instrument.add_flight_options(*diagnose_);
     add_adding_options(*add_, typed_);
     instrument.add_flight_options(*add_);
@@ -127,7 +130,7 @@ class CommandLine {
     if (add_->parsed()) return verbs.add();
     if (apply_->parsed()) return verbs.apply();
     if (simulate_->parsed()) return verbs.simulate(simulation_.resolve());
-    if (diagnose_->parsed()) return verbs.diagnose();
+    if (diagnose_->parsed()) return verbs.diagnose(diagnosis_.resolve(), diagnosis_.adds());
     return verbs.effects();
   }
 
@@ -173,6 +176,7 @@ class CommandLine {
   Arguments typed_;
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
+  DiagnoseArguments diagnosis_;
   CLI::App* check_;
   CLI::App* fit_;
   CLI::App* compare_;

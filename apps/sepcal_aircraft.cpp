@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "delivery.hpp"
+#include "diagnose_arguments.hpp"
 #include "fit_arguments.hpp"
 #include "flight/files/text_file.hpp"
 #include "option_values.hpp"
@@ -181,12 +182,13 @@ class AircraftApp {
         two_step_(*cli.add_subcommand("two-step",
                                       "reconstructs the path, then fits the aerodynamics to it")),
         compare_(*cli.add_subcommand("compare", "shows where the model fails")),
+        diagnose_(*cli.add_subcommand("diagnose", "names the regressor that is missing")),
         add_(*cli.add_subcommand("add", "adds a regressor and fits again")),
         apply_(*cli.add_subcommand("apply", "adds what was flown to a log")),
         track_(*cli.add_subcommand("track", "estimates against time, as a filter in flight")),
         simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
         effects_(*cli.add_subcommand("effects", "lists the regressors and how to write more")) {
-    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &add_, &apply_, &track_}) {
+    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_, &apply_, &track_}) {
       add_flight(*verb);
     }
     model_.add_model_to(fit_);
@@ -195,7 +197,7 @@ class AircraftApp {
       fit_arguments_.add_to(*verb);
       add_output(*verb, "BASE.json", false);
     }
-    for (CLI::App* verb : {&compare_, &add_, &apply_, &track_}) {
+    for (CLI::App* verb : {&compare_, &diagnose_, &add_, &apply_, &track_}) {
       add_file(*verb, "FIT", base_, "what fit wrote with -o")->required();
     }
     for (CLI::App* verb : {&fit_, &two_step_, &apply_, &track_}) {
@@ -212,6 +214,8 @@ class AircraftApp {
                    "unknown; may be repeated");
     add_.add_option("E", effect_, "the regressor: Cm[alpha^2] (see effects)")->required();
     add_output(compare_, "COMPARED.json", false);
+    add_output(diagnose_, "D.json", false);
+    diagnosis_.add_to(diagnose_);
     add_output(add_, "NEXT.json", false);
     add_output(apply_, "CORRECTED.csv", true);
     add_output(track_, "TRACK.csv", true);
@@ -222,11 +226,11 @@ class AircraftApp {
     add_file(simulate_, "--geometry", geometry_, "writes the aircraft there, as fit takes it")
         ->type_name("AIRCRAFT.json");
     simulation_.add_to(simulate_);
-    for (CLI::App* verb :
-         {&fit_, &two_step_, &compare_, &add_, &apply_, &track_, &simulate_, &effects_}) {
+    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_, &apply_, &track_,
+                           &simulate_, &effects_}) {
       verb->add_flag("--json", wishes_.json, "prints the result as JSON on standard output");
     }
-    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &add_}) {
+    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_}) {
       verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
     }
   }
@@ -235,6 +239,7 @@ class AircraftApp {
     if (fit_.parsed()) return fit();
     if (two_step_.parsed()) return two_step();
     if (compare_.parsed()) return compare();
+    if (diagnose_.parsed()) return diagnose();
     if (add_.parsed()) return add();
     if (apply_.parsed()) return apply();
     if (track_.parsed()) return track();
@@ -290,6 +295,28 @@ class AircraftApp {
     const AircraftFit base = read_aircraft_fit(base_);
     delivery.deliver(compare_aircraft(base, read_flight()));
     return 0;
+  }
+
+  int diagnose() const {
+    Delivery delivery(wishes_, {flight_, base_});
+    StepwiseOptions options = diagnosis_.resolve();
+    const AircraftFit base = read_aircraft_fit(base_);
+    const Flight flight = read_flight();
+    ProgressLine line;
+    options.diagnosis.threads = base.options.calibration.fit.threads;
+    options.diagnosis.progress = shown_on(line);
+    if (diagnosis_.adds()) {
+      const StepwiseAircraft result = diagnose_aircraft_stepwise(base, flight, options);
+      line.clear();
+      print_notes(result.fitted.notes);
+      delivery.deliver(to_json(result), to_text(result, detail_of(wishes_.explain)));
+      const int fitted = exit_code(result.fitted.fit.status);
+      return fitted != 0 ? fitted : exit_code(result.course.last.diagnosis.verdict);
+    }
+    const FlightDiagnosis diagnosis = diagnose_aircraft(base, flight, options.diagnosis);
+    line.clear();
+    delivery.deliver(diagnosis);
+    return exit_code(diagnosis.diagnosis.verdict);
   }
 
   int add() const {
@@ -364,9 +391,11 @@ class AircraftApp {
   TrackArguments tracking_;
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
+  DiagnoseArguments diagnosis_;
   CLI::App& fit_;
   CLI::App& two_step_;
   CLI::App& compare_;
+  CLI::App& diagnose_;
   CLI::App& add_;
   CLI::App& apply_;
   CLI::App& track_;

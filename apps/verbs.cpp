@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "delivery.hpp"
+#include "diagnose_arguments.hpp"
 #include "flight/files/text_file.hpp"
 #include "progress.hpp"
 #include "running.hpp"
@@ -24,21 +25,6 @@
 #include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::app {
-namespace {
-
-int exit_code(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::adequate:
-      return 0;
-    case Verdict::effect_missing:
-      return 3;
-    default:
-      return 6;
-  }
-}
-
-}  // namespace
-
 Flight Verbs::read_flight(int threads) const { return read_flight(arguments_.flight, threads); }
 
 Flight Verbs::read_flight(const std::string& file, int threads) const {
@@ -150,17 +136,29 @@ int Verbs::intervals() const {
   return exit_code(intervals.status);
 }
 
-int Verbs::diagnose() const {
+int Verbs::diagnose(StepwiseOptions options, bool adds) const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   std::optional<SizedEffect> injected;
   if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
+  if (injected && adds) {
+    throw Error("--inject and --auto exclude each other: what is injected is not in the log");
+  }
   const auto [base, flight] = read_whole_subject();
   ProgressLine line;
-  DiagnosisOptions options;
-  options.threads = base.options.fit.threads;
-  options.progress = shown_on(line);
-  const FlightDiagnosis diagnosis = injected ? diagnose_with(*injected, base, flight, {}, options)
-                                             : sepcal::diagnose(base, flight, {}, options);
+  options.diagnosis.threads = base.options.fit.threads;
+  options.diagnosis.progress = shown_on(line);
+  if (adds) {
+    StepwiseCalibration result = diagnose_stepwise(base, flight, {}, options);
+    find_departures(result.calibration, flight);
+    line.clear();
+    print_notes(result.calibration.notes);
+    delivery.deliver(to_json(result), to_text(result, detail_of(arguments_.explain)));
+    const int fitted = exit_code(result.calibration.fit.status);
+    return fitted != 0 ? fitted : exit_code(result.course.last.diagnosis.verdict);
+  }
+  const FlightDiagnosis diagnosis =
+      injected ? diagnose_with(*injected, base, flight, {}, options.diagnosis)
+               : sepcal::diagnose(base, flight, {}, options.diagnosis);
   line.clear();
   delivery.deliver(diagnosis);
   return exit_code(diagnosis.diagnosis.verdict);

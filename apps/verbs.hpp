@@ -8,6 +8,7 @@
 #include "instrument.hpp"
 #include "log_arguments.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/stepwise.hpp"
 
 namespace sepcal::app {
 
@@ -40,7 +41,8 @@ class Verbs {
   int fit(CalibrationOptions options) const;
   int compare() const;
   int intervals() const;
-  int diagnose() const;
+  /// With `adds` the calibration is the result, and its status goes before the verdict.
+  int diagnose(StepwiseOptions options, bool adds) const;
   int add() const;
   int apply() const;
   int simulate(SimulationOrder order) const;

@@ -72,6 +72,7 @@ from sepcal.running_trials import monte_carlo, stream_trials
 from sepcal.simulated_trial import SimulatedTrial
 from sepcal.simulation import SimulatedFlight, simulate
 from sepcal.smoothing import Smoothed, smooth
+from sepcal.stepwise import Stepwise, StepwiseStep
 from sepcal.tracking import Track, track
 from sepcal.trajectories import FlightPath, ShortPeriod, TrajectoryModel, TrajectoryOptions
 from sepcal.trial_fits import TrialFits, fit_trials
@@ -139,6 +140,8 @@ __all__ = [
     "Smoothed",
     "StageOne",
     "StateModel",
+    "Stepwise",
+    "StepwiseStep",
     "Track",
     "Trajectory",
     "TrajectoryModel",

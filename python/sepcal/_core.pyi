@@ -45,6 +45,7 @@ __all__: list[str] = [
     "ScreenResults",
     "SmoothedRecord",
     "StageOne",
+    "SteppedCalibration",
     "Track",
     "VISIBLE_FROM",
     "Window",
@@ -1346,7 +1347,17 @@ class Calibration:
         | None,
         arg3: typing.SupportsInt | typing.SupportsIndex,
         arg4: typing.SupportsInt | typing.SupportsIndex,
+        arg5: str,
     ) -> Diagnosed: ...
+    def diagnose_stepwise(
+        self,
+        arg0: Flight,
+        arg1: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+        arg2: typing.SupportsInt | typing.SupportsIndex | None,
+        arg3: typing.SupportsInt | typing.SupportsIndex,
+        arg4: typing.SupportsInt | typing.SupportsIndex,
+        arg5: str,
+    ) -> SteppedCalibration: ...
     def intervals(
         self,
         arg0: Flight,
@@ -1380,6 +1391,18 @@ class Calibration:
     def restated(self) -> dict: ...
     @property
     def unit(self) -> str: ...
+
+class SteppedCalibration:
+    @property
+    def explained(self) -> str: ...
+    @property
+    def fitted(self) -> Calibration: ...
+    @property
+    def json(self) -> str: ...
+    @property
+    def last(self) -> Diagnosed: ...
+    @property
+    def text(self) -> str: ...
 
 class ColumnCheck:
     """

@@ -13,6 +13,7 @@ __all__: list[str] = [
     "Options",
     "RecursiveLeastSquares",
     "StateTables",
+    "SteppedFit",
     "Steps",
     "TrajectoryOptions",
     "fit",
@@ -141,6 +142,21 @@ class Fit:
         arg2: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     ) -> sepcal._core.Applied: ...
     def compare(self, arg0: sepcal._core.Flight) -> sepcal._core.Comparison: ...
+    def diagnose(
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: typing.SupportsInt | typing.SupportsIndex,
+        arg2: typing.SupportsInt | typing.SupportsIndex,
+        arg3: str,
+    ) -> sepcal._core.Diagnosed: ...
+    def diagnose_stepwise(
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: typing.SupportsInt | typing.SupportsIndex | None,
+        arg2: typing.SupportsInt | typing.SupportsIndex,
+        arg3: typing.SupportsInt | typing.SupportsIndex,
+        arg4: str,
+    ) -> SteppedFit: ...
     def save(self, arg0: str) -> None: ...
     def smooth(
         self,
@@ -178,6 +194,18 @@ class Fit:
     def notes(self) -> list[str]: ...
     @property
     def warning(self) -> str: ...
+
+class SteppedFit:
+    @property
+    def explained(self) -> str: ...
+    @property
+    def fitted(self) -> Fit: ...
+    @property
+    def json(self) -> str: ...
+    @property
+    def last(self) -> sepcal._core.Diagnosed: ...
+    @property
+    def text(self) -> str: ...
 
 class Steps:
     @property

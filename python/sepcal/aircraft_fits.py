@@ -6,12 +6,13 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
 
 from sepcal import _core
 from sepcal.aircraft import Aero, AircraftModel
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
+from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight, to_flight
 from sepcal.geometry import Aircraft
 from sepcal.options import FitOptions, spelled_out, to_core
@@ -20,6 +21,7 @@ from sepcal.pages import Page
 from sepcal.results import Fit
 from sepcal.smoothing import Smoothed
 from sepcal.states_module import states_module
+from sepcal.stepwise import Stepwise, check_choices
 from sepcal.tracking import Track
 from sepcal.trajectories import FlightPath
 
@@ -100,8 +102,70 @@ class AircraftFit(Fit):
         """
         return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core))
 
+    @overload
+    def diagnose(
+        self,
+        flight: Flight | None = None,
+        *,
+        auto: Literal[False] = False,
+        simulations: int = 80,
+        seed: int = 0,
+        pse: Literal["sidpac", "classic"] | str = "sidpac",
+    ) -> Diagnosis: ...
+
+    @overload
+    def diagnose(
+        self,
+        flight: Flight | None = None,
+        *,
+        auto: Literal[True],
+        most: int | None = None,
+        simulations: int = 80,
+        seed: int = 0,
+        pse: Literal["sidpac", "classic"] | str = "sidpac",
+    ) -> Stepwise[AircraftFit]: ...
+
+    def diagnose(
+        self,
+        flight: Flight | None = None,
+        *,
+        auto: bool = False,
+        most: int | None = None,
+        simulations: int = 80,
+        seed: int = 0,
+        pse: Literal["sidpac", "classic"] | str = "sidpac",
+    ) -> Diagnosis | Stepwise[AircraftFit]:
+        """Which regressor do the coefficients lack on a flight? Of Aero.
+
+        Tried are products as "Cm[alpha*elevator]", splines as "CX[spline(alpha,5)]", and every
+        other numeric channel of the log.
+
+        Args:
+            flight: By default the fitted one.
+            auto: Adds what is advised, fits and asks again, until nothing passes.
+            most: Of auto: at most so many effects [no limit].
+            simulations: Of the noise, that calibrate a test.
+            seed: Of these simulations.
+            pse: What bounds the noise in the candidates' predicted square error: half the variance
+                of what is measured, as SIDPAC has it, or all of it.
+
+        Returns:
+            A Diagnosis; with auto a Stepwise, whose `fitted` has what was added.
+
+        Raises:
+            Error: Bad input, as in fit(); another model than Aero; most below 1 or without auto.
+        """
+        chosen = self._or_fitted(flight, "diagnose(")
+        check_choices(simulations, seed, auto=auto, most=most)
+        if not auto:
+            return Diagnosis._of(self.core.diagnose(chosen._core, simulations, seed, pse))
+        stepped = self.core.diagnose_stepwise(chosen._core, most, simulations, seed, pse)
+        return Stepwise(AircraftFit(stepped.fitted, chosen), stepped)
+
     def add(self, effect: str, flight: Flight | None = None) -> AircraftFit:
         """The same fit with a regressor more, as "Cm[alpha^2]", from where it ended.
+
+        Of Aero also a spline, "CX[spline(alpha,5)]".
 
         Raises:
             Error: Bad input, as in fit(); a path, which takes no effects.

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A calibration: a probe fitted on a flight, to be compared, applied, saved and loaded."""
 
+from __future__ import annotations
+
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Literal, overload
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from sepcal.intervals import Intervals, Prediction
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit
+from sepcal.stepwise import Stepwise, check_choices
 
 Path = str | os.PathLike[str]
 
@@ -113,15 +116,44 @@ class Calibration(Fit):
         core, chosen = self._on(flight, "compare(", known=True)
         return Comparison(core.compare(chosen._core))
 
+    @overload
     def diagnose(
         self,
         flight: Flight | Sequence[Flight] | None = None,
         *,
         effects: Sequence[Effect] = (),
         inject: Mapping[str, float | Sequence[float]] | None = None,
+        auto: Literal[False] = False,
         simulations: int = 80,
         seed: int = 0,
-    ) -> Diagnosis:
+        pse: Literal["sidpac", "classic"] | str = "sidpac",
+    ) -> Diagnosis: ...
+
+    @overload
+    def diagnose(
+        self,
+        flight: Flight | Sequence[Flight] | None = None,
+        *,
+        effects: Sequence[Effect] = (),
+        auto: Literal[True],
+        most: int | None = None,
+        simulations: int = 80,
+        seed: int = 0,
+        pse: Literal["sidpac", "classic"] | str = "sidpac",
+    ) -> Stepwise[Calibration]: ...
+
+    def diagnose(
+        self,
+        flight: Flight | Sequence[Flight] | None = None,
+        *,
+        effects: Sequence[Effect] = (),
+        inject: Mapping[str, float | Sequence[float]] | None = None,
+        auto: bool = False,
+        most: int | None = None,
+        simulations: int = 80,
+        seed: int = 0,
+        pse: Literal["sidpac", "classic"] | str = "sidpac",
+    ) -> Diagnosis | Stepwise[Calibration]:
         """Which physical effect is missing on a flight, by default the fitted one?
 
         Args:
@@ -129,26 +161,38 @@ class Calibration(Fit):
             effects: Candidates of your own, beside the catalogue's.
             inject: One effect with its size (or one a coefficient) that is put into the
                 measurements first, to see whether it would have been found.
+            auto: Adds what is advised, fits and asks again, until nothing passes.
+            most: Of auto: at most so many effects [no limit].
             simulations: Of the noise, that calibrate a test.
             seed: Of these simulations.
+            pse: What bounds the noise in the candidates' predicted square error: half the variance
+                of what is measured, as SIDPAC has it, or all of it.
+
+        Returns:
+            A Diagnosis; with auto a Stepwise, whose `fitted` has what was added.
 
         Raises:
-            Error: Bad input, as in fit(); an effect to inject that the flight can't make.
+            Error: Bad input, as in fit(); an effect to inject that the flight can't make, or beside
+                auto; most below 1 or without auto.
         """
         chosen = self._or_fitted(flight, "diagnose(")
         hidden = [(name, np.ravel(size).tolist()) for name, size in (inject or {}).items()]
         if len(hidden) > 1:
             raise _core.Error("inject takes one effect at a time")
-        if simulations < 2 or seed < 0:
-            raise _core.Error("simulations must be at least 2, and seed not negative")
-        described = self.core.diagnose(
-            chosen._core, to_core_effects(effects), hidden[0] if hidden else None, simulations, seed
-        )
-        return Diagnosis._of(described)
+        if hidden and auto:
+            raise _core.Error("inject and auto exclude each other: it is not in the flight")
+        check_choices(simulations, seed, auto=auto, most=most)
+        own = to_core_effects(effects)
+        if not auto:
+            injected = hidden[0] if hidden else None
+            found = self.core.diagnose(chosen._core, own, injected, simulations, seed, pse)
+            return Diagnosis._of(found)
+        stepped = self.core.diagnose_stepwise(chosen._core, own, most, simulations, seed, pse)
+        return Stepwise(Calibration(stepped.fitted, chosen, [*self.own_effects, *effects]), stepped)
 
     def add(
         self, effect: str | Effect, flight: Flight | Sequence[Flight] | None = None
-    ) -> "Calibration":
+    ) -> Calibration:
         """The calibration with one more effect, refitted from these estimates.
 
         Args:
@@ -268,7 +312,7 @@ class Calibration(Fit):
         return _parse, (self.to_json(), self.own_effects)
 
 
-def load(file: Path, effects: Sequence[Effect] = ()) -> "Calibration | AircraftFit":
+def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration | AircraftFit:
     """Reads what save() or an app's fit wrote.
 
     Args:

@@ -113,6 +113,29 @@ std::pair<Tracked, std::vector<std::string>> track_on(
   return {std::move(result), std::move(tracked.notes)};
 }
 
+DiagnosisOptions options_of(const AircraftFit& fitted, int simulations, std::uint64_t seed,
+                            const std::string& pse) {
+  return diagnosis_options(fitted.options.calibration.fit.threads, simulations, seed, pse);
+}
+
+Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight, int simulations,
+                      std::uint64_t seed, const std::string& pse) {
+  const Released released;
+  return diagnosed(diagnose_aircraft(fitted, flight, options_of(fitted, simulations, seed, pse)));
+}
+
+Stepped<AircraftFit> diagnose_stepwise_on(const AircraftFit& fitted, const Flight& flight,
+                                          std::optional<std::size_t> most, int simulations,
+                                          std::uint64_t seed, const std::string& pse) {
+  const Released released;
+  StepwiseAircraft result = diagnose_aircraft_stepwise(
+      fitted, flight, stepwise_options(most, options_of(fitted, simulations, seed, pse)));
+  std::string json = to_json(result);
+  Page page = page_of(result);
+  return {std::move(result.fitted), diagnosed(result.course.last), std::move(json),
+          std::move(page)};
+}
+
 void save(const AircraftFit& fitted, const std::string& file) {
   OutputFile output(file);
   output.write(to_json(fitted));
@@ -146,8 +169,9 @@ Simulated simulate(const std::string& truth, const Hidden& hidden, const std::st
 }
 
 void define_fits(py::module_& module) {
-  py::class_<AircraftFit>(module, "Fit")
-      .def_property_readonly("fit", &fit_of)
+  py::class_<AircraftFit> fitted(module, "Fit");
+  define_stepped<AircraftFit>(module, "SteppedFit");
+  fitted.def_property_readonly("fit", &fit_of)
       .def_property_readonly("model",
                              [](const AircraftFit& self) { return to_string(self.options.model); })
       .def_property_readonly("method", [](const AircraftFit& self) { return method_of(self); })
@@ -163,6 +187,8 @@ void define_fits(py::module_& module) {
             return compared(compare_aircraft(self, flight));
           },
           WithoutGil())
+      .def("diagnose", &diagnose_on)
+      .def("diagnose_stepwise", &diagnose_stepwise_on)
       .def("add", &add_to_aircraft, WithoutGil())
       .def("apply", &apply_to)
       .def("apply_to_file",

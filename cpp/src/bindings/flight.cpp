@@ -21,6 +21,7 @@
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/probe_effects.hpp"
+#include "sepcal/flight/stepwise.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -106,28 +107,35 @@ Compared compare_flight(const Calibration& calibration, const Flight& flight,
                          : compare(calibration, flight));
 }
 
-/// What the app's diagnose prints.
-struct Diagnosed {
-  std::vector<std::string> notes;
-  std::string json;
-  Page page;
-};
-
 Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
                       const std::vector<PythonEffect>& own,
                       const std::optional<std::pair<std::string, std::vector<double>>>& injected,
-                      int simulations, std::uint64_t seed) {
+                      int simulations, std::uint64_t seed, const std::string& pse) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
-  DiagnosisOptions options;
-  options.threads = calibration.options.fit.threads;
-  options.simulations = simulations;
-  options.seed = seed;
+  const DiagnosisOptions options =
+      diagnosis_options(calibration.options.fit.threads, simulations, seed, pse);
   const Released released;
   need_own_effects(calibration);
-  const FlightDiagnosis diagnosis = injected ? diagnose_with({injected->first, injected->second},
-                                                             calibration, flight, makers, options)
-                                             : diagnose(calibration, flight, makers, options);
-  return {diagnosis.notes, to_json(diagnosis), page_of(diagnosis)};
+  return diagnosed(injected ? diagnose_with({injected->first, injected->second}, calibration,
+                                            flight, makers, options)
+                            : diagnose(calibration, flight, makers, options));
+}
+
+Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const Flight& flight,
+                                          const std::vector<PythonEffect>& own,
+                                          std::optional<std::size_t> most, int simulations,
+                                          std::uint64_t seed, const std::string& pse) {
+  const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
+  const StepwiseOptions options = stepwise_options(
+      most, diagnosis_options(calibration.options.fit.threads, simulations, seed, pse));
+  const Released released;
+  need_own_effects(calibration);
+  StepwiseCalibration result = diagnose_stepwise(calibration, flight, makers, options);
+  find_departures(result.calibration, flight);
+  std::string json = to_json(result);
+  Page page = page_of(result);
+  return {std::move(result.calibration), diagnosed(result.course.last), std::move(json),
+          std::move(page)};
 }
 
 /// {header: values}
@@ -380,8 +388,9 @@ void define_calibration(py::module_& module) {
       .field("difference", &FlightDeparture::difference,
              "The flight's own estimate less that of the others.")
       .field("standard_error", &FlightDeparture::standard_error, "");
-  py::class_<Calibration>(module, "Calibration")
-      .def_property_readonly("fit", &fit_of)
+  py::class_<Calibration> calibration(module, "Calibration");
+  define_stepped<Calibration>(module, "SteppedCalibration");
+  calibration.def_property_readonly("fit", &fit_of)
       .def_readonly("derived", &Calibration::derived)
       .def_property_readonly("restated", &restated_of)
       .def_readonly("history", &Calibration::history)
@@ -393,6 +402,7 @@ void define_calibration(py::module_& module) {
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
       .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt)
       .def("diagnose", &diagnose_on)
+      .def("diagnose_stepwise", &diagnose_stepwise_on)
       .def("intervals", &bindings::find_intervals)
       .def("predict", &predict_flight)
       .def("add", &add_to)

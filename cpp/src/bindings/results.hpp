@@ -4,12 +4,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.hpp"
 #include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
+#include "sepcal/flight/stepwise.hpp"
 #include "sepcal/states/track.hpp"
 
 namespace sepcal::bindings {
@@ -77,6 +81,55 @@ inline Compared compared(Comparison comparison) {
   Page page = page_of(comparison);
   std::string json = to_json(comparison);
   return {std::move(comparison), std::move(json), std::move(page)};
+}
+
+/// sepcal.Diagnosis
+struct Diagnosed {
+  std::vector<std::string> notes;
+  std::string json;
+  Page page;
+};
+
+inline Diagnosed diagnosed(const FlightDiagnosis& diagnosis) {
+  return {diagnosis.notes, to_json(diagnosis), page_of(diagnosis)};
+}
+
+/// The engine's options from those that the front takes.
+inline DiagnosisOptions diagnosis_options(int threads, int simulations, std::uint64_t seed,
+                                          const std::string& pse) {
+  DiagnosisOptions options;
+  options.threads = threads;
+  options.simulations = simulations;
+  options.seed = seed;
+  options.pse = choice_of<PseBound>("pse", pse);
+  return options;
+}
+
+inline StepwiseOptions stepwise_options(std::optional<std::size_t> most,
+                                        DiagnosisOptions diagnosis) {
+  StepwiseOptions options{.diagnosis = std::move(diagnosis)};
+  options.most = most.value_or(options.most);
+  return options;
+}
+
+/// sepcal.Stepwise
+template <class Fitted>
+struct Stepped {
+  Fitted fitted;
+  Diagnosed last;
+  std::string json;
+  Page page;
+};
+
+template <class Fitted>
+void define_stepped(py::module_& module, const char* name) {
+  using Self = Stepped<Fitted>;
+  py::class_<Self>(module, name)
+      .def_readonly("fitted", &Self::fitted)
+      .def_readonly("last", &Self::last)
+      .def_readonly("json", &Self::json)
+      .def_property_readonly("text", [](const Self& self) { return self.page.text; })
+      .def_property_readonly("explained", [](const Self& self) { return self.page.explained; });
 }
 
 /// sepcal.Track

@@ -14,7 +14,9 @@
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
+#include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/output_file.hpp"
+#include "sepcal/flight/stepwise.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "sepcal/states/track.hpp"
 #include "sepcal/states/trajectory_options.hpp"
@@ -89,10 +91,26 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options);
 /// estimated anew, all else held; a note says so.
 Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight);
 
-/// The same fit with an effect more, from where it ended. Throws Error for a path, whose effects
-/// are none.
+/// Which regressor its coefficients lack: of every coefficient the usual ones, splines, and every
+/// other channel of the log. Of `aero`. Throws Error for bad input, and for the other models.
+FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& flight,
+                                  const DiagnosisOptions& options = {});
+
+/// The same fit with an effect more, from where it ended: "Cm[alpha^2]", "Cm[alpha*elevator]"; of
+/// `aero` also "CX[spline(alpha,5)]". Throws Error for a path, whose effects are none.
 AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
                             const std::string& effect);
+
+struct StepwiseAircraft {
+  AircraftFit fitted;
+  Stepwise course;
+};
+
+/// By diagnose_aircraft() and add_to_aircraft(), until nothing passes; of another flight than the
+/// fitted one the same model is fitted to it first. Throws Error as these do for the fit given, and
+/// for `most` 0.
+StepwiseAircraft diagnose_aircraft_stepwise(const AircraftFit& fitted, const Flight& flight,
+                                            const StepwiseOptions& options = {});
 
 /// Process noise: root of the spectral density by the name and in the unit of the model's table.
 using ProcessNoise = std::map<std::string, double>;
@@ -146,6 +164,8 @@ void write_csv(const TrackedAircraft& tracked, OutputFile& target);
 
 std::string to_text(const AircraftFit& fitted, Detail detail = Detail::brief);
 std::string to_json(const AircraftFit& fitted);
+std::string to_text(const StepwiseAircraft& result, Detail detail = Detail::brief);
+std::string to_json(const StepwiseAircraft& result);
 std::string to_text(const TwoStepFit& fitted, Detail detail = Detail::brief);
 std::string to_json(const TwoStepFit& fitted);
 std::string to_text(const Applied& applied, const AircraftFit& fitted);

@@ -9,10 +9,12 @@
 
 #include "base/thread_pool.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
+#include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/files/sha256.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/aircraft/two_step.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -98,6 +100,7 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
   LaidAircraft laid = lay(flight, options);
   AircraftFit fitted = describe(flight, options, fit(*laid.model, laid.record, laid.fit));
   fitted.equations = std::move(laid.equations);
+  fitted.options.calibration.effects = std::move(laid.effects);
   fitted.initial_states = std::move(laid.initial_states);
   fitted.notes = std::move(laid.notes);
   fitted.warning = std::move(laid.warning);
@@ -105,6 +108,7 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
 }
 
 TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
+  refuse_splines(options, "the two steps take products of powers alone");
   AircraftOptions second = options;
   second.model = AircraftModel::aero;
   second.calibration.free.clear();
@@ -137,7 +141,9 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
 AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
                             const std::string& effect) {
   AircraftOptions options = options_on(fitted, flight);
-  options.calibration.effects.push_back({.name = effect});
+  for (const std::string& one : split_effects(effect)) {
+    options.calibration.effects.push_back({.name = one});
+  }
   if (options.model != AircraftModel::aero) {
     options.calibration.fit.start = fitted.fit.nonlinear_estimates();
   }

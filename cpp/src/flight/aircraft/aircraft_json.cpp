@@ -6,6 +6,7 @@
 #include "flight/files/text_file.hpp"
 #include "flight/json/fit_json.hpp"
 #include "flight/json/options_json.hpp"
+#include "flight/json/stepwise_json.hpp"
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/option_error.hpp"
@@ -114,6 +115,12 @@ AircraftFit read_fitted(const Json& root) {
 }  // namespace
 
 std::string to_json(const AircraftFit& fitted) { return text_of(write_fitted(fitted)); }
+
+std::string to_json(const StepwiseAircraft& result) {
+  Json root = write_fitted(result.fitted);
+  root["stepwise"] = write_stepwise(result.course);
+  return text_of(root);
+}
 
 std::string to_json(const TwoStepFit& fitted) {
   return text_of({{"schema_version", schema_version},

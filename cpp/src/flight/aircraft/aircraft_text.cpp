@@ -63,6 +63,10 @@ std::string to_text(const AircraftFit& fitted, Detail detail) {
   return text;
 }
 
+std::string to_text(const StepwiseAircraft& result, Detail detail) {
+  return to_text(result.course) + "\n" + to_text(result.fitted, detail);
+}
+
 std::string to_text(const TwoStepFit& fitted, Detail detail) {
   return "step one, the flight path\n" + to_text(fitted.path, detail) +
          "\nstep two, the aerodynamics of what was flown\n" + to_text(fitted.aero, detail);

@@ -7,10 +7,11 @@
 #include <optional>
 
 #include "flight/aircraft/aircraft_columns.hpp"
+#include "flight/aircraft/aircraft_effects.hpp"
 #include "sepcal/aircraft/aero_model.hpp"
 #include "sepcal/aircraft/output_error.hpp"
 #include "sepcal/aircraft/path.hpp"
-#include "sepcal/effect_name.hpp"
+#include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/states/stream_start.hpp"
 
@@ -63,13 +64,19 @@ void lay_coefficients(const AircraftOptions& options, LaidAircraft& laid) {
   for (const AeroEquation& equation : laid.equations) names.push_back(equation.coefficient);
   AeroCoefficients found = aero_coefficients(laid.record, geometry_of(options),
                                              {.coefficients = names, .window = options.window});
-  laid.model = std::make_shared<AeroModel>(laid.equations);
   laid.record = std::move(found.record);
+  laid.window = found.window;
+  const auto model = std::make_shared<AeroModel>(laid.equations);
+  std::vector<EffectSetting> splines = splines_of(laid.effects);
+  const EffectKit kit = coefficient_kit(laid.equations);
+  laid.model = compose(model, make_effects(kit, *model, splines, laid.record), laid.record);
+  laid.effects = with_knots(std::move(laid.effects), splines);
   laid.notes.insert(laid.notes.end(), found.notes.begin(), found.notes.end());
   laid.warning = regressor_warning;
 }
 
 void lay_motion(const AircraftOptions& options, LaidAircraft& laid) {
+  refuse_splines(options, "an aircraft that is integrated takes products of powers alone");
   AircraftTrajectory along = lay_aircraft(laid.record, geometry_of(options),
                                           {.axes = axes_of(options.model),
                                            .equations = laid.equations,
@@ -96,6 +103,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   if (options.model == AircraftModel::path && !options.equations.empty()) {
     throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
   }
+  laid.effects = options.calibration.effects;
   laid.equations = equations_of(options);
   ProbeRecord prepared = prepare(flight, options.model, options.calibration.log);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
@@ -130,30 +138,7 @@ std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
       options.model == AircraftModel::aero && !options.equations.empty()
           ? options.equations
           : complete_equations(options.equations, coefficients_of(options));
-  for (const EffectSetting& effect : options.calibration.effects) {
-    const std::string& name = effect.name;
-    const std::size_t open = name.find('[');
-    const auto equation =
-        std::ranges::find(equations, name.substr(0, open), &AeroEquation::coefficient);
-    if (open == std::string::npos || !name.ends_with(']') || equation == equations.end()) {
-      std::string known;
-      for (const AeroEquation& one : equations)
-        known += (known.empty() ? "" : ", ") + one.coefficient;
-      if (open != std::string::npos &&
-          std::ranges::find(coefficient_names, std::string_view(name).substr(0, open)) !=
-              coefficient_names.end()) {
-        throw Error(fmt::format("effect {}: the model '{}' has no {} here; it has {}", name,
-                                to_string(options.model), name.substr(0, open), known));
-      }
-      throw Error(
-          fmt::format("effect {}: write it as COEFFICIENT[REGRESSOR], as {}[alpha^2]; the "
-                      "coefficients here are: {}",
-                      name, equations.front().coefficient, known));
-    }
-    equation->regressors.push_back(name.substr(open + 1, name.size() - open - 2));
-  }
-  check_equations(equations);
-  return equations;
+  return with_regressors(std::move(equations), options);
 }
 
 LaidAircraft lay(const Flight& flight, const AircraftOptions& options) {

@@ -20,6 +20,8 @@ struct LaidAircraft {
   Record record;
   FitOptions fit;
   std::vector<AeroEquation> equations;
+  std::vector<EffectSetting> effects;  // with what splines took from the flight
+  double window = not_a_number;  // of the differentiation of rates [s]; NaN where there is none
   std::vector<std::string> initial_states;  // names of parameters
   std::vector<std::string> notes;
   std::string warning;

@@ -52,16 +52,6 @@ Promise promise_of(const Calibration& base, const Calibration& next, const Prepa
   }
 }
 
-/// The base's options for a fit that begins at its estimates.
-CalibrationOptions options_from(const Calibration& base, const OwnEffects& own,
-                                const FitProgress& progress) {
-  CalibrationOptions options = base.options;
-  options.fit.progress = progress;
-  options.fit.start = base.fit.nonlinear_estimates();
-  for (const auto& [name, maker] : own) options.own_effects[name] = maker;
-  return options;
-}
-
 /// The base's model with the effect.
 Calibration refit(const Calibration& base, const PreparedFlight& prepared,
                   const std::string& effect, const OwnEffects& own, const FitProgress& progress) {
@@ -71,19 +61,6 @@ Calibration refit(const Calibration& base, const PreparedFlight& prepared,
   Calibration next = calibrate(base.probe, prepared, options);
   refuse_twice(next.options);  // now that aliases are resolved
   return next;
-}
-
-/// The base as it would be of this flight: an effect must not be praised for what a new wind
-/// brings.
-Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,
-                     const FitProgress& progress) {
-  Calibration here = calibrate(base.probe, prepared, options_from(base, own, progress));
-  here.history = base.history;
-  here.notes = {fmt::format(
-      "{}: not the flight that the calibration was fitted to, {}; it was fitted to this one before "
-      "the effect was added",
-      prepared.flight.name(), base.flight.file)};
-  return here;
 }
 
 Calibration add_to(const Calibration& base, const PreparedFlight& prepared,

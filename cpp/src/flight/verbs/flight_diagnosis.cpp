@@ -54,20 +54,6 @@ std::vector<std::string> catalogued(std::string_view model) {
   return names;
 }
 
-/// The misfit of the fitted rows, part by part.
-std::vector<Misfit> find_where(const DiagnosedFit& fitted) {
-  Record rows = fitted.record;
-  std::vector<EffectSetting> settings = fitted.effects;
-  const auto model =
-      compose(fitted.model, make_effects(fitted.kit, *fitted.model, settings, rows), rows);
-  rows.cut(fitted.rows);
-  const model::Measurements measurements(*model, rows);
-  base::ThreadPool pool(1);
-  const model::Sweep sweep(*model, measurements, pool);
-  return measure_parts(rows, fitted.model->tables().outputs,
-                       sweep.residuals(fitted.fit.xi1(), fitted.fit.xi2()));
-}
-
 FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepared,
                     const OwnEffects& own, const DiagnosisOptions& options) {
   const Flight& flight = prepared.flight;
@@ -91,7 +77,7 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   for (const Segment& segment : fitted.rows) used += segment.rows();
   result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
   result.missing_channels = catalogue::list_missing_channels(table, flight);
-  result.where = find_where(fitted);
+  result.where = measure_parts(fitted);
   return result;
 }
 
@@ -246,6 +232,41 @@ std::string describe(const UnloggedCause& cause) {
   return text;
 }
 
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}", value, unit == "1" ? "" : " " + unit);
+}
+
+/// What is left over some outputs together, and what noise alone would leave.
+struct ErrorLeft {
+  double rmse = 0.0;
+  double floor = 0.0;
+  std::string unit = {};
+  std::string of = {};  // " of Cm", of some outputs alone
+
+  std::string in_words() const {
+    return fmt::format("{} of error are left{}; noise alone would leave {}", with_unit(rmse, unit),
+                       of, with_unit(floor, unit));
+  }
+};
+
+ErrorLeft error_of(const Diagnosis& found) {
+  return {found.rmse, found.floor, found.residual.front().unit};
+}
+
+ErrorLeft error_of(const Diagnosis& found, const std::vector<std::string>& outputs) {
+  ErrorLeft left{.of = fmt::format(" in {}", fmt::join(outputs, ", "))};
+  for (const std::string& name : outputs) {
+    const auto own = std::ranges::find(found.residual, name, &ResidualNoise::output);
+    left.rmse += own->rmse * own->rmse;
+    left.floor += own->floor * own->floor;
+    left.unit = own->unit;
+  }
+  const auto count = static_cast<double>(outputs.size());
+  left.rmse = std::sqrt(left.rmse / count);
+  left.floor = std::sqrt(left.floor / count);
+  return left;
+}
+
 /// Why what stands first is not advised.
 std::string reason_against(const Diagnosis& found, const std::string& name) {
   for (const std::string& withheld : found.advice.withheld) {
@@ -257,12 +278,10 @@ std::string reason_against(const Diagnosis& found, const std::string& name) {
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const Diagnosis& found = diagnosis.diagnosis;
   if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
-  const std::string& unit = found.residual.front().unit;
   const std::string injected =
       diagnosis.injection ? fmt::format("with {} injected, ", diagnosis.injection->effect) : "";
-  const std::string left =
-      fmt::format("{}{:.3g} {} of error are left; noise alone would leave {:.3g} {}", injected,
-                  found.rmse, unit, found.floor, unit);
+  const ErrorLeft all = error_of(found);
+  const std::string left = injected + all.in_words();
   if (found.verdict == Verdict::unexplained && !found.omnibus.significant) {
     return fmt::format(
         "Something is missing that no candidate explains: {}; it follows no channel of the log "
@@ -288,17 +307,21 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
         by_time ? "the maneuvers in another order" : slow.drivers.front() + " going the other way");
   }
   const EffectFinding& best = found.effects.front();
+  const ErrorLeft of_best =
+      best.outputs.size() < found.residual.size() ? error_of(found, best.outputs) : all;
+  const std::string best_left = injected + of_best.in_words();
   if (found.advice.effect != best.name && !diagnosis.injection) {
     return fmt::format(
         "{} ({}): {}; one step promises {:.0f} % less on rows held out, but it is not to be added: "
         "{}.",
-        best.name, diagnosis.sentences.front(), left, 100.0 * best.held_out_gain,
+        best.name, diagnosis.sentences.front(), best_left, 100.0 * best.held_out_gain,
         reason_against(found, best.name));
   }
   return fmt::format(
-      "{} ({}): {}; adding it should bring the error to {:.3g} {} ({:.0f} % less on rows held out, "
+      "{} ({}): {}; adding it should bring the error to {} ({:.0f} % less on rows held out, "
       "{:.0f} % on all).",
-      best.name, diagnosis.sentences.front(), left, found.rmse * (1.0 - best.predicted_drop), unit,
+      best.name, diagnosis.sentences.front(), best_left,
+      with_unit(of_best.rmse * (1.0 - best.predicted_drop), of_best.unit),
       100.0 * best.held_out_gain, 100.0 * best.predicted_drop);
 }
 

@@ -4,6 +4,10 @@
 #include <cmath>
 
 #include "base/parts_of_record.hpp"
+#include "base/thread_pool.hpp"
+#include "model/measurements.hpp"
+#include "model/sweep.hpp"
+#include "sepcal/composition.hpp"
 
 namespace sepcal::verbs {
 namespace {
@@ -66,6 +70,19 @@ std::vector<Misfit> measure_parts(const Record& record, const std::vector<Variab
   if (parts.size() < 2)
     parts = base::parts_by_time(joined, base::gather_time(record), spans_without_labels);
   return measure_each(parts, outputs, residuals);
+}
+
+std::vector<Misfit> measure_parts(const DiagnosedFit& fitted) {
+  Record rows = fitted.record;
+  std::vector<EffectSetting> settings = fitted.effects;
+  const auto model =
+      compose(fitted.model, make_effects(fitted.kit, *fitted.model, settings, rows), rows);
+  rows.cut(fitted.rows);
+  const model::Measurements measurements(*model, rows);
+  base::ThreadPool pool(1);
+  const model::Sweep sweep(*model, measurements, pool);
+  return measure_parts(rows, fitted.model->tables().outputs,
+                       sweep.residuals(fitted.fit.xi1(), fitted.fit.xi2()));
 }
 
 }  // namespace sepcal::verbs

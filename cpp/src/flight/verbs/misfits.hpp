@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/record.hpp"
 
@@ -20,5 +21,8 @@ std::vector<Misfit> measure_whole(const Record& record, const std::vector<Variab
 /// within.
 std::vector<Misfit> measure_parts(const Record& record, const std::vector<Variable>& outputs,
                                   const Eigen::MatrixXd& residuals);
+
+/// The same of the rows that were fitted.
+std::vector<Misfit> measure_parts(const DiagnosedFit& fitted);
 
 }  // namespace sepcal::verbs

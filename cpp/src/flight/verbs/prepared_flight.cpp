@@ -97,4 +97,24 @@ void note_other_flight(const Calibration& calibration, const Flight& flight,
       flight.name(), calibration.flight.file));
 }
 
+CalibrationOptions options_from(const Calibration& base, const OwnEffects& own,
+                                const FitProgress& progress) {
+  CalibrationOptions options = base.options;
+  options.fit.progress = progress;
+  options.fit.start = base.fit.nonlinear_estimates();
+  for (const auto& [name, maker] : own) options.own_effects[name] = maker;
+  return options;
+}
+
+Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,
+                     const FitProgress& progress) {
+  Calibration here = calibrate(base.probe, prepared, options_from(base, own, progress));
+  here.history = base.history;
+  here.notes = {fmt::format(
+      "{}: not the flight that the calibration was fitted to, {}; it was fitted to this one before "
+      "the effect was added",
+      prepared.flight.name(), base.flight.file)};
+  return here;
+}
+
 }  // namespace sepcal::verbs

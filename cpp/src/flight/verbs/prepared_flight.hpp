@@ -41,6 +41,15 @@ Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlig
 Calibration calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
                       const CalibrationOptions& options);
 
+/// The base's options for a fit that begins at its estimates.
+CalibrationOptions options_from(const Calibration& base, const OwnEffects& own,
+                                const FitProgress& progress);
+
+/// The base as it would be of this flight: an effect must not be praised for what a new wind
+/// brings.
+Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,
+                     const FitProgress& progress);
+
 /// As the engine's diagnosis takes it. `own`: effects that the calibration or the caller made.
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,
                            const OwnEffects& own);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnose_arguments.hpp"
+
+#include <limits>
+
+#include "option_values.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::app {
+
+int exit_code(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return 0;
+    case Verdict::effect_missing:
+      return 3;
+    default:
+      return 6;
+  }
+}
+
+void DiagnoseArguments::add_to(CLI::App& diagnose) {
+  diagnose.add_flag("--auto", adds_,
+                    "adds what is advised, fits and asks again, until nothing passes; -o writes "
+                    "the fit then");
+  const auto read = [this](const std::string& text) {
+    most_ = parse_whole_number("--most", text, std::numeric_limits<std::uint32_t>::max());
+  };
+  diagnose.add_option_function<std::string>("--most", read, "of --auto: at most so many effects")
+      ->type_name("N");
+  diagnose
+      .add_option("--pse", pse_,
+                  "what bounds the noise in PSE: sidpac, half the variance of what is measured, or "
+                  "classic, all of it")
+      ->type_name("BOUND")
+      ->capture_default_str();
+}
+
+StepwiseOptions DiagnoseArguments::resolve() const {
+  if (most_ && !adds_) throw Error("--most is of --auto; give both, or leave it out");
+  StepwiseOptions options;
+  options.most = most_.value_or(options.most);
+  options.diagnosis.pse = choice_of<PseBound>("--pse", pse_);
+  return options;
+}
+
+}  // namespace sepcal::app

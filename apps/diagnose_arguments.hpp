@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The options of diagnose that all apps share, and what its verdict is as an exit code.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+
+#include "sepcal/flight/stepwise.hpp"
+
+namespace sepcal::app {
+
+/// 0 nothing is missing, 3 an effect is, 6 a slow change or what no candidate explains.
+int exit_code(Verdict verdict);
+
+class DiagnoseArguments {
+ public:
+  /// Adds the options to `diagnose`; they fill this object, which must outlive the parsing.
+  void add_to(CLI::App& diagnose);
+
+  /// Whether what is missing is to be added as well.
+  bool adds() const { return adds_; }
+
+  /// Throws Error for a choice that there isn't and for options that contradict each other.
+  StepwiseOptions resolve() const;
+
+ private:
+  bool adds_ = false;
+  std::optional<std::size_t> most_;
+  std::string pse_ = std::string(to_string(PseBound::sidpac));
+};
+
+}  // namespace sepcal::app

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/stepwise.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/verbs/prepared_flight.hpp"
+#include "flight/verbs/stepwise_loop.hpp"
+#include "sepcal/flight/adding.hpp"
+#include "sepcal/option_error.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+double verbs::rmse_over(const Fit& fit, const std::vector<std::string>& outputs) {
+  double square = 0.0;
+  for (const OutputValue& rmse : fit.rmse) {
+    const bool counts = std::ranges::find(outputs, rmse.name) != outputs.end();
+    if (counts) square += rmse.value * rmse.value;
+  }
+  return std::sqrt(square / static_cast<double>(outputs.size()));
+}
+
+void verbs::check_most(const StepwiseOptions& options) {
+  if (options.most > 0) return;
+  throw OptionError({Option{"most"}, " 0 lets nothing be added; give at least 1, or leave ",
+                     Option{"auto"}, " out to be told alone what is missing"});
+}
+
+std::string verbs::objection_to_step(const Fit& before, const Fit& after,
+                                     const StepwiseStep& step) {
+  const std::string& effect = step.promised.name;
+  if (after.status != FitStatus::converged && after.status != before.status) {
+    return fmt::format(
+        "the fit with {} is {}: {}", effect,
+        after.status == FitStatus::not_converged ? "not converged" : "not identifiable",
+        after.message);
+  }
+  if (step.rmse_after < step.rmse_before) return {};
+  return fmt::format("fitted with {} the error did not fall ({:.4g} -> {:.4g})", effect,
+                     step.rmse_before, step.rmse_after);
+}
+
+void verbs::finish(Stepwise& course, StepwiseEnd end, std::string reason) {
+  course.end = end;
+  course.reason = std::move(reason);
+}
+
+const EffectFinding* verbs::next_effect(Stepwise& course, std::size_t most) {
+  const Diagnosis& found = course.last.diagnosis;
+  const std::string& advised = found.advice.effect;
+  if (found.verdict == Verdict::effect_missing && !advised.empty() && course.steps.size() < most) {
+    return &*std::ranges::find(found.effects, advised, &EffectFinding::name);
+  }
+  if (found.verdict == Verdict::effect_missing && advised.empty()) {
+    finish(
+        course, StepwiseEnd::withheld,
+        fmt::format("what passes is not to be added: {}", fmt::join(found.advice.withheld, "; ")));
+  } else if (found.verdict == Verdict::effect_missing) {
+    finish(course, StepwiseEnd::most_added,
+           fmt::format("the most that were asked for, {}, are added; {} would be next", most,
+                       advised));
+  } else {
+    finish(course, StepwiseEnd::nothing_found,
+           found.verdict == Verdict::adequate ? "nothing more passes"
+           : found.verdict == Verdict::slow_change
+               ? "nothing more passes; a slow change is left, or noise that wanders"
+               : "nothing more passes, though something is left that no candidate explains");
+  }
+  return nullptr;
+}
+
+StepwiseCalibration diagnose_stepwise(const Calibration& base, const Flight& flight,
+                                      const OwnEffects& own, const StepwiseOptions& options) {
+  check_most(options);
+  const FitProgress& progress = options.diagnosis.progress;
+  Calibration calibration = base;
+  if (is_other_flight(base, flight)) {
+    calibration = refit_to(base, prepare(base, flight), own, progress);
+  }
+  Stepwise course = run_stepwise<Calibration>(
+      calibration, options.most,
+      [&](const Calibration& at) { return diagnose(at, flight, own, options.diagnosis); },
+      [&](const Calibration& at, const std::string& effect) {
+        return add(at, flight, effect, own, progress);
+      });
+  return {std::move(calibration), std::move(course)};
+}
+
+}  // namespace sepcal

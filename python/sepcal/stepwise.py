@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Diagnosis step by step: what is advised is added, all is fitted and asked again."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from sepcal import _core
+from sepcal.diagnosis import Diagnosis
+from sepcal.pages import Page, Row
+
+if TYPE_CHECKING:
+    from sepcal import _states
+
+Fitted = TypeVar("Fitted")
+
+
+@dataclass(frozen=True)
+class StepwiseStep:
+    """An effect that was added: what it promised and what came of it; None where undefined.
+
+    The RMSE is over `outputs`, of the rows that are fitted, in their unit. partial_f, pse and
+    pse_without are those of EffectFinding.
+    """
+
+    effect: str
+    outputs: list[str]  # that it can reach
+    p_adjusted: float
+    partial_f: float | None
+    pse: float | None
+    pse_without: float | None
+    held_out_gain: float | None  # promised, on rows left out
+    predicted_drop: float | None  # promised, of the RMSE: 1 - after / before
+    found_drop: float | None
+    rmse_before: float
+    rmse_after: float
+
+
+class Stepwise(Page, Generic[Fitted]):
+    """Effects added one after another until nothing passed. `print()` shows the steps.
+
+    Attributes:
+        fitted: The last fit, with all of them: a Calibration or an AircraftFit.
+        steps: In the order in which they were added.
+        end: Why no more was: "nothing_found", "most_added", "withheld" (of what passes nothing is
+            to be added, as real fits have it), "fit_failed" (that of the next one).
+        reason: The same in a sentence.
+        diagnosis: Of the last fit.
+    """
+
+    _shown = ("name", "p_adjusted", "partial_f", "predicted_drop", "found_drop", "rmse_after")
+
+    def __init__(self, fitted: Fitted, core: _core.SteppedCalibration | _states.SteppedFit) -> None:
+        told = json.loads(core.json)["stepwise"]
+        names = {field.name for field in fields(StepwiseStep)}
+        self.fitted = fitted
+        self.steps = [
+            StepwiseStep(**{name: value for name, value in step.items() if name in names})
+            for step in told["steps"]
+        ]
+        self.end: str = told["end"]
+        self.reason: str = told["reason"]
+        self.diagnosis = Diagnosis._of(core.last)
+        self.json: str = core.json
+        self.explained: str = core.explained
+        self._text: str = core.text
+
+    @property
+    def text(self) -> str:
+        """What print() shows: the app's page."""
+        return self._text
+
+    @property
+    def effects(self) -> list[str]:
+        """What was added, in order."""
+        return [step.effect for step in self.steps]
+
+    def to_json(self) -> str:
+        """The JSON that the app's diagnose --auto writes with -o: the fit, with the steps."""
+        return self.json
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary; None where a number is undefined."""
+        read: dict[str, Any] = json.loads(self.json)
+        return read
+
+    def _summary(self) -> str:
+        return f"{', '.join(self.effects) or 'nothing'} added; {self.reason}"
+
+    def _rows(self) -> list[Row]:
+        return [{"name": step.effect, **asdict(step)} for step in self.steps]
+
+
+def check_choices(simulations: int, seed: int, *, auto: bool, most: int | None) -> None:
+    """Raises Error for choices of diagnose() that can't be, or not together."""
+    if simulations < 2 or seed < 0:
+        raise _core.Error("simulations must be at least 2, and seed not negative")
+    if most is not None and not auto:
+        raise _core.Error("most is of auto=True; give both, or leave it out")
+    if most is not None and most < 0:
+        raise _core.Error(f"most {most} is negative; give at least 1, or leave it out for no limit")
