@@ -29,6 +29,12 @@ void DiagnoseArguments::add_to(CLI::App& diagnose) {
   diagnose.add_option_function<std::string>("--most", read, "of --auto: at most so many effects")
       ->type_name("N");
   diagnose
+      .add_option("--only", only_,
+                  "the candidates, in place of those that are known; may be repeated")
+      ->type_name("E")
+      ->take_all()
+      ->allow_extra_args(false);
+  diagnose
       .add_option("--pse", pse_,
                   "what bounds the noise in PSE: sidpac, half the variance of what is measured, or "
                   "classic, all of it")
@@ -40,6 +46,7 @@ StepwiseOptions DiagnoseArguments::resolve() const {
   if (most_ && !adds_) throw Error("--most is of --auto; give both, or leave it out");
   StepwiseOptions options;
   options.most = most_.value_or(options.most);
+  options.diagnosis.only = only_;
   options.diagnosis.pse = choice_of<PseBound>("--pse", pse_);
   return options;
 }

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sepcal/flight/stepwise.hpp"
 
@@ -27,6 +28,7 @@ class DiagnoseArguments {
  private:
   bool adds_ = false;
   std::optional<std::size_t> most_;
+  std::vector<std::string> only_;
   std::string pse_ = std::string(to_string(PseBound::sidpac));
 };
 

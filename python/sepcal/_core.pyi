@@ -1348,6 +1348,7 @@ class Calibration:
         arg3: typing.SupportsInt | typing.SupportsIndex,
         arg4: typing.SupportsInt | typing.SupportsIndex,
         arg5: str,
+        arg6: collections.abc.Sequence[str],
     ) -> Diagnosed: ...
     def diagnose_stepwise(
         self,
@@ -1357,6 +1358,7 @@ class Calibration:
         arg3: typing.SupportsInt | typing.SupportsIndex,
         arg4: typing.SupportsInt | typing.SupportsIndex,
         arg5: str,
+        arg6: collections.abc.Sequence[str],
     ) -> SteppedCalibration: ...
     def intervals(
         self,

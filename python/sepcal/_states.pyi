@@ -148,6 +148,7 @@ class Fit:
         arg1: typing.SupportsInt | typing.SupportsIndex,
         arg2: typing.SupportsInt | typing.SupportsIndex,
         arg3: str,
+        arg4: collections.abc.Sequence[str],
     ) -> sepcal._core.Diagnosed: ...
     def diagnose_stepwise(
         self,
@@ -156,6 +157,7 @@ class Fit:
         arg2: typing.SupportsInt | typing.SupportsIndex,
         arg3: typing.SupportsInt | typing.SupportsIndex,
         arg4: str,
+        arg5: collections.abc.Sequence[str],
     ) -> SteppedFit: ...
     def save(self, arg0: str) -> None: ...
     def smooth(

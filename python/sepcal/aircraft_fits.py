@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
 
 from sepcal import _core
@@ -15,7 +15,7 @@ from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight, to_flight
 from sepcal.geometry import Aircraft
-from sepcal.options import FitOptions, spelled_out, to_core
+from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import name_effects
 from sepcal.pages import Page
 from sepcal.results import Fit
@@ -108,6 +108,7 @@ class AircraftFit(Fit):
         flight: Flight | None = None,
         *,
         auto: Literal[False] = False,
+        only: Sequence[str] = (),
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
@@ -120,6 +121,7 @@ class AircraftFit(Fit):
         *,
         auto: Literal[True],
         most: int | None = None,
+        only: Sequence[str] = (),
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
@@ -131,6 +133,7 @@ class AircraftFit(Fit):
         *,
         auto: bool = False,
         most: int | None = None,
+        only: Sequence[str] = (),
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
@@ -144,6 +147,7 @@ class AircraftFit(Fit):
             flight: By default the fitted one.
             auto: Adds what is advised, fits and asks again, until nothing passes.
             most: Of auto: at most so many effects [no limit].
+            only: The candidates, in place of those that are known.
             simulations: Of the noise, that calibrate a test.
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
@@ -153,13 +157,15 @@ class AircraftFit(Fit):
             A Diagnosis; with auto a Stepwise, whose `fitted` has what was added.
 
         Raises:
-            Error: Bad input, as in fit(); another model than Aero; most below 1 or without auto.
+            Error: Bad input, as in fit(); another model than Aero; most below 1 or without auto; a
+                name in only that is no regressor.
         """
         chosen = self._or_fitted(flight, "diagnose(")
         check_choices(simulations, seed, auto=auto, most=most)
+        names = to_names("only", only)
         if not auto:
-            return Diagnosis._of(self.core.diagnose(chosen._core, simulations, seed, pse))
-        stepped = self.core.diagnose_stepwise(chosen._core, most, simulations, seed, pse)
+            return Diagnosis._of(self.core.diagnose(chosen._core, simulations, seed, pse, names))
+        stepped = self.core.diagnose_stepwise(chosen._core, most, simulations, seed, pse, names)
         return Stepwise(AircraftFit(stepped.fitted, chosen), stepped)
 
     def add(self, effect: str, flight: Flight | None = None) -> AircraftFit:

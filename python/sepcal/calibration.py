@@ -124,6 +124,7 @@ class Calibration(Fit):
         effects: Sequence[Effect] = (),
         inject: Mapping[str, float | Sequence[float]] | None = None,
         auto: Literal[False] = False,
+        only: Sequence[str] = (),
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
@@ -137,6 +138,7 @@ class Calibration(Fit):
         effects: Sequence[Effect] = (),
         auto: Literal[True],
         most: int | None = None,
+        only: Sequence[str] = (),
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
@@ -150,6 +152,7 @@ class Calibration(Fit):
         inject: Mapping[str, float | Sequence[float]] | None = None,
         auto: bool = False,
         most: int | None = None,
+        only: Sequence[str] = (),
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
@@ -163,6 +166,7 @@ class Calibration(Fit):
                 measurements first, to see whether it would have been found.
             auto: Adds what is advised, fits and asks again, until nothing passes.
             most: Of auto: at most so many effects [no limit].
+            only: The candidates, in place of those that are known.
             simulations: Of the noise, that calibrate a test.
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
@@ -173,7 +177,7 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, as in fit(); an effect to inject that the flight can't make, or beside
-                auto; most below 1 or without auto.
+                auto; most below 1 or without auto; one of only that the flight can't make.
         """
         chosen = self._or_fitted(flight, "diagnose(")
         hidden = [(name, np.ravel(size).tolist()) for name, size in (inject or {}).items()]
@@ -182,12 +186,15 @@ class Calibration(Fit):
         if hidden and auto:
             raise _core.Error("inject and auto exclude each other: it is not in the flight")
         check_choices(simulations, seed, auto=auto, most=most)
+        names = to_names("only", only)
         own = to_core_effects(effects)
         if not auto:
             injected = hidden[0] if hidden else None
-            found = self.core.diagnose(chosen._core, own, injected, simulations, seed, pse)
+            found = self.core.diagnose(chosen._core, own, injected, simulations, seed, pse, names)
             return Diagnosis._of(found)
-        stepped = self.core.diagnose_stepwise(chosen._core, own, most, simulations, seed, pse)
+        stepped = self.core.diagnose_stepwise(
+            chosen._core, own, most, simulations, seed, pse, names
+        )
         return Stepwise(Calibration(stepped.fitted, chosen, [*self.own_effects, *effects]), stepped)
 
     def add(

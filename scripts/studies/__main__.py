@@ -21,6 +21,7 @@ from studies import (
     flight_path,
     hidden_effects,
     intervals,
+    model_structure,
     monte_carlo,
     native,
     trust,
@@ -35,6 +36,7 @@ STUDIES: tuple[Study, ...] = (
     effect_coverage.STUDY,
     field_strength.STUDY,
     flight_path.STUDY,
+    model_structure.STUDY,
     *native.STUDIES,
 )
 OUTSIDE_LIMITS = 1

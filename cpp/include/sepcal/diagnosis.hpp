@@ -199,6 +199,9 @@ struct DiagnosisOptions {
   int simulations = 80;                     // of the noise, that calibrate a test
   std::vector<std::string> preferred = {};  // come first among those as likely
   PseBound pse = PseBound::sidpac;
+  /// The caller's candidates, where there are any, in place of a catalogue's: one that the record
+  /// can't make is an error and not left out.
+  std::vector<std::string> only = {};
   std::size_t others = 0;  // candidates that are asked elsewhere at once: Holm counts them
   std::uint64_t seed = 0;
   int threads = 0;
@@ -229,8 +232,8 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads = 0);
 
 /// Tries `candidates`, by their names or as "E1+E2". Those that the record can't make (a channel
-/// that isn't there or is constant) are left out. Throws Error for a fit whose parameters are not
-/// those of its model.
+/// that isn't there or is constant) are left out, or are errors where options.only has names.
+/// Throws Error for a fit whose parameters are not those of its model.
 Diagnosis diagnose(const DiagnosedFit& fitted, const std::vector<std::string>& candidates,
                    const DiagnosisOptions& options = {});
 

@@ -114,22 +114,25 @@ std::pair<Tracked, std::vector<std::string>> track_on(
 }
 
 DiagnosisOptions options_of(const AircraftFit& fitted, int simulations, std::uint64_t seed,
-                            const std::string& pse) {
-  return diagnosis_options(fitted.options.calibration.fit.threads, simulations, seed, pse);
+                            const std::string& pse, const std::vector<std::string>& only) {
+  return diagnosis_options(fitted.options.calibration.fit.threads, simulations, seed, pse, only);
 }
 
 Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight, int simulations,
-                      std::uint64_t seed, const std::string& pse) {
+                      std::uint64_t seed, const std::string& pse,
+                      const std::vector<std::string>& only) {
   const Released released;
-  return diagnosed(diagnose_aircraft(fitted, flight, options_of(fitted, simulations, seed, pse)));
+  return diagnosed(
+      diagnose_aircraft(fitted, flight, options_of(fitted, simulations, seed, pse, only)));
 }
 
 Stepped<AircraftFit> diagnose_stepwise_on(const AircraftFit& fitted, const Flight& flight,
                                           std::optional<std::size_t> most, int simulations,
-                                          std::uint64_t seed, const std::string& pse) {
+                                          std::uint64_t seed, const std::string& pse,
+                                          const std::vector<std::string>& only) {
   const Released released;
   StepwiseAircraft result = diagnose_aircraft_stepwise(
-      fitted, flight, stepwise_options(most, options_of(fitted, simulations, seed, pse)));
+      fitted, flight, stepwise_options(most, options_of(fitted, simulations, seed, pse, only)));
   std::string json = to_json(result);
   Page page = page_of(result);
   return {std::move(result.fitted), diagnosed(result.course.last), std::move(json),

@@ -110,10 +110,11 @@ Compared compare_flight(const Calibration& calibration, const Flight& flight,
 Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
                       const std::vector<PythonEffect>& own,
                       const std::optional<std::pair<std::string, std::vector<double>>>& injected,
-                      int simulations, std::uint64_t seed, const std::string& pse) {
+                      int simulations, std::uint64_t seed, const std::string& pse,
+                      const std::vector<std::string>& only) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
   const DiagnosisOptions options =
-      diagnosis_options(calibration.options.fit.threads, simulations, seed, pse);
+      diagnosis_options(calibration.options.fit.threads, simulations, seed, pse, only);
   const Released released;
   need_own_effects(calibration);
   return diagnosed(injected ? diagnose_with({injected->first, injected->second}, calibration,
@@ -124,10 +125,11 @@ Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
 Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const Flight& flight,
                                           const std::vector<PythonEffect>& own,
                                           std::optional<std::size_t> most, int simulations,
-                                          std::uint64_t seed, const std::string& pse) {
+                                          std::uint64_t seed, const std::string& pse,
+                                          const std::vector<std::string>& only) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
   const StepwiseOptions options = stepwise_options(
-      most, diagnosis_options(calibration.options.fit.threads, simulations, seed, pse));
+      most, diagnosis_options(calibration.options.fit.threads, simulations, seed, pse, only));
   const Released released;
   need_own_effects(calibration);
   StepwiseCalibration result = diagnose_stepwise(calibration, flight, makers, options);

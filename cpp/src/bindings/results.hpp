@@ -96,12 +96,13 @@ inline Diagnosed diagnosed(const FlightDiagnosis& diagnosis) {
 
 /// The engine's options from those that the front takes.
 inline DiagnosisOptions diagnosis_options(int threads, int simulations, std::uint64_t seed,
-                                          const std::string& pse) {
+                                          const std::string& pse, std::vector<std::string> only) {
   DiagnosisOptions options;
   options.threads = threads;
   options.simulations = simulations;
   options.seed = seed;
   options.pse = choice_of<PseBound>("pse", pse);
+  options.only = std::move(only);
   return options;
 }
 

@@ -199,6 +199,9 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   result_.residual = describe_residual(bench_.null());
   result_.rmse = total_rmse(room.fit().layout, room.fit().residual);
   result_.floor = noise_floor(room.fit().layout, bench_.null().best.noise);
+  if (!options_.only.empty()) {
+    for (const std::string& name : names) bench_.room().make(name);  // or the reason is thrown
+  }
   trials_ = bench_.make(names);
   bench_.screen_all(trials_);
   bench_.test_best(trials_, most_tested);

@@ -52,18 +52,25 @@ std::string coefficients_in(const std::vector<AeroEquation>& equations) {
 
 }  // namespace
 
+std::size_t find_equation(const std::string& effect, const std::vector<AeroEquation>& equations,
+                          AircraftModel model) {
+  const std::size_t open = effect.find('[');
+  const auto equation =
+      std::ranges::find(equations, effect.substr(0, open), &AeroEquation::coefficient);
+  if (open == std::string::npos || !effect.ends_with(']') || equation == equations.end()) {
+    refuse_effect(effect, open, model, equations);
+  }
+  return static_cast<std::size_t>(equation - equations.begin());
+}
+
 std::vector<AeroEquation> with_regressors(std::vector<AeroEquation> equations,
                                           const AircraftOptions& options) {
   for (const EffectSetting& effect : options.calibration.effects) {
     const std::string& name = effect.name;
-    const std::size_t open = name.find('[');
-    const auto equation =
-        std::ranges::find(equations, name.substr(0, open), &AeroEquation::coefficient);
-    if (open == std::string::npos || !name.ends_with(']') || equation == equations.end()) {
-      refuse_effect(name, open, options.model, equations);
-    }
+    const std::size_t equation = find_equation(name, equations, options.model);
     if (is_spline(name)) continue;
-    equation->regressors.push_back(name.substr(open + 1, name.size() - open - 2));
+    const std::size_t open = name.find('[');
+    equations[equation].regressors.push_back(name.substr(open + 1, name.size() - open - 2));
   }
   check_equations(equations);
   return equations;
@@ -108,6 +115,12 @@ EffectKit coefficient_kit(const std::vector<AeroEquation>& equations) {
   return kit;
 }
 
+bool has_regressor(const AeroEquation& equation, const std::string& effect) {
+  return std::ranges::any_of(equation.regressors, [&](const std::string& regressor) {
+    return effect == fmt::format("{}[{}]", equation.coefficient, regressor);
+  });
+}
+
 std::vector<std::string> list_regressors(const std::vector<AeroEquation>& equations,
                                          const Record& record, const Flight& flight) {
   std::vector<std::string> channels{"time"};
@@ -117,9 +130,8 @@ std::vector<std::string> list_regressors(const std::vector<AeroEquation>& equati
   std::vector<std::string> names;
   for (const AeroEquation& equation : equations) {
     const auto offer = [&](const std::string& regressor) {
-      const auto& known = equation.regressors;
-      if (std::ranges::find(known, regressor) != known.end()) return;
-      names.push_back(fmt::format("{}[{}]", equation.coefficient, regressor));
+      const std::string name = fmt::format("{}[{}]", equation.coefficient, regressor);
+      if (!has_regressor(equation, name)) names.push_back(name);
     };
     for (const std::string& regressor : usual_regressors(equation.coefficient)) offer(regressor);
     for (const std::string& channel : channels) offer(channel);

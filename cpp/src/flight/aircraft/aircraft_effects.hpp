@@ -12,6 +12,11 @@
 
 namespace sepcal::aircraft_log {
 
+/// The place of the effect's coefficient. Throws Error, which says how an effect is written and
+/// what coefficients there are, for anything else.
+std::size_t find_equation(const std::string& effect, const std::vector<AeroEquation>& equations,
+                          AircraftModel model);
+
 /// The equations with those of the effects that are products. Throws Error for an effect that is no
 /// regressor of one of these coefficients, or that stands there already.
 std::vector<AeroEquation> with_regressors(std::vector<AeroEquation> equations,
@@ -29,6 +34,8 @@ std::vector<EffectSetting> with_knots(std::vector<EffectSetting> effects,
 
 /// A port for every coefficient, which its equation need not have a constant for.
 EffectKit coefficient_kit(const std::vector<AeroEquation>& equations);
+
+bool has_regressor(const AeroEquation& equation, const std::string& effect);
 
 /// What these equations may lack, by name: of each coefficient the regressors that
 /// usual_regressors() has and every other numeric channel of the log.

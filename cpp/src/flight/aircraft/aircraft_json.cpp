@@ -2,6 +2,7 @@
 // Fits of an aircraft on disc.
 #include <fmt/format.h>
 
+#include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/files/text_file.hpp"
 #include "flight/json/fit_json.hpp"
@@ -181,8 +182,13 @@ AircraftFit read_aircraft_fit(const std::string& file) {
 }
 
 std::string aircraft_effects_json() {
-  return text_of(
-      {{"schema_version", schema_version}, {"equations", write_equations(standard_equations())}});
+  Json tried = Json::object();
+  for (const std::string_view coefficient : coefficient_names) {
+    tried[std::string(coefficient)] = usual_regressors(std::string(coefficient));
+  }
+  return text_of({{"schema_version", schema_version},
+                  {"equations", write_equations(standard_equations())},
+                  {"tried_by_diagnose", tried}});
 }
 
 }  // namespace sepcal

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/text/fit_text.hpp"
 #include "sepcal/flight/aircraft.hpp"
 
@@ -91,6 +92,11 @@ std::string aircraft_effects_text() {
   std::string text = "what each coefficient is a sum of\n";
   for (const AeroEquation& equation : standard_equations()) {
     text += fmt::format("  {}  {}\n", equation.coefficient, fmt::join(equation.regressors, ", "));
+  }
+  text += "\nwhat diagnose tries beside these and every other channel of the log\n";
+  for (const char* const like : {"Cm", "Cn"}) {
+    text += fmt::format("  {}  {}\n", like == std::string_view("Cm") ? "CX CZ Cm" : "CY Cl Cn",
+                        fmt::join(aircraft_log::usual_regressors(like), ", "));
   }
   return text +
          "\n--effect adds a regressor: a product of powers of alpha, beta, p_hat, q_hat, r_hat,\n"

@@ -170,14 +170,28 @@ Diagnosis diagnose_coefficients(const AircraftFit& fitted, const Flight& flight,
         "{}: one row in {} is asked, as the rates' differentiation ties those between together",
         fmt::join(moments, ", "), apart));
   }
+  for (const std::string& name : options.only)
+    find_equation(name, laid.equations, AircraftModel::aero);
   const auto candidates_of = [&](const AeroEquation& equation) {
-    return list_regressors({equation}, laid.record, flight);
+    if (options.only.empty()) return list_regressors({equation}, laid.record, flight);
+    std::vector<std::string> own = options.only;
+    std::erase_if(own, [&](const std::string& name) {
+      return !belongs_to(equation.coefficient, name) || has_regressor(equation, name) ||
+             std::ranges::find(all.effects, name, &EffectSetting::name) != all.effects.end();
+    });
+    return own;
+  };
+  const auto is_asked = [&](const AeroEquation& equation) {
+    return options.only.empty() || std::ranges::any_of(options.only, [&](const std::string& name) {
+             return belongs_to(equation.coefficient, name);
+           });
   };
   std::size_t asked = 0;
   for (const AeroEquation& equation : laid.equations) asked += candidates_of(equation).size();
   std::vector<Diagnosis> parts;
   for (const AeroEquation& equation : laid.equations) {
     const std::vector<std::string> candidates = candidates_of(equation);
+    if (!is_asked(equation)) continue;
     DiagnosisOptions own = options;
     own.others = asked - candidates.size();
     own.preferred = products_among(candidates);

@@ -36,11 +36,12 @@ OwnEffects all_own(const Calibration& calibration, const OwnEffects& own) {
   return all;
 }
 
-/// Those of the catalogue that the calibration doesn't have yet.
+/// Those of the catalogue, or of `only`, that the calibration doesn't have yet.
 std::vector<std::string> candidates_for(const catalogue::EffectTable& table,
-                                        const DiagnosedFit& fitted, const Flight& flight) {
+                                        const DiagnosedFit& fitted, const Flight& flight,
+                                        const std::vector<std::string>& only) {
   std::vector<std::string> names =
-      catalogue::list_candidates(table, fitted.kit, fitted.record, flight);
+      only.empty() ? catalogue::list_candidates(table, fitted.kit, fitted.record, flight) : only;
   std::erase_if(names, [&](const std::string& name) {
     return std::ranges::find(fitted.effects, name, &EffectSetting::name) != fitted.effects.end();
   });
@@ -69,7 +70,8 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   note_other_flight(calibration, flight, result.notes);
   DiagnosisOptions preferring = options;
   preferring.preferred = catalogued(result.model);
-  result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight), preferring);
+  result.diagnosis =
+      diagnose(fitted, candidates_for(table, fitted, flight, options.only), preferring);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(catalogue::describe_effect(table, effect.name));
   }

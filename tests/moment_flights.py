@@ -32,12 +32,13 @@ def swinging(draws: np.random.Generator, rows: int, size: float, slowest: float)
 
 
 def maneuver(seed: int, rows: int) -> dict[str, Column]:
-    """alpha, q_hat and elevator of one that excites them, by their names in an equation."""
+    """What an equation may have, of a maneuver that excites all of it."""
     draws = np.random.default_rng(seed)
     return {
         "alpha": 0.08 + swinging(draws, rows, 0.06, 0.1),
         "q_hat": swinging(draws, rows, 0.002, 0.2),
         "elevator": -0.03 + swinging(draws, rows, 0.05, 0.15),
+        "throttle": 0.5 + swinging(draws, rows, 0.15, 0.12),
     }
 
 
@@ -55,7 +56,7 @@ def pitching(channels: Mapping[str, Column], terms: Mapping[str, float]) -> Colu
     return sum(size * regressor(name, channels) for name, size in terms.items())
 
 
-def fly(channels: Mapping[str, Column], Cm: Column, **more: Column) -> sepcal.Flight:
+def fly(channels: Mapping[str, Column], Cm: Column) -> sepcal.Flight:
     """The log of a flight with this Cm; `channels` as they are read."""
     rows = Cm.size
     zero = np.zeros(rows)
@@ -69,6 +70,6 @@ def fly(channels: Mapping[str, Column], Cm: Column, **more: Column) -> sepcal.Fl
             **{"pdot_radps2": zero, "qdot_radps2": qdot, "rdot_radps2": zero},
             **{"airspeed_mps": zero + SPEED, "beta_rad": zero, "qbar_pa": zero + QBAR},
             **{"alpha_rad": channels["alpha"], "elevator_rad": channels["elevator"]},
-            **more,
+            "throttle_1": channels["throttle"],
         }
     )
