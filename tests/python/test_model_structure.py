@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-import moment_flights as aero
 import sepcal
+from studies import moment_flights as aero
 
 ROWS = 500
 STANDARD = ("1", "alpha", "q_hat", "elevator")

@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import apps
-import moment_flights as aero
 import sepcal
+from studies import moment_flights as aero
 
 MAGNETOMETER = sepcal.Magnetometer(field=(19.7, -1.4, 49.4))
 HIDDEN = {"bias[current_a]": 0.06, "scale[temp_degc]": 0.003}

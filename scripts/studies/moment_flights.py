@@ -16,9 +16,8 @@ import sepcal
 
 Column = NDArray[np.float64]
 
-AIRCRAFT = sepcal.Aircraft(
-    area=16.2, chord=1.49, span=10.9, mass=1050.0, inertia=(1285.0, 1825.0, 2667.0, 0.0)
-)
+INERTIA = 1285.0, 1825.0, 2667.0, 0.0  # Ix, Iy, Iz, Ixz [kg m^2]
+AIRCRAFT = sepcal.Aircraft(area=16.2, chord=1.49, span=10.9, mass=1050.0, inertia=INERTIA)
 RATE, QBAR, SPEED = 50.0, 1500.0, 50.0  # Hz, Pa, m/s
 
 
@@ -28,7 +27,8 @@ def swinging(draws: np.random.Generator, rows: int, size: float, slowest: float)
     frequencies = np.geomspace(slowest, 1.5, 5) * draws.uniform(0.9, 1.1, 5)
     phases = draws.uniform(0, 2 * np.pi, 5)
     sines = np.sin(2 * np.pi * np.outer(time, frequencies) + phases)
-    return size * np.sqrt(2 / 5) * sines.sum(axis=1)
+    swings: Column = size * np.sqrt(2 / 5) * sines.sum(axis=1)
+    return swings
 
 
 def maneuver(seed: int, rows: int) -> dict[str, Column]:
@@ -53,7 +53,10 @@ def regressor(name: str, channels: Mapping[str, Column]) -> Column:
 
 def pitching(channels: Mapping[str, Column], terms: Mapping[str, float]) -> Column:
     """Cm of these terms."""
-    return sum(size * regressor(name, channels) for name, size in terms.items())
+    Cm = np.zeros(next(iter(channels.values())).size)
+    for name, size in terms.items():
+        Cm += size * regressor(name, channels)
+    return Cm
 
 
 def fly(channels: Mapping[str, Column], Cm: Column) -> sepcal.Flight:
@@ -61,7 +64,7 @@ def fly(channels: Mapping[str, Column], Cm: Column) -> sepcal.Flight:
     rows = Cm.size
     zero = np.zeros(rows)
     q = channels["q_hat"] * 2.0 * SPEED / AIRCRAFT.chord
-    qdot = Cm * QBAR * AIRCRAFT.area * AIRCRAFT.chord / AIRCRAFT.inertia[1]
+    qdot = Cm * QBAR * AIRCRAFT.area * AIRCRAFT.chord / INERTIA[1]
     return sepcal.Flight(
         {
             "time_s": np.arange(rows) / RATE,
