@@ -238,8 +238,8 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
 
 
 def _limits(kind: Kind, score: Score) -> list[Finding]:
-    """Of diagnose: a false term in four data sets and two more, a third of the terms."""
-    most, least = 2 + score.cases // 4, TRUE_TERMS * score.cases // 3
+    """Of diagnose: a false term in ten data sets and two more, half of the terms."""
+    most, least = 2 + score.cases // 10, TRUE_TERMS * score.cases // 2
     return [
         Finding(
             f"{kind.name}: diagnose adds false terms",

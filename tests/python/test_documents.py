@@ -22,6 +22,7 @@ AIRCRAFT = (
     "fit",
     "two-step",
     "compare",
+    "diagnose",
     "add",
     "apply",
     "track",
