@@ -111,8 +111,12 @@ std::string_view FlownAircraft::label(double time) const {
 }
 
 std::vector<std::string> FlownAircraft::drivers() {
-  return {"time",  "alpha",    "beta",    "p_hat",  "q_hat",
-          "r_hat", "elevator", "aileron", "rudder", "airspeed"};
+  return {"time",     "alpha",   "beta",   "p_hat",    "q_hat",        "r_hat",
+          "elevator", "aileron", "rudder", "airspeed", "imu_temp_degc"};
+}
+
+double FlownAircraft::unit_temperature(double time) {
+  return 28.0 + 9.0 * (1.0 - std::exp(-time / 12.0)) + 2.5 * std::sin(2.0 * pi * time / 17.0);
 }
 
 Moment FlownAircraft::moment(const AircraftTruth& truth, const Flown& at) {
@@ -120,10 +124,11 @@ Moment FlownAircraft::moment(const AircraftTruth& truth, const Flown& at) {
   const AircraftGeometry& g = truth.geometry;
   const bool twice = g.rate_reference == RateReference::chord_per_twice_speed;
   const Vector3d& w = at.state.rates;
-  return {at.time,
-          {at.time, std::atan2(at.air[2], at.air[0]), std::asin(at.air[1] / V),
-           w[0] * g.span / (2.0 * V), w[1] * g.chord / (twice ? 2.0 * V : V),
-           w[2] * g.span / (2.0 * V), at.controls[0], at.controls[1], at.controls[2], V}};
+  return {
+      at.time,
+      {at.time, std::atan2(at.air[2], at.air[0]), std::asin(at.air[1] / V),
+       w[0] * g.span / (2.0 * V), w[1] * g.chord / (twice ? 2.0 * V : V), w[2] * g.span / (2.0 * V),
+       at.controls[0], at.controls[1], at.controls[2], V, unit_temperature(at.time)}};
 }
 
 /// Forces by what the air does to it, motion by Newton and Euler in a frame that does not turn.
@@ -136,6 +141,8 @@ FlownAircraft::Rates FlownAircraft::rates_of(double time, const FlightState& sta
   const Vector3d wind(of("w_n"), of("w_e"), of("w_d"));
   Flown flown{time, state, {}, {}, {}, controls, standard_air(state.altitude).density};
   flown.air = body_to_ned.transpose() * (state.velocity - wind) - gust;
+  const Vector3d change = hidden_.sum_vector("wind", moment(truth_, flown));
+  flown.air -= body_to_ned.transpose() * change;
   const Moment now = moment(truth_, flown);
   const double alpha = now.values[1];
   Eigen::Vector<double, n_regressors> regressors;

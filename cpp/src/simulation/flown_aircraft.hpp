@@ -48,6 +48,9 @@ class FlownAircraft {
   static Moment moment(const AircraftTruth& truth, const Flown& at);
   static std::vector<std::string> drivers();
 
+  /// Of the inertial unit, which warms up under a heater that goes on and off [degC].
+  static double unit_temperature(double time);
+
  private:
   struct Rates {
     FlightState change;

@@ -27,10 +27,15 @@ constexpr KnownEffect aircraft_effects[] = {
     {"Cn", "Cn", "*", "s"},
     {"accel_bias", "accel_bias", "*", "x y z"},
     {"gyro_bias", "gyro_bias", "*", "x y z"},
+    {"accel_scale", "accel_scale", "*", "x y z"},
+    {"gyro_scale", "gyro_scale", "*", "x y z"},
+    {"airspeed_scale", "airspeed_scale", "*", "s"},
+    {"wind", "wind", "*", "n e d"},
     {"imu_late", "imu_late", "", "tau"},
     {"alpha_lag", "alpha_lag", "", "tau"},
 };
-constexpr HiddenCatalogue aircraft_catalogue{"aircraft", aircraft_effects, {}};
+constexpr Alias aliases[] = {{"wind_drift", "wind[time]"}};
+constexpr HiddenCatalogue aircraft_catalogue{"aircraft", aircraft_effects, aliases};
 
 constexpr std::array<const char*, 15> sensor_channels{"ax",    "ay",       "az",    "p",    "q",
                                                       "r",     "airspeed", "alpha", "beta", "roll",
@@ -91,9 +96,12 @@ Eigen::VectorXd read_sensors(const AircraftTruth& truth, const HiddenEffects& hi
   const Eigen::Vector4d e = now.state.quaternion.normalized();
   const Eigen::Matrix3d R = Eigen::Quaterniond(e[0], e[1], e[2], e[3]).toRotationMatrix();
   Eigen::VectorXd read(15);
-  read.head<3>() = acceleration + hidden.sum_vector("accel_bias", moment);
-  read.segment<3>(3) = gyro + hidden.sum_vector("gyro_bias", moment);
-  read[6] = (1.0 + of("lambda_v")) * air.norm() + of("b_v");
+  const auto scaled = [&](const char* effect, const Vector3d& reading) {
+    return Vector3d(reading + hidden.sum_vector(effect, moment).cwiseProduct(reading));
+  };
+  read.head<3>() = scaled("accel_scale", acceleration) + hidden.sum_vector("accel_bias", moment);
+  read.segment<3>(3) = scaled("gyro_scale", gyro) + hidden.sum_vector("gyro_bias", moment);
+  read[6] = (1.0 + of("lambda_v") + hidden.sum("airspeed_scale", moment)) * air.norm() + of("b_v");
   read[7] = (1.0 + of("lambda_alpha")) * std::atan2(air[2], air[0]) + of("b_alpha");
   read[8] = (1.0 + of("lambda_beta")) * std::asin(air[1] / air.norm()) + of("b_beta");
   read[9] = std::atan2(R(2, 1), R(2, 2));
@@ -105,10 +113,10 @@ Eigen::VectorXd read_sensors(const AircraftTruth& truth, const HiddenEffects& hi
 
 SimulatedFlight open_aircraft(std::size_t rows) {
   return open_flight(
-      {"time_s",     "ax_mps2",      "ay_mps2",   "az_mps2",   "p_radps",      "q_radps",
-       "r_radps",    "airspeed_mps", "alpha_rad", "beta_rad",  "roll_rad",     "pitch_rad",
-       "yaw_rad",    "vn_mps",       "ve_mps",    "vd_mps",    "elevator_rad", "aileron_rad",
-       "rudder_rad", "thrust_n",     "rho_kgpm3", "altitude_m"},
+      {"time_s",     "ax_mps2",      "ay_mps2",   "az_mps2",    "p_radps",      "q_radps",
+       "r_radps",    "airspeed_mps", "alpha_rad", "beta_rad",   "roll_rad",     "pitch_rad",
+       "yaw_rad",    "vn_mps",       "ve_mps",    "vd_mps",     "elevator_rad", "aileron_rad",
+       "rudder_rad", "thrust_n",     "rho_kgpm3", "altitude_m", "imu_temp_degc"},
       rows);
 }
 
@@ -136,7 +144,8 @@ void append(SimulatedFlight& flight, const FlownAircraft& aircraft, const Flown&
               now.controls[2],
               aircraft.thrust(),
               now.rho,
-              now.state.altitude});
+              now.state.altitude,
+              FlownAircraft::unit_temperature(now.time)});
 }
 
 }  // namespace

@@ -57,13 +57,15 @@ struct AircraftTruth {
 /// and rudder, a pilot who levels the wings a little; with Excitation::poor the elevator's alone, a
 /// fifth as large. RK4, steps of at most 2.5 ms. Columns: time_s, ax_mps2 ... az_mps2, p_radps ...
 /// r_radps, airspeed_mps, alpha_rad, beta_rad, roll_rad, pitch_rad, yaw_rad, vn_mps ... vd_mps,
-/// elevator_rad, aileron_rad, rudder_rad, thrust_n, rho_kgpm3, altitude_m; the last six are exact,
-/// and vn ve vd are the inertial unit's. Hidden effects: CX[DRIVER] ... Cn[DRIVER],
-/// accel_bias[DRIVER] (x y z), gyro_bias[DRIVER] (x y z), imu_late and alpha_lag (tau, s); drivers
-/// are of time, alpha, beta, p_hat, q_hat, r_hat, elevator, aileron, rudder, airspeed, maneuver.
-/// SimulationOptions::noise colours the readings' noise. Throws Error as simulate_five_hole() does,
-/// for an aircraft that can't be (check_geometry()) or that finds no trim, and for one that tumbles
-/// or leaves the air that is known.
+/// elevator_rad, aileron_rad, rudder_rad, thrust_n, rho_kgpm3, altitude_m, imu_temp_degc; the last
+/// seven are exact, and vn ve vd are the inertial unit's. Hidden effects: CX[DRIVER] ...
+/// Cn[DRIVER], what is added to the inertial unit's readings, accel_bias[DRIVER] and
+/// gyro_bias[DRIVER] (x y z), shares of them, accel_scale[DRIVER] and gyro_scale[DRIVER] (x y z),
+/// and of the airspeed's, airspeed_scale[DRIVER]; wind[DRIVER] (n e d); imu_late and alpha_lag
+/// (tau, s); drivers are of time, alpha, beta, p_hat, q_hat, r_hat, elevator, aileron, rudder,
+/// airspeed, imu_temp_degc, maneuver. SimulationOptions::noise colours the readings' noise. Throws
+/// Error as simulate_five_hole() does, for an aircraft that can't be (check_geometry()) or that
+/// finds no trim, and for one that tumbles or leaves the air that is known.
 SimulatedFlight simulate_aircraft(const AircraftTruth& truth = {},
                                   const SimulationOptions& options = {});
 
