@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/name_list.hpp"
 #include "base/sentences.hpp"
 #include "base/short_number.hpp"
 #include "estimation/block_errors.hpp"
@@ -201,6 +202,7 @@ class FilterError {
     }
     sentences.push_back(result.identifiability.message());
     std::ranges::move(describe_floors(at), std::back_inserter(sentences));
+    std::ranges::move(describe_noises(result), std::back_inserter(sentences));
     std::ranges::move(describe_blocks(inside, white, blocks), std::back_inserter(sentences));
     std::ranges::move(judge_priors(result.parameters, options()), std::back_inserter(sentences));
     result.message = base::join_sentences(sentences);
@@ -229,35 +231,39 @@ class FilterError {
     return scale.asDiagonal() * white * scale.asDiagonal();
   }
 
+  /// Of the model's parameters, whatever the noises are: those are told by describe_noises().
   /// Noises at their floors take no part: nothing there depends on them.
   Identifiability judge(const Scored& at) const {
     if (!std::isfinite(at.cost)) return {};
-    std::vector<Index> columns;
+    std::vector<Index> columns;  // the noises first, which the parameters' then stand beyond
+    std::vector<Index> own;
     std::vector<std::string> names;
     std::vector<Variable> variables;
     std::vector<bool> at_bound;
     for (std::size_t i = 0; i < free().size(); ++i) {
       const Index place = free()[i];
-      if (place >= n() && at.at_bound[i]) continue;
-      columns.push_back(static_cast<Index>(i));
+      if (place >= n()) {
+        if (!at.at_bound[i]) columns.push_back(static_cast<Index>(i));
+        continue;
+      }
+      own.push_back(static_cast<Index>(i));
       names.push_back(layout_.name_of(place));
       at_bound.push_back(at.at_bound[i]);
-      if (place < n()) {
-        variables.push_back(problem_.parameters()[i]);
-      } else {
-        variables.emplace_back(names.back(), "", -1.0, 1.0);  // a logarithm: known to a factor of e
-      }
+      variables.push_back(problem_.parameters()[i]);
     }
+    columns.insert(columns.end(), own.begin(), own.end());
     const Index n = at.factor.columns() - 1;
-    TriangularFactor factor(static_cast<int>(columns.size()) + 1);
-    MatrixXd rows = MatrixXd::Zero(n, static_cast<Index>(columns.size()) + 1);
-    rows.leftCols(static_cast<Index>(columns.size())) =
-        at.factor.matrix().topLeftCorner(n, n)(Eigen::all, columns);
-    factor.absorb(rows);
+    MatrixXd rows = at.factor.matrix().topLeftCorner(n, n)(Eigen::all, columns);
+    TriangularFactor all(static_cast<int>(columns.size()));
+    all.absorb(rows);
+    const auto count = static_cast<Index>(own.size());
+    const MatrixXd beyond = all.matrix().bottomRightCorner(count, count);
+    MatrixXd with_residual = MatrixXd::Zero(count, count + 1);
+    with_residual.leftCols(count) = beyond;
+    TriangularFactor factor(static_cast<int>(count) + 1);
+    factor.absorb(with_residual);
     const VectorXd scale = plausible_scale(variables, {factor}, whitened_square(at));
-    const auto count = static_cast<Index>(columns.size());
-    return judge_identifiability(factor.matrix().topLeftCorner(count, count), names, scale,
-                                 at_bound);
+    return judge_identifiability(beyond, names, scale, at_bound);
   }
 
   /// Sum of the readings' squares over the outputs' noise.
@@ -337,6 +343,17 @@ class FilterError {
       }
     }
     return sentences;
+  }
+
+  /// Those that are all but none, or that others do for as well.
+  static std::vector<std::string> describe_noises(const Fit& result) {
+    std::vector<std::string> names;
+    for (const NoiseSize& size : result.noise_sizes) {
+      if (size.standard_error > size.value) names.push_back(size.name);
+    }
+    if (names.empty()) return {};
+    return {base::list_names(names) + (names.size() == 1 ? " is" : " are") +
+            " hardly told: the error is larger than the size"};
   }
 
   std::vector<std::string> describe_blocks(const std::vector<Index>& inside, const MatrixXd& white,
