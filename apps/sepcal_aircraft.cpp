@@ -182,12 +182,13 @@ class AircraftApp {
         two_step_(*cli.add_subcommand("two-step",
                                       "reconstructs the path, then fits the aerodynamics to it")),
         compare_(*cli.add_subcommand("compare", "shows where the model fails")),
-        diagnose_(*cli.add_subcommand("diagnose", "names the regressor that is missing")),
-        add_(*cli.add_subcommand("add", "adds a regressor and fits again")),
+        diagnose_(*cli.add_subcommand("diagnose", "names the effect or regressor that is missing")),
+        add_(*cli.add_subcommand("add", "adds an effect and fits again")),
         apply_(*cli.add_subcommand("apply", "adds what was flown to a log")),
         track_(*cli.add_subcommand("track", "estimates against time, as a filter in flight")),
         simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
-        effects_(*cli.add_subcommand("effects", "lists the regressors and how to write more")) {
+        effects_(
+            *cli.add_subcommand("effects", "lists effects, regressors and how to write more")) {
     for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_, &apply_, &track_}) {
       add_flight(*verb);
     }
@@ -212,7 +213,7 @@ class AircraftApp {
     add_deviations(track_, "--initial-state", initial_states_,
                    "standard deviation of a state where a segment begins; else as good as "
                    "unknown; may be repeated");
-    add_.add_option("E", effect_, "the regressor: Cm[alpha^2] (see effects)")->required();
+    add_.add_option("E", effect_, "the effect: Cm[alpha^2], imu_late (see effects)")->required();
     add_output(compare_, "COMPARED.json", false);
     add_output(diagnose_, "D.json", false);
     diagnosis_.add_to(diagnose_);

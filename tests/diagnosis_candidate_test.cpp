@@ -200,7 +200,7 @@ TEST_CASE("what varies of a driven effect: its driver about the mean of the rows
   const auto& port = *std::ranges::find(fitted.kit.ports, "wind", &Port::name);
   const auto [whole, varying] = room.columns(candidate, shape);
   const diagnosis::RowLayout& layout = room.fit().layout;
-  const MatrixXd expected = whole.dense(layout) - sum / count * room.port_columns(port);
+  const MatrixXd expected = whole.dense(layout) - sum / count * *room.columns_of(port.name);
   CHECK((varying.dense(layout) - expected).cwiseAbs().maxCoeff() < 1e-12);
 }
 

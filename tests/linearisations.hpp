@@ -24,7 +24,11 @@ inline diagnosis::RowLayout make_layout(
   }
   diagnosis::RowLayout layout{cut, cut, {}, static_cast<Eigen::Index>(row)};
   for (std::size_t j = 0; j < scales.size(); ++j) {
-    layout.outputs.push_back({static_cast<int>(j), "z" + std::to_string(j), "m/s", scales[j]});
+    layout.outputs.push_back({.index = static_cast<int>(j),
+                              .name = "z" + std::to_string(j),
+                              .unit = "m/s",
+                              .scale = scales[j],
+                              .weight = scales[j]});
   }
   return layout;
 }

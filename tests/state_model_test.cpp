@@ -60,12 +60,12 @@ TEST_CASE("the inertial unit's noise enters a flight path as its readings do") {
   const FlightPath path;
   Vec<double, 6> x;
   x << 50, 2, 5, 0.3, 0.2, 1.0;
-  Vec<double, 6> u;
-  u << 0.5, 0.1, -9.7, 0.1, 0.05, -0.02;
+  Vec<double, FlightPath::n_u> u = Vec<double, FlightPath::n_u>::Zero();
+  u.head<6>() << 0.5, 0.1, -9.7, 0.1, 0.05, -0.02;
   const Vec<double, 6> p = Vec<double, 6>::Constant(0.01);
   const auto G = sepcal::noise_input(path, x, u, p);
   for (int i = 0; i < 6; ++i) {
-    Vec<double, 6> moved = u;
+    Vec<double, FlightPath::n_u> moved = u;
     moved[i] += 0.5;  // f is linear in them
     const Vec<double, 6> column = (path.rate(x, moved, p) - path.rate(x, u, p)) / 0.5;
     CHECK((G.col(i) - column).cwiseAbs().maxCoeff() < 1e-12);

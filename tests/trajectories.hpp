@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "block_inputs.hpp"
 #include "sepcal/block_model.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/states/trajectory_model.hpp"
@@ -75,13 +76,10 @@ inline Eigen::MatrixXd rows_of(const BlockModel& model, const Record& record,
   for (const Segment& segment : record.segments()) {
     for (std::size_t first = segment.first; first < segment.last; first += block_rows) {
       const std::size_t count = std::min(block_rows, segment.last - first);
-      std::vector<const double*> inputs;
-      for (const Variable& input : tables.inputs) {
-        inputs.push_back(record.column(input.name).data() + first);
-      }
+      const BlockInputs inputs = block_inputs(model, record, first);
       const auto n = static_cast<Eigen::Index>(count);
       Eigen::MatrixXd rows(tables.n_z() * n, all.cols());
-      model.evaluate({inputs, count, first, first == segment.first}, values_of(xi2),
+      model.evaluate({inputs.pointers, count, first, first == segment.first}, values_of(xi2),
                      xi1 == nullptr ? nullptr : values_of(*xi1), carry.get(), rows);
       for (int j = 0; j < tables.n_z(); ++j) {
         all.middleRows(j * N + done, n) = rows.middleRows(j * n, n);

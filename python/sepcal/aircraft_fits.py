@@ -32,11 +32,13 @@ Path = str | os.PathLike[str]
 
 
 class AddedRegressor(NamedTuple):
-    """A regressor that was added, and the error of each output without and with it."""
+    """An effect that was added, and the error of each output without and with it."""
 
     effect: str
     rmse_before: dict[str, float]
     rmse_after: dict[str, float]
+    predicted_drop: float  # over all outputs, each in units of its own, as one step promised
+    drop: float  # the same as it fell; predicted is NaN of equation error
 
 
 class AircraftFit(Fit):
@@ -138,10 +140,11 @@ class AircraftFit(Fit):
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
     ) -> Diagnosis | Stepwise[AircraftFit]:
-        """Which regressor do the coefficients lack on a flight? Of Aero.
+        """Which effect or regressor does it lack on a flight?
 
-        Tried are products as "Cm[alpha*elevator]", splines as "CX[spline(alpha,5)]", and every
-        other numeric channel of the log.
+        Of coefficients tried are products as "Cm[alpha*elevator]", of Aero splines too,
+        "CX[spline(alpha,5)]", and every other numeric channel of the log. Along a trajectory also
+        what sensors and wind may have, "gyro_bias[imu_temp_degc]", "imu_late", "wind[time]".
 
         Args:
             flight: By default the fitted one.
@@ -169,12 +172,13 @@ class AircraftFit(Fit):
         return Stepwise(AircraftFit(stepped.fitted, chosen), stepped)
 
     def add(self, effect: str, flight: Flight | None = None) -> AircraftFit:
-        """The same fit with a regressor more, as "Cm[alpha^2]", from where it ended.
+        """The same fit with an effect more, as "Cm[alpha^2]" or "imu_late", from where it ended.
 
         Of Aero also a spline, "CX[spline(alpha,5)]".
 
         Raises:
-            Error: Bad input, as in fit(); a path, which takes no effects.
+            Error: Bad input, as in fit(); an effect that the model doesn't know, listing those
+                that it does.
         """
         chosen = self._or_fitted(flight, "add(..., ")
         return AircraftFit(self.core.add(chosen._core, effect), chosen)

@@ -24,6 +24,7 @@ from studies import (
     model_structure,
     monte_carlo,
     native,
+    trajectories,
     trust,
 )
 from studies.study import Finding, Study, check_options
@@ -36,6 +37,7 @@ STUDIES: tuple[Study, ...] = (
     effect_coverage.STUDY,
     field_strength.STUDY,
     flight_path.STUDY,
+    trajectories.STUDY,
     model_structure.STUDY,
     *native.STUDIES,
 )

@@ -283,7 +283,7 @@ def test_bad_input_is_one_line(
     flight = flights[0]
     refuse(lambda: fits("path").track(), "whose rows must not count twice")
     refuse(lambda: fits("aero").smooth({"u": 1.0}), "the model 'aero' has no state to smooth")
-    refuse(lambda: fits("path").add("Cm[alpha]"), "a flight path takes no effects")
+    refuse(lambda: fits("path").add("Cm[alpha]"), "there is no effect 'Cm[alpha]'")
     refuse(lambda: fits("path").smooth({}), "no process noise is given", "ax, ay, az, p, q, r")
     refuse(lambda: sepcal.Aero("c172"), "a str is no aircraft", "sepcal.Aircraft(area=")
     refuse(lambda: sepcal.Aero(aircraft, "Cq"), "there is no coefficient 'Cq'")

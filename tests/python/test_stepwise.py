@@ -234,7 +234,11 @@ def test_an_aircraft(folder: Path):
         ("sepcal-mag", "mag.csv mag.json --only bias[lift]", "there is no channel 'lift'"),
         ("sepcal-mag", "mag.csv mag.json --auto --inject bias[time]=1", "exclude each other"),
         ("sepcal-aircraft", "flight.csv aero.json --auto --most 0", "--most 0 lets nothing"),
-        ("sepcal-aircraft", "flight.csv path.json", "knows no effects of the model 'path'"),
+        (
+            "sepcal-aircraft",
+            "flight.csv path.json --only Cm[beta]",
+            "there is no effect 'Cm[beta]'",
+        ),
         ("sepcal-aircraft", "flight.csv aero.json --only CZ[alpha]", "has no CZ here; it has Cm"),
         ("sepcal-aircraft", "flight.csv aero.json -o aero.json", "aero.json"),
     ],

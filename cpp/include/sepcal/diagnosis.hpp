@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/named_effects.hpp"
 #include "sepcal/noise_model.hpp"
+#include "sepcal/path_model.hpp"
 
 namespace sepcal {
 
@@ -182,8 +184,10 @@ struct Diagnosis {
   Omnibus omnibus;
   std::vector<UnloggedCause> unlogged = {};  // that are significant, the surest first
   std::vector<DetectionLimit> limits = {};
-  double rmse = 0.0;   // over all outputs
-  double floor = 0.0;  // innovations alone, over all outputs
+  double rmse = 0.0;      // over all outputs
+  double floor = 0.0;     // innovations alone, over all outputs
+  std::string unit = {};  // of both; empty where the outputs have different ones: shares of each
+                          // output's own
 };
 
 /// The names of those that stand so beside the first, in their order.
@@ -216,6 +220,10 @@ struct DiagnosedFit {
   Record record;                       // as compose() takes it, before without_edges()
   std::vector<Segment> rows;           // that are used
   Fit fit;
+  /// In which a filter follows the path of a model with a state: its innovations are then judged,
+  /// not the residual, which remembers the noise of what is integrated. Of a fit by filter error
+  /// that noise which it found. None: the residual.
+  std::optional<PathNoise> noise = {};
 };
 
 /// What an effect promises before it is added. Undefined numbers are NaN.
@@ -230,6 +238,11 @@ struct Promise {
 /// where the record can't make it.
 Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads = 0);
+
+/// What one step from the fit promises of effects at their shapes, before noise is asked: of the
+/// RMSE over all outputs, 1 - after / before. NaN where the record can't tell one.
+std::vector<double> predicted_drops(const DiagnosedFit& fitted,
+                                    const std::vector<EffectFinding>& effects, int threads = 0);
 
 /// Tries `candidates`, by their names or as "E1+E2". Those that the record can't make (a channel
 /// that isn't there or is constant) are left out, or are errors where options.only has names.

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A physical effect that a model lacks: where it enters and what drives it. Four ways in:
+// A physical effect that a model lacks: where it enters and what drives it. Five ways in:
 //   varying     a linear parameter, or an input's share in an output, that follows a driver
 //   terms       columns of the effect's own, which join A
 //   corrections inputs replaced before the model sees them, by nonlinear parameters
 //   delays      the record's time axis shifted or smoothed, by interpolation within a segment
+//   remodel     a term in the model's own equations, which the model is built anew with
 // At zero an effect vanishes. Model + effects is again a model (composition.hpp at run time,
 // static_composition.hpp at compile time).
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -94,17 +97,22 @@ struct Effect {
   std::vector<std::shared_ptr<const BlockModel>> terms = {};  // their outputs are the model's
   std::vector<std::shared_ptr<const Correction>> corrections = {};
   std::vector<Delay> delays = {};
+  /// The model with nonlinear parameters more, at whose zero it is the same.
+  std::function<std::shared_ptr<const BlockModel>(const std::shared_ptr<const BlockModel>&)>
+      remodel = {};
 };
 
-/// The correction u_i' = u_i + sign_i sum_j s_ij phi_j(d), a coefficient for each target and
-/// function, named owner + "." + component + suffix, within `bounds` of either sign.
+/// The correction u_i' = u_i + sign_i u_k sum_j s_ij phi_j(d), u_k an input or 1, a coefficient for
+/// each target and function, named owner + "." + component + suffix, within `bounds` of either
+/// sign. The components of one target add up.
 struct DrivenInput {
   std::string component;
   Variable target;
   double sign = 1.0;
+  std::optional<Variable> times = {};  // u_k; none: 1
 };
 std::shared_ptr<const Correction> driven_inputs(const std::string& owner, DriverPointer driver,
-                                                std::vector<DrivenInput> targets,
+                                                const std::vector<DrivenInput>& components,
                                                 const std::string& unit, double bounds);
 
 }  // namespace sepcal

@@ -12,8 +12,9 @@ namespace sepcal {
 
 /// Fits `model` with the effects that `settings` name, made by `kit`: plain_kit() for the model's
 /// own linear parameters and inputs. What the settings lack is taken from `record` and stays in
-/// them, the times of steps as the fit finds them. The effects' corrections begin at zero. Throws
-/// Error as make_effects(), compose(), without_edges() and fit() do.
+/// them, the times of steps as the fit finds them. The effects' corrections begin at zero. Rows at
+/// a segment's edge are left out where inputs are late, but of a model that integrates a state.
+/// Throws Error as make_effects(), compose(), without_edges() and fit() do.
 Fit fit_with_effects(const std::shared_ptr<const BlockModel>& model, const EffectKit& kit,
                      std::vector<EffectSetting>& settings, Record record,
                      const FitOptions& options = {});

@@ -39,6 +39,7 @@ struct Port {
     std::string linear = {};                  // a linear parameter of the model, or
     std::string input = {};                   // one of its inputs, with
     double sign = 1.0;                        // this sign, or
+    std::string times = {};                   // of this input a share, or
     std::vector<Varying::Share> shares = {};  // inputs' shares in outputs
   };
 

@@ -76,19 +76,13 @@ void lay(const RigidAircraft<Capacity>& aircraft, const TrajectoryOptions& along
 void lay_smallest(const AircraftGeometry& geometry, double gravity, const TrajectoryOptions& along,
                   AircraftTrajectory& laid) {
   AeroTerms aero = compile_equations(laid.equations);
-  if (aero.columns.size() > RigidAircraft<16>::n_columns) {
-    throw Error("the equations have " + std::to_string(aero.columns.size()) +
-                " columns among their regressors; 8 is the most");
-  }
+  check_room(aero);
   if (aero.terms.size() <= 16) {
     lay(RigidAircraft<16>{geometry, std::move(aero), gravity}, along, laid);
   } else if (aero.terms.size() <= 24) {
     lay(RigidAircraft<24>{geometry, std::move(aero), gravity}, along, laid);
-  } else if (aero.terms.size() <= 40) {
-    lay(RigidAircraft<40>{geometry, std::move(aero), gravity}, along, laid);
   } else {
-    throw Error("the equations have " + std::to_string(aero.terms.size()) +
-                " regressors; 40 is the most: fit longitudinal and lateral apart");
+    lay(RigidAircraft<40>{geometry, std::move(aero), gravity}, along, laid);
   }
 }
 

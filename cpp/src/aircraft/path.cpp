@@ -67,6 +67,15 @@ double mean_step(const Record& record) {
 
 }  // namespace
 
+std::map<std::string, double> white_noise_of(const Record& record,
+                                             const std::vector<std::string>& columns) {
+  std::map<std::string, double> deviations;
+  for (const std::string& name : columns) {
+    deviations[name] = white_noise_of(record.column(name), record.segments());
+  }
+  return deviations;
+}
+
 std::map<std::string, double> noise_of_readings(const Record& record) {
   constexpr double rounding = 1e-12;  // of the largest reading
   const double dt = mean_step(record);

@@ -2,6 +2,9 @@
 #include "sepcal/aircraft/rigid_aircraft.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 
@@ -30,6 +33,83 @@ AeroTerms compile_equations(const std::vector<AeroEquation>& equations) {
     }
   }
   return aero;
+}
+
+namespace {
+
+/// Terms of one aircraft beside those of another; columns are counted off anew.
+void append(const AeroTerms& more, AeroTerms& aero) {
+  constexpr std::size_t n = AeroTerms::variables.size();
+  for (AeroTerms::Term term : more.terms) {
+    for (AeroTerms::Factor& factor : term.factors) {
+      if (factor.variable < n) continue;
+      const std::string& name = more.columns[factor.variable - n];
+      auto column = std::ranges::find(aero.columns, name);
+      if (column == aero.columns.end()) column = aero.columns.insert(column, name);
+      factor.variable = n + static_cast<std::size_t>(column - aero.columns.begin());
+    }
+    aero.terms.push_back(std::move(term));
+  }
+  aero.parameters.insert(aero.parameters.end(), more.parameters.begin(), more.parameters.end());
+}
+
+template <int Capacity>
+const TrajectoryModel<RigidAircraft<Capacity>>* as_aircraft(const BlockModel& model) {
+  return dynamic_cast<const TrajectoryModel<RigidAircraft<Capacity>>*>(&model);
+}
+
+template <int Capacity>
+std::shared_ptr<const BlockModel> rebuilt(const AircraftGeometry& geometry, AeroTerms aero,
+                                          double gravity, const TrajectoryOptions& options,
+                                          const Record& record) {
+  return std::make_shared<const TrajectoryModel<RigidAircraft<Capacity>>>(
+      RigidAircraft<Capacity>{geometry, std::move(aero), gravity}, record, options);
+}
+
+template <int Capacity>
+std::shared_ptr<const BlockModel> rebuild(const RigidAircraft<Capacity>& aircraft,
+                                          const AeroTerms& more, const TrajectoryOptions& options,
+                                          const Record& record) {
+  AeroTerms aero = aircraft.aero;
+  append(more, aero);
+  check_room(aero);
+  if (aero.terms.size() <= 16) {
+    return rebuilt<16>(aircraft.geometry, std::move(aero), aircraft.gravity, options, record);
+  }
+  if (aero.terms.size() <= 24) {
+    return rebuilt<24>(aircraft.geometry, std::move(aero), aircraft.gravity, options, record);
+  }
+  return rebuilt<40>(aircraft.geometry, std::move(aero), aircraft.gravity, options, record);
+}
+
+}  // namespace
+
+void check_room(const AeroTerms& aero) {
+  if (aero.columns.size() > RigidAircraft<40>::n_columns) {
+    throw Error("the equations have " + std::to_string(aero.columns.size()) +
+                " columns among their regressors; 8 is the most");
+  }
+  if (aero.terms.size() > 40) {
+    throw Error("the equations have " + std::to_string(aero.terms.size()) +
+                " regressors; 40 is the most: fit longitudinal and lateral apart");
+  }
+}
+
+std::shared_ptr<const BlockModel> with_regressor(const BlockModel& model,
+                                                 const std::string& coefficient,
+                                                 const std::string& regressor,
+                                                 const Record& record) {
+  const AeroTerms more = compile_equations({{coefficient, {regressor}}});
+  for (const std::string& column : more.columns) {
+    if (!record.has(column)) throw Error("the record has no column '" + column + "'");
+  }
+  const auto along = [&](const auto* trajectory) {
+    return rebuild(trajectory->state_model(), more, trajectory->plan().options(), record);
+  };
+  if (const auto* small = as_aircraft<16>(model)) return along(small);
+  if (const auto* middle = as_aircraft<24>(model)) return along(middle);
+  if (const auto* large = as_aircraft<40>(model)) return along(large);
+  throw Error("only an aircraft that is integrated has regressors");
 }
 
 template class TrajectoryModel<RigidAircraft<16>>;

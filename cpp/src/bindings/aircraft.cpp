@@ -66,10 +66,13 @@ Values by_output(const std::vector<OutputValue>& values) {
 }
 
 /// [(effect, {output: rmse before}, {output: rmse after}), ...]
-std::vector<std::tuple<std::string, Values, Values>> history_of(const AircraftFit& fitted) {
-  std::vector<std::tuple<std::string, Values, Values>> history;
+using Added = std::tuple<std::string, Values, Values, double, double>;
+
+std::vector<Added> history_of(const AircraftFit& fitted) {
+  std::vector<Added> history;
   for (const AddedRegressor& added : fitted.history) {
-    history.emplace_back(added.effect, by_output(added.rmse_before), by_output(added.rmse_after));
+    history.emplace_back(added.effect, by_output(added.rmse_before), by_output(added.rmse_after),
+                         added.predicted_drop, added.drop());
   }
   return history;
 }

@@ -116,6 +116,7 @@ void Bench::calibrate_significant(Trials& trials, double threshold) const {
       trial.tails = {worst * trial.tails.either, worst * trial.tails.beside};
     }
   }
+  for (Trial* trial : significant) doubt(room_, null_, *trial);
   double least_sure = -infinity;
   for (const Trial& trial : trials) {
     if (trial.tested) least_sure = std::max(least_sure, trial.log10_p);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/parts_of_record.hpp"
+#include "diagnosis/innovation_rows.hpp"
 #include "effects/driven_rows.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
@@ -119,9 +121,16 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
   if (!std::ranges::equal(fit.parameters, parameters, {}, &Parameter::name, &Variable::name)) {
     throw Error("the fit's parameters are not those of its model with its effects");
   }
-  Record rows = record_;
-  rows.cut(fitted_.rows);
+  used_ = record_;
+  used_.cut(fitted_.rows);
+  const Record& rows = used_;
   const model::Measurements measurements(*model, rows);
+  noise_ = fitted_.noise ? fitted_.noise : noise_of(fit, *model);
+  if (const auto* along = dynamic_cast<const PathModel*>(model.get())) {
+    followed_ = model;
+    linearisation_.follows_path = true;
+    path_ = along->path_tangent(used_, values_in_order(parameters, values_), noise_);
+  }
   RowLayout& layout = linearisation_.layout;
   layout = {.segments = base::join_segments(fitted_.rows),
             .runs = measurements.runs(),
@@ -134,7 +143,10 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
   }
   columns.push_back(static_cast<Index>(parameters.size()));
   MatrixXd& tangent = linearisation_.tangent;
-  tangent = model::Sweep(*model, measurements, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
+  tangent =
+      noise_
+          ? innovation_rows(*model, used_, fit.values(), *noise_, columns)
+          : model::Sweep(*model, measurements, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
   const auto count = static_cast<double>(layout.rows);
   for (int j = 0; j < tables.n_z(); ++j) {
     const auto& output = tables.outputs[static_cast<std::size_t>(j)];
@@ -142,8 +154,14 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
         tangent.rightCols<1>().middleRows(j * layout.rows, layout.rows).norm() / std::sqrt(count);
     const double rms = std::sqrt(measurements.output_square(j) / count);
     if (!(rmse > rounding * rms) || !(rmse > 0)) continue;
-    layout.outputs.push_back({j, output.name, output.unit, rmse, variance_of(measurements, j)});
+    layout.outputs.push_back({.index = j,
+                              .name = output.name,
+                              .unit = noise_ ? "" : output.unit,
+                              .scale = rmse,
+                              .variance = variance_of(measurements, j)});
   }
+  const bool one_unit = !noise_ && !common_unit(layout).empty();
+  for (UsedOutput& output : layout.outputs) output.weight = one_unit ? output.scale : 1.0;
   scale_outputs(tangent);
   linearisation_.residual = tangent.rightCols<1>();
   tangent.conservativeResize(Eigen::NoChange, tangent.cols() - 1);
@@ -193,6 +211,7 @@ MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
   const auto model = model_with(added);
   base::ParameterValues values = values_;
   values.insert(shapes.begin(), shapes.end());
+  if (path_) return path_columns(change_by(added, values, names));
   Record rows = record_;
   rows.cut(fitted_.rows);
   const model::Measurements measurements(*model, rows);
@@ -256,8 +275,9 @@ Candidate CandidateRoom::make_anew(const std::string& name) {
     const auto with = compose(fitted_.model, all, record_);
     const auto names = coefficients_of(*with, *before, grid.parameter);
     candidate.coefficients.insert(candidate.coefficients.end(), names.begin(), names.end());
+    candidate.counts.push_back(names.size());
     if (is_driven(effect, fitted_.kit)) {
-      port_columns(*std::ranges::find(fitted_.kit.ports, effect.port, &Port::name));
+      open(port_of(effect));
     }
   }
   const Effect& first = candidate.effects.front();
@@ -283,43 +303,139 @@ std::vector<double> CandidateRoom::times() const {
   return base::gather_time(rows);
 }
 
-const MatrixXd& CandidateRoom::port_columns(const Port& port) {
-  const auto known = ports_.find(port.name);
-  if (known != ports_.end()) return known->second;
+const Port& CandidateRoom::port_of(const Effect& effect) const {
+  return *std::ranges::find(fitted_.kit.ports, effect.port, &Port::name);
+}
+
+/// Whether what it does in one row goes on in those after it: inputs are integrated, and a filter's
+/// state remembers its readings.
+bool CandidateRoom::acts_on_path(const Port& port) const {
+  if (!path_) return false;
+  return noise_.has_value() ||
+         std::ranges::any_of(port.components, [](const Port::Component& component) {
+           return !component.input.empty();
+         });
+}
+
+void CandidateRoom::open(const Port& port) {
+  if (ports_.contains(port.name) || path_ports_.contains(port.name)) return;
   const Effect constant =
       make_driven("constant", port, constant_driver(), port.unit, *fitted_.model, record_);
   std::vector<std::string> names;
   for (const Port::Component& component : port.components)
     names.push_back("constant." + component.name);
-  return ports_.emplace(port.name, composed_columns({constant}, {}, names)).first->second;
+  if (acts_on_path(port)) {
+    PathChange change = change_by({constant}, values_, names);
+    if (!change.inputs.empty()) change.steps = change.readings = MatrixXd();
+    path_ports_.emplace(port.name, std::move(change));
+  } else {
+    ports_.emplace(port.name, composed_columns({constant}, {}, names));
+  }
+}
+
+const MatrixXd* CandidateRoom::columns_of(const std::string& port) const {
+  const auto known = ports_.find(port);
+  return known == ports_.end() ? nullptr : &known->second;
+}
+
+/// What these parameters do along the path: to inputs, which a driver may then follow, and to steps
+/// and readings.
+PathChange CandidateRoom::change_by(const std::vector<Effect>& added,
+                                    const base::ParameterValues& values,
+                                    const std::vector<std::string>& names) const {
+  const auto model = model_with(added);
+  const std::vector<Variable> all = model->tables().parameters();
+  const VectorXd xi = values_in_order(all, values);
+  std::vector<Index> places;
+  for (const std::string& name : names) places.push_back(find_column(all, name));
+  Record rows = record_;  // with what the effects derive from other columns
+  rows.cut(fitted_.rows);
+  PathChange change;
+  const bool of_inputs = std::ranges::all_of(added, [](const Effect& effect) {
+    return effect.varying.empty() && effect.terms.empty() && !effect.remodel;
+  });
+  if (!of_inputs) return path_->change(*model, rows, xi, places);
+  const Index n_1 = model->tables().n_1();
+  change.inputs =
+      dynamic_cast<const PathModel&>(*model).input_slopes(rows, xi.tail(model->tables().n_2()));
+  for (Index& place : places) place -= n_1;
+  for (InputSlopes& moved : change.inputs) {
+    moved.slopes = moved.slopes(Eigen::all, places).eval();
+  }
+  return change;
+}
+
+MatrixXd CandidateRoom::path_columns(const PathChange& change) const {
+  MatrixXd stacked = path_->columns(change);
+  scale_outputs(stacked);
+  return stacked;
+}
+
+/// The same where a driver's functions multiply it.
+Columns CandidateRoom::drive_path(const PathChange& change, const MatrixXd& phi) const {
+  const std::vector<Segment>& layout = linearisation_.layout.segments;
+  const auto driven = [&](const MatrixXd& whole, Index blocks, auto first_of) {
+    MatrixXd result = MatrixXd::Zero(whole.rows(), whole.cols() * phi.cols());
+    const Index block = whole.rows() / blocks;
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+      const auto from = static_cast<Index>(layout[i].first);
+      const auto count = static_cast<Index>(layout[i].rows());
+      for (Index k = 0; k < result.cols(); ++k) {
+        for (Index j = 0; j < blocks; ++j) {
+          const Index to = j * block + static_cast<Index>(first_of(i));
+          result.col(k).segment(to, count) =
+              whole.col(k / phi.cols())
+                  .segment(to, count)
+                  .cwiseProduct(phi.col(k % phi.cols()).segment(from, count));
+        }
+      }
+    }
+    return result;
+  };
+  PathChange all;
+  for (const InputSlopes& moved : change.inputs) {
+    all.inputs.push_back({moved.input, driven(moved.slopes, 1, [&](std::size_t i) {
+                            return fitted_.rows[i].first;
+                          })});
+  }
+  if (change.readings.size() > 0) {
+    all.readings = driven(change.readings, fitted_.model->tables().n_z(),
+                          [&](std::size_t i) { return layout[i].first; });
+  }
+  return path_columns(all);
+}
+
+Columns CandidateRoom::drive(const Port& port, const MatrixXd& phi) const {
+  const RowLayout& layout = linearisation_.layout;
+  if (acts_on_path(port)) return drive_path(path_ports_.at(port.name), phi);
+  const MatrixXd& columns = ports_.at(port.name);
+  const auto shared = std::make_shared<const MatrixXd>(phi);
+  return {columns.cols() * phi.cols(),
+          [&columns, shared, N = layout.rows](Index first, Eigen::Ref<MatrixXd> rows) {
+            const auto driver = shared->middleRows(first % N, rows.rows());
+            for (Index c = 0; c < columns.cols(); ++c) {
+              rows.middleCols(c * driver.cols(), driver.cols()) =
+                  driver.array().colwise() * columns.col(c).segment(first, rows.rows()).array();
+            }
+          }};
 }
 
 CandidateColumns CandidateRoom::driven_columns(const Effect& effect, double shape) const {
   const RowLayout& layout = linearisation_.layout;
-  const auto phi = std::make_shared<MatrixXd>(effects::drive(*effect.driver, shape, record_));
+  MatrixXd phi = effects::drive(*effect.driver, shape, record_);
   for (std::size_t i = 0; i < layout.segments.size(); ++i) {  // none lies behind its rows there
     const Segment& from = fitted_.rows[i];
     const auto length = static_cast<Index>(from.rows());
-    for (auto column : phi->colwise()) {
+    for (auto column : phi.colwise()) {
       column.segment(static_cast<Index>(layout.segments[i].first), length) =
           column.segment(static_cast<Index>(from.first), length).unaryExpr([](double value) {
             return std::isfinite(value) ? value : 0.0;
           });
     }
   }
-  if (phi->rows() != layout.rows) phi->conservativeResize(layout.rows, Eigen::NoChange);
-  const auto about = [&](const RowVectorXd& centre) -> Columns {
-    const MatrixXd& port = ports_.at(effect.port);
-    return {port.cols() * phi->cols(),
-            [&port, phi, centre, N = layout.rows](Index first, Eigen::Ref<MatrixXd> rows) {
-              const MatrixXd driver = phi->middleRows(first % N, rows.rows()).rowwise() - centre;
-              for (Index c = 0; c < port.cols(); ++c) {
-                rows.middleCols(c * driver.cols(), driver.cols()) =
-                    driver.array().colwise() * port.col(c).segment(first, rows.rows()).array();
-              }
-            }};
-  };
-  return {about(RowVectorXd::Zero(phi->cols())), about(phi->colwise().mean())};
+  if (phi.rows() != layout.rows) phi.conservativeResize(layout.rows, Eigen::NoChange);
+  const Port& port = port_of(effect);
+  return {drive(port, phi), drive(port, phi.rowwise() - phi.colwise().mean().eval())};
 }
 
 CandidateColumns CandidateRoom::columns(const Candidate& candidate, double shape) const {
@@ -327,15 +443,18 @@ CandidateColumns CandidateRoom::columns(const Candidate& candidate, double shape
   const auto append = [&all](const CandidateColumns& part) {
     all = {join(all.whole, part.whole), join(all.varying, part.varying)};
   };
-  for (const Effect& effect : candidate.effects) {
+  auto coefficient = candidate.coefficients.begin();
+  for (std::size_t i = 0; i < candidate.effects.size(); ++i) {
+    const Effect& effect = candidate.effects[i];
+    const auto own = coefficient;
+    coefficient += static_cast<std::ptrdiff_t>(candidate.counts[i]);
     if (is_driven(effect, fitted_.kit)) {
       append(driven_columns(effect, effect.driver->shape() ? shape : 0.0));
       continue;
     }
     std::vector<std::string> names;
-    for (const Variable& coefficient : candidate.coefficients) {
-      if (coefficient.name.starts_with(effect.name + ".")) names.push_back(coefficient.name);
-    }
+    std::transform(own, coefficient, std::back_inserter(names),
+                   [](const Variable& variable) { return variable.name; });
     base::ParameterValues shapes;
     if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
     const Columns part = composed_columns({effect}, shapes, names);

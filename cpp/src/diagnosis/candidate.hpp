@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "diagnosis/linearisation.hpp"
 #include "diagnosis/projection.hpp"
 #include "sepcal/diagnosis.hpp"
+#include "sepcal/path_model.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -30,6 +32,7 @@ struct Candidate {
   std::vector<EffectSetting> settings = {};  // of the effect, or of a pair's
   std::vector<Effect> effects = {};
   std::vector<Variable> coefficients = {};  // in the order of the columns
+  std::vector<std::size_t> counts = {};     // of each effect, how many of these
   ShapeGrid shape = {};
   std::string stepping_port = {};  // of a single effect that is a step in time
 };
@@ -62,16 +65,22 @@ class CandidateRoom {
   std::shared_ptr<const BlockModel> model() const;
   std::shared_ptr<const BlockModel> model_with(const std::vector<Effect>& added) const;
 
+  /// Whether the model integrates a state: its rows follow from those before them.
+  bool follows_path() const { return path_ != nullptr; }
+
   /// Throws Error where the record can't make it.
   const Candidate& make(const std::string& name);
 
-  /// The port's columns for a driver that is 1 in every row: a column a component.
-  const Eigen::MatrixXd& port_columns(const Port& port);
+  /// Throws Error where the record doesn't log what the port needs. Once, before drive().
+  void open(const Port& port);
 
-  /// The same of a port whose columns a candidate has asked for.
-  const Eigen::MatrixXd& known_port_columns(const std::string& port) const {
-    return ports_.at(port);
-  }
+  /// What the port does where a driver's functions are `phi` (N x functions): of each component a
+  /// column a function. The room must outlive them.
+  Columns drive(const Port& port, const Eigen::MatrixXd& phi) const;
+
+  /// What an open port does for a driver that is 1 in every row, a column a component; nullptr
+  /// where it acts on a path, along which what one row does goes on in those after it.
+  const Eigen::MatrixXd* columns_of(const std::string& port) const;
 
   /// The time of each of the N rows [s].
   std::vector<double> times() const;
@@ -82,6 +91,12 @@ class CandidateRoom {
  private:
   Candidate make_anew(const std::string& name);
   CandidateColumns driven_columns(const Effect& effect, double shape) const;
+  const Port& port_of(const Effect& effect) const;
+  bool acts_on_path(const Port& port) const;
+  PathChange change_by(const std::vector<Effect>& added, const base::ParameterValues& values,
+                       const std::vector<std::string>& names) const;
+  Eigen::MatrixXd path_columns(const PathChange& change) const;
+  Columns drive_path(const PathChange& change, const Eigen::MatrixXd& phi) const;
   Eigen::MatrixXd composed_columns(const std::vector<Effect>& added,
                                    const base::ParameterValues& shapes,
                                    const std::vector<std::string>& names) const;
@@ -96,7 +111,12 @@ class CandidateRoom {
   std::vector<Effect> effects_;  // that the fit has
   base::ParameterValues values_;
   LinearisedFit linearisation_;
-  std::map<std::string, Eigen::MatrixXd> ports_;
+  Record used_;                                      // the rows of record_ that are fitted
+  std::optional<PathNoise> noise_;                   // in which a filter follows the path
+  std::shared_ptr<const BlockModel> followed_ = {};  // with effects, where it integrates a state
+  std::unique_ptr<const PathTangent> path_ = {};     // its path
+  std::map<std::string, Eigen::MatrixXd> ports_;     // open ones
+  std::map<std::string, PathChange> path_ports_;     // that act on a path
   std::map<std::string, Candidate> made_;  // once: an effect may leave columns in the record
 };
 

@@ -198,6 +198,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   const CandidateRoom& room = bench_.room();
   result_.residual = describe_residual(bench_.null());
   result_.rmse = total_rmse(room.fit().layout, room.fit().residual);
+  result_.unit = common_unit(room.fit().layout);
   result_.floor = noise_floor(room.fit().layout, bench_.null().best.noise);
   if (!options_.only.empty()) {
     for (const std::string& name : names) bench_.room().make(name);  // or the reason is thrown

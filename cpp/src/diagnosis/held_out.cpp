@@ -54,13 +54,28 @@ TriangularFactor by_parameters(const MatrixXd& R, const MatrixXd& coordinates) {
   return factor;
 }
 
+/// A hundredth of what rows left out tell of the tangent's parameters, that these stay where the
+/// fit has them: where a trajectory begins, the rows that follow alone know.
+TriangularFactor held_near_the_fit(const TriangularFactor& factor, Index tangent) {
+  constexpr double share = 0.1;  // of each row
+  MatrixXd rows = MatrixXd::Zero(tangent, factor.columns());
+  rows.leftCols(tangent) = share * factor.matrix().topLeftCorner(tangent, tangent);
+  TriangularFactor held(factor.columns());
+  held.absorb(rows);
+  return held;
+}
+
 /// The least-squares estimate from all folds but one. What these leave undetermined is a matter of
 /// the parameters, not of a basis in their place.
 VectorXd estimate_without(const LinearisedFit& fit, const std::vector<TriangularFactor>& factors,
                           int left_out) {
   TriangularFactor others(factors.front().columns());
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (static_cast<int>(f) != left_out) others.merge(factors[f]);
+    if (static_cast<int>(f) != left_out) {
+      others.merge(factors[f]);
+    } else if (fit.follows_path) {
+      others.merge(held_near_the_fit(factors[f], fit.tangent.cols()));
+    }
   }
   const MatrixXd& coordinates = fit.coordinates;
   if (coordinates.size() > 0) others = by_parameters(others.matrix(), coordinates);
@@ -74,19 +89,19 @@ VectorXd estimate_without(const LinearisedFit& fit, const std::vector<Triangular
   return of_basis;
 }
 
-/// Squared errors of a block in the outputs' unit, of estimates (a column each) for [J G e].
+/// Squared errors of a block over all outputs, of estimates (a column each) for [J G e].
 VectorXd squares_of(const RowLayout& layout, const Columns& columns, const MatrixXd& estimates,
                     const HeldOutBlock& block) {
   VectorXd squares = VectorXd::Zero(estimates.cols());
   const Index n = estimates.rows();
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const double scale = layout.outputs[j].scale;
+    const double weight = layout.outputs[j].weight;
     for (Index row = block.first; row < block.last; row += panel_rows) {
       const MatrixXd panel =
           columns.rows(layout.first(j) + row, std::min(panel_rows, block.last - row));
       MatrixXd errors = panel.col(n).replicate(1, estimates.cols());
       numerics::add_product(panel.leftCols(n), -estimates, errors);
-      squares += scale * scale * errors.colwise().squaredNorm().transpose();
+      squares += weight * weight * errors.colwise().squaredNorm().transpose();
     }
   }
   return squares;
@@ -151,7 +166,7 @@ Folds interleaved_blocks(const RowLayout& layout, double correlation, int fewest
   const auto rows = static_cast<double>(layout.rows);
   const double wanted = std::clamp(std::floor(rows / (10.0 * correlation)),
                                    std::clamp<double>(fewest, least, most), most);
-  const auto count = static_cast<Index>(std::min(wanted, rows));
+  const auto count = static_cast<Index>(std::min(std::max<double>(wanted, fewest), rows));
   Folds folds{{}, folds_of_blocks, true};
   for (Index i = 0; i < count; ++i) {
     const Index first = layout.rows * i / count;
@@ -199,8 +214,8 @@ double correlation_rows(const RowLayout& layout, const VectorXd& residual) {
 double total_rmse(const RowLayout& layout, const VectorXd& residual) {
   double square = 0.0;
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const double scale = layout.outputs[j].scale;
-    square += scale * scale * residual.segment(layout.first(j), layout.rows).squaredNorm();
+    const double weight = layout.outputs[j].weight;
+    square += weight * weight * residual.segment(layout.first(j), layout.rows).squaredNorm();
   }
   return std::sqrt(square / static_cast<double>(layout.count()));
 }

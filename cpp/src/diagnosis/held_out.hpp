@@ -28,7 +28,7 @@ struct Folds {
 /// Runs of one label, each a fold of its own; no folds where there are fewer than four.
 Folds whole_segments(const RowLayout& layout);
 
-/// Blocks of at least ten correlation times [rows], at least `fewest` and at most sixty of them,
+/// Blocks of at least ten correlation times [rows], at most sixty of them but `fewest` at least,
 /// dealt to six folds.
 Folds interleaved_blocks(const RowLayout& layout, double correlation_rows, int fewest);
 
@@ -44,7 +44,7 @@ double correlation_rows(const RowLayout& layout, const Eigen::VectorXd& residual
 Folds few_folds(const LinearisedFit& fit, const Columns& G);
 
 struct HeldOut {
-  double before = 0.0;  // RMSE over all outputs, in their unit
+  double before = 0.0;  // RMSE over all outputs, in their unit, or in units of each one's own
   double after = 0.0;
   double gain = 0.0;    // 1 - after / before
   bool passed = false;  // mean gain of a block over its standard error > 1
@@ -58,7 +58,8 @@ HeldOut summarise(const std::vector<double>& before, const std::vector<double>& 
 /// `G`: the candidate's columns.
 HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds);
 
-/// RMSE over all outputs, in their unit, of a residual whose outputs are scaled.
+/// RMSE over all outputs, in their unit, of a residual whose outputs are scaled; where they have
+/// different units, in units of each one's own.
 double total_rmse(const RowLayout& layout, const Eigen::VectorXd& residual);
 
 }  // namespace sepcal::diagnosis

@@ -19,6 +19,8 @@ struct UsedOutput {
   std::string name;
   std::string unit;
   double scale = 1.0;     // RMSE of its residual, which all its rows are divided by
+  double weight = 1.0;    // of a scaled row in errors over all outputs: the scale, or 1 where the
+                          // outputs have different units
   double variance = 0.0;  // of what is measured about its mean, in the unit's square
 };
 
@@ -34,6 +36,15 @@ struct RowLayout {
   Eigen::Index first(std::size_t j) const { return static_cast<Eigen::Index>(j) * rows; }
 };
 
+/// Of errors over all outputs; empty where these have different units.
+inline std::string common_unit(const RowLayout& layout) {
+  const auto& outputs = layout.outputs;
+  for (const UsedOutput& output : outputs) {
+    if (output.unit != outputs.front().unit) return {};
+  }
+  return outputs.empty() ? std::string() : outputs.front().unit;
+}
+
 struct LinearisedFit {
   RowLayout layout;
   std::vector<std::string> parameters;  // estimated and not at a bound: the columns of `tangent`
@@ -41,6 +52,7 @@ struct LinearisedFit {
   Eigen::VectorXd residual;             // count(), z - model
   Eigen::MatrixXd wandering = {};       // count() x corrections that may wander, of unit size
   std::vector<double> times = {};       // of the N rows [s]; none where nothing wanders
+  bool follows_path = false;            // rows follow from those before them
   // Of an orthonormal basis in the tangent's place, else empty:
   Eigen::MatrixXd weights = {};      // parameters x rank, it is the tangent times these
   Eigen::MatrixXd coordinates = {};  // rank x parameters, the tangent is it times these

@@ -29,7 +29,7 @@ bool is_coloured(const NoiseModel& noise) {
 double noise_floor(const RowLayout& layout, const NoiseModels& noise) {
   double square = 0.0;
   for (std::size_t j = 0; j < noise.size(); ++j) {
-    const double sigma = noise[j].sigma * layout.outputs[j].scale;
+    const double sigma = noise[j].sigma * layout.outputs[j].weight;
     square += sigma * sigma;
   }
   return std::sqrt(square / static_cast<double>(noise.size()));

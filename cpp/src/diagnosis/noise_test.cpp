@@ -238,7 +238,7 @@ MatrixXd NoiseTest::products(const NoiseMembers& noise, const Columns& X, const 
 double NoiseTest::floor(const NoiseMembers& noise) const {
   double square = 0.0;
   for (std::size_t j = 0; j < noise.size(); ++j) {
-    const double sigma = families_.innovation(noise[j]) * fit_.layout.outputs[j].scale;
+    const double sigma = families_.innovation(noise[j]) * fit_.layout.outputs[j].weight;
     square += sigma * sigma;
   }
   return std::sqrt(square / static_cast<double>(noise.size()));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/parts_of_record.hpp"
+#include "diagnosis/block_jackknife.hpp"
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
 #include "numerics/tails.hpp"
@@ -89,24 +90,32 @@ std::vector<Offsets> find_offsets(CandidateRoom& room, const EffectKit& kit,
   const RowLayout& layout = room.fit().layout;
   const std::vector<int> window_of_row = find_windows(layout, windows);
   std::vector<Offsets> sets;
-  const auto add = [&](const std::string& where, const Columns& columns) {
-    const Columns parts =
-        by_window(layout, columns, window_of_row, static_cast<Index>(windows.size()));
+  const auto count = static_cast<Index>(windows.size());
+  const auto add = [&](const std::string& where, const Columns& parts) {
     const std::vector<Index> seen = find_seen(null.basis, parts);
     if (!seen.empty()) sets.push_back({where, span_beyond(null.basis, select(parts, seen)), parts});
   };
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    add(layout.outputs[j].name, Columns(1, [own = layout.first(j), N = layout.rows](
-                                               Index first, Eigen::Ref<MatrixXd> rows) {
+    const Columns offset(
+        1, [own = layout.first(j), N = layout.rows](Index first, Eigen::Ref<MatrixXd> rows) {
           rows.setConstant(first / N == own / N ? 1.0 : 0.0);
-        }));
+        });
+    add(layout.outputs[j].name, by_window(layout, offset, window_of_row, count));
+  }
+  MatrixXd within = MatrixXd::Zero(layout.rows, count);  // a column a window
+  for (Index i = 0; i < layout.rows; ++i) {
+    const int w = window_of_row[static_cast<std::size_t>(i)];
+    if (w >= 0) within(i, w) = 1.0;
   }
   for (const Port& port : kit.ports) {
     try {
-      add(port.name, view(room.port_columns(port)));
+      room.open(port);
     } catch (const Error&) {
       continue;  // the record doesn't log what the port needs
     }
+    const MatrixXd* columns = room.columns_of(port.name);
+    add(port.name, columns == nullptr ? room.drive(port, within)
+                                      : by_window(layout, view(*columns), window_of_row, count));
   }
   return sets;
 }
@@ -166,6 +175,9 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
                                              options.simulations, options.seed + i, pool)
                                  .log10_p();
     }
+    if (room.follows_path() && log10_p < least) {  // noise is common to all outputs there
+      log10_p = std::max(log10_p, correction + log10_block_tail(null, sets[i].basis.dense(layout)));
+    }
     if (!(log10_p < least)) continue;
     least = log10_p;
     result.where = sets[i].where;
@@ -193,16 +205,12 @@ std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& ki
   const auto tests = static_cast<double>(std::max<std::size_t>(1, candidates));
   const double sigmas = upper_normal_point(0.5 * significance / tests) + upper_normal_point(0.1);
   for (const Port& port : kit.ports) {
-    MatrixXd columns;
     try {
-      columns = room.port_columns(port);
+      room.open(port);
     } catch (const Error&) {
       continue;
     }
-    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      auto part = columns.middleRows(layout.first(j), layout.rows);
-      part.array().colwise() *= ramp.array();
-    }
+    MatrixXd columns = room.drive(port, ramp).dense(layout);
     null.whiten(columns);
     const MatrixXd beyond = remove_span(null.white_basis, columns);
     constexpr double unseen = 1e-6;  // of a column: rounding

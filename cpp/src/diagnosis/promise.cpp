@@ -7,6 +7,33 @@ namespace sepcal {
 
 using namespace diagnosis;  // this room's own
 
+namespace {
+
+/// A trial of an effect at a shape; nothing of `added` is visible where the record can't tell it.
+Trial trial_of(CandidateRoom& room, const std::string& effect,
+               const std::map<std::string, double>& shapes) {
+  Trial trial{.candidate = room.make(effect)};
+  const auto shape = shapes.find(trial.candidate.shape.parameter);
+  if (shape != shapes.end()) trial.shape = shape->second;
+  return trial;
+}
+
+}  // namespace
+
+std::vector<double> predicted_drops(const DiagnosedFit& fitted,
+                                    const std::vector<EffectFinding>& effects, int threads) {
+  base::ThreadPool pool(threads);
+  CandidateRoom room(fitted, pool);
+  const NullHypothesis null = find_plain_null(room.fit());
+  std::vector<double> drops;
+  for (const EffectFinding& effect : effects) {
+    const Trial trial = trial_of(room, effect.name, effect.shapes);
+    const Projection added = project_trial(room, null, trial, trial.shape);
+    drops.push_back(added.visible() == 0 ? not_a_number : predict_drop(null, added.basis));
+  }
+  return drops;
+}
+
 Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads) {
   base::ThreadPool pool(threads);
@@ -14,9 +41,7 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
   const LinearisedFit& fit = room.fit();
   Promise promised;
   if (fit.layout.outputs.empty()) return promised;  // nothing is left to explain
-  Trial trial{.candidate = room.make(effect)};
-  const auto shape = shapes.find(trial.candidate.shape.parameter);
-  if (shape != shapes.end()) trial.shape = shape->second;
+  Trial trial = trial_of(room, effect, shapes);
   const NullHypothesis null = find_plain_null(fit);
   const Projection added = project_trial(room, null, trial, trial.shape);
   if (added.visible() == 0) {  // whatever it explained would be chance

@@ -46,6 +46,12 @@ std::vector<Segment> spread(const std::vector<Segment>& segments, std::size_t mo
 /// What a fit to some of the rows takes from the fit to all of them.
 FitOptions options_from(const Fit& fit) {
   FitOptions options;
+  options.method = fit.by;
+  if (fit.by ==
+      FitMethod::filter_error) {  // in the noise of the fit, as its innovations are judged
+    options.process_noise = fit.process_noise();
+    for (const OutputValue& noise : fit.noise) options.noise[noise.name] = noise.value;
+  }
   options.samples = 0;
   options.noise_tolerance = 1e-4;
   options.threads = 1;
@@ -122,7 +128,7 @@ Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double s
                  std::size_t most_rows, bool coloured_errors) {
   const auto with = room.model_with(candidate.effects);
   Record rows = room.record();
-  rows.cut(spread(room.rows(), most_rows));
+  rows.cut(room.follows_path() ? room.rows() : spread(room.rows(), most_rows));
   FitOptions options =
       with_candidate(options_from(room.fitted()), with->tables(), candidate, shape);
   options.coloured_errors = coloured_errors;
@@ -136,6 +142,7 @@ Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double s
 
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
                            const Folds& folds, base::ThreadPool& pool) {
+  if (room.follows_path()) return {};  // no row of one is left out of the others' path
   const auto without = room.model();
   const auto with = room.model_with(candidate.effects);
   constexpr int most_iterations = 30;  // a fold's fit begins at that to all rows

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/block_jackknife.hpp"
 #include "diagnosis/refits.hpp"
 #include "numerics/tails.hpp"
 #include "numerics/tall_products.hpp"
@@ -44,12 +45,13 @@ VectorXd explained_by_steps(const NullHypothesis& null, const MatrixXd& port) {
 
 /// Adds to the grid the rows at which a step may well be: a grid alone misses where noise that has
 /// nearly swallowed the step shows it in one row.
-void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, Candidate& candidate) {
+void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, const MatrixXd& columns,
+                   Candidate& candidate) {
   constexpr int most_peaks = 3;
   constexpr Index around = 2;  // rows
   const RowLayout& layout = room.fit().layout;
   const std::vector<double> times = room.times();
-  VectorXd explained = explained_by_steps(null, room.known_port_columns(candidate.stepping_port));
+  VectorXd explained = explained_by_steps(null, columns);
   VectorXd jumps = VectorXd::Zero(layout.rows);
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     jumps += null.white_residual.segment(layout.first(j), layout.rows).cwiseAbs2();
@@ -132,8 +134,8 @@ double predict_drop(const NullHypothesis& null, const ScreenProducts& products,
   change << -directions * (directions.transpose() * products.product()), 1.0;
   double square = 0.0;
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const double scale = layout.outputs[j].scale;
-    square += scale * scale * change.dot(products.plain[j] * change);
+    const double weight = layout.outputs[j].weight;
+    square += weight * weight * change.dot(products.plain[j] * change);
   }
   return 1.0 - std::sqrt(std::max(0.0, square) / static_cast<double>(layout.count())) /
                    total_rmse(layout, null.fit().residual);
@@ -164,7 +166,8 @@ Projection project_trial(const CandidateRoom& room, const NullHypothesis& null, 
 double log10_scan(const Trial& trial) { return std::log10(trial.candidate.shape.tried); }
 
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
-  if (!trial.candidate.stepping_port.empty()) add_step_rows(room, null, trial.candidate);
+  const MatrixXd* stepping = room.columns_of(trial.candidate.stepping_port);
+  if (stepping != nullptr) add_step_rows(room, null, *stepping, trial.candidate);
   double best_white = 1.0;  // log10 of the tail
   double best_plain = 1.0;
   for (const double shape : trial.candidate.shape.values) {
@@ -277,11 +280,20 @@ bool is_slow(const CandidateRoom& room, const Candidate& candidate) {
   return true;
 }
 
+void doubt(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
+  if (!room.follows_path()) return;
+  const Projection added = project_trial(room, null, trial, trial.shape);
+  const double tail = log10_block_tail(null, added.basis.dense(room.fit().layout));
+  const double corrected = std::min(0.0, log10_scan(trial) + tail);
+  trial.tails = {std::max(trial.tails.either, corrected), std::max(trial.tails.beside, corrected)};
+  trial.log10_p = std::max(trial.log10_p, corrected);
+}
+
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   const LinearisedFit& fit = room.fit();
   const CandidateColumns columns = room.columns(trial.candidate, trial.shape);
   const Columns& G = columns.whole;
-  if (!is_smooth(fit.layout, G)) {
+  if (!room.follows_path() && !is_smooth(fit.layout, G)) {
     trial.folds = whole_segments(fit.layout);
     judge_interpolated(fit.layout, G, trial.folds);
     if (trial.folds.count > 0) trial.held_out = hold_out(fit, G, trial.folds);
@@ -295,8 +307,12 @@ void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& tria
   for (const Effect& effect : trial.candidate.effects) {
     if (effect.driver) functions = std::max(functions, effect.driver->functions());
   }
-  trial.folds =
-      interleaved_blocks(fit.layout, correlation_rows(fit.layout, left), 5 * (functions + 1));
+  int fewest = 5 * (functions + 1);
+  if (room.follows_path()) {  // what is left of each segment must tell where it begins
+    constexpr int of_each = 4;
+    fewest = std::max(fewest, of_each * static_cast<int>(fit.layout.segments.size()));
+  }
+  trial.folds = interleaved_blocks(fit.layout, correlation_rows(fit.layout, left), fewest);
   judge_interpolated(fit.layout, G, trial.folds);
   trial.held_out = hold_out(fit, G, trial.folds);
 }

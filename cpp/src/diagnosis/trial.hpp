@@ -76,6 +76,9 @@ bool is_smooth(const RowLayout& layout, const Columns& columns);
 void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
                base::ThreadPool& pool, Trial& trial);
 
+/// Of a path: no surer than blocks of the record, each by itself, make it (block_jackknife.hpp).
+void doubt(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
+
 /// Cross-validation by one step from the fit: of whole segments where the effect isn't smooth and
 /// there are a few, else of blocks in between.
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);

@@ -25,7 +25,7 @@ void ComposedModel::evaluate_at(const LagNode& node, const Block& block, const d
   const int directions = xi1 == nullptr || corrections_.none() ? 0 : tables().n_2();
   const std::vector<InputColumn> columns = corrections_.correct(block, xi2, node, directions);
   const ComposedRows composed(*model_, tables(), parts_, block, xi2, xi1, columns);
-  composed.fill(rows, carry);
+  composed.fill(rows, carry, [](int) { return nullptr; });
   if (directions > 0) composed.add_slopes(rows.middleCols(tables().n_1(), directions));
 }
 

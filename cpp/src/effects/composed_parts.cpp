@@ -6,6 +6,7 @@
 
 #include "effects/composed_tables.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/path_model.hpp"
 
 namespace sepcal::effects {
 namespace {
@@ -30,7 +31,9 @@ class PartFinder {
   }
 
   ComposedParts finish() {
-    if (model_.new_carry() != nullptr && (!parts_.delays.empty() || !parts_.varying.empty())) {
+    const bool carries = model_.new_carry() != nullptr;
+    if (carries && dynamic_cast<const PathModel*>(&model_) == nullptr &&
+        !(parts_.delays.empty() && parts_.varying.empty())) {
       throw Error("a model that carries a state takes terms and corrections only");
     }
     std::set<int> lagging;
@@ -38,6 +41,9 @@ class PartFinder {
     for (DelayPart& delay : parts_.delays) {
       if (delay.inputs.empty()) delay.inputs.assign(physical_.begin(), physical_.end());
       if (delay.kind == Delay::Kind::outputs_lagging) {
+        if (carries) {
+          throw Error("outputs of a model with a state can't lag; let its inputs come early");
+        }
         if (outputs_lag) throw Error("the outputs lag in two effects; leave one out");
         outputs_lag = true;
       }

@@ -96,13 +96,15 @@ VectorXd ComposedRows::step(int target) const {
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): an output
-void ComposedRows::fill(Ref<MatrixXd> rows, Carry* carry) const {
+void ComposedRows::fill(Ref<MatrixXd> rows, Carry* carry, const CarryOf& stepped) const {
   fill_own(rows, carry);
   for (std::size_t i = 0; i < parts_.varying.size(); ++i) {
     fill_varying(parts_.varying[i], drives_[i], rows);
   }
   for (const TermPart& part : parts_.terms) fill_term(part, rows);
-  if (xi1_ != nullptr && model_.tables().n_2() > 0 && !drifts_.empty()) add_drift_to_tangent(rows);
+  if (xi1_ != nullptr && model_.tables().n_2() > 0 && !drifts_.empty()) {
+    add_drift_to_tangent(rows, stepped);
+  }
 }
 
 /// The model writes its [A | D | b] at the left; D and b then move to their places.
@@ -151,15 +153,16 @@ void ComposedRows::fill_term(const TermPart& part, Ref<MatrixXd> rows) const {
   rows.rightCols<1>() += own.rightCols<1>();
 }
 
-void ComposedRows::add_drift_to_tangent(Ref<MatrixXd> rows) const {
+// NOLINTNEXTLINE(performance-unnecessary-value-param): an output
+void ComposedRows::add_drift_to_tangent(Ref<MatrixXd> rows, const CarryOf& stepped) const {
   const Index own_1 = model_.tables().n_1();
   const Index own_2 = model_.tables().n_2();
   const std::vector<const double*> inputs = select(parts_.model_inputs);
   const MatrixXd here = rows.middleCols(tables_.n_1(), own_2);
   MatrixXd ahead(rows.rows(), own_1 + own_2 + 1);
   for (const auto& [target, drift] : drifts_) {
-    const VectorXd stepped = step(target);
-    model_.evaluate(with(inputs), xi2_, stepped.data(), nullptr, ahead);
+    const VectorXd there = step(target);
+    model_.evaluate(with(inputs), xi2_, there.data(), stepped(target), ahead);
     add_scaled(drift, ahead.middleCols(own_1, own_2) - here, rows.middleCols(tables_.n_1(), own_2));
   }
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -23,8 +24,12 @@ class ComposedRows {
                const Block& block, const double* xi2, const double* xi1,
                const std::vector<InputColumn>& columns);
 
+  /// Of a model that carries a state: the carry of the pass in which a linear parameter of its own
+  /// is greater by one. nullptr of any other model.
+  using CarryOf = std::function<Carry*(int target)>;
+
   /// Sets [A | b] or [A | D | b], D without what corrections of the inputs add.
-  void fill(Eigen::Ref<Eigen::MatrixXd> rows, Carry* carry) const;
+  void fill(Eigen::Ref<Eigen::MatrixXd> rows, Carry* carry, const CarryOf& stepped) const;
 
   /// Adds the derivatives of A xi1 + b along the slopes of the inputs (n_z * rows x directions).
   void add_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const;
@@ -49,7 +54,7 @@ class ComposedRows {
   void fill_varying(const VaryingPart& part, const Drive& drive,
                     Eigen::Ref<Eigen::MatrixXd> rows) const;
   void fill_term(const TermPart& part, Eigen::Ref<Eigen::MatrixXd> rows) const;
-  void add_drift_to_tangent(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  void add_drift_to_tangent(Eigen::Ref<Eigen::MatrixXd> rows, const CarryOf& stepped) const;
 
   std::vector<int> find_moving(const std::vector<int>& inputs) const;
   void add_slopes(const VaryingPart& part, const Drive& drive,

@@ -7,6 +7,7 @@
 #include "effects/composed_tables.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/path_model.hpp"
 
 namespace sepcal {
 
@@ -25,12 +26,26 @@ double longest_shift(const std::string& parameter, const Interval& own,
               "' must be finite: they say how many rows at the edges are not used");
 }
 
+/// Whether it has a part beside the model itself.
+bool joins(const Effect& effect) {
+  return !effect.varying.empty() || !effect.terms.empty() || !effect.corrections.empty() ||
+         !effect.delays.empty();
+}
+
 }  // namespace
 
 std::shared_ptr<const BlockModel> compose(std::shared_ptr<const BlockModel> model,
                                           const std::vector<Effect>& effects,
                                           const Record& record) {
-  if (effects.empty()) return model;
+  for (const Effect& effect : effects) {
+    if (effect.remodel) model = effect.remodel(model);
+  }
+  if (std::ranges::all_of(effects, [](const Effect& effect) { return !joins(effect); })) {
+    return model;
+  }
+  if (const auto* own = dynamic_cast<const PathModel*>(model.get())) {
+    return own->compose_with(model, effects, record);
+  }
   return std::make_shared<const ComposedModel>(std::move(model), effects, record);
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "sepcal/effect.hpp"
 
 namespace sepcal {
@@ -7,21 +9,38 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Ref;
+using Eigen::VectorXd;
 
-std::vector<Variable> inputs_of(const Driver& driver, const std::vector<DrivenInput>& targets) {
-  std::vector<Variable> inputs;
-  for (const DrivenInput& target : targets) inputs.push_back(target.target);
+/// Adds what isn't there yet.
+void add_once(std::vector<Variable>& inputs, const Variable& input) {
+  if (std::ranges::find(inputs, input.name, &Variable::name) == inputs.end()) {
+    inputs.push_back(input);
+  }
+}
+
+std::vector<Variable> targets_of(const std::vector<DrivenInput>& components) {
+  std::vector<Variable> targets;
+  for (const DrivenInput& component : components) add_once(targets, component.target);
+  return targets;
+}
+
+/// Targets, what multiplies them, the driver.
+std::vector<Variable> inputs_of(const Driver& driver, const std::vector<DrivenInput>& components) {
+  std::vector<Variable> inputs = targets_of(components);
+  for (const DrivenInput& component : components) {
+    if (component.times) add_once(inputs, *component.times);
+  }
   if (driver.input()) inputs.push_back(*driver.input());
   return inputs;
 }
 
 std::vector<Variable> parameters_of(const std::string& owner, const Driver& driver,
-                                    const std::vector<DrivenInput>& targets,
+                                    const std::vector<DrivenInput>& components,
                                     const std::string& unit, double bounds) {
   std::vector<Variable> parameters;
-  for (const DrivenInput& target : targets) {
+  for (const DrivenInput& component : components) {
     for (const std::string& suffix : driver.suffixes()) {
-      parameters.emplace_back(owner + "." + target.component + suffix, unit, -bounds, bounds);
+      parameters.emplace_back(owner + "." + component.component + suffix, unit, -bounds, bounds);
     }
   }
   if (const auto& shape = driver.shape()) {
@@ -32,14 +51,20 @@ std::vector<Variable> parameters_of(const std::string& owner, const Driver& driv
 
 class DrivenInputs final : public Correction {
  public:
-  DrivenInputs(const std::string& owner, DriverPointer driver, std::vector<DrivenInput> targets,
-               const std::string& unit, double bounds)
-      : Correction(inputs_of(*driver, targets), static_cast<int>(targets.size()),
-                   parameters_of(owner, *driver, targets, unit, bounds)),
-        driver_(std::move(driver)),
-        targets_(std::move(targets)) {}
+  DrivenInputs(const std::string& owner, DriverPointer driver,
+               const std::vector<DrivenInput>& components, const std::string& unit, double bounds)
+      : Correction(inputs_of(*driver, components), static_cast<int>(targets_of(components).size()),
+                   parameters_of(owner, *driver, components, unit, bounds)),
+        driver_(std::move(driver)) {
+    for (const DrivenInput& component : components) {
+      components_.push_back({place_of(component.target),
+                             component.times ? place_of(*component.times) : -1, component.sign});
+    }
+  }
 
-  bool is_driver(int input) const override { return input == corrected(); }
+  bool is_driver(int input) const override {
+    return driver_->input() && input + 1 == static_cast<int>(inputs().size());
+  }
 
   double reach() const override { return driver_->reach(); }
 
@@ -52,35 +77,53 @@ class DrivenInputs final : public Correction {
     const bool shaped = driver_->shape().has_value();
     MatrixXd phi(rows, functions);
     MatrixXd phi_slopes(rows, functions);
-    driver_->evaluate(driver_->input() ? block.inputs[targets_.size()] : nullptr, block.first,
+    driver_->evaluate(driver_->input() ? block.inputs.back() : nullptr, block.first,
                       shaped ? xi2[n_2 - 1] : 0.0, phi, shaped ? &phi_slopes : nullptr);
+    const auto input = [&](Index i) {
+      return Eigen::Map<const VectorXd>(block.inputs[static_cast<std::size_t>(i)], rows);
+    };
     if (slopes != nullptr) slopes->setZero();
     for (Index c = 0; c < corrected(); ++c) {
-      const DrivenInput& target = targets_[static_cast<std::size_t>(c)];
-      const Eigen::Map<const Eigen::VectorXd> s(xi2 + c * functions, functions);
-      const Eigen::Map<const Eigen::VectorXd> input(block.inputs[static_cast<std::size_t>(c)],
-                                                    rows);
-      values.col(c) = input + target.sign * phi * s;
+      values.col(c) = input(c);
+      if (slopes != nullptr) slopes->col(c * (n_u + n_2) + c).setOnes();
+    }
+    for (std::size_t k = 0; k < components_.size(); ++k) {
+      const auto& [target, times, sign] = components_[k];
+      const Index first = static_cast<Index>(k) * functions;
+      const Eigen::Map<const VectorXd> s(xi2 + first, functions);
+      const VectorXd factor =
+          times < 0 ? VectorXd::Constant(rows, sign) : VectorXd(sign * input(times));
+      const VectorXd driven = phi * s;
+      values.col(target) += factor.cwiseProduct(driven);
       if (slopes == nullptr) continue;
-      auto own = slopes->middleCols(c * (n_u + n_2), n_u + n_2);
-      own.col(c).setOnes();
-      own.middleCols(n_u + c * functions, functions) = target.sign * phi;
-      if (shaped) own.col(n_u + n_2 - 1) = target.sign * phi_slopes * s;
+      auto own = slopes->middleCols(target * (n_u + n_2), n_u + n_2);
+      if (times >= 0) own.col(times) += sign * driven;
+      own.middleCols(n_u + first, functions) = factor.asDiagonal() * phi;
+      if (shaped) own.col(n_u + n_2 - 1) += factor.cwiseProduct(phi_slopes * s);
     }
   }
 
  private:
+  struct Component {
+    Index target;  // among the inputs
+    Index times;   // -1: none
+    double sign;
+  };
+
+  Index place_of(const Variable& input) const {
+    return std::ranges::find(inputs(), input.name, &Variable::name) - inputs().begin();
+  }
+
   DriverPointer driver_;
-  std::vector<DrivenInput> targets_;
+  std::vector<Component> components_;
 };
 
 }  // namespace
 
 std::shared_ptr<const Correction> driven_inputs(const std::string& owner, DriverPointer driver,
-                                                std::vector<DrivenInput> targets,
+                                                const std::vector<DrivenInput>& components,
                                                 const std::string& unit, double bounds) {
-  return std::make_shared<const DrivenInputs>(owner, std::move(driver), std::move(targets), unit,
-                                              bounds);
+  return std::make_shared<const DrivenInputs>(owner, std::move(driver), components, unit, bounds);
 }
 
 }  // namespace sepcal

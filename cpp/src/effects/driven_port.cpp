@@ -75,13 +75,15 @@ Effect make_driven(const std::string& owner, const Port& port, const DriverPoint
     if (component.input.empty()) {
       varying.components.push_back({component.name, component.linear, component.shares});
     } else {
-      inputs.push_back({component.name, input_of(model, component.input), component.sign});
+      DrivenInput& driven = inputs.emplace_back(
+          DrivenInput{component.name, input_of(model, component.input), component.sign});
+      if (!component.times.empty()) driven.times = input_of(model, component.times);
     }
   }
   if (!varying.components.empty()) effect.varying.push_back(std::move(varying));
   if (!inputs.empty()) {
     const double bounds = port.plausible / largest(*driver, record);
-    effect.corrections.push_back(driven_inputs(owner, driver, std::move(inputs), unit, bounds));
+    effect.corrections.push_back(driven_inputs(owner, driver, inputs, unit, bounds));
   }
   return effect;
 }

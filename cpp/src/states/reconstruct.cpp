@@ -23,9 +23,11 @@ Record reconstruct(const TrajectoryModel<FlightPath>& model,
   for (auto* table : {&inputs, &outputs, &states}) table->fill(empty);
   for (const Segment& segment : record.segments()) {
     for (std::size_t row = segment.first; row < segment.last; ++row) {
-      Vec<double, 6> u;
-      for (std::size_t i = 0; i < 6; ++i) {
-        u[static_cast<Eigen::Index>(i)] = record.column(FlightPath::inputs[i].name)[row];
+      Vec<double, FlightPath::n_u> u;
+      for (std::size_t i = 0; i < FlightPath::inputs.size(); ++i) {
+        const Quantity& input = FlightPath::inputs[i];
+        u[static_cast<Eigen::Index>(i)] =
+            record.has(input.name) ? record.column(input.name)[row] : input.absent;
       }
       const Vec<double, 6> at = x.row(static_cast<Eigen::Index>(row)).transpose();
       const auto read = model.state_model().at(at, u, bias);

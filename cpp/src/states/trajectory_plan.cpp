@@ -190,6 +190,25 @@ void TrajectoryPlan::place_columns(const StateTables& model) {
   }
 }
 
+TrajectoryPlan TrajectoryPlan::with_effects(const Tables& joined) const {
+  const int own_1 = tables_.n_1();
+  const int own = own_1 + tables_.n_2();
+  const int more_1 = joined.n_1() - own_1;
+  const auto move = [&](int& column) {
+    if (column >= own_1) column += more_1;  // D comes after A
+  };
+  TrajectoryPlan plan = *this;
+  plan.tables_ = joined;
+  std::ranges::for_each(plan.parameter_columns_, move);
+  std::ranges::for_each(plan.start_columns_, move);
+  std::ranges::for_each(plan.acting_columns_, move);
+  for (int k = 0; k < more_1; ++k) plan.acting_columns_.push_back(own_1 + k);
+  for (int k = own + more_1; k < joined.n_1() + joined.n_2(); ++k)
+    plan.acting_columns_.push_back(k);
+  std::ranges::sort(plan.acting_columns_);
+  return plan;
+}
+
 std::vector<std::size_t> TrajectoryPlan::starts_in(const Record& record) const {
   if (!starts_.empty()) return starts_;
   if (record.segments().empty()) throw Error("the record has no rows; a trajectory needs some");

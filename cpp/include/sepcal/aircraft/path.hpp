@@ -38,6 +38,11 @@ struct PathTrajectory {
 /// and drift is not seen. Columns without any (held, simulated without noise) are left out.
 std::map<std::string, double> noise_of_readings(const Record& record);
 
+/// The standard deviation of white noise on each column, by fourth differences: what is smooth, as
+/// motion and drift are, has none.
+std::map<std::string, double> white_noise_of(const Record& record,
+                                             const std::vector<std::string>& columns);
+
 /// Throws Error for a record without any of the outputs, a parameter to free that isn't held, and
 /// as TrajectoryModel does.
 PathTrajectory lay_path(const Record& record, const PathOptions& options = {});

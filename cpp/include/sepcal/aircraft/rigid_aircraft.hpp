@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -241,6 +243,16 @@ struct RigidAircraft {
     return C;
   }
 };
+
+/// Throws Error for more than 40 regressors or 8 columns among them.
+void check_room(const AeroTerms& aero);
+
+/// A trajectory of a RigidAircraft with a regressor more, along the same record. Throws Error for
+/// another model, a regressor of a column that the record doesn't have, and one too many.
+std::shared_ptr<const BlockModel> with_regressor(const BlockModel& model,
+                                                 const std::string& coefficient,
+                                                 const std::string& regressor,
+                                                 const Record& record);
 
 /// Those that are compiled; aircraft_model() takes the smallest that has room. With the nine states
 /// their dual numbers are of odd length: even ones are padded to the width of registers, and A then

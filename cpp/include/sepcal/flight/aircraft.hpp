@@ -47,11 +47,16 @@ struct AircraftOptions {
   CalibrationOptions calibration = {};
 };
 
-/// A regressor that was added, and the error of each output without and with it.
+/// An effect that was added, and the error of each output without and with it.
 struct AddedRegressor {
   std::string effect;
   std::vector<OutputValue> rmse_before;
   std::vector<OutputValue> rmse_after;
+  double predicted_drop = not_a_number;  // of the error over all outputs, each in units of its own,
+                                         // as one step promised; NaN of equation error
+
+  /// The same as it fell.
+  double drop() const;
 };
 
 /// What BASE.json of an aircraft holds.
@@ -91,13 +96,14 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options);
 /// estimated anew, all else held; a note says so.
 Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight);
 
-/// Which regressor its coefficients lack: of every coefficient the usual ones, splines, and every
-/// other channel of the log. Of `aero`. Throws Error for bad input, and for the other models.
+/// What it lacks: of coefficients the usual regressors, of `aero` splines too, and every other
+/// channel of the log; along a trajectory what the sensors and the wind may have. Throws Error for
+/// bad input.
 FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& flight,
                                   const DiagnosisOptions& options = {});
 
 /// The same fit with an effect more, from where it ended: "Cm[alpha^2]", "Cm[alpha*elevator]"; of
-/// `aero` also "CX[spline(alpha,5)]". Throws Error for a path, whose effects are none.
+/// `aero` also "CX[spline(alpha,5)]"; along a trajectory those that aircraft_effects_text() lists.
 AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
                             const std::string& effect);
 

@@ -17,7 +17,8 @@ struct CataloguedEffect {
   std::string unit;      // of its coefficient, per unit of the driver where it has one
 };
 
-/// The catalogue of a model by its Probe::name(); empty for another name.
+/// The catalogue of a model by its Probe::name(), of trajectories "path" or "aircraft"; empty for
+/// another name.
 std::span<const CataloguedEffect> effect_catalogue(std::string_view model);
 
 /// The catalogue of a model as the table that the apps print.

@@ -41,12 +41,18 @@ struct FlightPathModel {
   static constexpr int n_1 = Position ? 12 : 15;
   static constexpr int n_p = Position ? 9 : 6;
   enum State { forward, right, below, phi, theta, psi };  // u v w and the attitude
-  enum Input { ax, ay, az, roll_rate, pitch_rate, yaw_rate };
+  static constexpr int n_u = 12;
+  enum Input { ax, ay, az, roll_rate, pitch_rate, yaw_rate, gust, vane_shift = gust + 3 };
   enum Output { airspeed, beta, alpha, roll, pitch, yaw, vn, ve, vd, north, east, down };
 
-  static constexpr std::array inputs{Quantity{"ax", "m/s^2"}, Quantity{"ay", "m/s^2"},
-                                     Quantity{"az", "m/s^2"}, Quantity{"p", "rad/s"},
-                                     Quantity{"q", "rad/s"},  Quantity{"r", "rad/s"}};
+  /// What the inertial unit reads; then, zero unless an effect drives them, how much the wind
+  /// differs from the constant one, and the vane from where it is said to be.
+  static constexpr std::array inputs{
+      Quantity{"ax", "m/s^2"},      Quantity{"ay", "m/s^2"},      Quantity{"az", "m/s^2"},
+      Quantity{"p", "rad/s"},       Quantity{"q", "rad/s"},       Quantity{"r", "rad/s"},
+      port("wind_change_n", "m/s"), port("wind_change_e", "m/s"), port("wind_change_d", "m/s"),
+      port("vane_shift_x", "m"),    port("vane_shift_y", "m"),    port("vane_shift_z", "m")};
+  static constexpr int readings = 6;  // of these inputs
 
  private:
   /// The first N of a table.
@@ -105,7 +111,7 @@ struct FlightPathModel {
 
   /// B5. Not a number beyond 85 deg of pitch, where the angles' rates run away.
   template <class U, class X>
-  Rate<X, n_x> rate(const Vec<X, n_x>& x, const Vec<U, 6>& u, const Vec<X, n_p>& p) const {
+  Rate<X, n_x> rate(const Vec<X, n_x>& x, const Vec<U, n_u>& u, const Vec<X, n_p>& p) const {
     using std::abs;
     using std::cos;
     using std::sin;
@@ -124,19 +130,29 @@ struct FlightPathModel {
     dx[theta] = turn[1] * c_phi - turn[2] * s_phi;
     dx[psi] = (turn[1] * s_phi + turn[2] * c_phi) / c_theta;
     dx[phi] = turn[0] + s_theta * dx[psi];
-    if constexpr (Position) dx.template tail<3>() = over_ground(x, p);
+    if constexpr (Position) {
+      dx.template tail<3>() = over_ground(body_to_ned(x[phi], x[theta], x[psi]), x, p);
+    }
     return dx;
   }
 
-  /// The readings: (1 + lambda) true + b.
+  /// The readings: (1 + lambda) true + b. u v w are relative to the air of the constant wind, as
+  /// the inertial unit has them; the air data see the wind that there is.
   template <class U, class X>
-  Affine<X, n_z, n_1> at(const Vec<X, n_x>& x, const Vec<U, 6>& u, const Vec<X, n_p>& p) const {
+  Affine<X, n_z, n_1> at(const Vec<X, n_x>& x, const Vec<U, n_u>& u, const Vec<X, n_p>& p) const {
     using std::asin;
     using std::atan2;
     using std::sqrt;
     const Vec<X, 3> turn(u[roll_rate] + p[roll_rate], u[pitch_rate] + p[pitch_rate],
                          u[yaw_rate] + p[yaw_rate]);
-    const Vec<X, 3> air = x.template head<3>() + turn.cross(vane.template cast<X>());
+    const Eigen::Matrix<X, 3, 3> to_ned = body_to_ned(x[phi], x[theta], x[psi]);
+    Vec<X, 3> change;
+    Vec<X, 3> arm;
+    for (int i = 0; i < 3; ++i) {
+      change[i] = X(u[gust + i]);
+      arm[i] = X(vane[i] + u[vane_shift + i]);
+    }
+    const Vec<X, 3> air = x.template head<3>() + turn.cross(arm) - to_ned.transpose() * change;
     Affine<X, n_z, n_1> z{.A = Eigen::Matrix<X, n_z, n_1>::Zero()};
     z.b[airspeed] = sqrt(air.dot(air));
     z.b[beta] = asin(air[1] / z.b[airspeed]);
@@ -146,7 +162,7 @@ struct FlightPathModel {
       z.A(j, j) = z.b[j];
       z.A(j, 6 + j) = X(1.0);
     }
-    z.b.template segment<3>(vn) = over_ground(x, p);
+    z.b.template segment<3>(vn) = over_ground(to_ned, x, p);
     if constexpr (Position) {
       z.b.template tail<3>() = x.template tail<3>();
     } else {
@@ -157,7 +173,7 @@ struct FlightPathModel {
 
   /// The inertial unit's noise enters where its readings do.
   template <class U, class X>
-  Eigen::Matrix<X, n_x, 6> noise_input(const Vec<X, n_x>& x, const Vec<U, 6>& /*u*/,
+  Eigen::Matrix<X, n_x, 6> noise_input(const Vec<X, n_x>& x, const Vec<U, n_u>& /*u*/,
                                        const Vec<X, n_p>& /*p*/) const {
     using std::cos;
     using std::sin;
@@ -176,7 +192,7 @@ struct FlightPathModel {
   }
 
   /// u v w from airspeed and flow angles, the attitude as read, the position as read.
-  Vec<double, n_x> start(const Vec<double, 6>& /*u*/, const Vec<double, n_z>& z) const {
+  Vec<double, n_x> start(const Vec<double, n_u>& /*u*/, const Vec<double, n_z>& z) const {
     const auto known = [](double reading, double otherwise) {
       return std::isfinite(reading) ? reading : otherwise;
     };
@@ -199,8 +215,9 @@ struct FlightPathModel {
  private:
   /// The velocity over the ground; without the wind where that is linear.
   template <class X>
-  static Vec<X, 3> over_ground(const Vec<X, n_x>& x, const Vec<X, n_p>& p) {
-    Vec<X, 3> air = body_to_ned(x[phi], x[theta], x[psi]) * Vec<X, 3>(x.template head<3>());
+  static Vec<X, 3> over_ground(const Eigen::Matrix<X, 3, 3>& to_ned, const Vec<X, n_x>& x,
+                               const Vec<X, n_p>& p) {
+    Vec<X, 3> air = to_ned * Vec<X, 3>(x.template head<3>());
     if constexpr (Position) air += p.template tail<3>();
     return air;
   }

@@ -8,6 +8,7 @@
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/eigen.hpp"
+#include "sepcal/path_model.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/states/bent_step.hpp"
 #include "sepcal/states/trajectory_plan.hpp"
@@ -68,7 +69,7 @@ class StateSteps {
 };
 
 /// A state model laid along a record: what TrajectoryModel and its like have in common.
-class StateBlockModel : public BlockModel {
+class StateBlockModel : public BlockModel, public PathModel {
  public:
   using BlockModel::BlockModel;
 
@@ -93,6 +94,19 @@ class StateBlockModel : public BlockModel {
                               const Eigen::VectorXd& density) const override;
 
   std::unique_ptr<InnovationModel> innovations(const Record& record) const override;
+
+  /// A state model again. Inputs go on straight beyond a segment's edges where they are late.
+  std::shared_ptr<const BlockModel> compose_with(std::shared_ptr<const BlockModel> self,
+                                                 const std::vector<Effect>& effects,
+                                                 const Record& record) const override;
+
+  std::vector<InputSlopes> input_slopes(const Record& /*record*/,
+                                        const Eigen::VectorXd& /*xi2*/) const override {
+    return {};
+  }
+
+  std::unique_ptr<PathTangent> path_tangent(const Record& record, const Eigen::VectorXd& xi,
+                                            const std::optional<PathNoise>& noise) const override;
 };
 
 }  // namespace sepcal

@@ -36,6 +36,9 @@ class TrajectoryPlan {
   /// Without a record: one trajectory that begins wherever a segment does, from one initial state.
   TrajectoryPlan(const StateTables& model, const Record* record, const TrajectoryOptions& options);
 
+  /// The plan of the same model with effects, whose parameters follow its own in `joined`.
+  TrajectoryPlan with_effects(const Tables& joined) const;
+
   const StateTables& model() const { return model_; }
   const TrajectoryOptions& options() const { return options_; }
   const Tables& tables() const { return tables_; }

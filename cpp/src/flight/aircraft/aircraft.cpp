@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "base/thread_pool.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
+#include "flight/aircraft/trajectory_effects.hpp"
 #include "flight/files/sha256.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/aircraft/two_step.hpp"
@@ -98,7 +100,7 @@ AeroEquation parse_equation(std::string_view text) {
 
 AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
   LaidAircraft laid = lay(flight, options);
-  AircraftFit fitted = describe(flight, options, fit(*laid.model, laid.record, laid.fit));
+  AircraftFit fitted = describe(flight, options, fit_laid(laid, laid.fit));
   fitted.equations = std::move(laid.equations);
   fitted.options.calibration.effects = std::move(laid.effects);
   fitted.initial_states = std::move(laid.initial_states);
@@ -138,6 +140,14 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   return found;
 }
 
+double AddedRegressor::drop() const {
+  double square = 0.0;
+  for (std::size_t j = 0; j < rmse_after.size(); ++j) {
+    square += std::pow(rmse_after[j].value / rmse_before[j].value, 2);
+  }
+  return 1.0 - std::sqrt(square / static_cast<double>(rmse_after.size()));
+}
+
 AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
                             const std::string& effect) {
   AircraftOptions options = options_on(fitted, flight);
@@ -152,8 +162,13 @@ AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
     if (!same) options.calibration.fit.start.erase(name);
   }
   AircraftFit next = fit_aircraft(flight, options);
+  const Promise promised = promise_along(fitted, flight, next, effect);
+  if (!promised.against.empty()) {
+    next.notes.push_back(fmt::format("diagnose would not advise {}: {}", effect, promised.against));
+  }
   next.history = fitted.history;
-  next.history.push_back({effect, same ? fitted.fit.rmse : rmse_on(flight, fitted), next.fit.rmse});
+  next.history.push_back({effect, same ? fitted.fit.rmse : rmse_on(flight, fitted), next.fit.rmse,
+                          promised.predicted_drop});
   return next;
 }
 

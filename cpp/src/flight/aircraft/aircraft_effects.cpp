@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "flight/aircraft/trajectory_effects.hpp"
 #include "flight/catalogue/effect_candidates.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
@@ -67,6 +68,7 @@ std::vector<AeroEquation> with_regressors(std::vector<AeroEquation> equations,
                                           const AircraftOptions& options) {
   for (const EffectSetting& effect : options.calibration.effects) {
     const std::string& name = effect.name;
+    if (acts_along(options.model, name)) continue;
     const std::size_t equation = find_equation(name, equations, options.model);
     if (is_spline(name)) continue;
     const std::size_t open = name.find('[');

@@ -86,7 +86,9 @@ Json write_fitted(const AircraftFit& fitted) {
   for (const AddedRegressor& added : fitted.history) {
     root["history"].push_back({{"effect", added.effect},
                                {"rmse_before", by_name(added.rmse_before)},
-                               {"rmse_after", by_name(added.rmse_after)}});
+                               {"rmse_after", by_name(added.rmse_after)},
+                               {"predicted_drop", number(added.predicted_drop)},
+                               {"drop", number(added.drop())}});
   }
   return root;
 }
@@ -106,9 +108,9 @@ AircraftFit read_fitted(const Json& root) {
   fitted.fit = read_fit(root, fitted.options.calibration, outputs);
   fitted.fit.rows = fitted.flight.rows_used;
   for (const Json& added : elements_of(root.at("history"))) {
-    fitted.history.push_back({added.at("effect").get<std::string>(),
-                              values_by_name(outputs, added.at("rmse_before")),
-                              values_by_name(outputs, added.at("rmse_after"))});
+    fitted.history.push_back(
+        {added.at("effect").get<std::string>(), values_by_name(outputs, added.at("rmse_before")),
+         values_by_name(outputs, added.at("rmse_after")), number_at(added, "predicted_drop")});
   }
   return fitted;
 }

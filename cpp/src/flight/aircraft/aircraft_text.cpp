@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/text/fit_text.hpp"
 #include "sepcal/flight/aircraft.hpp"
+#include "sepcal/flight/effect_catalogue.hpp"
 
 namespace sepcal {
 namespace {
@@ -24,7 +26,7 @@ std::string heading(const AircraftFit& fitted) {
                             fitted.flight.file);
 }
 
-/// The chain of added regressors, each with the errors before and after.
+/// The chain of added effects, each with the errors before and after.
 std::string history_table(const AircraftFit& fitted) {
   std::string text = fitted.history.empty() ? "" : "\nRMSE before and after\n";
   for (const AddedRegressor& added : fitted.history) {
@@ -35,6 +37,9 @@ std::string history_table(const AircraftFit& fitted) {
       text += fmt::format("      {:<9} {:.4g} -> {:.4g}  ({:+.1f} %)\n", added.rmse_after[j].name,
                           before, after, 100.0 * (after / before - 1.0));
     }
+    if (std::isnan(added.predicted_drop)) continue;
+    text += fmt::format("      all, each in units of its own: {:+.1f} %, promised {:+.1f} %\n",
+                        -100.0 * added.drop(), -100.0 * added.predicted_drop);
   }
   return text;
 }
@@ -89,7 +94,8 @@ std::string to_text(const Applied& applied, const AircraftFit& fitted) {
 }
 
 std::string aircraft_effects_text() {
-  std::string text = "what each coefficient is a sum of\n";
+  std::string text =
+      catalogue_text("path") + catalogue_text("aircraft") + "what each coefficient is a sum of\n";
   for (const AeroEquation& equation : standard_equations()) {
     text += fmt::format("  {}  {}\n", equation.coefficient, fmt::join(equation.regressors, ", "));
   }

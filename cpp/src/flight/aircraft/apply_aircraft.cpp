@@ -48,7 +48,7 @@ void add_modelled(const Fit& fit, const LaidAircraft& laid, const Flight& flight
 
 void add_path(const AircraftFit& fitted, const Fit& fit, const LaidAircraft& laid,
               const Flight& flight, Columns& columns) {
-  const Record flown = reconstruct(*laid.path, fit.by_name(), laid.record);
+  const Record flown = reconstruct(*laid.path, fit.by_name(), seen_by_model(laid, fit));
   const auto add = [&](const Record& record, const std::string& name, const std::string& header) {
     columns.push_back({header, spread(record.column(name), laid, flight.rows())});
   };
@@ -58,7 +58,7 @@ void add_path(const AircraftFit& fitted, const Fit& fit, const LaidAircraft& lai
       add(flown, name, header_of(name + middle, std::string(table[i].unit)));
     }
   };
-  add_table(FlightPath::inputs, 6, "_cal");
+  add_table(FlightPath::inputs, FlightPath::readings, "_cal");
   add_table(FlightPath::outputs, 6, "_cal");
   add_table(FlightPath::states, 3, "");
   if (!fitted.options.geometry) return;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which regressor a fitted aircraft lacks.
+// Which effect or regressor a fitted aircraft lacks.
 #include <fmt/format.h>
+
+#include <functional>
+#include <utility>
 
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/coefficient_diagnosis.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
+#include "flight/aircraft/trajectory_effects.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/stepwise_loop.hpp"
 #include "sepcal/flight/aircraft.hpp"
@@ -15,20 +19,41 @@ using namespace aircraft_log;  // this room's own
 
 namespace {
 
-/// Throws Error for models whose effects are not known yet.
-void check_diagnosable(const AircraftFit& fitted) {
-  if (fitted.options.model == AircraftModel::aero) return;
-  throw Error(
-      fmt::format("diagnose knows no effects of the model '{}'; compare says where it fails, and "
-                  "--model aero which regressors the coefficients lack",
-                  to_string(fitted.options.model)));
+/// A fit to be diagnosed, what it found, and what its effects are in words.
+struct Diagnosed {
+  DiagnosedFit fitted;
+  Diagnosis found;
+  std::function<std::string(const std::string& effect)> describe;
+};
+
+/// By equation error, coefficient by coefficient.
+Diagnosed diagnose_equations(const AircraftFit& fitted, const Flight& flight, LaidAircraft& laid,
+                             const DiagnosisOptions& options) {
+  return {diagnosed_coefficients(fitted, laid),
+          diagnose_coefficients(fitted, flight, laid, options), describe_regressor};
+}
+
+/// By output or filter error, along the trajectory.
+Diagnosed diagnose_trajectory(const AircraftFit& fitted, const Flight& flight, LaidAircraft& laid,
+                              const DiagnosisOptions& options) {
+  const AircraftModel model = fitted.options.model;
+  const Fit fit = fit_on(flight, fitted, laid);
+  DiagnosedFit along = diagnosed_trajectory(fitted, fit, laid, flight, options.only);
+  Diagnosis found = diagnose(
+      along, options.only.empty() ? list_along(fitted, laid, flight) : options.only, options);
+  if (along.noise && fit.by == FitMethod::output_error) {  // it is the residual that will fall
+    along.noise.reset();
+    const std::vector<double> drops = predicted_drops(along, found.effects, options.threads);
+    for (std::size_t i = 0; i < drops.size(); ++i) found.effects[i].predicted_drop = drops[i];
+  }
+  return {std::move(along), std::move(found),
+          [=](const std::string& effect) { return describe_along(model, effect); }};
 }
 
 }  // namespace
 
 FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& flight,
                                   const DiagnosisOptions& options) {
-  check_diagnosable(fitted);
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   return within(flight, [&] {
     FlightDiagnosis result;
@@ -37,7 +62,10 @@ FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& fligh
     result.calibration = fitted.file;
     result.status = fitted.fit.status;
     result.message = fitted.fit.message;
-    result.diagnosis = diagnose_coefficients(fitted, flight, laid, options);
+    Diagnosed diagnosed = fitted.options.model == AircraftModel::aero
+                              ? diagnose_equations(fitted, flight, laid, options)
+                              : diagnose_trajectory(fitted, flight, laid, options);
+    result.diagnosis = std::move(diagnosed.found);
     result.notes = std::move(laid.notes);
     if (!is_same_flight(fitted, flight)) {
       result.notes.push_back(
@@ -45,9 +73,9 @@ FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& fligh
                       flight.name()));
     }
     for (const EffectFinding& effect : result.diagnosis.effects) {
-      result.sentences.push_back(describe_regressor(effect.name));
+      result.sentences.push_back(diagnosed.describe(effect.name));
     }
-    const DiagnosedFit whole = diagnosed_coefficients(fitted, laid);
+    const DiagnosedFit& whole = diagnosed.fitted;
     std::size_t used = 0;
     for (const Segment& segment : whole.rows) used += segment.rows();
     result.flight = {flight.name(), flight.sha256(), flight.rows(), used};

@@ -4,16 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
+#include "estimation/step_times.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
+#include "flight/aircraft/trajectory_effects.hpp"
 #include "sepcal/aircraft/aero_model.hpp"
 #include "sepcal/aircraft/output_error.hpp"
 #include "sepcal/aircraft/path.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/states/stream_start.hpp"
+#include "states/composed_trajectory.hpp"
 
 namespace sepcal::aircraft_log {
 namespace {
@@ -32,6 +36,15 @@ std::vector<std::string> coefficients_of(const AircraftOptions& options) {
 AircraftAxes axes_of(AircraftModel model) {
   if (model == AircraftModel::longitudinal) return AircraftAxes::longitudinal;
   return model == AircraftModel::lateral ? AircraftAxes::lateral : AircraftAxes::six_dof;
+}
+
+/// Writes settings back to where they stand among all.
+void put_back(const std::vector<EffectSetting>& settings, const AircraftOptions& options,
+              std::vector<EffectSetting>& all) {
+  auto next = settings.begin();
+  for (EffectSetting& effect : all) {
+    if (acts_along(options.model, effect.name)) effect = *next++;
+  }
 }
 
 void lay_along_path(const AircraftOptions& options, LaidAircraft& laid) {
@@ -93,13 +106,22 @@ void lay_motion(const AircraftOptions& options, LaidAircraft& laid) {
   laid.initial_states = std::move(along.initial_states);
 }
 
+/// Effects along the trajectory join the model; what they correct begins at zero.
+void join_effects(const AircraftOptions& options, LaidAircraft& laid) {
+  laid.base = laid.model;
+  std::vector<EffectSetting> settings = effects_along(options, laid.effects);
+  if (settings.empty()) return;
+  const EffectKit kit = trajectory_kit(options.model, laid.base->tables());
+  laid.along = make_effects(kit, *laid.base, settings, laid.record);
+  laid.model = compose(laid.base, laid.along, laid.record);
+  laid.fit.unsampled.merge(initial_corrections(laid.along));
+  put_back(settings, options, laid.effects);
+}
+
 /// Of the whole flight, or of its first rows.
 LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
                       std::optional<std::size_t> rows) {
   LaidAircraft laid;
-  if (options.model == AircraftModel::path && !options.calibration.effects.empty()) {
-    throw Error("a flight path takes no effects; leave them out, or fit a model of the aircraft");
-  }
   if (options.model == AircraftModel::path && !options.equations.empty()) {
     throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
   }
@@ -113,10 +135,12 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   within(flight, [&] {
     if (options.model == AircraftModel::path) {
       lay_along_path(options, laid);
+      join_effects(options, laid);
     } else if (options.model == AircraftModel::aero) {
       lay_coefficients(options, laid);
     } else {
       lay_motion(options, laid);
+      join_effects(options, laid);
     }
   });
   return laid;
@@ -139,6 +163,27 @@ std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
           ? options.equations
           : complete_equations(options.equations, coefficients_of(options));
   return with_regressors(std::move(equations), options);
+}
+
+std::vector<EffectSetting> effects_along(const AircraftOptions& options,
+                                         const std::vector<EffectSetting>& effects) {
+  std::vector<EffectSetting> along;
+  std::ranges::copy_if(effects, std::back_inserter(along), [&](const EffectSetting& effect) {
+    return acts_along(options.model, effect.name);
+  });
+  return along;
+}
+
+Fit fit_laid(LaidAircraft& laid, const FitOptions& options) {
+  if (laid.along.empty()) return fit(*laid.model, laid.record, options);
+  return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, laid.record,
+                                    options);
+}
+
+Record seen_by_model(const LaidAircraft& laid, const Fit& fit) {
+  const auto* with = dynamic_cast<const states::ComposedTrajectory*>(laid.model.get());
+  if (with == nullptr) return laid.record;
+  return with->correct(laid.record, values_of(fit.xi2()));
 }
 
 LaidAircraft lay(const Flight& flight, const AircraftOptions& options) {

@@ -20,13 +20,19 @@ struct LaidAircraft {
   Record record;
   FitOptions fit;
   std::vector<AeroEquation> equations;
-  std::vector<EffectSetting> effects;  // with what splines took from the flight
+  std::shared_ptr<const BlockModel> base;  // the model without effects along its trajectory
+  std::vector<EffectSetting> effects;      // with what they took from the flight
+  std::vector<Effect> along;               // those along the trajectory, made
   double window = not_a_number;  // of the differentiation of rates [s]; NaN where there is none
   std::vector<std::string> initial_states;  // names of parameters
   std::vector<std::string> notes;
   std::string warning;
   std::vector<std::size_t> flight_rows;  // of the record's rows
 };
+
+/// Those of the effects that act along the trajectory.
+std::vector<EffectSetting> effects_along(const AircraftOptions& options,
+                                         const std::vector<EffectSetting>& effects);
 
 /// Throws Error as fit_aircraft() does.
 LaidAircraft lay(const Flight& flight, const AircraftOptions& options);
@@ -44,6 +50,12 @@ const StateBlockModel& state_model_of(const LaidAircraft& laid, const AircraftFi
 /// States and process noise along the record at a fit of it.
 SmoothedRecord smooth_laid(const AircraftFit& fitted, const Fit& fit, const LaidAircraft& laid,
                            const ProcessNoise& process_noise);
+
+/// The fit of what is laid; the times of steps among its effects are found and kept.
+Fit fit_laid(LaidAircraft& laid, const FitOptions& options);
+
+/// The record with inputs as the effects of a fit leave them. It views columns of the one laid.
+Record seen_by_model(const LaidAircraft& laid, const Fit& fit);
 
 /// The name of a column with the unit as headers have it: "ax_cal_mps2"; of a number without a
 /// dimension and of a coefficient by radians, Cm_alpha, the name alone.

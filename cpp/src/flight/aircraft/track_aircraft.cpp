@@ -68,6 +68,11 @@ TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
                                const AircraftTrackOptions& options) {
   const LaidAircraft laid = lay(flight, options_on(fitted, flight));
   return within(flight, [&] {
+    if (!laid.along.empty()) {
+      throw Error(fmt::format(
+          "track takes no effects along a trajectory, as {}; track the fit before it was added",
+          laid.along.front().name));
+    }
     const StreamStart start = start_of(fitted, flight, laid, options);
     TrackedAircraft tracked{.track = track(*laid.model, laid.record, start, options.how),
                             .table = {},

@@ -38,7 +38,9 @@ std::vector<CataloguedEffect> list_effects(const EffectTable& table) {
 std::span<const CataloguedEffect> effect_catalogue(std::string_view model) {
   static const auto catalogues = [] {
     std::map<std::string, std::vector<CataloguedEffect>, std::less<>> by_model;
-    for (const auto& [name, table] : effect_tables()) by_model[name] = list_effects(table);
+    for (const auto* tables : {&effect_tables(), &trajectory_tables()}) {
+      for (const auto& [name, table] : *tables) by_model[name] = list_effects(table);
+    }
     return by_model;
   }();
   const auto found = catalogues.find(model);

@@ -49,8 +49,7 @@ std::string resolve(const AliasRow& alias, const Record& record) {
 
 }  // namespace
 
-EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
-  const EffectTable& table = effect_table(probe);
+EffectKit catalogue::kit_of(const EffectTable& table) {
   EffectKit kit;
   for (const PortRow& row : table.ports) kit.ports.push_back(row.port);
   for (const EffectRow& row : table.effects) kit.own[row.name()] = checked_maker(row);
@@ -58,6 +57,11 @@ EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
     kit.aliases[row.name] = [&row](const Record& record) { return resolve(row, record); };
   }
   kit.wandering = table.wandering;
+  return kit;
+}
+
+EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
+  EffectKit kit = kit_of(effect_table(probe));
   for (const auto& [name, maker] : own) kit.own[name] = maker;
   return kit;
 }

@@ -89,6 +89,15 @@ EffectTable attitude_independent_effects();
 /// All of them, by Probe::name().
 const std::map<std::string, EffectTable, std::less<>>& effect_tables();
 
+/// Those along a trajectory: of "path", and of "aircraft", one that is integrated.
+const std::map<std::string, EffectTable, std::less<>>& trajectory_tables();
+
+/// One of these two.
+const EffectTable& trajectory_table(std::string_view model);
+
+/// What its effects are made with; the table must outlive it.
+EffectKit kit_of(const EffectTable& table);
+
 /// Throws Error for a name of no probe.
 const EffectTable& effect_table(std::string_view probe);
 

@@ -7,7 +7,7 @@ namespace sepcal {
 
 using namespace json;  // this room's own
 
-std::string catalogue_json(const std::vector<std::string>& models) {
+Json json::write_catalogue(const std::vector<std::string>& models) {
   Json effects = Json::array();
   for (const std::string& model : models) {
     for (const CataloguedEffect& effect : effect_catalogue(model)) {
@@ -18,8 +18,11 @@ std::string catalogue_json(const std::vector<std::string>& models) {
                          {"unit", effect.unit}});
     }
   }
-  const Json root{{"schema_version", schema_version}, {"effects", effects}};
-  return text_of(root);
+  return effects;
+}
+
+std::string catalogue_json(const std::vector<std::string>& models) {
+  return text_of({{"schema_version", schema_version}, {"effects", write_catalogue(models)}});
 }
 
 }  // namespace sepcal

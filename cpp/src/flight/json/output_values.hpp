@@ -23,6 +23,9 @@ using files::point_of;
 using files::text_of;
 using files::whole_number;
 
+/// The catalogues of several models, an object an effect.
+Json write_catalogue(const std::vector<std::string>& models);
+
 /// {"vn": 0.15, ...}
 Json by_name(const std::vector<OutputValue>& values);
 

@@ -235,6 +235,7 @@ std::string describe(const UnloggedCause& cause) {
 }
 
 std::string with_unit(double value, const std::string& unit) {
+  if (unit.empty()) return fmt::format("{:.3g} %", 100.0 * value);
   return fmt::format("{:.3g}{}", value, unit == "1" ? "" : " " + unit);
 }
 
@@ -251,9 +252,7 @@ struct ErrorLeft {
   }
 };
 
-ErrorLeft error_of(const Diagnosis& found) {
-  return {found.rmse, found.floor, found.residual.front().unit};
-}
+ErrorLeft error_of(const Diagnosis& found) { return {found.rmse, found.floor, found.unit}; }
 
 ErrorLeft error_of(const Diagnosis& found, const std::vector<std::string>& outputs) {
   ErrorLeft left{.of = fmt::format(" in {}", fmt::join(outputs, ", "))};

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Effects along trajectories: found, added, and the error falls as promised.
+
+They are hidden by a simulator that knows nothing of the models.
+"""
+
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import sepcal
+
+LIGHT = sepcal.Aircraft(
+    area=16.2, chord=1.49, span=10.9, mass=1050.0, inertia=(1285.0, 1825.0, 2667.0, 60.0)
+)
+DRIFT = 4e-4  # rad/s per degC
+CURVE = -4.0  # of Cm[alpha^2]
+PROMISE = 0.05  # of the error
+
+
+def fly(hide: dict[str, float], seed: int = 1) -> sepcal.Flight:
+    """40 s at 25 Hz as one segment."""
+    flown = sepcal.simulate("aircraft", hide=hide, rate=25.0, seed=seed)
+    return sepcal.Flight({name: flown[name] for name in flown.columns})
+
+
+@pytest.fixture(scope="module")
+def drifting() -> sepcal.Flight:
+    return fly({"gyro_bias[imu_temp_degc]": DRIFT})
+
+
+@pytest.fixture(scope="module")
+def path(drifting: sepcal.Flight) -> sepcal.AircraftFit:
+    return sepcal.fit(sepcal.FlightPath(), drifting)
+
+
+@pytest.fixture(scope="module")
+def corrected(path: sepcal.AircraftFit) -> sepcal.AircraftFit:
+    return path.add("gyro_bias[imu_temp_degc]")
+
+
+def test_a_drifting_gyro_is_named(path: sepcal.AircraftFit) -> None:
+    diagnosis = path.diagnose()
+    assert diagnosis.verdict == "effect_missing"
+    assert diagnosis.effects[0].name == "gyro_bias[imu_temp_degc]"
+    assert diagnosis.advice["effect"] == "gyro_bias[imu_temp_degc]"
+    assert diagnosis.effects[0].sentence == "the gyros' bias changes with imu_temp_degc"
+
+
+def test_the_error_falls_as_promised(corrected: sepcal.AircraftFit) -> None:
+    added = corrected.history[-1]
+    assert added.predicted_drop == pytest.approx(added.drop, abs=PROMISE)
+    ratios = [added.rmse_after[name] / added.rmse_before[name] for name in added.rmse_after]
+    assert added.drop == pytest.approx(1 - np.sqrt(np.mean(np.square(ratios))))
+    assert added.drop > 0.2
+    for axis in "xyz":  # true = reading + s x, and the simulator adds to the reading
+        slope = corrected[f"gyro_bias[imu_temp_degc].{axis}"]
+        assert abs(slope.value + DRIFT) < 4 * slope.standard_error
+
+
+def test_a_fit_with_effects_is_itself_again_from_disc(
+    corrected: sepcal.AircraftFit, drifting: sepcal.Flight, tmp_path: Path
+) -> None:
+    corrected.save(tmp_path / "fit.json")
+    again = sepcal.load(tmp_path / "fit.json")
+    assert again.compare(drifting).text == corrected.compare(drifting).text
+    applied = again.apply(drifting)
+    drift = -np.mean([corrected[f"gyro_bias[imu_temp_degc].{axis}"].value for axis in "xyz"]) * (
+        drifting["imu_temp_degc"] - drifting["imu_temp_degc"].mean()
+    )
+    left = applied["q_cal_radps"] - drifting["q_radps"]
+    assert np.corrcoef(left, -drift)[0, 1] > 0.999  # what is corrected is that drift
+
+
+def test_smoothed_with_effects(corrected: sepcal.AircraftFit) -> None:
+    smoothed = corrected.smooth(process_noise={"q": 4e-4, "az": 0.01})
+    assert np.isfinite(smoothed.x).all()
+
+
+def test_a_missing_regressor_is_named_and_keeps_its_promise() -> None:
+    fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), fly({"Cm[alpha^2]": CURVE}))
+    diagnosis = fit.diagnose()
+    assert diagnosis.effects[0].name == "Cm[alpha^2]"
+    assert diagnosis.advice["effect"] == "Cm[alpha^2]"
+    added = fit.add("Cm[alpha^2]")
+    assert added["Cm_alpha^2"].value == pytest.approx(CURVE, rel=0.1)
+    assert added.history[-1].predicted_drop == pytest.approx(added.history[-1].drop, abs=PROMISE)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_is_named_where_nothing_is_hidden(seed: int) -> None:
+    verdict = sepcal.fit(sepcal.FlightPath(), fly({}, seed=100 + seed)).diagnose().verdict
+    assert verdict == "adequate"
+
+
+def test_one_candidate_of_ones_own(path: sepcal.AircraftFit) -> None:
+    diagnosis = path.diagnose(only=["imu_late"])
+    assert [effect.name for effect in diagnosis.effects] == ["imu_late"]
+
+
+def test_a_late_unit_has_its_time() -> None:
+    late = 0.03  # s
+    fit = sepcal.fit(sepcal.FlightPath(), fly({"imu_late": late}, seed=3))
+    tau = fit.add("imu_late")["imu_late.tau"]
+    assert_allclose(tau.value, late, atol=4 * tau.standard_error)
+
+
+@pytest.mark.parametrize(
+    ("effect", "words"),
+    [
+        ("foo", "there is no effect 'foo'; known: gyro_bias"),
+        ("gyro_bias[no_such]", "no channel 'no_such'"),
+        ("gyro_bias[alpha]", "'alpha' is what is measured"),
+    ],
+)
+def test_what_a_path_can_not_have_is_refused(
+    path: sepcal.AircraftFit, effect: str, words: str
+) -> None:
+    with pytest.raises(sepcal.Error, match=words.replace("[", r"\[")):
+        path.add(effect)
+
+
+def test_what_is_tracked_has_no_effects(
+    corrected: sepcal.AircraftFit, drifting: sepcal.Flight
+) -> None:
+    with pytest.raises(sepcal.Error, match="track takes no effects along a trajectory"):
+        corrected.track(drifting, method="ekf", start_rows=200)
+
+
+class RollMode:
+    """An aircraft that does nothing but roll."""
+
+    inputs: ClassVar = {"aileron": "rad"}
+    states: ClassVar = {"p": "rad/s"}
+    outputs: ClassVar = {"p_m": "rad/s"}
+    linear: ClassVar = {"b_p": "rad/s"}
+    nonlinear: ClassVar = {"Lp": ("1/s", -20, 0), "La": "1/s^2"}
+    noise: ClassVar = {"p": "rad/s/sqrt(s)"}
+
+    def rate(self, x, u, p):  # type: ignore[no-untyped-def]
+        """The roll acceleration."""
+        Lp, La = p
+        return [Lp * x[0] + La * u.aileron]
+
+    def at(self, x, u, p):  # type: ignore[no-untyped-def]
+        """What is read: A and b."""
+        return [[1.0]], [x[0]]
+
+
+@pytest.mark.parametrize("method", ["output-error", "filter-error"])
+def test_an_own_model_takes_effects_on_its_inputs(method: str) -> None:
+    rows, step, slope = 400, 0.02, 0.004
+    time = step * np.arange(rows)
+    aileron = 0.1 * np.sign(np.sin(2 * time)) + 0.05 * np.sin(5 * time)
+    temperature = 20 + 3 * np.sin(0.7 * time) + time
+    true = aileron + slope * (temperature - temperature.mean())
+    p = np.zeros(rows)
+    decay, grown = np.exp(-2.5 * step), (1 - np.exp(-2.5 * step)) / 2.5
+    for k in range(rows - 1):  # exact, of an input that is a line between rows
+        rise = (true[k + 1] - true[k]) / step
+        p[k + 1] = decay * p[k] + 12 * (grown * true[k] + rise * (step - grown) / 2.5)
+    noise = 0.01 * np.random.default_rng(1).standard_normal(rows)
+    record = {"time": time, "aileron": aileron, "temp_degc": temperature, "p_m": p + 0.02 + noise}
+    fit = sepcal.fit(
+        RollMode(),
+        record,
+        effects=["aileron[temp_degc]"],
+        start={"Lp": -2.0, "La": 10.0},
+        method=method,
+    )
+    found = fit["aileron[temp_degc].s"]
+    assert abs(found.value - slope) < 4 * found.standard_error < slope
+    assert fit.rmse["p_m"] == pytest.approx(0.01, rel=0.15)
