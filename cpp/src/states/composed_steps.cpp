@@ -214,6 +214,10 @@ StateSteps::Step ComposedSteps::advance(std::size_t row, const VectorXd& x) cons
   return own_->advance(row, x);
 }
 
+VectorXd ComposedSteps::next(std::size_t row, const VectorXd& x) const {
+  return own_->next(row, x);
+}
+
 MatrixXd ComposedSteps::rate_slopes(std::size_t row, const VectorXd& x) const {
   return own_->rate_slopes(row, x);
 }
@@ -225,6 +229,10 @@ StateSteps::Reading ComposedSteps::read(std::size_t row, const VectorXd& x) cons
   return reading;
 }
 
+VectorXd ComposedSteps::expect(std::size_t row, const VectorXd& x) const {
+  return own_->expect(row, x) + read_effects(row, columns_at(row));
+}
+
 StateSteps::JointStep ComposedSteps::advance_jointly(std::size_t row, const VectorXd& x,
                                                      const VectorXd& density) const {
   JointStep joint = own_->advance_jointly(row, x, density);
@@ -234,7 +242,7 @@ StateSteps::JointStep ComposedSteps::advance_jointly(std::size_t row, const Vect
   by_parameters(Eigen::all, own_columns()) = joint.Phi.rightCols(joint.Phi.cols() - n_x());
   for (std::size_t k = 0; k < beside_.size(); ++k) {
     by_parameters.col(model_.tables().n_1() + model_.moving()[k].place) =
-        difference(k, [&](const ComposedSteps& steps) { return steps.advance(row, x).x; });
+        difference(k, [&](const ComposedSteps& steps) { return steps.next(row, x); });
   }
   joint.Phi = std::move(Phi);
   return joint;
@@ -258,7 +266,7 @@ StateSteps::Reading ComposedSteps::read_jointly(std::size_t row, const VectorXd&
   }
   for (std::size_t k = 0; k < beside_.size(); ++k) {
     by_parameters.col(model_.tables().n_1() + model_.moving()[k].place) =
-        difference(k, [&](const ComposedSteps& steps) { return steps.read(row, x).z; });
+        difference(k, [&](const ComposedSteps& steps) { return steps.expect(row, x); });
   }
   return reading;
 }

@@ -21,6 +21,8 @@ class ComposedSteps final : public StateSteps {
   void set_parameters(const Eigen::VectorXd& xi) override;
   Step advance(std::size_t row, const Eigen::VectorXd& x) const override;
   Reading read(std::size_t row, const Eigen::VectorXd& x) const override;
+  Eigen::VectorXd next(std::size_t row, const Eigen::VectorXd& x) const override;
+  Eigen::VectorXd expect(std::size_t row, const Eigen::VectorXd& x) const override;
   Eigen::MatrixXd rate_slopes(std::size_t row, const Eigen::VectorXd& x) const override;
   JointStep advance_jointly(std::size_t row, const Eigen::VectorXd& x,
                             const Eigen::VectorXd& density) const override;

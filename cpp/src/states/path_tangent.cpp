@@ -131,10 +131,10 @@ TrajectoryTangent::Response TrajectoryTangent::find_response(const std::string& 
           const auto at = static_cast<Index>(row);
           const bool here = row % 2 == parity;
           set_parameters(*steps, row);
-          if (here) response.read.col(at) += share * steps->read(row, point.reading).z;
+          if (here) response.read.col(at) += share * steps->expect(row, point.reading);
           if (!point.goes_on) continue;
           auto& end = here ? response.from : response.to;
-          end.col(at) += share * steps->advance(row, point.leaving).x;
+          end.col(at) += share * steps->next(row, point.leaving);
         }
       }
     }

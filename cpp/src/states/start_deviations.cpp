@@ -13,7 +13,7 @@ constexpr double wide = 10.0;  // times the largest value on the way
 VectorXd largest_on_the_way(const StateSteps& steps, const Segment& segment, VectorXd x) {
   VectorXd largest = x.cwiseAbs();
   for (std::size_t row = segment.first; row + 1 < segment.last; ++row) {
-    x = steps.advance(row, x).x;
+    x = steps.next(row, x);
     if (!x.allFinite()) break;
     largest = largest.cwiseMax(x.cwiseAbs());
   }

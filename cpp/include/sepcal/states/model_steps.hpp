@@ -137,6 +137,23 @@ class ModelSteps final : public StateSteps {
     return reading;
   }
 
+  Eigen::VectorXd next(std::size_t row, const Eigen::VectorXd& x) const override {
+    const StateRow<M> from = row_at(row);
+    const StateRow<M> to = row_at(row + 1);
+    const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
+    return step<M, double>(model_, whole<double>(from, x), p_, between,
+                           plan_.options().substeps)(plan_.integrated());
+  }
+
+  Eigen::VectorXd expect(std::size_t row, const Eigen::VectorXd& x) const override {
+    const auto expected = affine<double>(row, x, p_);
+    Eigen::VectorXd z(static_cast<Eigen::Index>(plan_.outputs().size()));
+    for (std::size_t j = 0; j < plan_.outputs().size(); ++j) {
+      z[static_cast<Eigen::Index>(j)] = sum(expected, j);
+    }
+    return z;
+  }
+
   JointStep advance_jointly(std::size_t row, const Eigen::VectorXd& x,
                             const Eigen::VectorXd& density) const override {
     const StateRow<M> from = row_at(row);
@@ -147,8 +164,11 @@ class ModelSteps final : public StateSteps {
         step<M, Joint>(model_, begin, seeded_parameters(), between, plan_.options().substeps);
     Vec<double, n_x> half_way;
     for (int i = 0; i < n_x; ++i) half_way[i] = 0.5 * (begin[i].a + end[i].a);
-    const Eigen::Matrix<double, n_w, n_w> Q = density.asDiagonal();
-    const Eigen::Matrix<double, n_x, n_x> Q_d = noise_of_step<M>(model_, between, half_way, p_, Q);
+    Eigen::Matrix<double, n_x, n_x> Q_d = Eigen::Matrix<double, n_x, n_x>::Zero();
+    if (!density.isZero(0.0)) {
+      const Eigen::Matrix<double, n_w, n_w> Q = density.asDiagonal();
+      Q_d = noise_of_step<M>(model_, between, half_way, p_, Q);
+    }
     const std::vector<int>& free = plan_.integrated();
     const auto n = static_cast<Eigen::Index>(free.size());
     JointStep joint{Eigen::VectorXd(n), Eigen::MatrixXd(n, columns()), Q_d(free, free)};

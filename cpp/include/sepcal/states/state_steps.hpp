@@ -49,6 +49,14 @@ class StateSteps {
   virtual Step advance(std::size_t row, const Eigen::VectorXd& x) const = 0;
   virtual Reading read(std::size_t row, const Eigen::VectorXd& x) const = 0;
 
+  /// Their x and z alone.
+  virtual Eigen::VectorXd next(std::size_t row, const Eigen::VectorXd& x) const {
+    return advance(row, x).x;
+  }
+  virtual Eigen::VectorXd expect(std::size_t row, const Eigen::VectorXd& x) const {
+    return read(row, x).z;
+  }
+
   /// F = df/dx, n_x x n_x [1/s], at a row; zero of a model in discrete time.
   virtual Eigen::MatrixXd rate_slopes(std::size_t row, const Eigen::VectorXd& x) const = 0;
 
