@@ -131,8 +131,10 @@ TEST_CASE("more columns are no less likely than the first of them") {
       const diagnosis::FamilyRegression::Residual residual =
           regression.take(bench.residual(kind, seed));
       for (const NoiseFamily family : noise::noise_families) {
-        const auto [without, with] = residual.compare(family, 2);
-        CHECK(without == residual.fit(family, 2).minus_two_log_likelihood);
+        const diagnosis::FamilyFit first = residual.fit(family, 2);
+        const auto [without, with] = residual.compare(first.noise, 2);
+        CHECK(std::abs(without - first.minus_two_log_likelihood) <
+              0.05);  // a round that gains little
         CHECK(with <= without);
       }
     }

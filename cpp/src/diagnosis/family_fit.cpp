@@ -65,15 +65,28 @@ FamilyFit maximise(const Problem& problem, const VectorXd& start) {
   return likelier(climb(problem, start), climb(problem, of_differences.coefficients));
 }
 
-/// The same, and no less likely than the fit of the first of the columns alone: where all steps
-/// from the other starts end above it, that is the start.
+/// What was found, or what steps from the fit of the first of the columns alone lead to where that
+/// is likelier.
+template <class Problem>
+FamilyFit no_less_likely(const Problem& problem, FamilyFit found, const FamilyFit& nested) {
+  if (found.minus_two_log_likelihood < nested.minus_two_log_likelihood) return found;
+  VectorXd start = VectorXd::Zero(found.coefficients.size());
+  start.head(nested.coefficients.size()) = nested.coefficients;
+  return likelier(std::move(found), climb(problem, start));
+}
+
+/// The same as maximise(), and no less likely than the fit of the first of the columns alone.
 template <class Problem>
 FamilyFit maximise_beyond(const Problem& problem, const VectorXd& start, const FamilyFit& nested) {
-  FamilyFit found = maximise(problem, start);
-  if (found.minus_two_log_likelihood < nested.minus_two_log_likelihood) return found;
-  VectorXd without = VectorXd::Zero(start.size());
-  without.head(nested.coefficients.size()) = nested.coefficients;
-  return likelier(std::move(found), climb(problem, without));
+  return no_less_likely(problem, maximise(problem, start), nested);
+}
+
+/// From generalised least squares in a noise that the likeliest is near.
+template <class Problem>
+FamilyFit maximise_near(const Problem& problem, const NoiseMembers& near, Index count) {
+  FamilyFit start{.noise = near, .coefficients = VectorXd::Zero(count)};
+  finish_fit([&](const NoiseMembers& noise) { return problem.products(noise); }, start);
+  return climb(problem, start.coefficients);
 }
 
 NoiseMembers differenced_noise(const NoiseFamilies& families, const std::vector<int>& orders) {
@@ -267,13 +280,14 @@ FamilyFit FamilyRegression::Residual::fit(NoiseFamily family, Index count) const
   return fit;
 }
 
-FamilyRegression::Residual::Nested FamilyRegression::Residual::compare(NoiseFamily family,
+FamilyRegression::Residual::Nested FamilyRegression::Residual::compare(const NoiseMembers& near,
                                                                        Index fewer) const {
-  const VectorXd start = regression_->columns_.transpose() * e_;
+  const NoiseFamily family = near.front().family;
+  const Index all = regression_->columns();
   const FamilyFit without =
-      maximise(InFamily{*regression_, *this, family, fewer}, start.head(fewer));
-  const FamilyFit with =
-      maximise_beyond(InFamily{*regression_, *this, family, start.size()}, start, without);
+      maximise_near(InFamily{*regression_, *this, family, fewer}, near, fewer);
+  const InFamily problem{*regression_, *this, family, all};
+  const FamilyFit with = no_less_likely(problem, maximise_near(problem, near, all), without);
   return {without.minus_two_log_likelihood, with.minus_two_log_likelihood};
 }
 

@@ -66,12 +66,14 @@ class FamilyRegression {
     /// In this family, of the first `count` columns.
     FamilyFit fit(noise::NoiseFamily family, Eigen::Index count) const;
 
-    /// -2 ln L of the first `fewer` columns and of all of them, which are no less likely.
+    /// -2 ln L of the first `fewer` columns and of all of them, which are no less likely: each the
+    /// maximum that steps from generalised least squares in the noise `near` lead to, in its
+    /// family. Of a residual that was drawn, whose noise is known.
     struct Nested {
       double without = 0.0;
       double with = 0.0;
     };
-    Nested compare(noise::NoiseFamily family, Eigen::Index fewer) const;
+    Nested compare(const NoiseMembers& near, Eigen::Index fewer) const;
 
    private:
     friend class FamilyRegression;

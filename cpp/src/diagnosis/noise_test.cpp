@@ -183,6 +183,9 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
     auto own = largest.segment(layout.first(j), layout.rows);
     own.array() += 3.0 * median(own);
   }
+  // What is drawn has the noise of this record.
+  const FamilyRegression::Residual recorded =
+      regression.take(reduction.apply(layout, view(fit_.residual)).col(0));
   const auto enlarge = [&](const FamilyFit& noise, const VectorXd& sizes, std::size_t which) {
     std::vector<VectorXd> residuals;
     std::mt19937_64 generator(seed + which);
@@ -190,23 +193,23 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
       const VectorXd full = draw(families_, layout, noise.noise, sizes, generator);
       residuals.emplace_back(reduction.apply(layout, full).col(0));
     }
+    std::vector<NoiseMembers> near;
+    for (const NoiseFamily family : noise::noise_families) {
+      const bool is_own = which >= 2 || family == noise::noise_families[which];
+      if (is_own)
+        near.push_back(recorded.fit(family, which < 2 ? basis.cols() : regression.columns()).noise);
+    }
     std::vector<double> drawn(residuals.size());
     pool.for_each(residuals.size(), [&](std::size_t i) {
       const FamilyRegression::Residual drawn_residual = regression.take(residuals[i]);
-      if (which < 2) {
-        const NoiseFamily family = noise::noise_families[which];
-        const auto [without, with] = drawn_residual.compare(family, basis.cols());
-        drawn[i] = without - with;
-      } else {
-        double without = infinity;
-        double with = infinity;
-        for (const NoiseFamily family : noise::noise_families) {
-          const auto nested = drawn_residual.compare(family, basis.cols());
-          without = std::min(without, nested.without);
-          with = std::min(with, nested.with);
-        }
-        drawn[i] = std::max(0.0, without - with);
+      double without = infinity;
+      double with = infinity;
+      for (const NoiseMembers& noise_near : near) {
+        const auto nested = drawn_residual.compare(noise_near, basis.cols());
+        without = std::min(without, nested.without);
+        with = std::min(with, nested.with);
       }
+      drawn[i] = without - with;
     });
     return enlargement(std::move(drawn), static_cast<int>(reduced_added.cols()));
   };
