@@ -438,27 +438,50 @@ CandidateColumns CandidateRoom::driven_columns(const Effect& effect, double shap
   return {drive(port, phi), drive(port, phi.rowwise() - phi.colwise().mean().eval())};
 }
 
+/// Of the effect that is `place`-th of the candidate's.
+CandidateColumns CandidateRoom::effect_columns(const Candidate& candidate, std::size_t place,
+                                               std::span<const Variable> coefficients,
+                                               double shape) const {
+  const Effect& effect = candidate.effects[place];
+  if (is_driven(effect, fitted_.kit)) {
+    return driven_columns(effect, effect.driver->shape() ? shape : 0.0);
+  }
+  std::vector<std::string> names;
+  for (const Variable& coefficient : coefficients) names.push_back(coefficient.name);
+  base::ParameterValues shapes;
+  if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
+  const Columns part = composed_columns({effect}, shapes, names);
+  return {part, part};
+}
+
+/// Made once, as far as memory goes: a path is followed from its start for every one.
+CandidateColumns CandidateRoom::keep_followed(const std::string& key,
+                                              const std::function<CandidateColumns()>& make) const {
+  constexpr Index most_kept = Index{1} << 25;
+  {
+    const std::lock_guard lock(following_);
+    const auto known = followed_columns_.find(key);
+    if (known != followed_columns_.end()) return known->second;
+  }
+  CandidateColumns made = make();
+  const std::lock_guard lock(following_);
+  const Index size = linearisation_.layout.count() * (made.whole.cols() + made.varying.cols());
+  if (kept_ + size > most_kept) return made;
+  kept_ += size;
+  return followed_columns_.try_emplace(key, std::move(made)).first->second;
+}
+
 CandidateColumns CandidateRoom::columns(const Candidate& candidate, double shape) const {
   CandidateColumns all;
-  const auto append = [&all](const CandidateColumns& part) {
-    all = {join(all.whole, part.whole), join(all.varying, part.varying)};
-  };
-  auto coefficient = candidate.coefficients.begin();
+  std::span<const Variable> coefficients(candidate.coefficients);
   for (std::size_t i = 0; i < candidate.effects.size(); ++i) {
-    const Effect& effect = candidate.effects[i];
-    const auto own = coefficient;
-    coefficient += static_cast<std::ptrdiff_t>(candidate.counts[i]);
-    if (is_driven(effect, fitted_.kit)) {
-      append(driven_columns(effect, effect.driver->shape() ? shape : 0.0));
-      continue;
-    }
-    std::vector<std::string> names;
-    std::transform(own, coefficient, std::back_inserter(names),
-                   [](const Variable& variable) { return variable.name; });
-    base::ParameterValues shapes;
-    if (effect.driver && effect.driver->shape()) shapes[candidate.shape.parameter] = shape;
-    const Columns part = composed_columns({effect}, shapes, names);
-    append({part, part});
+    const auto make = [&] {
+      return effect_columns(candidate, i, coefficients.first(candidate.counts[i]), shape);
+    };
+    const std::string key = candidate.settings[i].name + ' ' + std::to_string(shape);
+    const CandidateColumns part = path_ ? keep_followed(key, make) : make();
+    all = {join(all.whole, part.whole), join(all.varying, part.varying)};
+    coefficients = coefficients.subspan(candidate.counts[i]);
   }
   return all;
 }
