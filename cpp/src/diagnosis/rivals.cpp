@@ -8,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "diagnosis/advice.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/refits.hpp"
 
@@ -63,16 +64,11 @@ const Contender* contender_of(const Contest& contest, const std::string& name) {
   return found == contest.contenders.end() ? nullptr : &*found;
 }
 
-/// What would be withheld itself is no reason to withhold another.
-bool is_credible(const Bench& bench, const EffectFinding& finding, const Contender& contender) {
-  return finding.visibility >= bench.options().least_visibility &&
-         contender.fit.status == FitStatus::converged;
-}
-
 /// What another fit has elsewhere.
 struct Clash {
   double errors = 0.0;  // how many of its errors a parameter is taken away from there
   std::string sentence = {};
+  const EffectFinding* rival = nullptr;
 };
 
 /// The parameter that comes furthest away, were the rival the cause, by the larger of the two
@@ -109,29 +105,37 @@ VectorXd errors_of(const Bench& bench, const Fit& fit) {
 
 }  // namespace
 
-std::string find_rival(const Bench& bench, const Contest& contest, const EffectFinding& advised,
+std::string find_rival(Bench& bench, const Contest& contest, const EffectFinding& advised,
                        const Findings& findings) {
   constexpr double most_errors = 1.5;
   const Contender* chosen = contender_of(contest, advised.name);
   if (!chosen) return {};
   const Estimates with_chosen = estimates_of(bench, *chosen);
-  const auto find_worst = [&](const VectorXd& errors) {
-    Clash worst;
+  const auto find_clashes = [&](const VectorXd& errors) {
+    std::vector<Clash> clashes;
     for (const EffectFinding& finding : findings) {
       const bool is_as_good = finding.beside == Beside::equivalent || &finding == &findings.front();
       const Contender* rival = contender_of(contest, finding.name);
-      if (!is_as_good || !rival || rival == chosen || !is_credible(bench, finding, *rival))
-        continue;
+      if (!is_as_good || !rival || rival == chosen) continue;
       Clash clash = compare(bench, with_chosen, errors, *rival);
-      if (clash.errors > worst.errors) worst = std::move(clash);
+      if (clash.errors > most_errors) {
+        clash.rival = &finding;
+        clashes.push_back(std::move(clash));
+      }
     }
-    return worst;
+    std::ranges::sort(clashes, std::ranges::greater(), &Clash::errors);
+    return clashes;
   };
-  if (!(find_worst(errors_of(bench, chosen->fit)).errors > most_errors)) return {};
+  if (find_clashes(errors_of(bench, chosen->fit)).empty()) return {};
   const Fit coloured =  // whose errors are larger, if any
       refit_nearly(bench.room(), chosen->candidate, chosen->shape, enough_rows, true);
-  const Clash worst = find_worst(errors_of(bench, coloured));
-  return worst.errors > most_errors ? worst.sentence : std::string();
+  for (const Clash& clash : find_clashes(errors_of(bench, coloured))) {
+    // What would be withheld itself is no reason to withhold another.
+    const Objection to_rival =
+        find_objection(bench.room(), *clash.rival, bench.options().least_visibility, bench.pool());
+    if (to_rival.reason.empty()) return clash.sentence;
+  }
+  return {};
 }
 
 }  // namespace sepcal::diagnosis
