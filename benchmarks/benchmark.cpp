@@ -7,6 +7,7 @@
 int main(int count, char** arguments) {
   return benchmark::run_problem(
       {
+          {"filter-error", benchmark::run_filter_error},
           {"five-hole", benchmark::run_five_hole},
           {"limits", benchmark::run_limits},
           {"output-error", benchmark::run_output_error},

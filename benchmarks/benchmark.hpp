@@ -10,6 +10,12 @@
 
 namespace benchmark {
 
+/// Filter error of a short period. numbers: theta, b_alpha b_q b_az Zd Md alpha_0 q_0 Za Ma Mq,
+/// then ln of two process noises and of three outputs' noises; 1000 rows of time, elevator,
+/// alpha_m, q_m, az_m. The answer: the gradient of V_m at theta; of what tracks, Za Ma Mq Zd Md
+/// where it ends.
+bool run_filter_error(const std::string& method, const std::vector<double>& numbers, int repeats);
+
 /// A five-hole flight (five_hole_file.hpp). The answer: the parameters, or what a method says.
 bool run_five_hole(const std::string& method, const std::vector<double>& numbers, int repeats);
 

@@ -20,6 +20,7 @@ RACES = {  # functions run(folder, rounds, longest) that yield results
     "growth": "growth.run",
     "stream": "streaming.run",
     "output-error": "output_error.run",
+    "filter-error": "filter_error.run",
     "smoother": "smoother.run",
 }
 BASELINE = "baseline"  # against an older commit, where one is named

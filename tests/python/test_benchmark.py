@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from benchmarks import baseline, pages, races, results
+from benchmarks import baseline, filter_error, pages, races, results
 from benchmarks.numpy_five_hole import HoistedProbe
 from benchmarks.race import Contender, Line, Result, judge, lengths_within, race, show_time
 from benchmarks.small_fits import by_least_squares, by_leastsq, draw, fit_each
@@ -124,6 +124,33 @@ def test_the_linear_fit_leaves_the_least_sum_of_squares():
 def test_small_fits_find_the_truth(solve):
     found = fit_each(*draw(3, 1), solve).reshape(3, 3)
     np.testing.assert_allclose(found, np.tile([0.3, 1.0, 0.2], (3, 1)), atol=0.08)
+
+
+def test_statsmodels_information_is_its_own():
+    _, u, z = filter_error.fly(1)
+    model = filter_error.Model(u, z)
+    gradient, information = filter_error.information_by_statsmodels(model)
+    sd = np.sqrt(np.diag(information))
+    np.testing.assert_allclose(gradient / sd, -model.score(filter_error.AT) / sd, atol=1e-10)
+    theirs = model.observed_information_matrix(filter_error.AT).real * len(u)
+    np.testing.assert_allclose(
+        information / np.outer(sd, sd), theirs / np.outer(sd, sd), atol=1e-10
+    )
+
+
+def test_the_joint_filter_of_filterpy_has_the_slopes_of_its_step():
+    def step(s):
+        joint = filter_error.JointFilter()
+        joint.x, joint.between = s, (0.05, -0.02)
+        joint.predict_x()
+        return joint
+
+    start = filter_error.JointFilter().x
+    F = step(start.copy()).F
+    for k in range(10):
+        h = 1e-6 * np.eye(10)[k]
+        slope = (step(start + h).x - step(start - h).x) / 2e-6
+        np.testing.assert_allclose(F[:, k], slope, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", races.RACES)
