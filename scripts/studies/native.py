@@ -93,6 +93,10 @@ STUDIES = tuple(
         ("departure", "whether a flight's departure from its fleet is a right probability"),
         ("noise-calibration", "error rates of what is built on the noise model"),
         ("robust-fit", "whether robust fits cover where a twentieth of the readings is far off"),
+        (
+            "scores",
+            "whether filter error's scores vary over flights as Fisher's information says",
+        ),
         ("step-times", "whether the time of a step is found to a row"),
     )
 )
