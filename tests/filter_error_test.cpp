@@ -398,6 +398,24 @@ TEST_CASE("without turbulence process noise ends at its floor, which is said") {
   CHECK(2.0 * (fit.log_likelihood - fit.log_likelihood_without) < 8.0);
 }
 
+TEST_CASE("that it is output error is said where no process noise is left alone") {
+  FitOptions options = by_filter_error();
+  const std::string none = "the record shows no process noise 'alpha': it ended at its floor";
+  for (const double q : {0.09, 0.0}) {
+    CAPTURE(q);
+    options.process_noise = {{"q", q}};
+    ShortPeriodFlight flight = stirred(10);
+    flight.process_noise = {0.0, q};
+    const Record flown = fly_short_period(flight);
+    const Fit fit = sepcal::fit(TrajectoryModel<ShortPeriod>(ShortPeriod(), flown), flown, options);
+    INFO(fit.message);
+    REQUIRE(size_of(fit, "q_alpha").at_floor);
+    CHECK(fit.message.find(none) != std::string::npos);
+    const bool same = fit.message.find("where output error is the same") != std::string::npos;
+    CHECK(same == (q == 0.0));
+  }
+}
+
 TEST_CASE("filter error refuses what it can't do in one line") {
   const Record record = fly_short_period(stirred(9, 50));
   const TrajectoryModel<ShortPeriod> model(ShortPeriod(), record);

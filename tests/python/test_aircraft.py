@@ -346,3 +346,19 @@ def test_filter_error_of_an_aircraft(
     place = track.names.index("Cm_q")
     off = track.estimates[-1, place] - fit["Cm_q"].value
     assert abs(off) < 4 * np.hypot(track.standard_deviations[-1, place], fit["Cm_q"].standard_error)
+
+
+def test_noises_that_are_held_are_told_from_those_that_no_output_shows(
+    aircraft: sepcal.Aircraft, flights: list[sepcal.Flight]
+) -> None:
+    fit = sepcal.fit(
+        sepcal.RigidAircraft(aircraft, "longitudinal"),
+        flights[0],
+        method="filter-error",
+        process_noise={"u": 0.0, "p": 0.01},
+        iterations=2,
+    )
+    remarks = {line.split()[0]: line.split("  ")[-1] for line in str(fit).splitlines() if line}
+    assert remarks["q_u"] == "held"
+    assert remarks["q_p"] == "held"
+    assert remarks["q_v"] == "shown by no output"

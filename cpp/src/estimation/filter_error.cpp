@@ -326,6 +326,18 @@ class FilterError {
     }
   }
 
+  /// Whether every process noise is none, or at its floor.
+  bool is_output_error(const Scored& at) const {
+    for (Index k = n(); k < n() + layout_.noises(); ++k) {
+      const auto place = std::ranges::find(free(), k) - free().begin();
+      const bool estimated = place < std::ssize(free());
+      const bool none = estimated ? static_cast<bool>(at.at_bound[static_cast<std::size_t>(place)])
+                                  : at.theta[k] == -infinity;
+      if (!none) return false;
+    }
+    return true;
+  }
+
   std::vector<std::string> describe_floors(const Scored& at) const {
     std::vector<std::string> sentences;
     for (std::size_t i = 0; i < free().size(); ++i) {
@@ -334,7 +346,8 @@ class FilterError {
       const std::string value = base::short_number(std::exp(at.theta[free()[i]]));
       if (k < layout_.noises()) {
         sentences.push_back("the record shows no process noise '" + layout_.noise(k).name +
-                            "': it ended at its floor, where output error is the same");
+                            "': it ended at its floor" +
+                            (is_output_error(at) ? ", where output error is the same" : ""));
       } else {
         sentences.push_back("r_" + layout_.noise(k).name + " ended at its floor (" + value + " " +
                             layout_.noise(k).unit +

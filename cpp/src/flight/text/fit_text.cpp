@@ -93,15 +93,20 @@ std::string output_table(const Fit& fit) {
 /// Sizes of the noises that filter error estimated, and whether the record asks for process noise:
 /// twice the rise of ln L beside output error, on as many degrees of freedom as there are, halved
 /// as none may be negative.
-std::string noise_table(const Fit& fit) {
+std::string noise_table(const Fit& fit, const FitOptions& options) {
+  const auto is_given = [&](const std::string& name) {  // "q_alpha", "r_alpha_m"
+    return (name.starts_with("q_") ? options.process_noise : options.noise)
+        .contains(name.substr(2));
+  };
   std::string text =
       fmt::format("\n{:<14} {:>13} {:>12}  {}\n", "noise", "size", "std. error", "unit");
   for (const NoiseSize& size : fit.noise_sizes) {
     text += fmt::format("{:<14} {:>13.4g} {:>12}  {}{}\n", size.name, size.value,
                         defined(size.standard_error, "{:.2g}"), size.unit,
-                        size.at_floor       ? "  AT ITS FLOOR"
-                        : size.value == 0.0 ? "  shown by no output"
-                                            : "");
+                        size.at_floor         ? "  AT ITS FLOOR"
+                        : is_given(size.name) ? "  held"
+                        : size.value == 0.0   ? "  shown by no output"
+                                              : "");
   }
   const double rise = 2.0 * (fit.log_likelihood - fit.log_likelihood_without);
   if (!std::isfinite(rise)) return text;
@@ -141,7 +146,7 @@ std::string text::fit_table(const Fit& fit, const CalibrationOptions& options,
   }
   text += output_table(fit);
   if (fit.by == FitMethod::filter_error) {
-    return text + noise_table(fit) +
+    return text + noise_table(fit, options.fit) +
            fmt::format("\nfilter error: {} step{} of scoring\n", fit.iterations,
                        fit.iterations == 1 ? "" : "s");
   }
