@@ -258,11 +258,8 @@ class FilterError {
     all.absorb(rows);
     const auto count = static_cast<Index>(own.size());
     const MatrixXd beyond = all.matrix().bottomRightCorner(count, count);
-    MatrixXd with_residual = MatrixXd::Zero(count, count + 1);
-    with_residual.leftCols(count) = beyond;
-    TriangularFactor factor(static_cast<int>(count) + 1);
-    factor.absorb(with_residual);
-    const VectorXd scale = plausible_scale(variables, {factor}, whitened_square(at));
+    const VectorXd squares = beyond.colwise().squaredNorm();
+    const VectorXd scale = plausible_scale(variables, squares, whitened_square(at));
     return judge_identifiability(beyond, names, scale, at_bound);
   }
 

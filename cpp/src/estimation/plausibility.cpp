@@ -21,16 +21,22 @@ VectorXd plausible_scale(const std::vector<Variable>& parameters,
 
 VectorXd plausible_scale(const std::vector<Variable>& parameters,
                          const std::vector<TriangularFactor>& factors, double z_square) {
+  const auto n = static_cast<Index>(parameters.size());
+  VectorXd column_squares = VectorXd::Zero(n);
+  for (const TriangularFactor& factor : factors) {
+    column_squares += factor.matrix().leftCols(n).colwise().squaredNorm().transpose();
+  }
+  return plausible_scale(parameters, column_squares, z_square);
+}
+
+VectorXd plausible_scale(const std::vector<Variable>& parameters, const VectorXd& column_squares,
+                         double z_square) {
   VectorXd scale(static_cast<Index>(parameters.size()));
   for (Index k = 0; k < scale.size(); ++k) {
     const Variable& parameter = parameters[static_cast<std::size_t>(k)];
     scale[k] = 0.5 * (parameter.upper - parameter.lower);
     if (std::isfinite(scale[k])) continue;
-    double column_square = 0.0;
-    for (const TriangularFactor& factor : factors) {
-      column_square += factor.matrix().col(k).squaredNorm();
-    }
-    scale[k] = std::sqrt(z_square / column_square);
+    scale[k] = std::sqrt(z_square / column_squares[k]);
   }
   return scale;
 }

@@ -21,6 +21,10 @@ Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
 Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
                                 const std::vector<TriangularFactor>& factors, double z_square);
 
+/// The same from the columns' squares themselves, one a parameter.
+Eigen::VectorXd plausible_scale(const std::vector<Variable>& parameters,
+                                const Eigen::VectorXd& column_squares, double z_square);
+
 /// Independent normal priors of the parameters: each is one row of the factor.
 struct Prior {
   Eigen::VectorXd mean;    // n

@@ -66,35 +66,33 @@ class StateInnovations final : public InnovationModel {
     const Noise noise = noise_of(theta);
     const VectorXd xi = theta.head(n_);
     const auto steps = model_.steps(record_, xi);
-    Value value;
+    std::vector<Index> columns;
+    Scores::Rows sample;
     MatrixXd rows;
-    for_each_trajectory([&](std::size_t first, std::size_t last, int trajectory) {
-      const std::vector<Index> columns = columns_of(trajectory);
-      Scores filter = begin(trajectory, xi);
-      Scores::Rows sample;
-      for (std::size_t row = first; row < last; ++row) {
-        const auto in_block = static_cast<Index>((row - first) % block_rows);
-        if (in_block == 0) {
-          rows.setZero(rows_a_sample() * static_cast<Index>(std::min(block_rows, last - row)),
-                       size() + 1);
-        }
-        const auto innovation =
-            filter.update(readings(row), steps->read_bent(row, filter.x()), noise.r, sample);
-        if (!take(innovation, row, value)) return false;
-        rows.middleRows(in_block * rows_a_sample(), rows_a_sample())(Eigen::all, columns) = sample;
-        if (row + 1 == last || in_block + 1 == static_cast<Index>(block_rows)) {
-          visit(row - static_cast<std::size_t>(in_block), rows);
-        }
-        if (row + 1 == last) break;
-        if (filter.predict(steps->advance_bent(row, filter.x()), noise.q, held(row)) !=
-            FilterStatus::ok) {
-          give_up(row, value);
-          return false;
-        }
-      }
-      return true;
-    });
-    return value;
+    return walk(
+        [&](int trajectory) {
+          columns = columns_of(trajectory);
+          return begin(trajectory, xi);
+        },
+        [&](Scores& filter, std::size_t row) {
+          return filter.update(readings(row), steps->read_bent(row, filter.x()), noise.r, sample);
+        },
+        [&](const Place& at, const Innovation<Dynamic>& /*innovation*/) {
+          const auto in_block = static_cast<Index>((at.row - at.first) % block_rows);
+          if (in_block == 0) {
+            rows.setZero(
+                rows_a_sample() * static_cast<Index>(std::min(block_rows, at.last - at.row)),
+                size() + 1);
+          }
+          rows.middleRows(in_block * rows_a_sample(), rows_a_sample())(Eigen::all, columns) =
+              sample;
+          if (at.row + 1 == at.last || in_block + 1 == static_cast<Index>(block_rows)) {
+            visit(at.row - static_cast<std::size_t>(in_block), rows);
+          }
+        },
+        [&](Scores& filter, std::size_t row) {
+          return filter.predict(steps->advance_bent(row, filter.x()), noise.q, held(row));
+        });
   }
 
   Value linear_scores(const VectorXd& theta, const VisitScores& visit) const override {
@@ -108,39 +106,37 @@ class StateInnovations final : public InnovationModel {
       if (!moves[i]) linear.push_back(i);
     }
     linear.push_back(size());
-    Value value;
+    std::vector<Index> columns;
+    Scores::Rows sample;
     MatrixXd all(n_z_, size() + 1);
-    for_each_trajectory([&](std::size_t first, std::size_t last, int trajectory) {
-      const std::vector<Index> columns = columns_of(trajectory);
-      Scores filter = begin(trajectory, xi, false);
-      Scores::Rows sample;
-      for (std::size_t row = first; row < last; ++row) {
-        const StateSteps::Reading joint = steps->read_jointly(row, filter.x());
-        StateSteps::BentReading reading;
-        reading.z = joint.z;
-        reading.H = joint.H.leftCols(n_x_);
-        reading.J = acting(joint.H);
-        const auto innovation = filter.update(readings(row), reading, noise.r, sample);
-        if (!take(innovation, row, value)) return false;
-        all.setZero();
-        all(Eigen::all, columns) = sample.topRows(n_z_);
-        MatrixXd chosen = all(Eigen::all, linear);
-        visit(row, chosen);
-        if (row + 1 == last) break;
-        StateSteps::Step plain = steps->advance(row, filter.x());
-        StateSteps::BentStep step;
-        step.Pi = acting(steps->advance_jointly(row, filter.x(), none).Phi);
-        step.x = std::move(plain.x);
-        step.Phi = std::move(plain.Phi);
-        step.Gamma = std::move(plain.Gamma);
-        if (filter.predict(step, noise.q, held(row)) != FilterStatus::ok) {
-          give_up(row, value);
-          return false;
-        }
-      }
-      return true;
-    });
-    return value;
+    return walk(
+        [&](int trajectory) {
+          columns = columns_of(trajectory);
+          return begin(trajectory, xi, false);
+        },
+        [&](Scores& filter, std::size_t row) {
+          const StateSteps::Reading joint = steps->read_jointly(row, filter.x());
+          StateSteps::BentReading reading;
+          reading.z = joint.z;
+          reading.H = joint.H.leftCols(n_x_);
+          reading.J = acting(joint.H);
+          return filter.update(readings(row), reading, noise.r, sample);
+        },
+        [&](const Place& at, const Innovation<Dynamic>& /*innovation*/) {
+          all.setZero();
+          all(Eigen::all, columns) = sample.topRows(n_z_);
+          MatrixXd chosen = all(Eigen::all, linear);
+          visit(at.row, chosen);
+        },
+        [&](Scores& filter, std::size_t row) {
+          StateSteps::Step plain = steps->advance(row, filter.x());
+          StateSteps::BentStep step;
+          step.Pi = acting(steps->advance_jointly(row, filter.x(), none).Phi);
+          step.x = std::move(plain.x);
+          step.Phi = std::move(plain.Phi);
+          step.Gamma = std::move(plain.Gamma);
+          return filter.predict(step, noise.q, held(row));
+        });
   }
 
   MatrixXd reach(const VectorXd& theta) const override {
@@ -212,21 +208,50 @@ class StateInnovations final : public InnovationModel {
     const VectorXd xi = theta.head(n_);
     const auto steps = model_.steps(record_, xi);
     const MatrixXd R = noise.r.cwiseAbs2().asDiagonal();
+    VectorXd y;
+    return walk(
+        [&](int trajectory) {
+          return Filter<Dynamic>(states::start_of(plan_, trajectory, xi),
+                                 MatrixXd::Zero(n_x_, n_x_));
+        },
+        [&](Filter<Dynamic>& filter, std::size_t row) {
+          StateSteps::Reading expected = steps->read(row, filter.x());
+          y = readings(row);
+          return filter.update<Dynamic>(y, {std::move(expected.z), std::move(expected.H)}, R);
+        },
+        [&](const Place& at, const Innovation<Dynamic>& innovation) {
+          visit(at.row, y, innovation);
+        },
+        [&](Filter<Dynamic>& filter, std::size_t row) {
+          StateSteps::Step step = steps->advance(row, filter.x());
+          const MatrixXd Q_d = plan_.noise_variances(noise.q.cwiseAbs2(), held(row)).asDiagonal();
+          return filter.predict<Dynamic>(
+              {std::move(step.x), std::move(step.Phi), std::move(step.Gamma), Q_d});
+        });
+  }
+
+  /// A row of a trajectory [first, last).
+  struct Place {
+    std::size_t first;
+    std::size_t last;
+    std::size_t row;
+  };
+
+  /// A filter along each trajectory: begin(trajectory) makes it, update(filter, row) takes a sample
+  /// to its innovation, see(place, innovation) follows where that went well, and predict(filter,
+  /// row) leads to the next row. Ends where the filter can't go on.
+  template <class Begin, class Update, class See, class Predict>
+  Value walk(const Begin& begin, const Update& update, const See& see,
+             const Predict& predict) const {
     Value value;
     for_each_trajectory([&](std::size_t first, std::size_t last, int trajectory) {
-      Filter<Dynamic> filter(states::start_of(plan_, trajectory, xi), MatrixXd::Zero(n_x_, n_x_));
+      auto filter = begin(trajectory);
       for (std::size_t row = first; row < last; ++row) {
-        StateSteps::Reading expected = steps->read(row, filter.x());
-        const VectorXd y = readings(row);
-        const auto innovation =
-            filter.update<Dynamic>(y, {std::move(expected.z), std::move(expected.H)}, R);
+        const Innovation<Dynamic> innovation = update(filter, row);
         if (!take(innovation, row, value)) return false;
-        visit(row, y, innovation);
+        see(Place{first, last, row}, innovation);
         if (row + 1 == last) break;
-        StateSteps::Step step = steps->advance(row, filter.x());
-        const MatrixXd Q_d = plan_.noise_variances(noise.q.cwiseAbs2(), held(row)).asDiagonal();
-        if (filter.predict<Dynamic>({std::move(step.x), std::move(step.Phi), std::move(step.Gamma),
-                                     Q_d}) != FilterStatus::ok) {
+        if (predict(filter, row) != FilterStatus::ok) {
           give_up(row, value);
           return false;
         }
