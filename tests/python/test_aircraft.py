@@ -340,6 +340,7 @@ def test_filter_error_of_an_aircraft(
     assert again.noise_sizes["r_q"].value == pytest.approx(sizes["r_q"].value)
     assert again.by == "filter-error"
     assert "by filter-error" in str(fit)
+    assert "2 ln L by -" not in str(fit)
     smoothed = fit.smooth()
     assert np.isfinite(smoothed["w"]).any()
     track = fit.track(flights[1], method="rml")

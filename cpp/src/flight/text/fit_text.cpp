@@ -110,8 +110,10 @@ std::string noise_table(const Fit& fit, const FitOptions& options) {
   }
   const double rise = 2.0 * (fit.log_likelihood - fit.log_likelihood_without);
   if (!std::isfinite(rise)) return text;
-  return text + fmt::format("ln L {:.6g}; process noise raises 2 ln L by {:.3g}\n",
-                            fit.log_likelihood, rise);
+  text += fmt::format("ln L {:.6g}; process noise ", fit.log_likelihood);
+  // At its floors it is all but none, and may cost a little.
+  if (rise <= 0.0) return text + "doesn't raise it\n";
+  return text + fmt::format("raises 2 ln L by {:.3g}\n", rise);
 }
 
 }  // namespace
