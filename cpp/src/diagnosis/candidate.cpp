@@ -326,7 +326,11 @@ void CandidateRoom::open(const Port& port) {
     names.push_back("constant." + component.name);
   if (acts_on_path(port)) {
     PathChange change = change_by({constant}, values_, names);
-    if (!change.inputs.empty()) change.steps = change.readings = MatrixXd();
+    if (!change.steps.isZero(0.0)) {
+      throw Error("port " + port.name +
+                  " acts on inputs and on what is read: no driver follows both along a path; make "
+                  "two ports of it");
+    }
     path_ports_.emplace(port.name, std::move(change));
   } else {
     ports_.emplace(port.name, composed_columns({constant}, {}, names));

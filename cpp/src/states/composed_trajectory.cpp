@@ -109,22 +109,31 @@ VectorXd ComposedTrajectory::total(const Block& block, const VectorXd& xi2, cons
   return rows.leftCols(tables().n_1()) * linear + rows.rightCols<1>();
 }
 
-Record ComposedTrajectory::correct(const Record& record, const double* xi2) const {
-  const Tables& own = model_->tables();
-  std::map<std::string, std::vector<double>> changed;
+/// Calls visit(segment, input, column) for the model's inputs as corrections leave them, with
+/// slopes by so many of xi2.
+template <class Visit>
+void ComposedTrajectory::visit_inputs(const Record& record, const double* xi2, int slopes,
+                                      const Visit& visit) const {
   for (const Segment& segment : record.segments()) {
     std::vector<std::vector<double>> constants;
     const std::vector<const double*> inputs = columns_of(tables(), record, segment, constants);
     const Block block{inputs, segment.rows(), segment.first, true};
-    const std::vector<InputColumn> columns = corrections_.correct(block, xi2, LagNode{}, 0);
-    for (std::size_t i = 0; i < own.inputs.size(); ++i) {
-      const InputColumn& column = columns[static_cast<std::size_t>(parts_.model_inputs[i])];
-      if (column.own.empty()) continue;
-      std::vector<double>& whole = changed[own.inputs[i].name];
-      if (whole.empty()) whole.assign(record.length(), not_a_number);
-      std::ranges::copy(column.own, whole.begin() + static_cast<std::ptrdiff_t>(segment.first));
+    const std::vector<InputColumn> columns = corrections_.correct(block, xi2, LagNode{}, slopes);
+    for (std::size_t i = 0; i < model_->tables().inputs.size(); ++i) {
+      visit(segment, i, columns[static_cast<std::size_t>(parts_.model_inputs[i])]);
     }
   }
+}
+
+Record ComposedTrajectory::correct(const Record& record, const double* xi2) const {
+  std::map<std::string, std::vector<double>> changed;
+  visit_inputs(
+      record, xi2, 0, [&](const Segment& segment, std::size_t i, const InputColumn& column) {
+        if (column.own.empty()) return;
+        std::vector<double>& whole = changed[model_->tables().inputs[i].name];
+        if (whole.empty()) whole.assign(record.length(), not_a_number);
+        std::ranges::copy(column.own, whole.begin() + static_cast<std::ptrdiff_t>(segment.first));
+      });
   Record corrected;
   for (const std::string& name : record.names()) {
     if (!changed.contains(name)) corrected.view(name, record.column(name));
@@ -136,28 +145,21 @@ Record ComposedTrajectory::correct(const Record& record, const double* xi2) cons
 
 std::vector<InputSlopes> ComposedTrajectory::input_slopes(const Record& record,
                                                           const VectorXd& xi2) const {
-  const Tables& own = model_->tables();
-  std::vector<MatrixXd> all(own.inputs.size());
-  for (const Segment& segment : record.segments()) {
-    std::vector<std::vector<double>> constants;
-    const std::vector<const double*> inputs = columns_of(tables(), record, segment, constants);
-    const Block block{inputs, segment.rows(), segment.first, true};
-    const std::vector<InputColumn> columns =
-        corrections_.correct(block, values_of(xi2), LagNode{}, tables().n_2());
-    for (std::size_t i = 0; i < own.inputs.size(); ++i) {
-      const InputColumn& column = columns[static_cast<std::size_t>(parts_.model_inputs[i])];
-      if (column.slopes.cols() == 0) continue;
-      if (all[i].size() == 0) {
-        all[i] =
-            MatrixXd::Constant(static_cast<Index>(record.length()), tables().n_2(), not_a_number);
-      }
-      all[i].middleRows(static_cast<Index>(segment.first), static_cast<Index>(segment.rows())) =
-          column.slopes;
-    }
-  }
+  const std::vector<Variable>& inputs = model_->tables().inputs;
+  std::vector<MatrixXd> all(inputs.size());
+  visit_inputs(record, values_of(xi2), tables().n_2(),
+               [&](const Segment& segment, std::size_t i, const InputColumn& column) {
+                 if (column.slopes.cols() == 0) return;
+                 if (all[i].size() == 0) {
+                   all[i] = MatrixXd::Constant(static_cast<Index>(record.length()), tables().n_2(),
+                                               not_a_number);
+                 }
+                 all[i].middleRows(static_cast<Index>(segment.first),
+                                   static_cast<Index>(segment.rows())) = column.slopes;
+               });
   std::vector<InputSlopes> slopes;
-  for (std::size_t i = 0; i < own.inputs.size(); ++i) {
-    if (all[i].size() > 0) slopes.push_back({own.inputs[i].name, std::move(all[i])});
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (all[i].size() > 0) slopes.push_back({inputs[i].name, std::move(all[i])});
   }
   return slopes;
 }

@@ -57,6 +57,9 @@ class ComposedTrajectory final : public StateBlockModel {
                                             const std::optional<PathNoise>& noise) const override;
 
  private:
+  template <class Visit>
+  void visit_inputs(const Record& record, const double* xi2, int slopes, const Visit& visit) const;
+
   struct Paths;
 
   void find_moving(const std::vector<Effect>& effects, const Record& record);

@@ -50,13 +50,6 @@ void check_trajectory(const TrajectoryOptions& options) {
 }
 
 /// The place of a name in the start. Throws Error where it isn't there.
-Index place_in(const StreamStart& start, const std::string& name) {
-  const auto at = std::ranges::find(start.names, name);
-  if (at != start.names.end()) return at - start.names.begin();
-  throw Error("the start has no '" + name + "'; it has " + base::list_first(start.names, 12) +
-              ": start from this model and record");
-}
-
 Layout lay_out(const TrajectoryPlan& plan, const StreamStart& start) {
   Layout layout;
   std::vector<int> initial;
@@ -308,6 +301,13 @@ VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start
                 "' needs a noise above 0, as every output does");
   }
   return noise;
+}
+
+Index place_in(const StreamStart& start, const std::string& name) {
+  const auto at = std::ranges::find(start.names, name);
+  if (at != start.names.end()) return at - start.names.begin();
+  throw Error("the start has no '" + name + "'; it has " + base::list_first(start.names, 12) +
+              ": start from this model and record");
 }
 
 Track empty_track(std::vector<std::string> names, std::size_t rows, int n_z) {

@@ -16,6 +16,9 @@ Track track_jointly(const StateBlockModel& model, const Record& record, const St
 Eigen::VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
                          const TrackOptions& options);
 
+/// Where the start has a parameter. Throws Error where it has none of this name.
+Eigen::Index place_in(const StreamStart& start, const std::string& name);
+
 /// An empty track for `rows` rows.
 Track empty_track(std::vector<std::string> names, std::size_t rows, int n_z);
 

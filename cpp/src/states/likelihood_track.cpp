@@ -80,13 +80,6 @@ class LikelihoodStream {
 
  private:
   /// The place of a name in the start. Throws Error where it isn't there.
-  Index place_in_start(const std::string& name) const {
-    const auto at = std::ranges::find(start_.names, name);
-    if (at != start_.names.end()) return at - start_.names.begin();
-    throw Error("the start has no '" + name + "'; it has " + base::list_first(start_.names, 12) +
-                ": start from this model and record");
-  }
-
   bool is_free_in_start(Index place) const {
     return std::ranges::find(start_.free, static_cast<int>(place)) != start_.free.end();
   }
@@ -101,7 +94,7 @@ class LikelihoodStream {
     for (Index k = 0; k < n_; ++k) {
       const int column = acting_[static_cast<std::size_t>(k)];
       const Variable& parameter = all_[static_cast<std::size_t>(column)];
-      const Index place = place_in_start(parameter.name);
+      const Index place = place_in(start_, parameter.name);
       theta_[k] = xi_[column] = start_.xi[place];
       free_[k] = is_free_in_start(place);
       lower_[k] = std::min(parameter.lower, theta_[k]);
@@ -165,8 +158,8 @@ class LikelihoodStream {
         const Record batch = first_rows(record_, start_.rows);
         const TrajectoryPlan begun(plan_.model(), &batch, plan_.options());
         const int trajectory = begun.trajectory_at(segment.first, true);
-        x[i] = start_.xi[place_in_start(
-            begun.start_name(states_[static_cast<std::size_t>(i)], trajectory))];
+        x[i] = start_.xi[place_in(
+            start_, begun.start_name(states_[static_cast<std::size_t>(i)], trajectory))];
       }
     } else {
       x = steps_->start(segment.first);
