@@ -90,7 +90,13 @@ std::vector<Effect> effects() {
                      {"xz", {"ax", "m/s^2"}, 1.0, Variable("az", "m/s^2")}}),
           on_inputs("wind", sepcal::power_driver({"time", "s"}, 3.0, 2),
                     {{"n", {"wind_change_n", "m/s"}}, {"d", {"wind_change_d", "m/s"}}}),
-          on_parameter("airspeed_scale", by_temperature, "lambda_v"), late(imu)};
+          on_inputs("delays", sepcal::constant_driver(),
+                    {{"air", {"airdata_delay", "s"}},
+                     {"alpha", {"alpha_delay", "s"}},
+                     {"attitude", {"attitude_delay", "s"}},
+                     {"velocity", {"velocity_delay", "s"}}}),
+          on_parameter("airspeed_scale", by_temperature, "lambda_v"),
+          late(imu)};
 }
 
 /// xi of a model by name, the effects' as given, the path's near the truth.
@@ -123,9 +129,10 @@ Point point_of(const BlockModel& model, const Record& record,
 }
 
 const std::map<std::string, double> sizes{
-    {"gyro_bias.q", 3e-4},       {"gyro_bias.r", -2e-4}, {"accel_scale.x", 0.02},
-    {"accel_scale.xz", -0.01},   {"wind.n", 0.05},       {"wind.d", -0.02},
-    {"airspeed_scale.s", 0.004}, {"imu_late.tau", 0.03}};
+    {"gyro_bias.q", 3e-4},       {"gyro_bias.r", -2e-4},    {"accel_scale.x", 0.02},
+    {"accel_scale.xz", -0.01},   {"wind.n", 0.05},          {"wind.d", -0.02},
+    {"airspeed_scale.s", 0.004}, {"imu_late.tau", 0.03},    {"delays.air", 0.02},
+    {"delays.alpha", -0.01},     {"delays.attitude", 0.03}, {"delays.velocity", 0.015}};
 
 std::shared_ptr<const StateBlockModel> path_of(const Record& record) {
   return std::make_shared<const TrajectoryModel<FlightPath>>(FlightPath{}, record);
@@ -145,7 +152,7 @@ double relative(const MatrixXd& a, const MatrixXd& b) {
 TEST_CASE("a path with effects is the path of inputs that were changed by hand") {
   const Record record = flown();
   const auto path = path_of(record);
-  const auto with = compose(path, {effects()[0], effects()[1], effects()[3]}, record);
+  const auto with = compose(path, {effects()[0], effects()[1], effects()[4]}, record);
   const Point point = point_of(*with, record, sizes);
   Record changed;
   for (const std::string& name : record.names()) {
@@ -186,7 +193,7 @@ TEST_CASE("the path tangent is what a small effect of any kind does") {
   const Record record = flown();
   const auto path = path_of(record);
   for (const std::vector<Effect>& own :
-       {std::vector<Effect>{}, std::vector<Effect>{effects()[0], effects()[3]}}) {
+       {std::vector<Effect>{}, std::vector<Effect>{effects()[0], effects()[4]}}) {
     const auto fitted = compose(path, own, record);
     const auto* along = dynamic_cast<const sepcal::PathModel*>(fitted.get());
     REQUIRE(along != nullptr);

@@ -109,6 +109,27 @@ def test_a_late_unit_has_its_time() -> None:
 
 
 @pytest.mark.parametrize(
+    ("model", "hidden", "effect"),
+    [
+        ("path", "airdata_late", "airdata_late"),
+        ("path", "attitude_late", "attitude_late"),
+        ("path", "velocity_late", "velocity_late"),
+        ("path", "alpha_lag", "alpha_late"),
+        ("longitudinal", "attitude_late", "attitude_late"),
+        ("longitudinal", "alpha_lag", "alpha_late"),
+    ],
+)
+def test_a_group_of_sensors_that_is_late_is_named(model: str, hidden: str, effect: str) -> None:
+    late = 0.06  # s
+    kind = sepcal.FlightPath() if model == "path" else sepcal.RigidAircraft(LIGHT, model)
+    fit = sepcal.fit(kind, fly({hidden: late}, seed=1))
+    assert fit.diagnose().advice["effect"] == effect
+    added = fit.add(effect)
+    assert_allclose(added[f"{effect}.tau"].value, late, atol=0.15 * late)
+    assert added.history[-1].predicted_drop == pytest.approx(added.history[-1].drop, abs=PROMISE)
+
+
+@pytest.mark.parametrize(
     ("effect", "words"),
     [
         ("foo", "there is no effect 'foo'; known: gyro_bias"),

@@ -32,6 +32,9 @@ constexpr KnownEffect aircraft_effects[] = {
     {"airspeed_scale", "airspeed_scale", "*", "s"},
     {"wind", "wind", "*", "n e d"},
     {"imu_late", "imu_late", "", "tau"},
+    {"airdata_late", "airdata_late", "", "tau"},
+    {"attitude_late", "attitude_late", "", "tau"},
+    {"velocity_late", "velocity_late", "", "tau"},
     {"alpha_lag", "alpha_lag", "", "tau"},
 };
 constexpr Alias aliases[] = {{"wind_drift", "wind[time]"}};
@@ -80,9 +83,18 @@ HiddenEffects hide(const AircraftTruth& truth, const SimulationOptions& options,
   return {aircraft_catalogue, truth.effects, truth.parameters, sources, truth.source};
 }
 
+/// The flight at the times that its sensors read.
+struct Read {
+  Flown inertial;
+  Flown air;
+  Flown attitude;
+  Flown velocity;
+};
+
 /// Free of noise, in the order of `sensor_channels`.
 Eigen::VectorXd read_sensors(const AircraftTruth& truth, const HiddenEffects& hidden,
-                             const Flown& now, const Flown& inertial) {
+                             const Flown& now, const Read& at) {
+  const Flown& inertial = at.inertial;
   const auto of = [&](const char* name) { return truth.parameters.at(name); };
   const AircraftGeometry& g = truth.geometry;
   const Moment moment = FlownAircraft::moment(truth, now);
@@ -92,9 +104,12 @@ Eigen::VectorXd read_sensors(const AircraftTruth& truth, const HiddenEffects& hi
                                 w.cross(w.cross(imu)) -
                                 Vector3d(of("b_ax"), of("b_ay"), of("b_az"));
   const Vector3d gyro = w - Vector3d(of("b_p"), of("b_q"), of("b_r"));
-  const Vector3d air = now.air + now.state.rates.cross(g.vane - g.cg);
-  const Eigen::Vector4d e = now.state.quaternion.normalized();
-  const Eigen::Matrix3d R = Eigen::Quaterniond(e[0], e[1], e[2], e[3]).toRotationMatrix();
+  const Vector3d air = at.air.air + at.air.state.rates.cross(g.vane - g.cg);
+  const auto rotation = [](const Flown& flown) {
+    const Eigen::Vector4d e = flown.state.quaternion.normalized();
+    return Eigen::Quaterniond(e[0], e[1], e[2], e[3]).toRotationMatrix();
+  };
+  const Eigen::Matrix3d R = rotation(at.attitude);
   Eigen::VectorXd read(15);
   const auto scaled = [&](const char* effect, const Vector3d& reading) {
     return Vector3d(reading + hidden.sum_vector(effect, moment).cwiseProduct(reading));
@@ -107,7 +122,8 @@ Eigen::VectorXd read_sensors(const AircraftTruth& truth, const HiddenEffects& hi
   read[9] = std::atan2(R(2, 1), R(2, 2));
   read[10] = -std::asin(R(2, 0));
   read[11] = std::atan2(R(1, 0), R(0, 0));
-  read.tail<3>() = now.state.velocity + R * now.state.rates.cross(imu);
+  const Vector3d swing = at.velocity.state.rates.cross(imu);
+  read.tail<3>() = at.velocity.state.velocity + rotation(at.velocity) * swing;
   return read;
 }
 
@@ -158,9 +174,17 @@ SimulatedFlight simulate_aircraft(const AircraftTruth& truth, const SimulationOp
   const auto constant = [&](const char* effect) {
     return hidden.has(effect) ? hidden.constant(effect) : 0.0;
   };
-  const double late = check_shift(truth.source + ": imu_late", constant("imu_late"));
+  const auto late = [&](const char* sensor) {
+    return check_shift(truth.source + ": " + sensor, constant(sensor));
+  };
+  const double inertial = late("imu_late");
+  const double air = late("airdata_late");
+  const double attitude = late("attitude_late");
+  const double velocity = late("velocity_late");
   const auto readings = [&](double time) {
-    return read_sensors(truth, hidden, aircraft.at(time), aircraft.at(time - late));
+    return read_sensors(truth, hidden, aircraft.at(time),
+                        {aircraft.at(time - inertial), aircraft.at(time - air),
+                         aircraft.at(time - attitude), aircraft.at(time - velocity)});
   };
   FirstOrderLag alpha(truth.source + ": alpha_lag", constant("alpha_lag"), times.front(),
                       [&](double time) -> Eigen::VectorXd { return readings(time).segment<1>(7); });

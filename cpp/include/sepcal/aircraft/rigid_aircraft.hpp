@@ -54,15 +54,16 @@ AeroTerms compile_equations(const std::vector<AeroEquation>& equations);
 template <int Capacity>
 struct RigidAircraft {
   static constexpr int n_columns = 8;
-  static constexpr int n_u = 3 + n_columns;
+  static constexpr int n_u = 6 + n_columns;
   enum State { forward, right, below, roll_rate, pitch_rate, yaw_rate, phi, theta, psi };
-  enum Input { rho, thrust, mass, first_column };
+  enum Input { rho, thrust, mass, airdata_delay, alpha_delay, attitude_delay, first_column };
   enum Output { airspeed, beta, alpha, roll, pitch, yaw, ax, ay, az, p, q, r, vn, ve, vd };
 
   static constexpr auto inputs = [] {
-    std::array<Quantity, n_u> table{Quantity{"rho", "kg/m^3"},
-                                    Quantity{"thrust", "N", -infinity, infinity, 0.0},
-                                    Quantity{"mass", "kg"}};
+    std::array<Quantity, n_u> table{
+        Quantity{"rho", "kg/m^3"}, Quantity{"thrust", "N", -infinity, infinity, 0.0},
+        Quantity{"mass", "kg"},    port("airdata_delay", "s"),
+        port("alpha_delay", "s"),  port("attitude_delay", "s")};
     return table;  // name_tables() names the others, and the mass where none is logged
   }();
   static constexpr std::array states{
@@ -138,7 +139,8 @@ struct RigidAircraft {
     return dx;
   }
 
-  /// Forces and the velocity over the ground are the inertial unit's, the flow is the vane's.
+  /// Forces and the velocity over the ground are the inertial unit's, the flow is the vane's; what
+  /// is late reads the state of its delay ago, to first order, and alpha that of both its delays.
   template <class U, class X>
   Affine<X, 15, 21> at(const Vec<X, 9>& x, const Vec<U, n_u>& u, const Vec<X, Capacity>& c) const {
     using std::asin;
@@ -148,12 +150,17 @@ struct RigidAircraft {
     const Vec<X, 3> imu = (geometry.imu - geometry.cg).template cast<X>();
     const Vec<X, 3> vane = (geometry.vane - geometry.cg).template cast<X>();
     const Motion<X> motion = motion_of(x, u, c);
-    const Vec<X, 3> air = x.template head<3>() + turn.cross(vane);
+    const auto at_vane = [&](const Vec<X, 9>& state) -> Vec<X, 3> {
+      return state.template head<3>() + state.template segment<3>(roll_rate).cross(vane);
+    };
+    const Vec<X, 3> air = at_vane(ago(u[airdata_delay], x, u, c));
+    const Vec<X, 3> at_alpha =
+        u[alpha_delay] == U(0.0) ? air : at_vane(ago(u[airdata_delay] + u[alpha_delay], x, u, c));
     Affine<X, 15, 21> z{.A = Eigen::Matrix<X, 15, 21>::Zero()};
     z.b[airspeed] = sqrt(air.dot(air));
     z.b[beta] = asin(air[1] / z.b[airspeed]);
-    z.b[alpha] = atan2(air[2], air[0]);
-    z.b.template segment<3>(roll) = x.template segment<3>(phi);
+    z.b[alpha] = atan2(at_alpha[2], at_alpha[0]);
+    z.b.template segment<3>(roll) = ago(u[attitude_delay], x, u, c).template segment<3>(phi);
     z.b.template segment<3>(ax) =
         motion.specific_force + motion.turn_rate.cross(imu) + turn.cross(turn.cross(imu));
     z.b.template segment<3>(p) = turn;
@@ -183,6 +190,14 @@ struct RigidAircraft {
   }
 
  private:
+  /// The state some time ago.
+  template <class U, class X>
+  Vec<X, 9> ago(const U& delay, const Vec<X, 9>& x, const Vec<U, n_u>& u,
+                const Vec<X, Capacity>& c) const {
+    if (delay == U(0.0)) return x;
+    return x - X(delay) * rate(x, u, c);
+  }
+
   template <class X>
   struct Motion {
     Vec<X, 3> specific_force;  // at the centre of gravity, m/s^2

@@ -41,17 +41,33 @@ struct FlightPathModel {
   static constexpr int n_1 = Position ? 12 : 15;
   static constexpr int n_p = Position ? 9 : 6;
   enum State { forward, right, below, phi, theta, psi };  // u v w and the attitude
-  static constexpr int n_u = 12;
-  enum Input { ax, ay, az, roll_rate, pitch_rate, yaw_rate, gust, vane_shift = gust + 3 };
+  static constexpr int n_u = 16;
+  enum Input {
+    ax,
+    ay,
+    az,
+    roll_rate,
+    pitch_rate,
+    yaw_rate,
+    gust,
+    vane_shift = gust + 3,
+    airdata_delay = vane_shift + 3,
+    alpha_delay,
+    attitude_delay,
+    velocity_delay
+  };
   enum Output { airspeed, beta, alpha, roll, pitch, yaw, vn, ve, vd, north, east, down };
 
   /// What the inertial unit reads; then, zero unless an effect drives them, how much the wind
-  /// differs from the constant one, and the vane from where it is said to be.
+  /// differs from the constant one, and the vane from where it is said to be, and how late the
+  /// other sensors are: alpha by both of its delays.
   static constexpr std::array inputs{
       Quantity{"ax", "m/s^2"},      Quantity{"ay", "m/s^2"},      Quantity{"az", "m/s^2"},
       Quantity{"p", "rad/s"},       Quantity{"q", "rad/s"},       Quantity{"r", "rad/s"},
       port("wind_change_n", "m/s"), port("wind_change_e", "m/s"), port("wind_change_d", "m/s"),
-      port("vane_shift_x", "m"),    port("vane_shift_y", "m"),    port("vane_shift_z", "m")};
+      port("vane_shift_x", "m"),    port("vane_shift_y", "m"),    port("vane_shift_z", "m"),
+      port("airdata_delay", "s"),   port("alpha_delay", "s"),     port("attitude_delay", "s"),
+      port("velocity_delay", "s")};
   static constexpr int readings = 6;  // of these inputs
 
  private:
@@ -137,7 +153,8 @@ struct FlightPathModel {
   }
 
   /// The readings: (1 + lambda) true + b. u v w are relative to the air of the constant wind, as
-  /// the inertial unit has them; the air data see the wind that there is.
+  /// the inertial unit has them; the air data see the wind that there is. What is late reads the
+  /// state of its delay ago, to first order.
   template <class U, class X>
   Affine<X, n_z, n_1> at(const Vec<X, n_x>& x, const Vec<U, n_u>& u, const Vec<X, n_p>& p) const {
     using std::asin;
@@ -145,26 +162,34 @@ struct FlightPathModel {
     using std::sqrt;
     const Vec<X, 3> turn(u[roll_rate] + p[roll_rate], u[pitch_rate] + p[pitch_rate],
                          u[yaw_rate] + p[yaw_rate]);
-    const Eigen::Matrix<X, 3, 3> to_ned = body_to_ned(x[phi], x[theta], x[psi]);
     Vec<X, 3> change;
     Vec<X, 3> arm;
     for (int i = 0; i < 3; ++i) {
       change[i] = X(u[gust + i]);
       arm[i] = X(vane[i] + u[vane_shift + i]);
     }
-    const Vec<X, 3> air = x.template head<3>() + turn.cross(arm) - to_ned.transpose() * change;
+    const auto at_vane = [&](const Vec<X, n_x>& state) -> Vec<X, 3> {
+      return state.template head<3>() + turn.cross(arm) -
+             body_to_ned(state[phi], state[theta], state[psi]).transpose() * change;
+    };
+    const Vec<X, n_x> by_air = ago(u[airdata_delay], x, u, p);
+    const Vec<X, n_x> by_velocity = ago(u[velocity_delay], x, u, p);
+    const Vec<X, 3> air = at_vane(by_air);
+    const Vec<X, 3> at_alpha =
+        u[alpha_delay] == U(0.0) ? air : at_vane(ago(u[airdata_delay] + u[alpha_delay], x, u, p));
     Affine<X, n_z, n_1> z{.A = Eigen::Matrix<X, n_z, n_1>::Zero()};
     z.b[airspeed] = sqrt(air.dot(air));
     z.b[beta] = asin(air[1] / z.b[airspeed]);
-    z.b[alpha] = atan2(air[2], air[0]);
-    z.b.template segment<3>(roll) = x.template segment<3>(phi);
+    z.b[alpha] = atan2(at_alpha[2], at_alpha[0]);
+    z.b.template segment<3>(roll) = ago(u[attitude_delay], x, u, p).template segment<3>(phi);
     for (int j = 0; j < 6; ++j) {
       z.A(j, j) = z.b[j];
       z.A(j, 6 + j) = X(1.0);
     }
-    z.b.template segment<3>(vn) = over_ground(to_ned, x, p);
+    z.b.template segment<3>(vn) = over_ground(
+        body_to_ned(by_velocity[phi], by_velocity[theta], by_velocity[psi]), by_velocity, p);
     if constexpr (Position) {
-      z.b.template tail<3>() = x.template tail<3>();
+      z.b.template tail<3>() = by_velocity.template tail<3>();
     } else {
       z.A.template block<3, 3>(vn, 12).setIdentity();
     }
@@ -213,6 +238,14 @@ struct FlightPathModel {
   }
 
  private:
+  /// The state some time ago.
+  template <class U, class X>
+  Vec<X, n_x> ago(const U& delay, const Vec<X, n_x>& x, const Vec<U, n_u>& u,
+                  const Vec<X, n_p>& p) const {
+    if (delay == U(0.0)) return x;
+    return x - X(delay) * rate(x, u, p);
+  }
+
   /// The velocity over the ground; without the wind where that is linear.
   template <class X>
   static Vec<X, 3> over_ground(const Eigen::Matrix<X, 3, 3>& to_ned, const Vec<X, n_x>& x,

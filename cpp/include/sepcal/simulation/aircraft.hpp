@@ -61,11 +61,12 @@ struct AircraftTruth {
 /// seven are exact, and vn ve vd are the inertial unit's. Hidden effects: CX[DRIVER] ...
 /// Cn[DRIVER], what is added to the inertial unit's readings, accel_bias[DRIVER] and
 /// gyro_bias[DRIVER] (x y z), shares of them, accel_scale[DRIVER] and gyro_scale[DRIVER] (x y z),
-/// and of the airspeed's, airspeed_scale[DRIVER]; wind[DRIVER] (n e d); imu_late and alpha_lag
-/// (tau, s); drivers are of time, alpha, beta, p_hat, q_hat, r_hat, elevator, aileron, rudder,
-/// airspeed, imu_temp_degc, maneuver. SimulationOptions::noise colours the readings' noise. Throws
-/// Error as simulate_five_hole() does, for an aircraft that can't be (check_geometry()) or that
-/// finds no trim, and for one that tumbles or leaves the air that is known.
+/// and of the airspeed's, airspeed_scale[DRIVER]; wind[DRIVER] (n e d); imu_late, airdata_late,
+/// attitude_late, velocity_late and alpha_lag (tau, s); drivers are of time, alpha, beta, p_hat,
+/// q_hat, r_hat, elevator, aileron, rudder, airspeed, imu_temp_degc, maneuver.
+/// SimulationOptions::noise colours the readings' noise. Throws Error as simulate_five_hole() does,
+/// for an aircraft that can't be (check_geometry()) or that finds no trim, and for one that tumbles
+/// or leaves the air that is known.
 SimulatedFlight simulate_aircraft(const AircraftTruth& truth = {},
                                   const SimulationOptions& options = {});
 

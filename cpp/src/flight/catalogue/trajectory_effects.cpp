@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The effects along a trajectory: what the inertial unit, the air data and the attitude lack, and
 // the wind. Of a flight path they act on what is integrated, of an aircraft on what is read.
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -82,6 +84,21 @@ EffectRow step_row(const std::string& name, const Port& port, const std::string&
           .sentence = sentence,
           .channels = {"time"},
           .maker = renamed(port.name + "[step(time)]", port)};
+}
+
+/// What is late against the inertial unit or the controls.
+EffectRow late_row(const std::string& name, const std::string& input, const std::string& what) {
+  const Port port{.name = name,
+                  .unit = "s",
+                  .components = {{.name = "tau", .input = input}},
+                  .plausible = longest_offset};
+  return constant_row(port, what + " late by tau", "the time of " + what + " is late", {"time"});
+}
+
+std::vector<EffectRow> late_readings() {
+  return {late_row("airdata_late", "airdata_delay", "airspeed, alpha and beta"),
+          late_row("alpha_late", "alpha_delay", "alpha"),
+          late_row("attitude_late", "attitude_delay", "roll, pitch and yaw")};
 }
 
 /// What is read beside the inertial unit, in the models' linear parameters.
@@ -181,6 +198,9 @@ EffectTable path_effects() {
        .channels = {"time"},
        .maker =
            in_time(Delay::Kind::inputs_late, longest_offset, {"ax", "ay", "az", "p", "q", "r"})}};
+  std::ranges::copy(late_readings(), std::back_inserter(table.effects));
+  table.effects.push_back(
+      late_row("velocity_late", "velocity_delay", "the velocity over the ground"));
   table.channels = channels();
   return table;
 }
@@ -218,6 +238,7 @@ EffectTable aircraft_effects() {
                       return in_time(Delay::Kind::inputs_late, longest_offset, controls)(
                           model, setting, record);
                     }}};
+  std::ranges::copy(late_readings(), std::back_inserter(table.effects));
   table.channels = channels();
   return table;
 }
