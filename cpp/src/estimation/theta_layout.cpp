@@ -37,6 +37,21 @@ std::string ThetaLayout::name_of(Index place) const {
   return (place - n_ < noises() ? "q_" : "r_") + noise(place - n_).name;
 }
 
+std::vector<Estimated> ThetaLayout::estimated() const {
+  std::vector<Estimated> estimated;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const Index k = free_[i];
+    if (k < n_) {
+      estimated.push_back({name_of(k), problem_.parameters()[i]});
+    } else {
+      estimated.push_back(
+          {name_of(k), noise(k - n_),
+           k - n_ < noises() ? Estimated::Kind::process_noise : Estimated::Kind::output_noise});
+    }
+  }
+  return estimated;
+}
+
 const Variable& ThetaLayout::noise(Index k) const {
   if (k < noises()) return model_.process_noises()[static_cast<std::size_t>(k)];
   return model_.tables().outputs[static_cast<std::size_t>(k - noises())];

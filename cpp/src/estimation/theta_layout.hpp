@@ -9,6 +9,7 @@
 
 #include "estimation/objective.hpp"
 #include "estimation/problem.hpp"
+#include "estimation/scored_estimate.hpp"
 #include "numerics/box.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/innovation_model.hpp"
@@ -33,6 +34,8 @@ class ThetaLayout {
 
   /// "Za", "q_alpha", "r_alpha_m".
   std::string name_of(Eigen::Index place) const;
+  /// What is estimated, in free()'s order.
+  std::vector<Estimated> estimated() const;
   /// Of a process noise, then of an output, k from 0.
   const Variable& noise(Eigen::Index k) const;
 
