@@ -31,15 +31,17 @@ def elevator(time: np.ndarray) -> np.ndarray:
     return np.where(late < 0, u, 0.04 * np.sin(2 * np.pi * (0.1 * late + 0.145 * late**2)))
 
 
-def fly(seed: int) -> dict[str, np.ndarray]:
-    """The columns of a log."""
+def fly(
+    seed: int, *, reads: dict[str, float] = READS, noises: dict[str, float] = NOISES
+) -> dict[str, np.ndarray]:
+    """The columns of a log, of readings and states with these noises."""
     rng = np.random.default_rng(seed)
     F = np.array([[TRUTH["Za"], 1.0], [TRUTH["Ma"], TRUTH["Mq"]]])
     B = np.array([TRUTH["Zd"], TRUTH["Md"]])
     block = np.zeros((4, 4))  # x' = F x + B u, u' = its slope
     block[:2, :2], block[:2, 2], block[2, 3] = F, B, 1.0
     step = expm(block * STEP)
-    density = np.diag(np.square(list(NOISES.values())))
+    density = np.diag(np.square(list(noises.values())))
     van_loan = expm(np.block([[-F, density], [np.zeros((2, 2)), F.T]]) * STEP)
     noise = np.linalg.cholesky(van_loan[2:, 2:].T @ van_loan[:2, 2:])
     time = STEP * np.arange(ROWS)
@@ -54,7 +56,7 @@ def fly(seed: int) -> dict[str, np.ndarray]:
         "az_m": AIRSPEED * (TRUTH["Za"] * x[:, 0] + TRUTH["Zd"] * u),
     }
     readings = {
-        name: true[name] + bias + READS[name] * rng.standard_normal(ROWS)
-        for name, bias in zip(READS, BIASES.values(), strict=True)
+        name: true[name] + bias + reads[name] * rng.standard_normal(ROWS)
+        for name, bias in zip(reads, BIASES.values(), strict=True)
     }
     return {"time": time, "elevator": u, "airspeed": np.full(ROWS, AIRSPEED), **readings}

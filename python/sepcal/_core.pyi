@@ -1653,7 +1653,7 @@ class Departure:
     @property
     def difference(self) -> dict[str, float]:
         """
-        Own estimate less the others', by shared parameter.
+        Own estimate less the others', by shared parameter; of a noise of its logarithm.
         """
     @property
     def largest(self) -> str:
@@ -1756,6 +1756,9 @@ class ManyFit:
         "noise",
         "rmse",
         "cost",
+        "by",
+        "noise_sizes",
+        "log_likelihood",
         "unobservable",
         "weak",
         "iterations",
@@ -1773,11 +1776,16 @@ class ManyFit:
         {field: value}, as of a named tuple.
         """
     @property
+    def by(self) -> str:
+        """
+        "output-error" or "filter-error".
+        """
+    @property
     def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     @property
     def cost(self) -> float:
         """
-        J of Eq. 6 over all rows.
+        J of Eq. 6 over all rows; by filter error V_m.
         """
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -1802,6 +1810,11 @@ class ManyFit:
         Flights that can't be used, and why.
         """
     @property
+    def log_likelihood(self) -> float:
+        """
+        By filter error.
+        """
+    @property
     def message(self) -> str:
         """
         One line; empty where there is nothing to say.
@@ -1813,6 +1826,11 @@ class ManyFit:
         """
     @property
     def noise_iterations(self) -> int: ...
+    @property
+    def noise_sizes(self) -> dict[str, NoiseSize]:
+        """
+        By filter error: process noises, then outputs, common to all flights.
+        """
     @property
     def passes(self) -> int:
         """
@@ -1847,8 +1865,28 @@ class ManyFit:
     def weak(self) -> list[Combination]: ...
 
 class PreparedFlight:
+    def innovations(
+        self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        float,
+    ]: ...
     def linearise(
         self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def score(
+        self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"], float, int, int
+    ]: ...
+    def score_blocks(
+        self,
+        arg0: tuple[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            typing.SupportsInt | typing.SupportsIndex,
+        ],
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def score_covariance(
         self,
@@ -1870,6 +1908,7 @@ class PreparedFlight:
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
         int,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     ]: ...
 
 class SmoothedRecord:

@@ -14,7 +14,7 @@ from sepcal import _core
 from sepcal.executors import describe, stream
 from sepcal.flight import Flight
 from sepcal.many_results import ManyFit
-from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask
+from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask, unusable
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.trajectories import TrajectoryModel
@@ -24,7 +24,7 @@ Executors: TypeAlias = Executor | Callable[[], Executor] | None
 TASKS = 64  # that one pass over all flights is cut into, at most
 
 
-@spelled_out(without=("effects", "loss", "loss_width", "process_noise", "method", "hessian"))
+@spelled_out(without=("effects", "loss", "loss_width"))
 def fit_many(
     model: AnyModel,
     flights: Mapping[str, Source] | Sequence[Source],
@@ -40,8 +40,9 @@ def fit_many(
 
     What a flight says at a point is one small triangular factor an output; factors merge exactly,
     and the data never move. The result is that of one fit of all rows together, and does not depend
-    on the executor or on its workers. R is common to all flights. Every flight is tested for its
-    departure from the others (ManyFit.departed).
+    on the executor or on its workers. R is common to all flights, and by method="filter-error" the
+    process noises are too (ManyFit.noise_sizes). Every flight is tested for its departure from the
+    others (ManyFit.departed).
 
     Args:
         model: As in fit().
@@ -134,7 +135,7 @@ def _lose(question: Question, error: BaseException) -> object:
     """What stands for a flight whose worker died of it, time and again."""
     reason = f"its worker dies of it, or is killed ({describe(error)})"
     if question.kind == "start":
-        return (None, reason, [], [], [[]], [], 0), ""
+        return unusable(reason), ""
     raise _core.Error(f"flight '{question.name}': {reason}") from error
 
 

@@ -32,6 +32,9 @@ class ManyFit(_core.ManyFit):
             lines.append(line.rstrip())
         rmse = ", ".join(f"{name} {value:.4g}" for name, value in self.rmse.items())
         lines.append(f"rmse: {rmse}; {self.rows} rows of {len(self.flights)} flights")
+        for size in self.noise_sizes.values():
+            error = f" +- {size.standard_error:.2g}" if size.standard_error >= 0 else ""
+            lines.append(f"{size.name}: {size.value:.4g}{error} {size.unit}")
         for name in self.departed():
             departure = self.flights[name].departure
             line = f"{name} departs from the others: p {departure.p_holm:.2g}"

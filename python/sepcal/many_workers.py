@@ -44,7 +44,7 @@ class Question:
     name: str
     source: Source | None  # None: the worker may have it; see Absent
     sha256: str  # of the log as it was at the start; empty where not known
-    kind: str  # "start", "linearise", "score_covariance"
+    kind: str  # "start", or what of a _core.PreparedFlight answers
     argument: Any
 
 
@@ -99,7 +99,7 @@ def ask(question: Question) -> Any:  # noqa: ANN401
         found = PREPARED.find(question) or _prepare(question)
     except _core.Error as error:
         if question.kind == "start":
-            return (None, str(error), [], [], [[]], [], 0), ""
+            return unusable(str(error)), ""
         raise _core.Error(f"flight '{question.name}': {error}") from None
     if found is None:
         return Absent()
@@ -113,10 +113,13 @@ def ask(question: Question) -> Any:  # noqa: ANN401
         try:
             return flight.start(), sha256
         except _core.Error as error:
-            return (None, str(error), [], [], [[]], [], 0), sha256
-    if question.kind == "linearise":
-        return flight.linearise(question.argument)
-    return flight.score_covariance(question.argument)
+            return unusable(str(error)), sha256
+    return getattr(flight, question.kind)(question.argument)
+
+
+def unusable(reason: str) -> tuple[object, ...]:
+    """The answer of "start" of a flight that can't be used."""
+    return None, reason, [], [], [[]], [], 0, []
 
 
 def _prepare(question: Question) -> tuple[_core.PreparedFlight, str] | None:

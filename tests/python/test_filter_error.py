@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Filter error from Python: the likelihood beside statsmodels', models of one's own, refusals."""
 
+from concurrent.futures import ProcessPoolExecutor
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -9,7 +11,7 @@ from scipy.linalg import expm
 import sepcal
 from own_state_models import ShortPeriod
 from refusals import refuse
-from stirred_flights import SIZES, TRUTH, fly
+from stirred_flights import READS, SIZES, TRUTH, fly
 
 LOG = fly(11)
 
@@ -70,6 +72,54 @@ def test_a_model_of_ones_own_is_the_same(fit: sepcal.Fit) -> None:
             ours[name].standard_error_white, rel=1e-4
         )
     assert own.log_likelihood == pytest.approx(ours.log_likelihood, abs=1e-6)
+
+
+def test_manoeuvres_merged_are_one_record_of_segments() -> None:
+    """On threads, on processes, and as one fit of a log with three labels."""
+    flights = {
+        label: {name: values[: 300 + 50 * k] for name, values in fly(20 + k).items()}
+        for k, label in enumerate(("climb", "cruise", "descent"))
+    }
+    options = {"own": ["alpha_0", "q_0"], "method": "filter-error"}
+    many = sepcal.fit_many(sepcal.ShortPeriod(), flights, **options)
+    assert many.status == "converged", many.message
+    assert many.by == "filter-error"
+    log = {
+        name: np.concatenate([flight[name] for flight in flights.values()])
+        for name in flights["climb"]
+    }
+    rows = [len(flight["time"]) for flight in flights.values()]
+    log["time"] += 100.0 * np.repeat(np.arange(3), rows)
+    log["maneuver"] = np.repeat(list(flights), rows)
+    one = sepcal.fit(sepcal.ShortPeriod(), log, method="filter-error")
+    assert many.log_likelihood == pytest.approx(one.log_likelihood, abs=1e-6)
+    for name, shared in many.shared.items():
+        assert abs(shared.value - one[name].value) < 1e-6 * one[name].standard_error
+        assert shared.standard_error_white == pytest.approx(
+            one[name].standard_error_white, rel=1e-6
+        )
+    for label, flight in many.flights.items():
+        for start in ("alpha_0", "q_0"):
+            expected = one[f"{start}[{label}]"]
+            assert abs(flight[start].value - expected.value) < 1e-6 * expected.standard_error
+    for name, size in many.noise_sizes.items():
+        assert size.value == pytest.approx(one.noise_sizes[name].value, rel=1e-6)
+    assert "q_q" in str(many)
+    elsewhere = sepcal.fit_many(
+        sepcal.ShortPeriod(), flights, **options, executor=ProcessPoolExecutor
+    )
+    assert [p.value for p in elsewhere.shared.values()] == [p.value for p in many.shared.values()]
+
+
+def test_a_short_flight_of_many_can_be_left_out() -> None:
+    flights = {"whole": LOG, "short": {name: values[:3] for name, values in LOG.items()}}
+    options = {"own": ["alpha_0", "q_0"], "method": "filter-error"}
+    refuse(
+        lambda: sepcal.fit_many(sepcal.ShortPeriod(), flights, **options), "flight 'short'", "leave"
+    )
+    many = sepcal.fit_many(sepcal.ShortPeriod(), flights, **options, leave_out=True)
+    assert list(many.left_out) == ["short"]
+    assert many.status == "converged", many.message
 
 
 def test_what_is_given_is_held() -> None:
@@ -175,3 +225,76 @@ def test_a_model_without_a_state_is_refused() -> None:
         lambda: sepcal.fit(sepcal.ScalarExample1(), data, method="filter-error"),
         "filter error needs a model with a state",
     )
+
+
+def changed(column: str, values: np.ndarray | float) -> dict[str, np.ndarray]:
+    return LOG | {column: np.broadcast_to(values, LOG[column].shape).copy()}
+
+
+def test_a_slow_sensor_is_no_noiseless_one() -> None:
+    """Read in every third row, so that no two of its readings are neighbours."""
+    rows = np.arange(len(LOG["time"]))
+    slow = changed("alpha_m", np.where(rows % 3 == 0, LOG["alpha_m"], np.nan))
+    found = sepcal.fit(sepcal.ShortPeriod(), slow, method="filter-error")
+    assert found.status == "converged", found.message
+    for name, true in TRUTH.items():
+        assert abs(found[name].value - true) < 4 * found[name].standard_error
+    size = found.noise_sizes["r_alpha_m"]
+    assert abs(size.value - SIZES["r_alpha_m"]) < 4 * size.standard_error
+
+
+def test_ten_rows_say_that_they_are_few() -> None:
+    few = {name: values[60:70] for name, values in LOG.items()}
+    found = sepcal.fit(sepcal.ShortPeriod(), few, method="filter-error")
+    assert found.status == "not_identifiable"
+    assert "not determined" in found.message
+    assert "10 rows hardly tell noise of the states from the outputs'" in found.message
+    assert np.isnan([parameter.standard_error for parameter in found.parameters.values()]).all()
+
+
+def test_a_channel_that_never_changes_is_named() -> None:
+    found = sepcal.fit(sepcal.ShortPeriod(), changed("alpha_m", 0.02), method="filter-error")
+    assert "alpha_m reads the same in every row" in found.message
+
+
+def test_readings_without_noise_end_at_their_resolution() -> None:
+    found = sepcal.fit(
+        sepcal.ShortPeriod(), fly(5, reads=dict.fromkeys(READS, 0.0)), method="filter-error"
+    )
+    assert found.status == "converged", found.message
+    assert "r_alpha_m (" in found.message
+    assert "there is none in the readings" in found.message
+    assert all(found.noise_sizes[f"r_{name}"].at_floor for name in READS)
+    # The states are as good as read: differences over a row tell their noise to 1 / sqrt(2 N).
+    for name in ("q_alpha", "q_q"):
+        size = found.noise_sizes[name]
+        assert size.standard_error / size.value == pytest.approx(1 / np.sqrt(2000), rel=0.1)
+        assert abs(size.value - SIZES[name]) < 4 * size.standard_error
+
+
+def test_calm_air_ends_at_the_floor() -> None:
+    """And there it is output error: estimates, sizes and likelihood."""
+    calm = fly(6, noises={"alpha": 1e-9, "q": 1e-9})
+    found = sepcal.fit(sepcal.ShortPeriod(), calm, method="filter-error", process_noise={"q": 0.0})
+    assert found.status == "converged", found.message
+    assert found.noise_sizes["q_alpha"].at_floor
+    assert "the record shows no process noise 'alpha'" in found.message
+    plain = sepcal.fit(sepcal.ShortPeriod(), calm, coloured_errors=False)
+    for name in plain.names:
+        assert abs(found[name].value - plain[name].value) < 1e-2 * plain[name].standard_error
+    assert found.log_likelihood == pytest.approx(found.log_likelihood_without, abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("log", "words"),
+    [
+        ({name: values[:3] for name, values in LOG.items()}, "9 readings, fewer than the 10"),
+        (changed("alpha_m", np.nan), "output 'alpha_m' has no reading; leave it out"),
+        (
+            changed("alpha_m", np.where(np.arange(1000) == 30, np.inf, LOG["alpha_m"])),
+            "column 'alpha_m' is infinite in row 30",
+        ),
+    ],
+)
+def test_records_that_are_none(log: dict[str, np.ndarray], words: str) -> None:
+    refuse(lambda: sepcal.fit(sepcal.ShortPeriod(), log, method="filter-error"), words)

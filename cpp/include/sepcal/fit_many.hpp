@@ -29,8 +29,9 @@ struct ManyOptions {
   /// Names of the parameters that every flight has for itself, linear or not. The others are
   /// shared.
   std::vector<std::string> own = {};
-  /// Every choice of a fit but a loss; it holds for each flight. R is common to all flights. The
-  /// prior of an own parameter holds for each flight's; that of a shared one counts once.
+  /// Every choice of a fit but a loss; it holds for each flight. R is common to all flights, and by
+  /// filter error the process noises too. The prior of an own parameter holds for each flight's;
+  /// that of a shared one counts once.
   FitOptions fit = {};
   /// A flight that can't be used is left out and listed; else it is an Error.
   bool leave_out = false;
@@ -46,8 +47,9 @@ struct Departure {
   double p_holm = 1.0;     // the same, by Holm for the number of flights
   double p_white = 1.0;    // with white residuals of the common R, off the drop in cost
   double p_white_holm = 1.0;
-  /// Own estimate less that of the others, and its standard error, by shared parameter; NaN for one
-  /// that is fixed, at a bound, or not determined by both.
+  /// Own estimate less that of the others, and its standard error, by shared parameter, and by
+  /// filter error then by estimated noise, of its logarithm; NaN for one that is fixed, at a bound,
+  /// or not determined by both.
   std::vector<std::string> names = {};
   Eigen::VectorXd difference = {};
   Eigen::VectorXd standard_error = {};
@@ -78,8 +80,11 @@ struct ManyFit {
   std::vector<LeftOut> left_out;
 
   std::vector<OutputValue> noise;  // common to all flights: given, or from R-hat = SSE / N
-  std::vector<OutputValue> rmse;   // over all flights
-  double cost = 0.0;               // J of Eq. 6 over all rows
+  std::vector<OutputValue> rmse;   // over all flights; by filter error of innovations
+  double cost = 0.0;               // J of Eq. 6 over all rows; by filter error V_m (S 5.7)
+  FitMethod by = FitMethod::output_error;
+  std::vector<NoiseSize> noise_sizes = {};  // by filter error: process noises, then outputs
+  double log_likelihood = not_a_number;     // by filter error
   Identifiability identifiability;
   int iterations = 0;
   int noise_iterations = 0;
@@ -92,7 +97,9 @@ struct ManyFit {
 };
 
 /// Where a flight by itself stands. The order of n parameters is [own | shared] everywhere here,
-/// each part in the model's order, without fixed ones.
+/// each part in the model's order, without fixed ones. By filter error the logarithms of noises
+/// that are not given, process noises first, end the shared ones, and there is one factor, that of
+/// the score rows.
 struct FlightStart {
   std::string error = {};  // not empty: why the flight can't be used; the rest is then empty
   FitStatus status = FitStatus::not_converged;
@@ -100,8 +107,9 @@ struct FlightStart {
   Eigen::VectorXd x = {};                      // n
   Eigen::VectorXd noise = {};                  // n_z
   std::vector<TriangularFactor> factors = {};  // n_z of [own | shared | r] at x, not whitened
-  Eigen::VectorXd output_squares = {};         // n_z, sums of z^2
+  Eigen::VectorXd output_squares = {};         // n_z, sums of z^2; by filter error none
   std::size_t rows = 0;
+  Eigen::VectorXd floor = {};  // by filter error: below each of the noises that are not given
 };
 
 /// A flight by its place, and where it is to be linearised.
@@ -118,6 +126,22 @@ struct ScoreQuestion {
   Eigen::VectorXd rounding;           // n_z: a smaller rms is rounding
   std::vector<Eigen::Index> columns;  // k of the n
   Eigen::MatrixXd K;                  // k x k, upper
+};
+
+/// What a flight hands over by filter error, at a point.
+struct FlightScore {
+  TriangularFactor factor{0};  // of [own | shared | r], the score rows'
+  double cost = 0.0;           // V_m of S 5.7; infinite where its filter can't go on, at `row`
+  std::size_t readings = 0;
+  std::size_t row = 0;
+};
+
+/// Of a flight's innovations at a point: sums over the readings that are there, by output (n_z).
+struct FlightInnovations {
+  Eigen::VectorXd squares;   // of innovations
+  Eigen::VectorXd counts;    // of readings
+  Eigen::VectorXd readings;  // of readings' squares
+  double memory = 1.0;       // rows of innovations that count as one; NaN: not finite
 };
 
 /// Flights, wherever they are: in this process or behind a map over workers. One call visits all
@@ -143,6 +167,13 @@ class Fleet {
   /// model of what the flight's own linear fit leaves of output j. Empty where there is none.
   virtual std::vector<Eigen::MatrixXd> score_covariances(
       const std::vector<ScoreQuestion>& questions) = 0;
+
+  /// By filter error, for each point. A fleet that doesn't answer throws Error.
+  virtual std::vector<FlightScore> scores(const std::vector<FlightPoint>& points);
+  virtual std::vector<FlightInnovations> innovations(const std::vector<FlightPoint>& points);
+  /// The factor of each of so many blocks of the flight, as long as each other.
+  virtual std::vector<std::vector<TriangularFactor>> score_blocks(
+      const std::vector<FlightPoint>& points, const std::vector<int>& blocks);
 };
 
 /// One flight, prepared: what a Fleet's answers are made of.
@@ -157,6 +188,11 @@ class FlightProblem {
   FlightStart start() const;
   std::vector<TriangularFactor> linearise(const Eigen::VectorXd& x) const;
   Eigen::MatrixXd score_covariance(const ScoreQuestion& question) const;
+
+  /// By filter error.
+  FlightScore score(const Eigen::VectorXd& x) const;
+  FlightInnovations innovations(const Eigen::VectorXd& x) const;
+  std::vector<TriangularFactor> score_blocks(const Eigen::VectorXd& x, int blocks) const;
 
  private:
   struct Parts;

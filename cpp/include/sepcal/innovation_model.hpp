@@ -11,10 +11,9 @@
 
 namespace sepcal {
 
-/// theta: the model's n parameters, linear, then nonlinear, the initial states among them; ln of
-/// each process noise's root of spectral density (n_w, in the order and units of process_noises());
-/// ln of each output's standard deviation (n_z).
-class InnovationModel {
+/// What scoring minimises. The last of theta are logarithms: of process noises, then of outputs'
+/// noises.
+class ScoredLikelihood {
  public:
   struct Value {
     double cost = 0.0;  // V_m of S 5.7; infinite where the filter can't go on, for `row` says where
@@ -22,27 +21,32 @@ class InnovationModel {
     std::size_t row = 0;
   };
 
-  InnovationModel() = default;
-  InnovationModel(const InnovationModel&) = delete;
-  InnovationModel& operator=(const InnovationModel&) = delete;
-  virtual ~InnovationModel() = default;
+  ScoredLikelihood() = default;
+  ScoredLikelihood(const ScoredLikelihood&) = delete;
+  ScoredLikelihood& operator=(const ScoredLikelihood&) = delete;
+  virtual ~ScoredLikelihood() = default;
 
   virtual Eigen::Index noises() const = 0;   // n_w
   virtual Eigen::Index outputs() const = 0;  // n_z
-  /// n + n_w + n_z.
-  virtual Eigen::Index size() const = 0;
-
-  /// Which of theta change the gains (size()); the others change the innovations alone, linearly.
-  virtual Eigen::Array<bool, Eigen::Dynamic, 1> moves() const = 0;
+  virtual Eigen::Index size() const = 0;     // of theta
 
   virtual Value value(const Eigen::VectorXd& theta) const = 0;
 
-  /// The same with score rows, [rows | residual] of size() + 1 columns, that of a sample after the
-  /// other: `visit` sees those of the samples from `row` of the record on, `rows_a_sample` each, in
-  /// order. Their factor [R q] holds Fisher's information R'R and minus the gradient R'q. The rows
-  /// are scratch.
+  /// The same with score rows, [rows | residual] of size() + 1 columns, in the record's order:
+  /// `visit` sees some of them at a time, from `row` of the record on. Their factor [R q] holds
+  /// Fisher's information R'R and minus the gradient R'q. The rows are scratch.
   using VisitScores = std::function<void(std::size_t row, Eigen::MatrixXd& rows)>;
   virtual Value scores(const Eigen::VectorXd& theta, const VisitScores& visit) const = 0;
+};
+
+/// theta: the model's n parameters, linear, then nonlinear, the initial states among them; ln of
+/// each process noise's root of spectral density (n_w, in the order and units of process_noises());
+/// ln of each output's standard deviation (n_z). Score rows are `rows_a_sample` a sample.
+class InnovationModel : public ScoredLikelihood {
+ public:
+  /// Which of theta change the gains (size()); the others change the innovations alone, linearly.
+  virtual Eigen::Array<bool, Eigen::Dynamic, 1> moves() const = 0;
+
   Eigen::Index rows_a_sample() const { return outputs() + outputs() * (outputs() + 1) / 2; }
 
   /// Of theta that moves no gains alone: [rows | residual], n_z rows a sample, columns in theta's

@@ -26,7 +26,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// n_z factors travel as one matrix, (n_z (n + 1)) x (n + 1), one below the other.
+/// Factors travel as one matrix, (m (n + 1)) x (n + 1) of m, one below the other.
 MatrixXd stack(const std::vector<TriangularFactor>& factors) {
   const Eigen::Index columns = factors.front().columns();
   MatrixXd stacked(columns * static_cast<Eigen::Index>(factors.size()), columns);
@@ -45,12 +45,17 @@ std::vector<TriangularFactor> unstack(const MatrixXd& stacked) {
   return factors;
 }
 
-/// Status, message, x, noise, factors, output_squares, rows; or None and why a flight can't be
-/// used.
+/// Status, message, x, noise, factors, output_squares, rows, floor; or None and why a flight can't
+/// be used.
 using Start = std::tuple<std::optional<FitStatus>, std::string, VectorXd, VectorXd, MatrixXd,
-                         VectorXd, std::size_t>;
+                         VectorXd, std::size_t, VectorXd>;
 /// x, noise, rounding, columns, K.
 using Question = std::tuple<VectorXd, VectorXd, VectorXd, std::vector<Eigen::Index>, MatrixXd>;
+
+/// Factor, V_m, readings, row.
+using Score = std::tuple<MatrixXd, double, std::size_t, std::size_t>;
+/// Squares, counts, readings, memory.
+using Innovations = std::tuple<VectorXd, VectorXd, VectorXd, double>;
 
 /// A flight as a joint fit takes it, with the model that it refers to.
 struct PreparedFlight {
@@ -107,8 +112,8 @@ PreparedFlight prepare_columns(const Model& model, const py::dict& columns,
 
 Start start(const PreparedFlight& flight) {
   const FlightStart start = flight.problem->start();
-  return {start.status,         start.message,        start.x,   start.noise,
-          stack(start.factors), start.output_squares, start.rows};
+  return {start.status,         start.message,        start.x,    start.noise,
+          stack(start.factors), start.output_squares, start.rows, start.floor};
 }
 
 MatrixXd linearise(const PreparedFlight& flight, const VectorXd& x) {
@@ -118,6 +123,21 @@ MatrixXd linearise(const PreparedFlight& flight, const VectorXd& x) {
 MatrixXd score_covariance(const PreparedFlight& flight, const Question& question) {
   const auto& [x, noise, rounding, columns, K] = question;
   return flight.problem->score_covariance({0, x, noise, rounding, columns, K});
+}
+
+Score score(const PreparedFlight& flight, const VectorXd& x) {
+  const FlightScore score = flight.problem->score(x);
+  return {score.factor.matrix(), score.cost, score.readings, score.row};
+}
+
+Innovations innovations(const PreparedFlight& flight, const VectorXd& x) {
+  const FlightInnovations sums = flight.problem->innovations(x);
+  return {sums.squares, sums.counts, sums.readings, sums.memory};
+}
+
+MatrixXd score_blocks(const PreparedFlight& flight, const std::tuple<VectorXd, int>& question) {
+  const auto& [x, blocks] = question;
+  return stack(flight.problem->score_blocks(x, blocks));
 }
 
 /// Asks `visit(kind, [(flight, argument), ...])`, which answers with a list in that order.
@@ -134,7 +154,7 @@ class MappedFleet final : public Fleet {
     for (std::size_t i = 0; i < names_.size(); ++i) questions.append(py::make_tuple(i, py::none()));
     std::vector<FlightStart> starts;
     for (const py::handle answer : visit_("start", questions)) {
-      auto [status, message, x, noise, factors, squares, rows] = answer.cast<Start>();
+      auto [status, message, x, noise, factors, squares, rows, floor] = answer.cast<Start>();
       if (!status) {
         starts.push_back({.error = message});
         continue;
@@ -146,7 +166,8 @@ class MappedFleet final : public Fleet {
                         .noise = noise,
                         .factors = unstack(factors),
                         .output_squares = squares,
-                        .rows = rows});
+                        .rows = rows,
+                        .floor = floor});
     }
     return starts;
   }
@@ -154,12 +175,8 @@ class MappedFleet final : public Fleet {
   std::vector<std::vector<TriangularFactor>> linearise(
       const std::vector<FlightPoint>& points) override {
     const py::gil_scoped_acquire acquire;
-    py::list questions;
-    for (const FlightPoint& point : points) {
-      questions.append(py::make_tuple(point.flight, point.x));
-    }
     std::vector<std::vector<TriangularFactor>> factors;
-    for (const py::handle answer : visit_("linearise", questions)) {
+    for (const py::handle answer : visit_("linearise", questions_at(points))) {
       factors.push_back(unstack(answer.cast<MatrixXd>()));
     }
     return factors;
@@ -179,7 +196,49 @@ class MappedFleet final : public Fleet {
     return covariances;
   }
 
+  std::vector<FlightScore> scores(const std::vector<FlightPoint>& points) override {
+    const py::gil_scoped_acquire acquire;
+    std::vector<FlightScore> scores;
+    for (const py::handle answer : visit_("score", questions_at(points))) {
+      const auto [factor, cost, readings, row] = answer.cast<Score>();
+      scores.push_back({unstack(factor).front(), cost, readings, row});
+    }
+    return scores;
+  }
+
+  std::vector<FlightInnovations> innovations(const std::vector<FlightPoint>& points) override {
+    const py::gil_scoped_acquire acquire;
+    std::vector<FlightInnovations> innovations;
+    for (const py::handle answer : visit_("innovations", questions_at(points))) {
+      const auto [squares, counts, readings, memory] = answer.cast<Innovations>();
+      innovations.push_back({squares, counts, readings, memory});
+    }
+    return innovations;
+  }
+
+  std::vector<std::vector<TriangularFactor>> score_blocks(const std::vector<FlightPoint>& points,
+                                                          const std::vector<int>& blocks) override {
+    const py::gil_scoped_acquire acquire;
+    py::list questions;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      questions.append(py::make_tuple(points[i].flight, py::make_tuple(points[i].x, blocks[i])));
+    }
+    std::vector<std::vector<TriangularFactor>> factors;
+    for (const py::handle answer : visit_("score_blocks", questions)) {
+      factors.push_back(unstack(answer.cast<MatrixXd>()));
+    }
+    return factors;
+  }
+
  private:
+  static py::list questions_at(const std::vector<FlightPoint>& points) {
+    py::list questions;
+    for (const FlightPoint& point : points) {
+      questions.append(py::make_tuple(point.flight, point.x));
+    }
+    return questions;
+  }
+
   std::vector<std::string> names_;
   py::function visit_;
 };
@@ -236,7 +295,7 @@ void define_results_of_many(py::module_& module) {
              "With white residuals of the common R, off the drop in cost.")
       .field("p_white_holm", &Departure::p_white_holm, "")
       .field("difference", &by_name<&Departure::difference>, &set_by_name<&Departure::difference>,
-             "Own estimate less the others', by shared parameter.")
+             "Own estimate less the others', by shared parameter; of a noise of its logarithm.")
       .field("standard_error", &by_name<&Departure::standard_error>,
              &set_by_name<&Departure::standard_error>, "Of the difference.")
       .comparable()
@@ -273,7 +332,11 @@ void define_results_of_many(py::module_& module) {
       .field("noise", &ManyFit::noise,
              "By output, common to all flights: given, or from R-hat = SSE / N.")
       .field("rmse", &ManyFit::rmse, "Over all flights.")
-      .field("cost", &ManyFit::cost, "J of Eq. 6 over all rows.")
+      .field("cost", &ManyFit::cost, "J of Eq. 6 over all rows; by filter error V_m.")
+      .field("by", &ManyFit::by, R"("output-error" or "filter-error".)")
+      .field("noise_sizes", &ManyFit::noise_sizes,
+             "By filter error: process noises, then outputs, common to all flights.")
+      .field("log_likelihood", &ManyFit::log_likelihood, "By filter error.")
       .field("unobservable", &ManyFit::identifiability, &Identifiability::unobservable,
              "Of the shared parameters.")
       .field("weak", &ManyFit::identifiability, &Identifiability::weak, "")
@@ -295,7 +358,10 @@ void define_many(py::module_& module) {
   py::class_<PreparedFlight>(module, "PreparedFlight")
       .def("start", &start, WithoutGil())
       .def("linearise", &linearise, WithoutGil())
-      .def("score_covariance", &score_covariance, WithoutGil());
+      .def("score_covariance", &score_covariance, WithoutGil())
+      .def("score", &score, WithoutGil())
+      .def("innovations", &innovations, WithoutGil())
+      .def("score_blocks", &score_blocks, WithoutGil());
   module.def("prepare_flight", &prepare_flight, WithoutGil());
   module.def("prepare_columns", &prepare_columns);
   module.def("fit_many", &fit_mapped);

@@ -21,16 +21,6 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 MatrixXd nothing(Index k) { return MatrixXd::Constant(k, k, undefined); }
 
-/// (R' R)^-1 by way of R^-1; NaN throughout where R is singular.
-MatrixXd inverse_of_square(const MatrixXd& R) {
-  const Index n = R.cols();
-  if ((R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any()) {
-    return nothing(n);
-  }
-  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
-  return inverse * inverse.transpose();
-}
-
 /// The free parameters whose estimate has a distribution: those not held by a bound.
 std::vector<Index> find_inside(const std::vector<bool>& at_bound) {
   std::vector<Index> indices;
@@ -216,6 +206,15 @@ class Sandwich {
 };
 
 }  // namespace
+
+MatrixXd inverse_of_square(const MatrixXd& R) {
+  const Index n = R.cols();
+  if ((R.diagonal().array().abs() <= 1e-14 * R.colwise().norm().transpose().array()).any()) {
+    return nothing(n);
+  }
+  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
+  return inverse * inverse.transpose();
+}
 
 MatrixXd select_columns(const MatrixXd& R, const std::vector<Index>& columns) {
   TriangularFactor factor(static_cast<int>(columns.size()));

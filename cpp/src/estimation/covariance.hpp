@@ -44,6 +44,9 @@ struct Covariances {
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
                              const SampledRows& sampled, const StageTwo& two);
 
+/// (R' R)^-1 by way of R^-1; NaN throughout where R is singular.
+Eigen::MatrixXd inverse_of_square(const Eigen::MatrixXd& R);
+
 /// The triangular factor of a selection of columns (k x k).
 Eigen::MatrixXd select_columns(const Eigen::MatrixXd& R, const std::vector<Eigen::Index>& columns);
 

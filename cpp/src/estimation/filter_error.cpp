@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/name_list.hpp"
 #include "base/sentences.hpp"
 #include "estimation/block_errors.hpp"
 #include "estimation/filter_error_start.hpp"
@@ -23,15 +24,9 @@
 #include "sepcal/error.hpp"
 
 namespace sepcal::estimation {
-namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-/// The likelihood, where there is one.
-std::unique_ptr<InnovationModel> checked(const BlockModel& model, const Record& record,
-                                         const FitOptions& options) {
+std::unique_ptr<InnovationModel> innovations_of(const BlockModel& model, const Record& record,
+                                                const FitOptions& options) {
   if (options.loss != Loss::squares) {
     throw Error("filter error takes squares alone; leave the loss out, or fit by output error");
   }
@@ -47,6 +42,71 @@ std::unique_ptr<InnovationModel> checked(const BlockModel& model, const Record& 
   return innovations;
 }
 
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Readings of each output (n_z). Throws Error for one that is neither finite nor missing, for an
+/// output without any, and where there are fewer than parameters.
+void check_readings(const Problem& problem, const Record& record) {
+  std::size_t count = 0;
+  for (const Variable& output : problem.model().tables().outputs) {
+    const auto values = record.column(output.name);
+    std::size_t there = 0;
+    for (const Segment& segment : record.segments()) {
+      for (std::size_t row = segment.first; row < segment.last; ++row) {
+        if (std::isinf(values[row])) {
+          throw Error("column '" + output.name + "' is infinite in row " + std::to_string(row) +
+                      " (counted from 0); mend it, or leave it empty (NaN) for a missing reading");
+        }
+        if (!std::isnan(values[row])) ++there;
+      }
+    }
+    if (there == 0) {
+      throw Error("output '" + output.name + "' has no reading; leave it out of the outputs");
+    }
+    count += there;
+  }
+  if (count >= problem.parameters().size()) return;
+  throw Error("the record has " + std::to_string(count) + " readings, fewer than the " +
+              std::to_string(problem.parameters().size()) +
+              " parameters; log more or fix parameters");
+}
+
+/// Outputs that read the same throughout.
+std::vector<std::string> describe_constants(const BlockModel& model, const Record& record) {
+  std::vector<std::string> names;
+  for (const Variable& output : model.tables().outputs) {
+    const auto values = record.column(output.name);
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const Segment& segment : record.segments()) {
+      for (const double value : values.subspan(segment.first, segment.rows())) {
+        if (std::isnan(value)) continue;
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+    if (least == most) names.push_back(output.name);
+  }
+  if (names.empty()) return {};
+  const bool one = names.size() == 1;
+  return {base::list_names(names) + (one ? " reads" : " read") +
+          " the same in every row, as nothing that is measured does: leave " +
+          (one ? "it" : "them") + " out of the outputs"};
+}
+
+/// A record that is too short for what is asked of it.
+std::vector<std::string> describe_length(const Record& record) {
+  constexpr std::size_t few = 24;  // rows
+  if (record.rows() >= few) return {};
+  return {std::to_string(record.rows()) +
+          " rows hardly tell noise of the states from the outputs': sizes of noises and standard "
+          "errors are rough"};
+}
+
 /// One fit: theta's places, and what comes of them.
 class FilterError {
  public:
@@ -54,8 +114,10 @@ class FilterError {
       : model_(model),
         record_(record),
         problem_(model, options),
-        innovations_(checked(model, record, options)),
-        layout_(model, problem_, *innovations_) {}
+        innovations_(innovations_of(model, record, options)),
+        layout_(model, problem_, *innovations_) {
+    check_readings(problem_, record);
+  }
 
   Fit run() {
     const FilterErrorStart start = start_filter_error(model_, record_, problem_, *innovations_);
@@ -127,13 +189,13 @@ class FilterError {
 
     std::vector<std::string> sentences;
     if (!finite) {
-      sentences.push_back("the filter can't go on from row " + std::to_string(at.row) +
-                          " (counted from 0); narrow the bounds, or start nearer");
+      sentences.push_back(describe_stop(at.row));
     } else if (!at.converged) {
-      sentences.push_back("the likelihood's maximum was not reached within " +
-                          std::to_string(options().iterations) + " steps of scoring");
+      sentences.push_back(describe_no_maximum(options()));
     }
+    std::ranges::move(describe_constants(model_, record_), std::back_inserter(sentences));
     sentences.push_back(result.identifiability.message());
+    std::ranges::move(describe_length(record_), std::back_inserter(sentences));
     std::ranges::move(describe_floors(at, scoring, estimated), std::back_inserter(sentences));
     std::ranges::move(describe_noises(result.noise_sizes), std::back_inserter(sentences));
     std::ranges::copy(errors.sentences, std::back_inserter(sentences));

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 constexpr double no_noise = -std::numeric_limits<double>::infinity();  // ln of no noise
 
-/// Of one output's values, row by row: what white noise beside a slow signal would have.
+/// Of one output's readings, one after the other: what white noise beside a slow signal would have.
 struct Spread {
   double rms = 0.0;
   double rough = 0.0;     // standard deviation of white noise with these second differences
@@ -37,17 +37,22 @@ Spread spread_of(const Record& record, std::span<const double> values) {
   double triples = 0.0;
   spread.smallest = std::numeric_limits<double>::infinity();
   for (const Segment& segment : record.segments()) {
-    for (std::size_t row = segment.first; row < segment.last; ++row) {
-      if (!std::isfinite(values[row])) continue;
-      square += values[row] * values[row];
+    std::size_t there = 0;
+    double last = 0.0;
+    double last_step = 0.0;
+    for (const double value : values.subspan(segment.first, segment.rows())) {
+      if (!std::isfinite(value)) continue;
+      square += value * value;
       count += 1.0;
-      if (row < segment.first + 1 || !std::isfinite(values[row - 1])) continue;
-      const double step = std::abs(values[row] - values[row - 1]);
-      if (step > 0.0) spread.smallest = std::min(spread.smallest, step);
-      if (row < segment.first + 2 || !std::isfinite(values[row - 2])) continue;
-      const double bend = values[row] - 2.0 * values[row - 1] + values[row - 2];
-      bends += bend * bend;
-      triples += 1.0;
+      const double step = value - last;
+      if (there > 0 && step != 0.0) spread.smallest = std::min(spread.smallest, std::abs(step));
+      if (there > 1) {
+        bends += (step - last_step) * (step - last_step);
+        triples += 1.0;
+      }
+      last = value;
+      last_step = step;
+      ++there;
     }
   }
   if (count > 0.0) spread.rms = std::sqrt(square / count);

@@ -25,8 +25,9 @@ InnovationSummary summarise(const InnovationModel& innovations, const BlockModel
     const auto rows = static_cast<Index>(segment.rows());
     const MatrixXd here = e.middleRows(first, rows);
     const auto there = here.array().isFinite();
-    summary.squares += there.select(here.array().square(), 0.0).matrix().colwise().sum();
-    summary.counts += there.cast<double>().matrix().colwise().sum();
+    summary.squares +=
+        there.select(here.array().square(), 0.0).matrix().colwise().sum().transpose();
+    summary.counts += there.cast<double>().matrix().colwise().sum().transpose();
     const MatrixXd w = here.cwiseQuotient(sd.middleRows(first, rows));
     memory.add(w.array().isNaN().select(0.0, w));
     for (Index j = 0; j < n_z; ++j) {

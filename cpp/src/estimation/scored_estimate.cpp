@@ -21,19 +21,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd undefined(Index k) {
-  return MatrixXd::Constant(k, k, std::numeric_limits<double>::quiet_NaN());
-}
-
-/// (R'R)^-1; NaN where R is singular.
-MatrixXd covariance_of(const MatrixXd& R) {
-  const Index k = R.cols();
-  const bool regular = R.allFinite() && (R.diagonal().array().abs() > 0.0).all();
-  if (!regular) return undefined(k);
-  const MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(k, k));
-  return inverse * inverse.transpose();
-}
-
 MatrixXd believe(const MatrixXd& white, const MatrixXd& blocks) {
   VectorXd scale = VectorXd::Ones(white.rows());
   for (Index i = 0; i < scale.size(); ++i) {
@@ -72,7 +59,7 @@ ScoredErrors find_scored_errors(const Scoring& scoring, const Scored& at,
   const Index all = at.factor.columns() - 1;
   const MatrixXd R =
       select_columns(MatrixXd(at.factor.matrix().topLeftCorner(all, all)), errors.inside);
-  MatrixXd white = covariance_of(R);
+  MatrixXd white = inverse_of_square(R);
   if (options.hessian == Hessian::observed && white.allFinite()) {
     const Eigen::LLT<MatrixXd> root(
         MatrixXd(observed_hessian(scoring, at)(errors.inside, errors.inside)));
@@ -86,7 +73,8 @@ ScoredErrors find_scored_errors(const Scoring& scoring, const Scored& at,
   const auto readings = static_cast<double>(at.readings);
   white *= readings / std::max(1.0, readings - static_cast<double>(errors.inside.size()));
   errors.white = errors.believed = white;
-  errors.blocks = undefined(white.rows());
+  errors.blocks =
+      MatrixXd::Constant(white.rows(), white.cols(), std::numeric_limits<double>::quiet_NaN());
   if (options.coloured_errors && white.allFinite() && !errors.inside.empty()) {
     const std::vector<TriangularFactor> blocks = find_blocks(errors.inside);
     if (!blocks.empty()) errors.blocks = find_block_errors(blocks, R).covariance;
@@ -143,23 +131,44 @@ NoiseSize size_of(const Scored& at, const Scoring& scoring, const std::vector<Es
   return size;
 }
 
+std::string describe_stop(std::size_t row) {
+  return "the filter can't go on from row " + std::to_string(row) +
+         " (counted from 0); narrow the bounds, or start nearer";
+}
+
+std::string describe_no_maximum(const FitOptions& options) {
+  return "the likelihood's maximum was not reached within " + std::to_string(options.iterations) +
+         " steps of scoring";
+}
+
 std::vector<std::string> describe_floors(const Scored& at, const Scoring& scoring,
                                          const std::vector<Estimated>& estimated) {
-  std::vector<std::string> sentences;
+  std::vector<std::string> states;
+  std::vector<std::string> outputs;
   for (std::size_t i = 0; i < estimated.size(); ++i) {
     const Estimated& noise = estimated[i];
     if (noise.kind == Estimated::Kind::parameter || !std::isfinite(at.cost) || !at.at_bound[i]) {
       continue;
     }
-    const std::string value = base::short_number(std::exp(at.theta[scoring.free[i]]));
     if (noise.kind == Estimated::Kind::process_noise) {
-      sentences.push_back("the record shows no process noise '" + noise.variable.name +
-                          "': it ended at its floor, where output error is the same");
+      states.push_back("'" + noise.variable.name + "'");
     } else {
-      sentences.push_back(noise.name + " ended at its floor (" + value + " " + noise.variable.unit +
-                          "): process noise explains this output by itself; " +
-                          "give its noise, or hold the process noise");
+      const std::string value = base::short_number(std::exp(at.theta[scoring.free[i]]));
+      outputs.push_back(noise.name + " (" + value + " " + noise.variable.unit + ")");
     }
+  }
+  std::vector<std::string> sentences;
+  if (!states.empty()) {
+    sentences.push_back("the record shows no process noise " + base::list_names(states) +
+                        ", which ended at the floor, where output error is the same");
+  }
+  if (!outputs.empty()) {
+    const bool one = outputs.size() == 1;
+    sentences.push_back(base::list_names(outputs) + " ended at " + (one ? "its" : "their") +
+                        " floor: process noise explains " +
+                        (one ? "this output" : "these outputs") +
+                        " by itself, or there is none in the readings; give " +
+                        (one ? "its" : "their") + " noise, or hold the process noise");
   }
   return sentences;
 }

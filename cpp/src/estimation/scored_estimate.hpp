@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -52,6 +53,10 @@ Identifiability judge_scored(const Scored& at, const std::vector<Estimated>& est
 /// A noise's size with its error, place i among the estimated.
 NoiseSize size_of(const Scored& at, const Scoring& scoring, const std::vector<Estimated>& estimated,
                   const ScoredErrors& errors, Eigen::Index i);
+
+/// Why no maximum was reached: the filter stopped at a row, or the steps did not do.
+std::string describe_stop(std::size_t row);
+std::string describe_no_maximum(const FitOptions& options);
 
 /// Noises that nothing but their floor stopped.
 std::vector<std::string> describe_floors(const Scored& at, const Scoring& scoring,

@@ -109,7 +109,7 @@ Scored score_at(const Scoring& scoring, const VectorXd& theta) {
   at.factor = TriangularFactor(static_cast<int>(k) + 1);
   std::vector<Index> columns = scoring.free;
   columns.push_back(scoring.model.size());
-  const InnovationModel::Value value =
+  const ScoredLikelihood::Value value =
       scoring.model.scores(theta, [&](std::size_t /*row*/, MatrixXd& rows) {
         MatrixXd chosen = rows(Eigen::all, columns);
         at.factor.absorb(chosen);

@@ -15,13 +15,13 @@
 namespace sepcal::estimation {
 
 struct Scoring {
-  const InnovationModel& model;
+  const ScoredLikelihood& model;
   std::vector<Eigen::Index> free;  // k places in theta
   numerics::Box box;               // of theta
   Prior prior;                     // of theta, weight 0: none
   int iterations = 100;            // at most
   /// Ends where a step within the bounds promises to lower V_m by no more.
-  double promise = 1e-10;
+  double promise = 1e-13;
   std::function<void(int iteration)> progress = {};  // may be empty
 };
 

@@ -9,6 +9,22 @@ namespace sepcal::estimation {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+std::string process_noise_name(const Variable& noise) { return "q_" + noise.name; }
+std::string output_noise_name(const Variable& output) { return "r_" + output.name; }
+
+std::vector<Estimated> estimable_noises(const BlockModel& model, const FitOptions& options) {
+  std::vector<Estimated> noises;
+  for (const Variable& noise : model.process_noises()) {
+    if (options.process_noise.contains(noise.name)) continue;
+    noises.push_back({process_noise_name(noise), noise, Estimated::Kind::process_noise});
+  }
+  for (const Variable& output : model.tables().outputs) {
+    if (options.noise.contains(output.name)) continue;
+    noises.push_back({output_noise_name(output), output, Estimated::Kind::output_noise});
+  }
+  return noises;
+}
+
 ThetaLayout::ThetaLayout(const BlockModel& model, const Problem& problem,
                          const InnovationModel& innovations)
     : model_(model),
@@ -34,7 +50,8 @@ void ThetaLayout::hold_silent(const VectorXd& theta) {
 
 std::string ThetaLayout::name_of(Index place) const {
   if (place < n_) return all_[static_cast<std::size_t>(place)].name;
-  return (place - n_ < noises() ? "q_" : "r_") + noise(place - n_).name;
+  const Variable& at = noise(place - n_);
+  return place - n_ < noises() ? process_noise_name(at) : output_noise_name(at);
 }
 
 std::vector<Estimated> ThetaLayout::estimated() const {
@@ -86,6 +103,21 @@ Prior ThetaLayout::prior() const {
     whole.weight[k] = given.front().weight[i];
   }
   return whole;
+}
+
+VectorXd ThetaLayout::given() const {
+  const FitOptions& options = problem_.options();
+  VectorXd theta = VectorXd::Zero(size());
+  for (Index k = 0; k < n_; ++k) {
+    const auto at = options.fixed.find(all_[static_cast<std::size_t>(k)].name);
+    if (at != options.fixed.end()) theta[k] = at->second;
+  }
+  for (Index k = 0; k < size() - n_; ++k) {
+    if (!is_given(k)) continue;
+    const auto& given = k < noises() ? options.process_noise : options.noise;
+    theta[n_ + k] = std::log(given.at(noise(k).name));
+  }
+  return theta;
 }
 
 VectorXd ThetaLayout::theta_of(const Fit& fit) const {

@@ -16,6 +16,13 @@
 
 namespace sepcal::estimation {
 
+/// "q_alpha", "r_alpha_m".
+std::string process_noise_name(const Variable& noise);
+std::string output_noise_name(const Variable& output);
+
+/// The noises that are not given: process noises, then outputs'.
+std::vector<Estimated> estimable_noises(const BlockModel& model, const FitOptions& options);
+
 class ThetaLayout {
  public:
   /// All of them must outlive it.
@@ -43,6 +50,9 @@ class ThetaLayout {
   numerics::Box box(const Eigen::VectorXd& floor) const;
   /// Of theta; no noise has one.
   Prior prior() const;
+
+  /// What is held has its value, the rest 0.
+  Eigen::VectorXd given() const;
 
   /// A fit's end, and floors that it reached or that lie far below it.
   Eigen::VectorXd theta_of(const Fit& fit) const;

@@ -25,9 +25,7 @@ struct FreeColumns {
 FreeColumns free_columns(const Layout& layout, const std::vector<bool>& free, Index flight) {
   FreeColumns columns;
   for (Index k = 0; k < layout.own + layout.shared; ++k) {
-    const Index place =
-        k < layout.own ? flight * layout.own + k : layout.flights * layout.own + k - layout.own;
-    if (!free[static_cast<std::size_t>(place)]) continue;
+    if (!free[static_cast<std::size_t>(layout.place(flight, k))]) continue;
     columns.places.push_back(k);
     if (k < layout.own) ++columns.own;
   }

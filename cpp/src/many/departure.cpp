@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "numerics/decompositions.hpp"
 #include "numerics/tails.hpp"
@@ -23,8 +24,8 @@ struct Test {
 
 class Tester {
  public:
-  Tester(const JointProblem& joint, const JointCovariance& covariance)
-      : joint_(joint), covariance_(covariance) {}
+  Tester(const Compared& compared, const JointCovariance& covariance)
+      : compared_(compared), covariance_(covariance) {}
 
   Test run(Index flight) const {
     constexpr double least_information = 1e-8;  // of all flights', to determine a combination
@@ -65,7 +66,7 @@ class Tester {
                         .p_holm = not_a_number,
                         .p_white = not_a_number,
                         .p_white_holm = not_a_number};
-    departure.difference = VectorXd::Constant(joint_.layout.shared, not_a_number);
+    departure.difference = VectorXd::Constant(compared_.layout.shared, not_a_number);
     departure.standard_error = departure.difference;
     return departure;
   }
@@ -73,18 +74,17 @@ class Tester {
  private:
   /// `drop`: of the cost at R, twice.
   void judge(Test& test, Index flight, double statistic, double drop, double k) const {
-    const auto outputs = static_cast<double>(joint_.output_squares.size());
-    const double measurements = joint_.rows * outputs;
-    const double freedom = measurements - static_cast<double>(joint_.layout.size()) - k;
-    if (joint_.noise_given()) {
+    const double measurements =
+        std::accumulate(compared_.measurements.begin(), compared_.measurements.end(), 0.0);
+    const double freedom = measurements - static_cast<double>(compared_.layout.size()) - k;
+    if (compared_.chi_squared) {
       test.log10_p_white = numerics::log10_chi_squared_tail(drop, k);
     } else if (freedom > 0 && drop < measurements) {
       test.log10_p_white =
           numerics::log10_f_tail(drop / k * freedom / (measurements - drop), k, freedom);
     }
-    const double own_freedom =
-        static_cast<double>(joint_.starts[static_cast<std::size_t>(flight)].rows) * outputs -
-        static_cast<double>(joint_.layout.own + joint_.layout.shared);
+    const double own_freedom = compared_.measurements[static_cast<std::size_t>(flight)] -
+                               static_cast<double>(compared_.layout.own + compared_.layout.shared);
     const bool coloured =
         covariance_.flights[static_cast<std::size_t>(flight)].middle.size() > 0 && own_freedom > 0;
     test.log10_p =
@@ -109,7 +109,7 @@ class Tester {
     }
   }
 
-  const JointProblem& joint_;
+  const Compared& compared_;
   const JointCovariance& covariance_;
 };
 
@@ -131,13 +131,14 @@ void adjust(std::vector<Test>& tests, double Test::* log10_p, double Departure::
 
 }  // namespace
 
-std::vector<Departure> find_departures(const JointProblem& joint,
+std::vector<Departure> find_departures(const Compared& compared,
                                        const JointCovariance& covariance) {
-  const bool testable = joint.layout.flights > 1 && !covariance.singular &&
-                        covariance.joint.cols() > 0 && std::isfinite(covariance.ratio);
+  const Index flights = compared.layout.flights;
+  const bool testable = flights > 1 && !covariance.singular && covariance.joint.cols() > 0 &&
+                        std::isfinite(covariance.ratio);
   std::vector<Test> tests;
-  const Tester tester(joint, covariance);
-  for (Index i = 0; i < joint.layout.flights; ++i) {
+  const Tester tester(compared, covariance);
+  for (Index i = 0; i < flights; ++i) {
     tests.push_back(testable ? tester.run(i) : Test{tester.untested()});
   }
   adjust(tests, &Test::log10_p, &Departure::p, &Departure::p_holm);

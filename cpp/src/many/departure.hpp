@@ -16,8 +16,7 @@
 namespace sepcal::many {
 
 /// One a flight, in their order; differences in the order of the free shared parameters. White:
-/// F where R was estimated, exact for one output and a linear model, else chi-squared.
-std::vector<Departure> find_departures(const JointProblem& joint,
-                                       const JointCovariance& covariance);
+/// F where R was estimated beside, exact for one output and a linear model.
+std::vector<Departure> find_departures(const Compared& compared, const JointCovariance& covariance);
 
 }  // namespace sepcal::many

@@ -7,8 +7,10 @@
 
 #include "base/sentences.hpp"
 #include "estimation/covariance.hpp"
+#include "estimation/fitted_parameters.hpp"
 #include "estimation/prior_checks.hpp"
 #include "many/departure.hpp"
+#include "many/named_results.hpp"
 #include "sepcal/identifiability.hpp"
 
 namespace sepcal::many {
@@ -17,34 +19,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-Parameter to_parameter(const Variable& variable, double value, bool at_bound) {
-  Parameter parameter{.name = variable.name, .unit = variable.unit};
-  parameter.value = value;
-  parameter.lower = variable.lower;
-  parameter.upper = variable.upper;
-  parameter.at_bound = at_bound;
-  parameter.standard_error = parameter.standard_error_white = not_a_number;
-  return parameter;
-}
-
-void set_errors(std::vector<Parameter>& parameters, const std::vector<Index>& places,
-                const MatrixXd& coloured, const MatrixXd& white) {
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto at = static_cast<Index>(k);
-    Parameter& parameter = parameters[static_cast<std::size_t>(places[k])];
-    parameter.standard_error = parameter.standard_error_noise_model = std::sqrt(coloured(at, at));
-    parameter.standard_error_white = std::sqrt(white(at, at));
-  }
-}
-
-std::vector<OutputValue> by_output(const Tables& tables, const VectorXd& values) {
-  std::vector<OutputValue> result;
-  for (Index j = 0; j < values.size(); ++j) {
-    result.push_back({tables.outputs[static_cast<std::size_t>(j)].name, values[j]});
-  }
-  return result;
-}
 
 class Description {
  public:
@@ -80,29 +54,14 @@ class Description {
   bool at_bound(Index place) const { return stage_.at_bound[static_cast<std::size_t>(place)]; }
 
   void describe_shared() {
-    std::vector<Index> places;  // of each free shared parameter among all shared ones
-    for (const Variable& variable : model_.tables().parameters()) {
-      const auto fixed = joint_.problem.options().fixed.find(variable.name);
-      if (fixed != joint_.problem.options().fixed.end()) {
-        Parameter parameter = to_parameter(variable, fixed->second, false);
-        parameter.fixed = true;
-        parameter.lower = parameter.upper = fixed->second;
-        result_.shared.push_back(std::move(parameter));
-        continue;
-      }
-      const std::vector<Variable>& free = joint_.problem.parameters();
-      const auto k = static_cast<Index>(std::ranges::find(free, variable.name, &Variable::name) -
-                                        free.begin());
-      const auto shared = std::ranges::find(joint_.parting.shared, k);
-      if (shared == joint_.parting.shared.end()) continue;
-      const Index place = first_shared() + (shared - joint_.parting.shared.begin());
-      places.push_back(static_cast<Index>(result_.shared.size()));
-      result_.shared.push_back(
-          to_parameter(free[static_cast<std::size_t>(k)], stage_.x[place], at_bound(place)));
-    }
-    shared_places_ = places;
+    SharedParameters shared =
+        list_shared(model_, joint_.problem, joint_.parting, stage_.x.tail(joint_.layout.shared),
+                    {stage_.at_bound.begin() + first_shared(), stage_.at_bound.end()});
+    result_.shared = std::move(shared.parameters);
+    shared_places_ = std::move(shared.places);
     std::vector<Index> inside;
-    for (const Index k : covariance_.shared) inside.push_back(places[static_cast<std::size_t>(k)]);
+    for (const Index k : covariance_.shared)
+      inside.push_back(shared_places_[static_cast<std::size_t>(k)]);
     const auto n = static_cast<Index>(result_.shared.size());
     result_.covariance = estimation::spread(covariance_.shared_coloured(), inside, n);
     result_.covariance_white = estimation::spread(covariance_.shared_white(), inside, n);
@@ -125,35 +84,25 @@ class Description {
     }
     set_errors(flight.own, inside, covariance_.own_coloured(i), covariance_.own_white(i));
     const VectorXd rmse = (objective_.squares(i) / static_cast<double>(start.rows)).cwiseSqrt();
-    flight.rmse = by_output(model_.tables(), rmse);
+    flight.rmse = estimation::by_output(model_.tables(), rmse);
     result_.rows += start.rows;
     result_.flights.push_back(std::move(flight));
   }
 
   void describe_departures() {
-    std::vector<Departure> departures = find_departures(joint_, covariance_);
-    const auto n = static_cast<Index>(result_.shared.size());
-    const auto among_all = [&](const VectorXd& values) {
-      VectorXd all = VectorXd::Constant(n, not_a_number);
-      all(shared_places_) = values;
-      return all;
-    };
     std::vector<std::string> names;
     for (const Parameter& parameter : result_.shared) names.push_back(parameter.name);
+    std::vector<Departure> departures = find_departures(joint_.compared(), covariance_);
     for (std::size_t i = 0; i < departures.size(); ++i) {
-      Departure& departure = departures[i];
-      departure.names = names;
-      departure.difference = among_all(departure.difference);
-      departure.standard_error = among_all(departure.standard_error);
-      result_.flights[i].departure = std::move(departure);
+      result_.flights[i].departure = named(std::move(departures[i]), names, shared_places_);
     }
   }
 
   void describe_noise() {
     VectorXd squares = VectorXd::Zero(stage_.noise.size());
     for (Index i = 0; i < joint_.layout.flights; ++i) squares += objective_.squares(i);
-    result_.rmse = by_output(model_.tables(), (squares / joint_.rows).cwiseSqrt());
-    result_.noise = by_output(model_.tables(), stage_.noise);
+    result_.rmse = estimation::by_output(model_.tables(), (squares / joint_.rows).cwiseSqrt());
+    result_.noise = estimation::by_output(model_.tables(), stage_.noise);
     result_.cost = 0.5 * objective_.square() + joint_.rows * stage_.noise.array().log().sum();
   }
 

@@ -7,6 +7,7 @@
 #include "base/name_list.hpp"
 #include "many/describe_many.hpp"
 #include "many/joint_covariance.hpp"
+#include "many/joint_filter_error.hpp"
 #include "many/joint_stage.hpp"
 #include "sepcal/error.hpp"
 
@@ -71,14 +72,26 @@ const FlightFit& ManyFit::flight(std::string_view name) const {
   return find_named(flights, name, "flight", "fit");
 }
 
+std::vector<FlightScore> Fleet::scores(const std::vector<FlightPoint>& /*points*/) {
+  throw Error("this fleet has no filter error; fit it by output error");
+}
+
+std::vector<FlightInnovations> Fleet::innovations(const std::vector<FlightPoint>& /*points*/) {
+  throw Error("this fleet has no filter error; fit it by output error");
+}
+
+std::vector<std::vector<TriangularFactor>> Fleet::score_blocks(
+    const std::vector<FlightPoint>& /*points*/, const std::vector<int>& /*blocks*/) {
+  throw Error("this fleet has no filter error; fit it by output error");
+}
+
 ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options) {
   const estimation::Problem problem(model, options.fit);
-  if (!options.fit.process_noise.empty()) {
-    throw Error("process_noise is for one record's fit; many flights are fitted without");
-  }
-  if (options.fit.method == FitMethod::filter_error) {
+  const bool by_filter_error = options.fit.method == FitMethod::filter_error;
+  if (!options.fit.process_noise.empty() && !by_filter_error) {
     throw Error(
-        "many flights are fitted jointly by output error; fit their segments as one record");
+        "process_noise is for one record's fit; many flights are fitted without, but by filter "
+        "error");
   }
   if (options.fit.loss != Loss::squares) {
     throw Error("many flights are fitted jointly by least squares alone, without loss '" +
@@ -100,11 +113,17 @@ ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& optio
       continue;
     }
     joint.rows += static_cast<double>(starts[i].rows);
-    joint.output_squares += starts[i].output_squares;
+    if (!by_filter_error) joint.output_squares += starts[i].output_squares;
     joint.starts.push_back(std::move(starts[i]));
     used.push_back(i);
   }
   check_left_out(result.left_out, names.size(), options.leave_out);
+  if (by_filter_error) {
+    UsedFlights flights{used, {}, std::move(joint.starts)};
+    for (const std::size_t i : used) flights.names.push_back(names[i]);
+    fit_joint_filter_error(model, problem, options, fleet, std::move(flights), result);
+    return result;
+  }
   joint.layout = {static_cast<Index>(used.size()), parting.n_own(), parting.n_shared()};
   joint.box = joint_box(problem, parting, joint.layout);
 

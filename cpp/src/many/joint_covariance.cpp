@@ -34,17 +34,14 @@ MatrixXd sandwich(const MatrixXd& R, const MatrixXd& M) {
   return 0.5 * (whole + whole.transpose());
 }
 
-JudgedFlight judge_flight(const JointProblem& joint, const JointStage& stage,
+JudgedFlight judge_flight(const Layout& layout, const std::vector<bool>& at_bound,
                           const TriangularFactor& block, Index flight) {
   JudgedFlight judged{{}, {{}, {}, {}, TriangularFactor(1)}, {}};
   Index own = 0;
-  for (Index k = 0; k < joint.layout.own + joint.layout.shared; ++k) {
-    const bool is_own = k < joint.layout.own;
-    const Index place = is_own ? flight * joint.layout.own + k
-                               : joint.layout.flights * joint.layout.own + k - joint.layout.own;
-    if (stage.at_bound[static_cast<std::size_t>(place)]) continue;
+  for (Index k = 0; k < layout.own + layout.shared; ++k) {
+    if (at_bound[static_cast<std::size_t>(layout.place(flight, k))]) continue;
     judged.columns.push_back(k);
-    own += is_own ? 1 : 0;
+    own += k < layout.own ? 1 : 0;
   }
   std::vector<Index> columns = judged.columns;
   columns.push_back(block.columns() - 1);
@@ -93,22 +90,8 @@ void ask_for_middles(JointCovariance& result, const JointProblem& joint, const J
 /// The factors of the problem whitened by `noise`.
 JointCovariance factorise(const JointProblem& joint, const JointStage& stage,
                           const ManyObjective& objective, const VectorXd& noise) {
-  JointCovariance result;
-  const std::vector<TriangularFactor> blocks = objective.flight_blocks(noise.cwiseInverse());
-  std::vector<Share> shares;
-  for (Index i = 0; i < joint.layout.flights; ++i) {
-    result.flights.push_back(judge_flight(joint, stage, blocks[static_cast<std::size_t>(i)], i));
-    shares.push_back(result.flights.back().share);
-  }
-  for (const Index column : result.flights.front().columns) {
-    if (column >= joint.layout.own) result.shared.push_back(column - joint.layout.own);
-  }
-  // Own parameters at their bounds differ from flight to flight, the shared ones don't.
-  std::vector<Index> columns = result.shared;
-  columns.push_back(joint.layout.shared);
-  result.joint = shared_factor(shares, objective.shared_prior().matrix()(Eigen::all, columns));
-  result.singular = is_singular(result.joint);
-  return result;
+  return factorise(objective.flight_blocks(noise.cwiseInverse()), stage.at_bound, joint.layout,
+                   objective.shared_prior().matrix());
 }
 
 /// Parameters that the measurements had to pay for: all of them, less the share of each that its
@@ -140,6 +123,33 @@ double judge_ratio(const JointProblem& joint, const JointStage& stage,
 }
 
 }  // namespace
+
+JointCovariance factorise(const std::vector<TriangularFactor>& blocks,
+                          const std::vector<bool>& at_bound, const Layout& layout,
+                          const MatrixXd& shared_prior) {
+  JointCovariance result;
+  std::vector<Share> shares;
+  for (Index i = 0; i < layout.flights; ++i) {
+    result.flights.push_back(
+        judge_flight(layout, at_bound, blocks[static_cast<std::size_t>(i)], i));
+    shares.push_back(result.flights.back().share);
+  }
+  for (const Index column : result.flights.front().columns) {
+    if (column >= layout.own) result.shared.push_back(column - layout.own);
+  }
+  // Own parameters at their bounds differ from flight to flight, the shared ones don't.
+  std::vector<Index> columns = result.shared;
+  columns.push_back(layout.shared);
+  result.joint = shared_factor(shares, shared_prior(Eigen::all, columns));
+  result.singular = is_singular(result.joint);
+  return result;
+}
+
+void JointCovariance::add_middles(const VectorXd& prior_weights) {
+  const MatrixXd known = known_rows(prior_weights(shared), joint);
+  middle_sum = known.transpose() * known;
+  for (Index i = 0; i < static_cast<Index>(flights.size()); ++i) middle_sum += shared_middle(i);
+}
 
 MatrixXd JointCovariance::contribution(Index flight) const {
   const Index k = joint.cols();
@@ -198,10 +208,7 @@ JointCovariance find_joint_covariance(const JointProblem& joint, const JointStag
   if (joint.problem.options().coloured_errors) {
     ask_for_middles(result, joint, stage, objective, fleet);
   }
-  const VectorXd weights = objective.prior_weights().tail(joint.layout.shared)(result.shared);
-  const MatrixXd known = known_rows(weights, result.joint);
-  result.middle_sum = known.transpose() * known;
-  for (Index i = 0; i < joint.layout.flights; ++i) result.middle_sum += result.shared_middle(i);
+  result.add_middles(objective.prior_weights().tail(joint.layout.shared));
   return result;
 }
 

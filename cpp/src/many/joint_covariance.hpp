@@ -45,7 +45,17 @@ struct JointCovariance {
   /// What a flight contributes to the information I of the shared parameters: share.shared's R
   /// times joint^-1 (k x k).
   Eigen::MatrixXd contribution(Eigen::Index flight) const;
+
+  /// Makes middle_sum of the flights' middles; the weights are those of the shared parameters'
+  /// prior (layout.shared).
+  void add_middles(const Eigen::VectorXd& prior_weights);
 };
+
+/// Without middles and of ratio 1. `blocks`: a flight's whitened factor of [own | shared | r] each;
+/// `at_bound`: over the layout; `shared_prior`: rows of [shared | r].
+JointCovariance factorise(const std::vector<TriangularFactor>& blocks,
+                          const std::vector<bool>& at_bound, const Layout& layout,
+                          const Eigen::MatrixXd& shared_prior);
 
 /// The objective stands at the solution, where no loose prior holds it. With
 /// FitOptions::coloured_errors the fleet is asked once more.

@@ -126,6 +126,15 @@ std::vector<estimation::Prior> JointProblem::prior() const {
   return priors;
 }
 
+Compared JointProblem::compared() const {
+  Compared compared{.layout = layout, .measurements = {}, .chi_squared = noise_given()};
+  for (const FlightStart& start : starts) {
+    compared.measurements.push_back(static_cast<double>(start.rows) *
+                                    static_cast<double>(output_squares.size()));
+  }
+  return compared;
+}
+
 double JointProblem::noise_floor(Index j) const {
   return std::max(1e-12 * std::sqrt(output_squares[j] / rows),
                   std::sqrt(std::numeric_limits<double>::min()));

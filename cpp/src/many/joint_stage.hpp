@@ -12,6 +12,13 @@
 
 namespace sepcal::many {
 
+/// What a test of departure has to know of the flights beside their covariance.
+struct Compared {
+  Layout layout;
+  std::vector<double> measurements;  // of each flight
+  bool chi_squared = false;          // R is known, or among the parameters
+};
+
 /// The joint fit's question, complete.
 struct JointProblem {
   const estimation::Problem& problem;
@@ -23,6 +30,8 @@ struct JointProblem {
   Eigen::VectorXd output_squares = {};  // n_z, over all flights
 
   bool noise_given() const { return problem.noise().size() > 0; }
+
+  Compared compared() const;
 
   /// Over [own | shared]; none or one.
   std::vector<estimation::Prior> prior() const;

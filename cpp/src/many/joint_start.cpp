@@ -13,11 +13,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 /// Each flight's factor at its own estimate, its own parameters eliminated.
-std::vector<Share> own_shares(const std::vector<FlightStart>& starts, Index n_own) {
+std::vector<Share> own_shares(const std::vector<FlightStart>& starts, bool whitened, Index n_own) {
   std::vector<Share> shares;
   for (const FlightStart& start : starts) {
-    shares.push_back(
-        eliminate_own(combine(start.factors, start.noise.cwiseInverse()).matrix(), n_own));
+    const VectorXd weights = whitened ? VectorXd::Ones(1) : VectorXd(start.noise.cwiseInverse());
+    shares.push_back(eliminate_own(combine(start.factors, weights).matrix(), n_own));
   }
   return shares;
 }
@@ -73,13 +73,11 @@ VectorXd pooled_noise(const std::vector<FlightStart>& starts) {
   return (squares / rows).cwiseSqrt();
 }
 
-VectorXd find_joint_start(ManyObjective& objective, const std::vector<FlightStart>& starts,
-                          const numerics::Box& box) {
-  const Layout& layout = objective.layout();
-  const std::vector<Share> shares = own_shares(starts, layout.own);
+std::vector<VectorXd> joint_starts(const std::vector<FlightStart>& starts, bool whitened,
+                                   const Layout& layout, const numerics::Box& box) {
+  const std::vector<Share> shares = own_shares(starts, whitened, layout.own);
   const std::vector<bool> usable = find_usable(starts);
-  VectorXd best;
-  double least = infinity;
+  std::vector<VectorXd> joint;
   for (const VectorXd& shared : {weighted_mean(starts, shares, usable, layout.shared),
                                  medians(starts, usable, layout.shared)}) {
     if (!shared.allFinite()) continue;
@@ -92,13 +90,21 @@ VectorXd find_joint_start(ManyObjective& objective, const std::vector<FlightStar
       layout.own_of(x, i) = starts[at].x.head(layout.own) + follows;
     }
     x = box.clip(x);
-    if (!x.allFinite() || !objective.linearise(x)) continue;
-    if (objective.square() < least) {
-      least = objective.square();
-      best = x;
-    }
+    if (x.allFinite()) joint.push_back(std::move(x));
   }
-  if (best.size() == 0) best = box.clip(layout.repeat(starts.front().x));
+  return joint;
+}
+
+VectorXd find_joint_start(ManyObjective& objective, const std::vector<FlightStart>& starts,
+                          const numerics::Box& box) {
+  VectorXd best;
+  double least = infinity;
+  for (const VectorXd& x : joint_starts(starts, false, objective.layout(), box)) {
+    if (!objective.linearise(x) || !(objective.square() < least)) continue;
+    least = objective.square();
+    best = x;
+  }
+  if (best.size() == 0) best = box.clip(objective.layout().repeat(starts.front().x));
   objective.linearise(best);
   return best;
 }

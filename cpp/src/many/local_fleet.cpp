@@ -67,6 +67,31 @@ class LocalFleet final : public Fleet {
     return covariances;
   }
 
+  std::vector<FlightScore> scores(const std::vector<FlightPoint>& points) override {
+    std::vector<FlightScore> scores(points.size());
+    pool_.for_each(points.size(), [&](std::size_t i) {
+      scores[i] = problems_[points[i].flight]->score(points[i].x);
+    });
+    return scores;
+  }
+
+  std::vector<FlightInnovations> innovations(const std::vector<FlightPoint>& points) override {
+    std::vector<FlightInnovations> innovations(points.size());
+    pool_.for_each(points.size(), [&](std::size_t i) {
+      innovations[i] = problems_[points[i].flight]->innovations(points[i].x);
+    });
+    return innovations;
+  }
+
+  std::vector<std::vector<TriangularFactor>> score_blocks(const std::vector<FlightPoint>& points,
+                                                          const std::vector<int>& blocks) override {
+    std::vector<std::vector<TriangularFactor>> factors(points.size());
+    pool_.for_each(points.size(), [&](std::size_t i) {
+      factors[i] = problems_[points[i].flight]->score_blocks(points[i].x, blocks[i]);
+    });
+    return factors;
+  }
+
  private:
   const BlockModel& model_;
   Flights flights_;

@@ -50,6 +50,14 @@ Split split(const estimation::Problem& problem, const std::vector<std::string>& 
   return split;
 }
 
+Split split_with_noises(const estimation::Problem& problem, const std::vector<std::string>& own,
+                        Index noises) {
+  Split parting = split(problem, own);
+  const auto first = static_cast<Index>(problem.parameters().size());
+  for (Index k = 0; k < noises; ++k) parting.shared.push_back(first + k);
+  return parting;
+}
+
 std::vector<Variable> variables(const estimation::Problem& problem, const Split& split) {
   std::vector<Variable> variables;
   for (const Index k : split.order()) {

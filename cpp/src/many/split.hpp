@@ -27,6 +27,10 @@ struct Split {
 /// is shared.
 Split split(const estimation::Problem& problem, const std::vector<std::string>& own);
 
+/// The same with so many noises, which follow the free parameters, at the end of the shared ones.
+Split split_with_noises(const estimation::Problem& problem, const std::vector<std::string>& own,
+                        Eigen::Index noises);
+
 /// Free parameters in a split's order.
 std::vector<Variable> variables(const estimation::Problem& problem, const Split& split);
 
@@ -45,6 +49,11 @@ struct Layout {
   }
   auto own_of(const Eigen::VectorXd& x, Eigen::Index flight) const {
     return x.segment(flight * own, own);
+  }
+
+  /// Where a flight's k-th of [own | shared] stands.
+  Eigen::Index place(Eigen::Index flight, Eigen::Index k) const {
+    return k < own ? flight * own + k : (flights - 1) * own + k;
   }
 
   /// [own | shared] of a flight.
