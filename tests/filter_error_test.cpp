@@ -422,9 +422,7 @@ TEST_CASE("filter error refuses what it can't do in one line") {
   FitOptions options = by_filter_error();
   options.loss = sepcal::Loss::huber;
   CHECK_THROWS_WITH_AS(sepcal::fit(model, record, options),
-                       "filter error takes squares alone; leave the loss out, or fit by output "
-                       "error",
-                       sepcal::Error);
+                       doctest::Contains("filter error takes squares alone"), sepcal::Error);
 }
 
 }  // namespace filter_error_test

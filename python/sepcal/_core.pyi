@@ -17,6 +17,7 @@ __all__: list[str] = [
     "Departure",
     "Derived",
     "Diagnosed",
+    "Disturbance",
     "EffectSetting",
     "Error",
     "Fit",
@@ -723,6 +724,13 @@ class CataloguedEffect:
 
 class Model:
     def along(self, arg0: dict, arg1: collections.abc.Sequence[str]) -> Model: ...
+    def draw(
+        self,
+        arg0: dict,
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def evaluate(
         self,
         arg0: dict,
@@ -744,6 +752,8 @@ class Model:
     def nonlinear(self) -> list: ...
     @property
     def outputs(self) -> list: ...
+    @property
+    def process_noises(self) -> list[str]: ...
 
 class PythonFunctions:
     def __init__(
@@ -1077,6 +1087,48 @@ class Window:
     @property
     def rows(self) -> int: ...
 
+class Disturbance:
+    """
+    By filter error: a noise that drives a state, in its own standard deviations along the flight.
+
+    Standard normal where the model is right: beyond 3 in 0.27 % of the rows.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("noise", "share_beyond", "rows", "first_s", "last_s", "peak")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def first_s(self) -> float: ...
+    @property
+    def last_s(self) -> float: ...
+    @property
+    def noise(self) -> NoiseSize:
+        """
+        Its size, of the fit.
+        """
+    @property
+    def peak(self) -> float:
+        """
+        The largest in it, with its sign.
+        """
+    @property
+    def rows(self) -> int:
+        """
+        Of the longest stretch beyond 3; 0: there is none.
+        """
+    @property
+    def share_beyond(self) -> float:
+        """
+        Of the rows beyond 3; NaN of a noise that is none or at its floor.
+        """
+
 class Comparison:
     """
     A calibration against a flight.
@@ -1093,6 +1145,10 @@ class Comparison:
         "windows",
         "time",
         "residuals",
+        "modelled",
+        "by",
+        "sigma",
+        "disturbances",
         "notes",
         "json",
         "text",
@@ -1107,9 +1163,19 @@ class Comparison:
         {field: value}, as of a named tuple.
         """
     @property
+    def by(self) -> str:
+        """
+        "output-error" or "filter-error".
+        """
+    @property
     def channels(self) -> list[ChannelMisfit]:
         """
         By share_smooth, largest first.
+        """
+    @property
+    def disturbances(self) -> list[Disturbance]:
+        """
+        By filter error, one a process noise.
         """
     @property
     def explained(self) -> str:
@@ -1128,6 +1194,11 @@ class Comparison:
     @property
     def model(self) -> str: ...
     @property
+    def modelled(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), z less them.
+        """
+    @property
     def notes(self) -> list[str]:
         """
         One line each, for people.
@@ -1140,7 +1211,12 @@ class Comparison:
     @property
     def residuals(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (N, n_z), z - model.
+        (N, n_z), z - model; of a fit by filter error innovations.
+        """
+    @property
+    def sigma(self) -> dict[str, float]:
+        """
+        By filter error and output: rms of innovations in the filter's standard deviations.
         """
     @property
     def status(self) -> str:

@@ -37,6 +37,9 @@ class DesignTrial:
         truth: Every parameter's value by name.
         scatter: Standard deviation of each output's noise by name; one number for all of them. (The
             option `noise` is what a fit is told of it.)
+        stirred: Of a model with a state: noise that drives it, by the names of its table `noise`,
+            as roots of spectral densities in the table's unit; those not named are none. (The
+            option `process_noise` is what a fit is told of it.)
         **options: Keyword arguments of sepcal.fit(); threads is 1 by default.
 
     Raises:
@@ -49,6 +52,8 @@ class DesignTrial:
         design: Columns,
         truth: Mapping[str, float],
         scatter: Mapping[str, float] | float,
+        *,
+        stirred: Mapping[str, float] | None = None,
         **options: Unpack[FitOptions],
     ) -> None:
         self.model = as_model(model)
@@ -66,12 +71,19 @@ class DesignTrial:
         ):
             if missing := [name for name in names if name not in given]:
                 raise Error(f"the {what} lacks {', '.join(missing)}")
+        self.stirred = dict(stirred or {})
+        noises = self.model._core.process_noises
+        if unknown := [name for name in self.stirred if name not in noises]:
+            known = ", ".join(noises) or "none"
+            raise Error(f"there is no process noise {', '.join(unknown)}; the model has: {known}")
         self.options: FitOptions = {**options, "threads": options.get("threads") or 1}
         to_core({**self.options, "effects": name_effects(self.options.get("effects") or ())})
         self.exact = self._measure()
 
     def draw(self, rng: Generator) -> dict[str, Array]:
         """The trial's measurements: each output, (N,)."""
+        if self.stirred:
+            return self._stir(rng)
         return {
             name: exact + self.scatter[name] * rng.standard_normal(exact.size)
             for name, exact in self.exact.items()
@@ -90,6 +102,7 @@ class DesignTrial:
             options.get("coloured_errors") is False
             and bool(starts)
             and not options.get("effects")
+            and options.get("method") != "filter-error"
             and not runs_in_python(self.model)
         )
 
@@ -120,6 +133,24 @@ class DesignTrial:
         A, b = self.model.evaluate(self.design, self._of(self.model.nonlinear))
         z = A @ np.array([self.truth[name] for name in self.model.linear]) + b
         return dict(zip(self.model.outputs, z.T.copy(), strict=True))
+
+    def _stir(self, rng: Generator) -> dict[str, Array]:
+        model = self.model
+        noises = model._core.process_noises
+        sizes = [self.stirred.get(name, 0.0) for name in noises]
+        sizes += [self.scatter[name] for name in model.outputs]
+        columns = {
+            name: np.asarray(self.design[name], float) for name in model._columns_in(self.design)
+        }
+        rows = next(iter(self.exact.values())).size
+        normals = rng.standard_normal(rows * (2 * len(noises) + len(model.outputs)))
+        z = model._core.draw(
+            columns,
+            np.array([self.truth[name] for name in model.parameters]),
+            np.array(sizes),
+            normals,
+        )
+        return dict(zip(model.outputs, z.T.copy(), strict=True))
 
     def _of(self, names: Sequence[str]) -> dict[str, float]:
         return {name: self.truth[name] for name in names}

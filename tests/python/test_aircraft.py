@@ -321,6 +321,41 @@ def test_headings_that_wrap_go_on(flights: list[sepcal.Flight]) -> None:
         assert other.value == pytest.approx(one.value, abs=1e-6 * (one.standard_error or 1.0))
 
 
+def test_a_comparison_by_filter_error_says_when(
+    aircraft: sepcal.Aircraft, flights: list[sepcal.Flight], tmp_path: Path
+) -> None:
+    """Of a flight whose log lacks an elevator pulse, from 20 to 20.6 s: by its pitching moment."""
+    model = sepcal.RigidAircraft(aircraft, "longitudinal")
+    held = {"u": 1e-4, "w": 0.003, "q": 0.01}
+    fit = sepcal.fit(model, flights[0], method="filter-error", process_noise=held)
+    columns = {name: np.array(flights[0][name]) for name in flights[0].columns}
+    time = columns["time_s"]
+    columns["elevator_rad"][(time > 20) & (time < 20.6)] -= 0.03
+    pulsed = sepcal.Flight(columns)
+    found = fit.compare(pulsed)
+    by_name = {one.noise.name: one for one in found.disturbances}
+    assert by_name["q_q"].noise.value == pytest.approx(0.01)
+    assert by_name["q_q"].rows > 15
+    assert 19.95 < by_name["q_q"].first_s < 20.1
+    assert 20.4 < by_name["q_q"].last_s < 20.65
+    assert np.isnan(by_name["q_p"].share_beyond)  # a measured state's
+    calm = fit.compare()
+    assert max(one.rows for one in calm.disturbances) < 6
+    measured = found.modelled + found.residuals
+    alpha = [misfit.output for misfit in found.overall].index("alpha")
+    assert measured[:, alpha] == pytest.approx(columns["alpha_rad"], abs=1e-12)
+    assert found.to_dict()["disturbances"][4]["name"] == "q_q"
+    assert found.to_dict()["innovation"]["q"]["sigma"] > calm.sigma["q"]
+    text = str(found)
+    assert "don't foretell" in text
+    assert f"{by_name['q_q'].first_s:.2f} to {by_name['q_q'].last_s:.2f} s" in text
+    page = tmp_path / "report.html"
+    sepcal.report([fit], str(page), pulsed)
+    shown = page.read_text()
+    assert f"{by_name['q_q'].first_s:.2f} to {by_name['q_q'].last_s:.2f} s" in shown
+    assert "the filter foretold from the rows before" in shown
+
+
 def test_filter_error_of_an_aircraft(
     aircraft: sepcal.Aircraft, flights: list[sepcal.Flight], fits: Fits, tmp_path: Path
 ) -> None:

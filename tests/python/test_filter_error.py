@@ -298,3 +298,81 @@ def test_calm_air_ends_at_the_floor() -> None:
 )
 def test_records_that_are_none(log: dict[str, np.ndarray], words: str) -> None:
     refuse(lambda: sepcal.fit(sepcal.ShortPeriod(), log, method="filter-error"), words)
+
+
+def van_loan(interval: float) -> tuple[np.ndarray, np.ndarray]:
+    """Transition and covariance of the true short period's noise over an interval [s]."""
+    F = np.array([[TRUTH["Za"], 1.0], [TRUTH["Ma"], TRUTH["Mq"]]])
+    density = np.diag(np.square([SIZES["q_alpha"], SIZES["q_q"]]))
+    both = expm(interval * np.block([[-F, density], [np.zeros((2, 2)), F.T]]))
+    return both[2:, 2:].T, both[2:, 2:].T @ both[:2, 2:]
+
+
+def spread_of_outputs(rows: int) -> np.ndarray:
+    """(rows, 3): standard deviation that the true process noise brings to each output."""
+    Phi, Q = van_loan(0.02)
+    H = np.array([[1, 0], [0, 1], [25 * TRUTH["Za"], 0]])
+    P, spread = np.zeros((2, 2)), []
+    for _ in range(rows):
+        spread.append(np.sqrt(np.diag(H @ P @ H.T)))
+        P = Phi @ P @ Phi.T + Q
+    return np.array(spread)
+
+
+def test_a_prediction_has_the_gathered_process_noise() -> None:
+    """At the truth, everything held: bands are those of the exact discrete system."""
+    held = TRUTH | {"b_alpha": 0.02, "b_q": -0.01, "b_az": 0.5, "alpha_0": 0.0}
+    options = {
+        "method": "filter-error",
+        "fixed": held,
+        "process_noise": {"alpha": SIZES["q_alpha"], "q": SIZES["q_q"]},
+        "noise": READS,
+    }
+    fitted = sepcal.fit(sepcal.ShortPeriod(), LOG, **options)
+    bands = sepcal.predict(sepcal.ShortPeriod(), LOG, fitted, **options)
+    found = np.sqrt(
+        np.square(bands.measurement_error)
+        - np.square(bands.standard_error)
+        - np.square(list(READS.values()))
+    )
+    expected = spread_of_outputs(1000)
+    assert_allclose(found[1:], expected[1:], rtol=5e-3)
+    assert expected[-1, 1] > 2 * READS["q_m"]  # it is no small part
+    log = np.stack([LOG[name] for name in READS], axis=1)
+    inside = np.abs(log - bands.value) < bands.quantile * bands.measurement_error
+    assert 0.9 < inside.mean() < 0.99
+
+
+DESIGN = {name: LOG[name] for name in ("time", "elevator", "airspeed")}
+FLOWN = TRUTH | {"b_alpha": 0.02, "b_q": -0.01, "b_az": 0.5, "alpha_0": 0.0, "q_0": 0.0}
+STIRRED = {"alpha": SIZES["q_alpha"], "q": SIZES["q_q"]}
+
+
+def test_trials_draw_process_noise() -> None:
+    """Their spread over 400 draws is the exact discrete system's."""
+    trial = sepcal.DesignTrial(sepcal.ShortPeriod(), DESIGN, FLOWN, READS, stirred=STIRRED)
+    rng = np.random.default_rng(5)
+    drawn = np.array([list(trial.draw(rng).values()) for _ in range(400)])  # trials, outputs, rows
+    expected = np.sqrt(spread_of_outputs(1000).T ** 2 + np.square(list(READS.values()))[:, None])
+    ratio = drawn.std(axis=0) / expected
+    assert np.abs(ratio - 1).max() < 5.5 / np.sqrt(800)
+    assert np.abs(ratio.mean(axis=1) - 1).max() < 0.02
+
+
+def test_a_study_by_filter_error_holds_what_it_says() -> None:
+    trial = sepcal.DesignTrial(
+        sepcal.ShortPeriod(), DESIGN, FLOWN, READS, stirred=STIRRED,
+        method="filter-error", coloured_errors=False,
+    )  # fmt: skip
+    study = sepcal.monte_carlo(trial, 24, seed=3)
+    assert not study.failed
+    off = (study.estimates - [FLOWN[name] for name in study.names]) / study.standard_errors
+    places = [study.names.index(name) for name in TRUTH]
+    assert 0.75 < np.sqrt(np.mean(np.square(off[:, places]))) < 1.25
+
+
+def test_a_noise_that_the_model_has_not_is_refused() -> None:
+    refuse(
+        lambda: sepcal.DesignTrial(sepcal.ShortPeriod(), DESIGN, FLOWN, READS, stirred={"r": 1.0}),
+        "there is no process noise r; the model has: alpha, q",
+    )

@@ -63,6 +63,15 @@ class InnovationModel : public ScoredLikelihood {
     Eigen::MatrixXd sd;
   };
   virtual Innovations innovations(const Eigen::VectorXd& theta) const = 0;
+
+  /// rows x n_z: the standard deviation that the process noises bring to each output of a
+  /// trajectory that no reading corrects, to first order; NaN outside segments.
+  virtual Eigen::MatrixXd spread(const Eigen::VectorXd& theta) const = 0;
+
+  /// rows x n_z: readings of trajectories that the noises drive, with their own; NaN outside
+  /// segments. `normal` gives the next of independent standard normal numbers.
+  virtual Eigen::MatrixXd draw(const Eigen::VectorXd& theta,
+                               const std::function<double()>& normal) const = 0;
 };
 
 }  // namespace sepcal

@@ -12,9 +12,11 @@ namespace sepcal {
 
 /// Over the rows of the record's segments, each in the outputs' units.
 struct Prediction {
-  Eigen::MatrixXd value;              // N x n_z
-  Eigen::MatrixXd standard_error;     // N x n_z, of the value
-  Eigen::MatrixXd measurement_error;  // N x n_z, standard deviation of a new measurement about it
+  Eigen::MatrixXd value;           // N x n_z
+  Eigen::MatrixXd standard_error;  // N x n_z, of the value
+  /// N x n_z, standard deviation of a new measurement about it. Of a fit by filter error what
+  /// drives the states adds to it, as a trajectory has gathered it since its start.
+  Eigen::MatrixXd measurement_error;
   /// Half of either band in these errors: Student's quantile with M - n degrees of freedom, the
   /// normal's where R is given.
   double quantile = 0.0;

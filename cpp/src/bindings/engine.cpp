@@ -22,6 +22,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/innovation_model.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 
 namespace sepcal::bindings {
@@ -100,6 +101,23 @@ Eigen::MatrixXd evaluate(const Model& model, const py::dict& columns, const Eige
   return rows;
 }
 
+/// Readings of a trajectory that noises drive, (N, n_z). `xi`: all parameters; `sizes`: of process
+/// noises, then of outputs'; `normals`: independent standard normal numbers.
+Eigen::MatrixXd draw(const Model& model, const py::dict& columns, const Eigen::VectorXd& xi,
+                     const Eigen::VectorXd& sizes, const Eigen::VectorXd& normals) {
+  Record record = record_of(columns, {});
+  const Released released;
+  for (const Variable& output : model.block->tables().outputs) {
+    record.add(output.name, std::vector<double>(record.length(), 0.0));
+  }
+  const auto innovations = model.block->innovations(record);
+  if (innovations == nullptr) throw Error("only a model with a state has process noise");
+  Eigen::VectorXd theta(innovations->size());
+  theta << xi, sizes.array().log().matrix();
+  Eigen::Index next = 0;
+  return innovations->draw(theta, [&] { return normals[next++]; });
+}
+
 /// d(A xi1 + b)/du of the inputs chosen by their place: (n_z * N) x inputs.
 Eigen::MatrixXd input_tangent(const Model& model, const py::dict& columns,
                               const Eigen::VectorXd& xi2, const Eigen::VectorXd& xi1,
@@ -165,6 +183,15 @@ void define_engine(py::module_& module) {
       .def_property_readonly("nonlinear", &describe_table<&Tables::nonlinear>)
       .def("along", &lay_along)
       .def("evaluate", &evaluate)
+      .def("draw", &draw)
+      .def_property_readonly("process_noises",
+                             [](const Model& model) {
+                               std::vector<std::string> names;
+                               for (const Variable& noise : model.block->process_noises()) {
+                                 names.push_back(noise.name);
+                               }
+                               return names;
+                             })
       .def("input_tangent", &input_tangent);
 
   using Vector = std::array<double, 3>;

@@ -273,6 +273,20 @@ void define_comparison(py::module_& module) {
       .comparable()
       .finish();
 
+  BoundStruct<Disturbance>(module, "Disturbance",
+                           "By filter error: a noise that drives a state, in its own standard "
+                           "deviations along the flight.\n\nStandard normal where the model is "
+                           "right: beyond 3 in 0.27 % of the rows.")
+      .field("noise", &Disturbance::noise, "Its size, of the fit.")
+      .field("share_beyond", &Disturbance::share_beyond,
+             "Of the rows beyond 3; NaN of a noise that is none or at its floor.")
+      .field("rows", &Disturbance::rows, "Of the longest stretch beyond 3; 0: there is none.")
+      .field("first_s", &Disturbance::first_s, "")
+      .field("last_s", &Disturbance::last_s, "")
+      .field("peak", &Disturbance::peak, "The largest in it, with its sign.")
+      .comparable()
+      .finish();
+
   BoundStruct<Compared>(module, "Comparison", "A calibration against a flight.")
       .field("model", &Compared::comparison, &Comparison::model, "")
       .field(
@@ -289,7 +303,14 @@ void define_comparison(py::module_& module) {
       .field("windows", &Compared::comparison, &Comparison::windows,
              "The five worst in units of the fit's noise, worst first.")
       .array("time", &Compared::comparison, &Comparison::time, "(N,) [s], of every row used.")
-      .field("residuals", &Compared::comparison, &Comparison::residuals, "(N, n_z), z - model.")
+      .field("residuals", &Compared::comparison, &Comparison::residuals,
+             "(N, n_z), z - model; of a fit by filter error innovations.")
+      .field("modelled", &Compared::comparison, &Comparison::modelled, "(N, n_z), z less them.")
+      .field("by", &Compared::comparison, &Comparison::by, R"("output-error" or "filter-error".)")
+      .field("sigma", &Compared::comparison, &Comparison::sigma,
+             "By filter error and output: rms of innovations in the filter's standard deviations.")
+      .field("disturbances", &Compared::comparison, &Comparison::disturbances,
+             "By filter error, one a process noise.")
       .field("notes", &Compared::comparison, &Comparison::notes, "One line each, for people.")
       .field("json", &Compared::json, "")
       .field("text", &Compared::page, &Page::text, "What print() shows: the app's page.")

@@ -28,7 +28,9 @@ namespace sepcal::estimation {
 std::unique_ptr<InnovationModel> innovations_of(const BlockModel& model, const Record& record,
                                                 const FitOptions& options) {
   if (options.loss != Loss::squares) {
-    throw Error("filter error takes squares alone; leave the loss out, or fit by output error");
+    throw Error(
+        "filter error takes squares alone, as a reading that is forgiven has moved the filter "
+        "already; leave bad readings out (NaN), or fit by output error");
   }
   std::unique_ptr<InnovationModel> innovations = model.innovations(record);
   if (innovations == nullptr) {

@@ -25,6 +25,16 @@ std::vector<Estimated> estimable_noises(const BlockModel& model, const FitOption
   return noises;
 }
 
+VectorXd theta_of(const Fit& fit) {
+  const VectorXd values = fit.values();
+  VectorXd theta(values.size() + static_cast<Index>(fit.noise_sizes.size()));
+  theta.head(values.size()) = values;
+  for (std::size_t k = 0; k < fit.noise_sizes.size(); ++k) {
+    theta[values.size() + static_cast<Index>(k)] = std::log(fit.noise_sizes[k].value);
+  }
+  return theta;
+}
+
 ThetaLayout::ThetaLayout(const BlockModel& model, const Problem& problem,
                          const InnovationModel& innovations)
     : model_(model),
@@ -116,15 +126,6 @@ VectorXd ThetaLayout::given() const {
     if (!is_given(k)) continue;
     const auto& given = k < noises() ? options.process_noise : options.noise;
     theta[n_ + k] = std::log(given.at(noise(k).name));
-  }
-  return theta;
-}
-
-VectorXd ThetaLayout::theta_of(const Fit& fit) const {
-  VectorXd theta(size());
-  theta.head(n_) = fit.values();
-  for (Index k = n_; k < size(); ++k) {
-    theta[k] = std::log(fit.noise_sizes[static_cast<std::size_t>(k - n_)].value);
   }
   return theta;
 }

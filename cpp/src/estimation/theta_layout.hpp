@@ -23,6 +23,9 @@ std::string output_noise_name(const Variable& output);
 /// The noises that are not given: process noises, then outputs'.
 std::vector<Estimated> estimable_noises(const BlockModel& model, const FitOptions& options);
 
+/// Where a fit by filter error ended: theta of InnovationModel.
+Eigen::VectorXd theta_of(const Fit& fit);
+
 class ThetaLayout {
  public:
   /// All of them must outlive it.
@@ -54,8 +57,7 @@ class ThetaLayout {
   /// What is held has its value, the rest 0.
   Eigen::VectorXd given() const;
 
-  /// A fit's end, and floors that it reached or that lie far below it.
-  Eigen::VectorXd theta_of(const Fit& fit) const;
+  /// Floors that a fit reached or that lie far below it.
   Eigen::VectorXd floor_of(const Fit& fit) const;
 
  private:

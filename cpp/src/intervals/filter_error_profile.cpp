@@ -26,7 +26,7 @@ class Profile {
         innovations_(model.innovations(record)),
         layout_(laid_out(model, fit)),
         box_(layout_.box(layout_.floor_of(fit))),
-        minimum_(estimation::minimise_by_scoring(scoring(-1), layout_.theta_of(fit))) {
+        minimum_(estimation::minimise_by_scoring(scoring(-1), estimation::theta_of(fit))) {
     for (const Index k : layout_.free()) {
       if (k >= layout_.n()) break;
       const Parameter& parameter = fit.parameters[static_cast<std::size_t>(k)];
@@ -71,7 +71,7 @@ class Profile {
  private:
   estimation::ThetaLayout laid_out(const BlockModel& model, const Fit& fit) const {
     estimation::ThetaLayout layout(model, problem_, *innovations_);
-    layout.hold_silent(layout.theta_of(fit));
+    layout.hold_silent(estimation::theta_of(fit));
     return layout;
   }
 

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "base/thread_pool.hpp"
+#include "estimation/theta_layout.hpp"
 #include "model/measurements.hpp"
 #include "numerics/quantiles.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/innovation_model.hpp"
 
 namespace sepcal {
 namespace {
@@ -70,6 +72,21 @@ double variance_of(const Fit& fit, const FitOptions& options, Index j) {
   return ratio * noise * noise;
 }
 
+/// What the process noises of a fit by filter error add to the outputs' variance, over the rows of
+/// the segments.
+MatrixXd stirred_variance(const BlockModel& model, const Record& record, const Fit& fit) {
+  const MatrixXd spread = model.innovations(record)->spread(estimation::theta_of(fit));
+  MatrixXd variance(static_cast<Index>(record.rows()), spread.cols());
+  Index at = 0;
+  for (const Segment& segment : record.segments()) {
+    const auto rows = static_cast<Index>(segment.rows());
+    variance.middleRows(at, rows) =
+        spread.middleRows(static_cast<Index>(segment.first), rows).cwiseAbs2();
+    at += rows;
+  }
+  return variance;
+}
+
 /// sqrt(g' C g) of every row g; a variance that rounding made negative is zero, NaN stays.
 VectorXd errors_of(const MatrixXd& rows, const MatrixXd& covariance) {
   const VectorXd squares = (rows * covariance).cwiseProduct(rows).rowwise().sum();
@@ -111,10 +128,10 @@ Prediction predict(const BlockModel& model, const Record& record, const Fit& fit
       }
     }
   });
+  MatrixXd noise = result.standard_error.cwiseAbs2();
+  if (fit.by == FitMethod::filter_error) noise += stirred_variance(model, inputs, fit);
   for (Index j = 0; j < n_z; ++j) {
-    const double variance = variance_of(fit, options, j);
-    result.measurement_error.col(j) =
-        (result.standard_error.col(j).array().square() + variance).sqrt();
+    result.measurement_error.col(j) = (noise.col(j).array() + variance_of(fit, options, j)).sqrt();
   }
   return result;
 }

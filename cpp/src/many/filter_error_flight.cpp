@@ -42,7 +42,7 @@ FlightStart FilterErrorFlight::start() const {
   const Fit fitted = fit(model_, record_, problem_.options());
   FlightStart start{.status = fitted.status, .message = fitted.message, .rows = fitted.rows};
   const auto n = static_cast<Index>(places_.size()) - 1;
-  const VectorXd theta = layout_.theta_of(fitted);
+  const VectorXd theta = estimation::theta_of(fitted);
   const VectorXd floor = layout_.floor_of(fitted);
   start.x = theta(places_);
   start.x.conservativeResize(n);

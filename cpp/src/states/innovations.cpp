@@ -189,6 +189,52 @@ class StateInnovations final : public InnovationModel {
     return result;
   }
 
+  MatrixXd spread(const VectorXd& theta) const override {
+    const Noise noise = noise_of(theta);
+    const VectorXd xi = theta.head(n_);
+    const auto steps = model_.steps(record_, xi);
+    MatrixXd result = MatrixXd::Constant(static_cast<Index>(record_.length()), n_z_, not_a_number);
+    for_each_trajectory([&](std::size_t first, std::size_t last, int trajectory) {
+      VectorXd x = states::start_of(plan_, trajectory, xi);
+      MatrixXd P = MatrixXd::Zero(n_x_, n_x_);
+      for (std::size_t row = first; row < last; ++row) {
+        const MatrixXd H = steps->read(row, x).H;
+        result.row(static_cast<Index>(row)) = (H * P * H.transpose()).diagonal().cwiseSqrt();
+        if (row + 1 == last) break;
+        const StateSteps::Step step = steps->advance(row, x);
+        const VectorXd variances = plan_.noise_variances(noise.q.cwiseAbs2(), held(row));
+        P = step.Phi * P * step.Phi.transpose() +
+            step.Gamma * variances.asDiagonal() * step.Gamma.transpose();
+        x = step.x;
+      }
+      return true;
+    });
+    return result;
+  }
+
+  MatrixXd draw(const VectorXd& theta, const std::function<double()>& normal) const override {
+    const Noise noise = noise_of(theta);
+    const VectorXd xi = theta.head(n_);
+    const auto steps = model_.steps(record_, xi);
+    MatrixXd result = MatrixXd::Constant(static_cast<Index>(record_.length()), n_z_, not_a_number);
+    const auto draw_of = [&](const VectorXd& sd) {
+      return VectorXd(sd.unaryExpr([&](double each) { return each * normal(); }));
+    };
+    for_each_trajectory([&](std::size_t first, std::size_t last, int trajectory) {
+      VectorXd x = states::start_of(plan_, trajectory, xi);
+      for (std::size_t row = first; row < last; ++row) {
+        result.row(static_cast<Index>(row)) =
+            (steps->read(row, x).z + draw_of(noise.r)).transpose();
+        if (row + 1 == last) break;
+        const StateSteps::Step step = steps->advance(row, x);
+        const VectorXd variances = plan_.noise_variances(noise.q.cwiseAbs2(), held(row));
+        x = step.x + step.Gamma * draw_of(variances.cwiseSqrt());
+      }
+      return true;
+    });
+    return result;
+  }
+
  private:
   static constexpr std::size_t block_rows = 64;
 

@@ -87,14 +87,14 @@ def gather_flown(
     if len(models) > 1:
         raise _core.Error(f"the fits are of several models: {', '.join(models)}; give one")
     flight = last._or_fitted(flight, "report(..., flight=")
+    process_noise = process_noise or _found_noise(last)
     report_progress("comparing")
     comparisons = [fit.compare(flight) for fit in chain]
     if process_noise:
         report_progress("smoothing")
     columns = last.apply(flight, process_noise=process_noise)
     outputs = [misfit.output for misfit in comparisons[-1].overall]
-    modelled = {output: _column(columns, f"{output}_model") for output in outputs}
-    rows = np.flatnonzero(np.isfinite(modelled[outputs[0]]))
+    rows = np.flatnonzero(np.isfinite(_column(columns, f"{outputs[0]}_model")))
     smoothed = last.smooth(process_noise, flight) if process_noise else None
     return Flown(
         chain=list(chain),
@@ -102,11 +102,20 @@ def gather_flown(
         files=files,
         flight=flight,
         rows=rows,
-        modelled={output: values[rows] for output, values in modelled.items()},
+        modelled=dict(zip(outputs, comparisons[-1].modelled.T, strict=True)),
         smoothed=smoothed,
         units=_units(columns, smoothed, process_noise),
         process_noise=dict(process_noise),
     )
+
+
+def _found_noise(fit: AircraftFit) -> dict[str, float]:
+    """The process noises that filter error found, by the names of the model's table."""
+    return {
+        name.removeprefix("q_"): size.value
+        for name, size in fit.noise_sizes.items()
+        if name.startswith("q_") and size.value > 0
+    }
 
 
 def _column(columns: Mapping[str, Array], start: str) -> Array:
@@ -166,11 +175,12 @@ def show_verdict(flown: Flown, title: str, parameters: int) -> str:
     facts.append((flagged, "status of the fit"))
     shown = "".join(f"<div><b>{value}</b><span>{name}</span></div>" for value, name in facts)
     lagging = [m.output for m in flown.comparison.overall if not m.is_white]
+    what = "innovations" if flown.comparison.by == "filter-error" else "residuals"
     verdict = (
-        f"Residuals of {', '.join(lagging)} follow one another: something is missing from the "
-        "model, or from the noise. Look where, and what they go with, below."
+        f"{what.capitalize()} of {', '.join(lagging)} follow one another: something is missing "
+        "from the model, or from the noise. Look where, and what they go with, below."
         if lagging
-        else "The residuals are noise as far as their neighbours tell."
+        else f"The {what} are noise as far as their neighbours tell."
     )
     kind = "unexplained" if lagging else "adequate"
     tag = "Not all is noise" if lagging else "Noise is left"
@@ -227,10 +237,12 @@ def show_overlay(flown: Flown) -> Section:
     blocks: list[str | Figure | Grid] = [draw_overlay(comparison.time, channels, flown.runs, gaps)]
     if note := say_thinned(comparison.time.size):
         blocks.append(f'<p class="note">{note}</p>')
+    by_filter = comparison.by == "filter-error"
+    says = "the filter foretold from the rows before" if by_filter else "the integrated model says"
     lead = (
-        "Grey is what was measured, blue what the integrated model says, pale blue its 2-sigma "
-        "band. Below each, the residual between its 2-sigma lines: what leaves them for long is "
-        "not noise."
+        f"Grey is what was measured, blue what {says}, pale blue its 2-sigma "
+        f"band. Below each, the {'innovation' if by_filter else 'residual'} between its 2-sigma "
+        "lines: what leaves them for long is not noise."
     )
     return Section("Measured and modelled", lead, blocks)
 
@@ -346,9 +358,44 @@ def show_states(flown: Flown) -> list[Section]:
         "The noise that must have driven the states, w(k|N), with 2 standard deviations to either "
         "side. Where its band leaves zero for long, a force or an error is missing from the model: "
         "it says when.",
-        [draw("noise", smoothed.noises, smoothed.w, smoothed.w_standard_error, draw_with_band)],
+        [
+            *list_disturbances(flown.comparison),
+            draw("noise", smoothed.noises, smoothed.w, smoothed.w_standard_error, draw_with_band),
+        ],
     )
     return [states, innovations, noise]
+
+
+def list_disturbances(comparison: Comparison) -> list[str]:
+    """Sizes that filter error found, and when each noise was more than noise; or nothing."""
+    if not comparison.disturbances:
+        return []
+    rows = []
+    for one in comparison.disturbances:
+        when = (
+            f"{one.first_s:.2f} to {one.last_s:.2f} s, {one.rows} rows, {one.peak:+.1f}"
+            if one.rows
+            else "none"
+        )
+        size = f"{words.number(one.noise.value)} ± {words.number(one.noise.standard_error, 2)}"
+        rows.append(
+            [
+                escape(one.noise.name),
+                f"{size} {escape(one.noise.unit)}" + (", at its floor" * one.noise.at_floor),
+                words.percent(one.share_beyond),
+                when,
+            ]
+        )
+    head = [
+        ("process noise", False), ("size", True), ("beyond 3", True),
+        ("longest stretch beyond 3 standard deviations", False),
+    ]  # fmt: skip
+    said = (
+        "<p>Beyond 3 of its standard deviations, as all of the flight tells it: noise alone is "
+        "there in 0.27 % of the rows, a row or a few at a time. A long stretch says when the model "
+        "fails.</p>"
+    )
+    return [tables.table(head, rows), said]
 
 
 def _lag_one(values: Array) -> float:

@@ -45,6 +45,19 @@ struct Window {
   std::vector<OutputValue> mean = {};  // of z - model
 };
 
+/// By filter error: a noise that drives a state, as the whole flight tells it, in its own standard
+/// deviations (the auxiliary residual of Harvey & Koopman, JBES 10, 1992). Where the model is right
+/// it is standard normal: beyond 3 in 0.27 % of the rows.
+struct Disturbance {
+  NoiseSize noise;  // of the fit
+  double share_beyond =
+      not_a_number;      // of the rows beyond 3; NaN of one that is none or at its floor
+  std::size_t rows = 0;  // of the longest stretch beyond 3; 0: there is none
+  double first_s = not_a_number;
+  double last_s = not_a_number;
+  double peak = 0.0;  // the largest in it, with its sign
+};
+
 struct Comparison {
   std::string model;
   FittedFlight flight;  // the flight compared with, not the one fitted
@@ -57,7 +70,12 @@ struct Comparison {
   std::vector<Window> windows;          // the five worst in units of the fit's noise, worst first
   std::vector<std::string> notes;       // for people; not part of the JSON
   std::vector<double> time;             // [s] of every row used
-  Eigen::MatrixXd residuals;            // rows x n_z, z - model
+  Eigen::MatrixXd residuals;      // rows x n_z, z - model; of a fit by filter error innovations
+  Eigen::MatrixXd modelled = {};  // rows x n_z, z less them
+  FitMethod by = FitMethod::output_error;
+  std::vector<OutputValue> sigma = {};  // by filter error: rms of the innovations over the filter's
+                                        // own standard deviations, 1 where it is right
+  std::vector<Disturbance> disturbances = {};  // by filter error, one a process noise
 };
 
 /// Runs of one label are taken together; a flight with fewer than two labels is cut into ten spans
@@ -68,7 +86,8 @@ Comparison compare(const Calibration& calibration, const Flight& flight);
 /// The JSON object: model, inputs, status, message, rmse {output}, residual {output: {lag_one}},
 /// where [{segment, output, rows, rmse, mean, lag_one}], channels [{driver, output, share_line,
 /// share_smooth, slope, slope_error, unit}], windows [{first_s, last_s, rows, rmse {output}, mean
-/// {output}}].
+/// {output}}], by filter error innovation {output: {lag_one, sigma}} and disturbances [{name, size,
+/// unit, share_beyond, rows, first_s, last_s, peak}].
 std::string to_json(const Comparison& comparison);
 
 /// The page that the apps print: the error by maneuver, whether it is noise, the channels that

@@ -11,6 +11,7 @@
 #include "base/thread_pool.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
+#include "flight/aircraft/innovation_comparison.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
 #include "flight/files/sha256.hpp"
@@ -176,9 +177,13 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   base::ThreadPool pool(fitted.options.calibration.fit.threads);
   const Fit at = fit_on(flight, fitted, laid);
-  Comparison result =
-      verbs::compare_residuals(verbs::residuals_of(*laid.model, laid.record, at, pool),
-                               laid.model->tables(), laid.record, flight, fitted.fit, pool);
+  const bool by_filter = at.by == FitMethod::filter_error;
+  const FlightInnovations innovations =
+      by_filter ? innovations_on(laid, at)
+                : FlightInnovations{verbs::residuals_of(*laid.model, laid.record, at, pool), {}};
+  Comparison result = verbs::compare_residuals(innovations.e, laid.model->tables(), laid.record,
+                                               flight, fitted.fit, pool);
+  if (by_filter) judge_by_filter(result, innovations, fitted, at, laid);
   result.model = to_string(fitted.options.model);
   result.notes = std::move(laid.notes);
   return result;

@@ -113,6 +113,22 @@ void add_smoothed(const SmoothedRecord& smoothed, const ProcessNoise& given,
   }
 }
 
+/// But for the initial states, which are another flight's, and the smoother's own.
+ParameterErrors errors_without_starts(const AircraftFit& fitted) {
+  const ParameterErrors all = errors_of(fitted.fit);
+  std::vector<Eigen::Index> kept;
+  ParameterErrors errors;
+  for (std::size_t i = 0; i < all.names.size(); ++i) {
+    if (std::ranges::find(fitted.initial_states, all.names[i]) != fitted.initial_states.end()) {
+      continue;
+    }
+    kept.push_back(static_cast<Eigen::Index>(i));
+    errors.names.push_back(all.names[i]);
+  }
+  errors.covariance = all.covariance(kept, kept);
+  return errors;
+}
+
 }  // namespace
 
 std::string aircraft_log::header_of(const std::string& name, const std::string& unit) {
@@ -131,7 +147,7 @@ SmoothedRecord aircraft_log::smooth_laid(const AircraftFit& fitted, const Fit& f
   SmoothingNoise noise{.process = process_noise};
   for (const OutputValue& output : fitted.fit.noise) noise.outputs[output.name] = output.value;
   return smooth(state_model_of(laid, fitted), laid.record, fit.by_name(), noise,
-                errors_of(fitted.fit));
+                errors_without_starts(fitted));
 }
 
 SmoothedRecord smooth_aircraft(const AircraftFit& fitted, const Flight& flight,

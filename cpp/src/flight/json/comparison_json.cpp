@@ -45,6 +45,25 @@ std::string to_json(const Comparison& comparison) {
                                {"rmse", by_name(window.rmse)},
                                {"mean", by_name(window.mean)}});
   }
+  if (comparison.by == FitMethod::filter_error) {
+    root["innovation"] = Json::object();
+    for (std::size_t j = 0; j < comparison.sigma.size(); ++j) {
+      root["innovation"][comparison.sigma[j].name] = {
+          {"lag_one", number(comparison.overall[j].lag_one)},
+          {"sigma", number(comparison.sigma[j].value)}};
+    }
+    root["disturbances"] = Json::array();
+    for (const Disturbance& one : comparison.disturbances) {
+      root["disturbances"].push_back({{"name", one.noise.name},
+                                      {"size", number(one.noise.value)},
+                                      {"unit", one.noise.unit},
+                                      {"share_beyond", number(one.share_beyond)},
+                                      {"rows", one.rows},
+                                      {"first_s", number(one.first_s)},
+                                      {"last_s", number(one.last_s)},
+                                      {"peak", number(one.peak)}});
+    }
+  }
   return text_of(root);
 }
 

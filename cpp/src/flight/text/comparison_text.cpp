@@ -37,6 +37,33 @@ std::string verdict_on_noise(const Misfit& misfit) {
                      white_limit(misfit));
 }
 
+namespace {
+
+/// Innovations over their own standard deviations, and when a noise was more than noise.
+std::string filter_lines(const Comparison& comparison) {
+  if (comparison.by != FitMethod::filter_error) return "";
+  std::string text =
+      "\nrms of innovations over the filter's own standard deviation, 1 where it is right:";
+  for (const OutputValue& sigma : comparison.sigma) {
+    text += fmt::format(" {} {:.3f}", sigma.name, sigma.value);
+  }
+  text += fmt::format("\n\n{:<14} {:>12}  {:<16} {:>9}  {}\n", "process noise", "size", "unit",
+                      "beyond 3", "longest beyond 3 standard deviations");
+  for (const Disturbance& one : comparison.disturbances) {
+    const std::string share =
+        std::isnan(one.share_beyond) ? "-" : fmt::format("{:.2f} %", 100.0 * one.share_beyond);
+    text += fmt::format(
+        "{:<14} {:>12.4g}  {:<16} {:>9}  {}\n", one.noise.name, one.noise.value, one.noise.unit,
+        share,
+        one.rows == 0 ? one.noise.at_floor ? "at its floor" : "none"
+                      : fmt::format("{:.2f} to {:.2f} s, {} row{}, {:+.1f}", one.first_s,
+                                    one.last_s, one.rows, one.rows == 1 ? "" : "s", one.peak));
+  }
+  return text + "noise alone is beyond 3 in 0.27 % of the rows\n";
+}
+
+}  // namespace
+
 std::string to_text(const Comparison& comparison, Detail detail) {
   std::string text =
       fmt::format("{}: {} of {} rows of {}\n", comparison.model, comparison.flight.rows_used,
@@ -57,8 +84,11 @@ std::string to_text(const Comparison& comparison, Detail detail) {
   for (const Misfit& misfit : comparison.overall) {
     text += fmt::format("{}: {}\n", misfit.output, verdict_on_noise(misfit));
   }
+  text += filter_lines(comparison);
   text += fmt::format("\n{}\n{}", channel_table(comparison), window_table(comparison));
-  text += "\nrmse and mean of measured - modelled, in";
+  text += comparison.by == FitMethod::filter_error
+              ? "\nrmse and mean of innovations, which the readings before don't foretell, in"
+              : "\nrmse and mean of measured - modelled, in";
   for (const Misfit& misfit : comparison.overall) {
     text += fmt::format(" {} [{}]", misfit.output, misfit.unit);
   }

@@ -19,6 +19,24 @@ Eigen::MatrixXd residuals_of(const BlockModel& model, const Record& record, cons
   return model::Sweep(model, measurements, pool).residuals(fit.xi1(), fit.xi2());
 }
 
+namespace {
+
+/// What was measured, in the rows of the residuals.
+Eigen::MatrixXd outputs_of(const Tables& tables, const Record& record) {
+  Eigen::MatrixXd z(static_cast<Eigen::Index>(record.rows()), tables.n_z());
+  Eigen::Index row = 0;
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t at = segment.first; at < segment.last; ++at, ++row) {
+      for (Eigen::Index j = 0; j < z.cols(); ++j) {
+        z(row, j) = record.column(tables.outputs[static_cast<std::size_t>(j)].name)[at];
+      }
+    }
+  }
+  return z;
+}
+
+}  // namespace
+
 Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, const Record& record,
                              const Flight& flight, const Fit& fit, base::ThreadPool& pool) {
   Comparison result;
@@ -27,6 +45,8 @@ Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, co
   result.message = fit.message;
   result.at_bound = names_at_bound(fit);
   result.residuals = std::move(residuals);
+  result.by = fit.by;
+  result.modelled = outputs_of(tables, record) - result.residuals;
   result.time = base::gather_time(record);
   result.overall = measure_whole(record, tables.outputs, result.residuals);
   result.where = measure_parts(record, tables.outputs, result.residuals);
