@@ -376,3 +376,21 @@ def test_a_noise_that_the_model_has_not_is_refused() -> None:
         lambda: sepcal.DesignTrial(sepcal.ShortPeriod(), DESIGN, FLOWN, READS, stirred={"r": 1.0}),
         "there is no process noise r; the model has: alpha, q",
     )
+
+
+def test_smoothed_disturbances_over_their_deviation_are_standard_normal() -> None:
+    """w(k|N) / sqrt(q^2 / dt - Q(k|N)), what compare() looks for stretches in."""
+    fitted = sepcal.fit(
+        sepcal.ShortPeriod(),
+        LOG,
+        method="filter-error",
+        fixed=TRUTH | {"b_alpha": 0.02, "b_q": -0.01, "b_az": 0.5},
+        process_noise=STIRRED,
+        noise=READS,
+    )
+    smoothed = sepcal.smooth(sepcal.ShortPeriod(), LOG, fitted, process_noise=STIRRED)
+    for k, size in enumerate(STIRRED.values()):
+        variance = size**2 / 0.02 - smoothed.w_standard_error[:-1, k] ** 2
+        scaled = smoothed.w[:-1, k] / np.sqrt(variance)
+        assert scaled.std() == pytest.approx(1.0, abs=0.15)
+        assert (np.abs(scaled) > 3).mean() < 0.01
