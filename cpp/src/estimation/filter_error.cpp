@@ -198,7 +198,8 @@ class FilterError {
     std::ranges::move(describe_constants(model_, record_), std::back_inserter(sentences));
     sentences.push_back(result.identifiability.message());
     std::ranges::move(describe_length(record_), std::back_inserter(sentences));
-    std::ranges::move(describe_floors(at, scoring, estimated), std::back_inserter(sentences));
+    std::ranges::move(describe_floors(at, scoring, estimated, options()),
+                      std::back_inserter(sentences));
     std::ranges::move(describe_noises(result.noise_sizes), std::back_inserter(sentences));
     std::ranges::copy(errors.sentences, std::back_inserter(sentences));
     std::ranges::move(judge_priors(result.parameters, options()), std::back_inserter(sentences));

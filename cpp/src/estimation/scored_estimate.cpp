@@ -142,12 +142,17 @@ std::string describe_no_maximum(const FitOptions& options) {
 }
 
 std::vector<std::string> describe_floors(const Scored& at, const Scoring& scoring,
-                                         const std::vector<Estimated>& estimated) {
+                                         const std::vector<Estimated>& estimated,
+                                         const FitOptions& options) {
+  bool is_output_error = std::ranges::none_of(options.process_noise,
+                                              [](const auto& held) { return held.second > 0.0; });
   std::vector<std::string> states;
   std::vector<std::string> outputs;
   for (std::size_t i = 0; i < estimated.size(); ++i) {
     const Estimated& noise = estimated[i];
-    if (noise.kind == Estimated::Kind::parameter || !std::isfinite(at.cost) || !at.at_bound[i]) {
+    if (noise.kind == Estimated::Kind::parameter || !std::isfinite(at.cost)) continue;
+    if (!at.at_bound[i]) {
+      is_output_error = is_output_error && noise.kind == Estimated::Kind::output_noise;
       continue;
     }
     if (noise.kind == Estimated::Kind::process_noise) {
@@ -160,7 +165,8 @@ std::vector<std::string> describe_floors(const Scored& at, const Scoring& scorin
   std::vector<std::string> sentences;
   if (!states.empty()) {
     sentences.push_back("the record shows no process noise " + base::list_names(states) +
-                        ", which ended at the floor, where output error is the same");
+                        ", which ended at the floor" +
+                        (is_output_error ? ", where output error is the same" : ""));
   }
   if (!outputs.empty()) {
     const bool one = outputs.size() == 1;

@@ -60,7 +60,8 @@ std::string describe_no_maximum(const FitOptions& options);
 
 /// Noises that nothing but their floor stopped.
 std::vector<std::string> describe_floors(const Scored& at, const Scoring& scoring,
-                                         const std::vector<Estimated>& estimated);
+                                         const std::vector<Estimated>& estimated,
+                                         const FitOptions& options);
 
 /// Those that are all but none, or that others do for as well.
 std::vector<std::string> describe_noises(const std::vector<NoiseSize>& sizes);

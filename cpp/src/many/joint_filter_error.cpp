@@ -387,7 +387,8 @@ class JointFilterError {
       if (!at.converged) sentences.push_back(estimation::describe_no_maximum(options));
     }
     sentences.push_back(result.identifiability.message());
-    std::ranges::move(describe_floors(at, scoring, estimated_), std::back_inserter(sentences));
+    std::ranges::move(describe_floors(at, scoring, estimated_, problem_.options()),
+                      std::back_inserter(sentences));
     std::ranges::move(estimation::describe_noises(result.noise_sizes),
                       std::back_inserter(sentences));
     std::ranges::copy(errors.sentences, std::back_inserter(sentences));
