@@ -98,6 +98,21 @@ def test_every_filter_on_every_model_with_a_state(
                     assert sd <= found.standard_deviation(name)[0] * 1.01
 
 
+@pytest.mark.parametrize("method", ["ekf", "iekf", "srif"])
+def test_a_log_that_lacks_an_output_takes_the_noise_of_the_others_by_name(
+    fits: Fits, flights: list[sepcal.Flight], method: str
+) -> None:
+    fit = fits("path")
+    blind = sepcal.Flight(
+        {name: flights[1][name] for name in flights[1].columns if name != "alpha_rad"}
+    )
+    noise = {name: value for name, value in fit.noise.items() if name != "alpha"}
+    found = fit.track(blind, method=method, process_noise=NOISE["path"])
+    expected = fit.track(blind, method=method, process_noise=NOISE["path"], noise=noise)
+    np.testing.assert_allclose(found.estimates, expected.estimates, rtol=1e-9, atol=1e-12)
+    assert "lambda_alpha" not in found.names
+
+
 def test_recursive_least_squares_of_equation_error_is_the_batch(
     aircraft: sepcal.Aircraft, flights: list[sepcal.Flight]
 ) -> None:

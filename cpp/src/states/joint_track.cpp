@@ -291,9 +291,30 @@ Track track_jointly(const StateBlockModel& model, const Record& record, const St
   return JointStream(model, record, start, options).run(start);
 }
 
+namespace {
+
+/// The start's, which may have other outputs too.
+VectorXd own_noise(const std::vector<Variable>& outputs, const StreamStart& start) {
+  if (start.outputs.empty() && start.noise.size() == static_cast<Index>(outputs.size())) {
+    return start.noise;
+  }
+  VectorXd noise(static_cast<Index>(outputs.size()));
+  for (Index j = 0; j < noise.size(); ++j) {
+    const std::string& name = outputs[static_cast<std::size_t>(j)].name;
+    const auto at = std::ranges::find(start.outputs, name);
+    if (at == start.outputs.end()) {
+      throw Error("the start has no noise of the output '" + name + "'; give that of all outputs");
+    }
+    noise[j] = start.noise[at - start.outputs.begin()];
+  }
+  return noise;
+}
+
+}  // namespace
+
 VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
                   const TrackOptions& options) {
-  if (options.noise.empty()) return start.noise;
+  if (options.noise.empty()) return own_noise(outputs, start);
   const VectorXd noise = base::deviations_in_order(outputs, options.noise, "output");
   for (Index j = 0; j < noise.size(); ++j) {
     if (noise[j] > 0) continue;

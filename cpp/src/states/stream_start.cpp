@@ -41,7 +41,9 @@ StreamStart begin(const Fit& fit) {
   start.xi = fit.values();
   start.noise.resize(static_cast<Index>(fit.noise.size()));
   for (Index j = 0; j < start.noise.size(); ++j) {
-    start.noise[j] = fit.noise[static_cast<std::size_t>(j)].value;
+    const OutputValue& output = fit.noise[static_cast<std::size_t>(j)];
+    start.noise[j] = output.value;
+    start.outputs.push_back(output.name);
   }
   return start;
 }

@@ -35,8 +35,15 @@ void check_start(const Tables& tables, const StreamStart& start) {
     throw Error("the start has no '" + parameter.name + "'; it has " +
                 base::list_first(start.names, 12) + ": start from this model and record");
   }
-  if (start.names.size() == parameters.size()) return;
-  throw Error("the start has parameters of another model: " + base::list_first(start.names, 12));
+  std::vector<std::string> others;
+  for (const std::string& name : start.names) {
+    if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) {
+      others.push_back(name);
+    }
+  }
+  if (others.empty()) return;
+  throw Error("the start has parameters that this record's model has not: " +
+              base::list_first(others, 12));
 }
 
 /// Throws Error where a trajectory begins that the start doesn't know.

@@ -22,6 +22,7 @@ struct StreamStart {
   std::vector<int> free;           // k places in xi: those that are estimated, not held
   Eigen::MatrixXd R;      // k x k, upper triangular: (R'R)^-1 is the covariance of xi(free)
   Eigen::VectorXd noise;  // n_z standard deviations of the outputs
+  std::vector<std::string> outputs = {};  // their names; of none, in the model's order
   /// Roots of the process noises' densities (n_w, in the table's order): filter error's. Else
   /// empty.
   Eigen::VectorXd process_noise = {};
