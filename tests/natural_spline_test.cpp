@@ -2,6 +2,7 @@
 // Natural cubic splines against closed forms and against the defining equations solved densely.
 #include "sepcal/natural_spline.hpp"
 
+#include <ceres/jet.h>
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -202,6 +203,27 @@ TEST_CASE("knots that are too few, not increasing or without a value each are re
   CHECK_THROWS_WITH_AS(NaturalSpline({0, 1}, {0}), Contains("one value at each knot"), Error);
   CHECK_THROWS_WITH_AS(sepcal::even_knots(0, 1, 1), Contains("1 knots"), Error);
   CHECK_THROWS_WITH_AS(sepcal::even_knots(2, 2, 4), Contains("must increase"), Error);
+}
+
+TEST_CASE("a function alone is that of the row, with its slope in dual numbers") {
+  using Jet = ceres::Jet<double, 1>;
+  const SplineBasis basis(uneven);
+  Eigen::RowVectorXd row(basis.functions());
+  Eigen::RowVectorXd ahead(basis.functions());
+  Eigen::RowVectorXd behind(basis.functions());
+  constexpr double step = 1e-6;
+  for (double x = -9.0; x < 10.0; x += 0.37) {
+    CAPTURE(x);
+    basis.evaluate(x, row);
+    basis.evaluate(x + step, ahead);
+    basis.evaluate(x - step, behind);
+    for (int j = 0; j < basis.functions(); ++j) {
+      CHECK(basis.value(j, x) == Approx(row[j]).epsilon(1e-12));
+      const Jet at = basis.value(j, Jet(x, 0));
+      CHECK(at.a == Approx(row[j]).epsilon(1e-12));
+      CHECK(std::abs(at.v[0] - (ahead[j] - behind[j]) / (2.0 * step)) < 1e-7);
+    }
+  }
 }
 
 }  // namespace natural_spline_test

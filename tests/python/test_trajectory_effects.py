@@ -90,6 +90,36 @@ def test_a_missing_regressor_is_named_and_keeps_its_promise() -> None:
     assert added.history[-1].predicted_drop == pytest.approx(added.history[-1].drop, abs=PROMISE)
 
 
+@pytest.mark.parametrize("method", ["output-error", "filter-error"])
+def test_a_spline_of_the_state_bends_as_the_moment_does(method: str, tmp_path: Path) -> None:
+    interpolate = pytest.importorskip("scipy.interpolate")
+    flight = fly({"Cm[alpha^2]": CURVE / 2})
+    fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), flight, method=method)
+    diagnosis = fit.diagnose(only=["Cm[spline(alpha,5)]"])
+    assert diagnosis.advice["effect"] == "Cm[spline(alpha,5)]"
+    added = fit.add("Cm[spline(alpha,5)]")
+    step = added.history[-1]
+    assert step.predicted_drop == pytest.approx(step.drop, abs=PROMISE)
+    heights = [0.0, *(added[f"Cm[spline(alpha,5)].s_{j}"].value for j in (2, 3, 4)), 0.0]
+    knots = np.linspace(flight["alpha_rad"].min(), flight["alpha_rad"].max(), 5)
+    alpha = np.linspace(*np.quantile(flight["alpha_rad"], [0.02, 0.98]), 50)
+    curve = interpolate.CubicSpline(knots, heights, bc_type="natural")(alpha)
+    bend = curve - np.polyval(np.polyfit(alpha, curve, 1), alpha)
+    truth = CURVE / 2 * alpha**2
+    truth -= np.polyval(np.polyfit(alpha, truth, 1), alpha)
+    assert np.abs(bend - truth).max() < 0.25 * np.ptp(truth)  # a natural spline ends straight
+    added.save(tmp_path / "fit.json")
+    assert sepcal.load(tmp_path / "fit.json").compare(flight).text == added.compare(flight).text
+
+
+def test_a_spline_of_a_coefficient_that_the_model_has_not() -> None:
+    fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), fly({}))
+    with pytest.raises(sepcal.Error, match="has no Cl here; it has CX, CZ, Cm"):
+        fit.add("Cl[spline(beta,5)]")
+    with pytest.raises(sepcal.Error, match="no column 'p_hat' whose range"):
+        fit.add("Cm[spline(p_hat,5)]")
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_nothing_is_named_where_nothing_is_hidden(seed: int) -> None:
     verdict = sepcal.fit(sepcal.FlightPath(), fly({}, seed=100 + seed)).diagnose().verdict

@@ -4,6 +4,7 @@
 // (one at their own knot, zero at the others) are the smooth drivers of effects.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -51,7 +52,23 @@ class SplineBasis {
   /// Values of every function at x (functions()), linear beyond the end knots.
   void evaluate(double x, Eigen::Ref<Eigen::RowVectorXd> values) const;
 
+  /// One of them (from 0 on), of any number that compares with a double.
+  template <class X>
+  X value(int function, const X& x) const {
+    std::size_t piece = 0;  // before the first knot, between two of them, beyond the last
+    while (piece < knots_.size() && !(x < knots_[piece])) ++piece;
+    const Cubic cubic = piece_of(function, piece);
+    const X t = x - cubic.from;
+    return cubic.c[0] + t * (cubic.c[1] + t * (cubic.c[2] + t * cubic.c[3]));
+  }
+
  private:
+  struct Cubic {
+    double from;              // a knot
+    std::array<double, 4> c;  // of the powers of x - from
+  };
+  Cubic piece_of(int function, std::size_t piece) const;
+
   std::vector<double> knots_;
   Eigen::MatrixXd curvatures_;  // knots x knots: of cardinal function j at knot i
 };

@@ -40,14 +40,16 @@ namespace {
 /// Terms of one aircraft beside those of another; columns are counted off anew.
 void append(const AeroTerms& more, AeroTerms& aero) {
   constexpr std::size_t n = AeroTerms::variables.size();
+  const auto move = [&](std::size_t& variable) {
+    if (variable < n) return;
+    const std::string& name = more.columns[variable - n];
+    auto column = std::ranges::find(aero.columns, name);
+    if (column == aero.columns.end()) column = aero.columns.insert(column, name);
+    variable = n + static_cast<std::size_t>(column - aero.columns.begin());
+  };
   for (AeroTerms::Term term : more.terms) {
-    for (AeroTerms::Factor& factor : term.factors) {
-      if (factor.variable < n) continue;
-      const std::string& name = more.columns[factor.variable - n];
-      auto column = std::ranges::find(aero.columns, name);
-      if (column == aero.columns.end()) column = aero.columns.insert(column, name);
-      factor.variable = n + static_cast<std::size_t>(column - aero.columns.begin());
-    }
+    for (AeroTerms::Factor& factor : term.factors) move(factor.variable);
+    if (term.bend) move(term.bend->variable);
     aero.terms.push_back(std::move(term));
   }
   aero.parameters.insert(aero.parameters.end(), more.parameters.begin(), more.parameters.end());
@@ -95,21 +97,66 @@ void check_room(const AeroTerms& aero) {
   }
 }
 
-std::shared_ptr<const BlockModel> with_regressor(const BlockModel& model,
-                                                 const std::string& coefficient,
-                                                 const std::string& regressor,
-                                                 const Record& record) {
-  const AeroTerms more = compile_equations({{coefficient, {regressor}}});
-  for (const std::string& column : more.columns) {
-    if (!record.has(column)) throw Error("the record has no column '" + column + "'");
-  }
+namespace {
+
+/// `more(aero)`: the terms that join those of the aircraft.
+template <class More>
+std::shared_ptr<const BlockModel> with_terms(const BlockModel& model, const Record& record,
+                                             const More& more) {
   const auto along = [&](const auto* trajectory) {
-    return rebuild(trajectory->state_model(), more, trajectory->plan().options(), record);
+    const AeroTerms terms = more(trajectory->state_model().aero);
+    for (const std::string& column : terms.columns) {
+      if (!record.has(column)) throw Error("the record has no column '" + column + "'");
+    }
+    return rebuild(trajectory->state_model(), terms, trajectory->plan().options(), record);
   };
   if (const auto* small = as_aircraft<16>(model)) return along(small);
   if (const auto* middle = as_aircraft<24>(model)) return along(middle);
   if (const auto* large = as_aircraft<40>(model)) return along(large);
   throw Error("only an aircraft that is integrated has regressors");
+}
+
+bool has_line(const AeroTerms& aero, const AeroTerms::Term& line) {
+  return std::ranges::any_of(aero.terms, [&](const AeroTerms::Term& term) {
+    return term.coefficient == line.coefficient && term.factors.size() == 1 && !term.bend &&
+           term.factors.front().variable == line.factors.front().variable &&
+           term.factors.front().power == 1 && !term.factors.front().absolute;
+  });
+}
+
+}  // namespace
+
+std::shared_ptr<const BlockModel> with_regressor(const BlockModel& model,
+                                                 const std::string& coefficient,
+                                                 const std::string& regressor,
+                                                 const Record& record) {
+  return with_terms(model, record, [&](const AeroTerms& /*aero*/) {
+    return compile_equations({{coefficient, {regressor}}});
+  });
+}
+
+std::shared_ptr<const BlockModel> with_spline(const BlockModel& model,
+                                              const std::string& coefficient,
+                                              const std::string& variable,
+                                              const std::vector<double>& knots,
+                                              const Record& record) {
+  const auto basis = std::make_shared<const SplineBasis>(knots);
+  const std::string owner =
+      coefficient + "[spline(" + variable + "," + std::to_string(knots.size()) + ")].s_";
+  return with_terms(model, record, [&](const AeroTerms& aero) {
+    AeroTerms terms = compile_equations({{coefficient, {variable}}});
+    const AeroTerms::Term line = terms.terms.front();
+    AeroTerms known = aero;  // in whose columns the line is told
+    append(terms, known);
+    const bool bends_alone = has_line(aero, known.terms.back());
+    terms.terms.clear();
+    terms.parameters.clear();
+    for (int j = 0; j < basis->functions() - (bends_alone ? 1 : 0); ++j) {
+      terms.terms.push_back({line.coefficient, {}, {{line.factors.front().variable, basis, j}}});
+      terms.parameters.emplace_back(owner + std::to_string(j + 2), "1");
+    }
+    return terms;
+  });
 }
 
 template class TrajectoryModel<RigidAircraft<16>>;

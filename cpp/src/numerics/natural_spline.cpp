@@ -134,4 +134,20 @@ void SplineBasis::evaluate(double x, Eigen::Ref<RowVectorXd> values) const {
   values[row] += right + beyond / h;
 }
 
+SplineBasis::Cubic SplineBasis::piece_of(int function, std::size_t piece) const {
+  const auto own = static_cast<std::size_t>(function) + 1;  // the knot where it is one
+  const std::size_t i = std::clamp<std::size_t>(piece, 1, knots_.size() - 1) - 1;
+  const double h = knots_[i + 1] - knots_[i];
+  const double here = i == own ? 1.0 : 0.0;
+  const double next = i + 1 == own ? 1.0 : 0.0;
+  const double left = curvatures_(static_cast<Index>(i), function + 1);
+  const double right = curvatures_(static_cast<Index>(i) + 1, function + 1);
+  const double slope = (next - here) / h - h * (2.0 * left + right) / 6.0;
+  if (piece == 0) return {knots_.front(), {here, slope, 0.0, 0.0}};
+  if (piece == knots_.size()) {
+    return {knots_.back(), {next, slope + 0.5 * h * (left + right), 0.0, 0.0}};
+  }
+  return {knots_[i], {here, slope, 0.5 * left, (right - left) / (6.0 * h)}};
+}
+
 }  // namespace sepcal

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "sepcal/aircraft/equations.hpp"
 #include "sepcal/aircraft/geometry.hpp"
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/natural_spline.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/rotation.hpp"
 #include "sepcal/states/trajectory_model.hpp"
@@ -36,9 +38,16 @@ struct AeroTerms {
     int power;
     bool absolute;
   };
+  /// One function of a natural spline.
+  struct Bend {
+    std::size_t variable;
+    std::shared_ptr<const SplineBasis> basis;
+    int function;
+  };
   struct Term {
     std::size_t coefficient;  // of coefficient_names
     std::vector<Factor> factors;
+    std::optional<Bend> bend = {};
   };
 
   std::vector<Term> terms;           // one a parameter
@@ -253,6 +262,9 @@ struct RigidAircraft {
         const X& value = values[factor.variable];
         for (int i = 0; i < factor.power; ++i) product *= factor.absolute ? X(abs(value)) : value;
       }
+      if (const auto& bend = aero.terms[k].bend) {
+        product *= bend->basis->value(bend->function, values[bend->variable]);
+      }
       C[static_cast<Eigen::Index>(aero.terms[k].coefficient)] += product;
     }
     return C;
@@ -268,6 +280,16 @@ std::shared_ptr<const BlockModel> with_regressor(const BlockModel& model,
                                                  const std::string& coefficient,
                                                  const std::string& regressor,
                                                  const Record& record);
+
+/// The same with a natural spline of what a regressor may be made of, linear beyond its knots: the
+/// effect "Cm[spline(alpha,5)]" with parameters "Cm[spline(alpha,5)].s_2" ..., the values at the
+/// knots but the first, and without the last where the coefficient has a straight line of its own.
+/// Throws Error as with_regressor() does, and for fewer than three knots.
+std::shared_ptr<const BlockModel> with_spline(const BlockModel& model,
+                                              const std::string& coefficient,
+                                              const std::string& variable,
+                                              const std::vector<double>& knots,
+                                              const Record& record);
 
 /// Those that are compiled; aircraft_model() takes the smallest that has room. With the nine states
 /// their dual numbers are of odd length: even ones are padded to the width of registers, and A then

@@ -28,8 +28,6 @@ const std::vector<std::string> of_sideslip{
     "alpha*beta",    "beta*abs(beta)", "beta^3",   "alpha*p_hat",   "alpha*r_hat",
     "alpha*aileron", "alpha*rudder",   "throttle", "spline(beta,5)"};
 
-bool is_spline(const std::string& effect) { return effect.find("[spline(") != std::string::npos; }
-
 std::string coefficients_in(const std::vector<AeroEquation>& equations) {
   std::vector<std::string> names;
   for (const AeroEquation& equation : equations) names.push_back(equation.coefficient);
@@ -53,6 +51,12 @@ std::string coefficients_in(const std::vector<AeroEquation>& equations) {
 
 }  // namespace
 
+bool is_spline(const std::string& effect) {
+  const std::size_t open = effect.find("[spline(");
+  return open != std::string::npos &&
+         std::ranges::find(coefficient_names, effect.substr(0, open)) != coefficient_names.end();
+}
+
 std::size_t find_equation(const std::string& effect, const std::vector<AeroEquation>& equations,
                           AircraftModel model) {
   const std::size_t open = effect.find('[');
@@ -68,7 +72,7 @@ std::vector<AeroEquation> with_regressors(std::vector<AeroEquation> equations,
                                           const AircraftOptions& options) {
   for (const EffectSetting& effect : options.calibration.effects) {
     const std::string& name = effect.name;
-    if (acts_along(options.model, name)) continue;
+    if (acts_along(options.model, name) && !is_spline(name)) continue;
     const std::size_t equation = find_equation(name, equations, options.model);
     if (is_spline(name)) continue;
     const std::size_t open = name.find('[');

@@ -22,6 +22,9 @@ std::size_t find_equation(const std::string& effect, const std::vector<AeroEquat
 std::vector<AeroEquation> with_regressors(std::vector<AeroEquation> equations,
                                           const AircraftOptions& options);
 
+/// Whether it is a coefficient's spline, "Cm[spline(alpha,5)]".
+bool is_spline(const std::string& effect);
+
 /// Those of the effects that are no products.
 std::vector<EffectSetting> splines_of(const std::vector<EffectSetting>& effects);
 

@@ -89,7 +89,6 @@ void lay_coefficients(const AircraftOptions& options, LaidAircraft& laid) {
 }
 
 void lay_motion(const AircraftOptions& options, LaidAircraft& laid) {
-  refuse_splines(options, "an aircraft that is integrated takes products of powers alone");
   AircraftTrajectory along = lay_aircraft(laid.record, geometry_of(options),
                                           {.axes = axes_of(options.model),
                                            .equations = laid.equations,
@@ -111,10 +110,18 @@ void join_effects(const AircraftOptions& options, LaidAircraft& laid) {
   laid.base = laid.model;
   std::vector<EffectSetting> settings = effects_along(options, laid.effects);
   if (settings.empty()) return;
-  const EffectKit kit = trajectory_kit(options.model, laid.base->tables());
+  EffectKit kit = trajectory_kit(options.model, laid.base->tables());
+  std::vector<std::string> splines;
+  for (const EffectSetting& spline : splines_of(settings)) splines.push_back(spline.name);
+  add_regressors(splines, kit);
   laid.along = make_effects(kit, *laid.base, settings, laid.record);
   laid.model = compose(laid.base, laid.along, laid.record);
   laid.fit.unsampled.merge(initial_corrections(laid.along));
+  for (const Variable& parameter : laid.model->tables().nonlinear) {  // of splines
+    const bool is_new = std::ranges::find(laid.base->tables().nonlinear, parameter.name,
+                                          &Variable::name) == laid.base->tables().nonlinear.end();
+    if (is_new) laid.fit.unsampled.try_emplace(parameter.name, 0.0);
+  }
   put_back(settings, options, laid.effects);
 }
 

@@ -2,6 +2,7 @@
 #include "flight/aircraft/trajectory_effects.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "sepcal/aircraft/rigid_aircraft.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/natural_spline.hpp"
 
 namespace sepcal::aircraft_log {
 namespace {
@@ -23,15 +25,41 @@ const EffectTable& table_of(AircraftModel model) {
   return catalogue::trajectory_table(model == AircraftModel::path ? "path" : "aircraft");
 }
 
-/// With which an aircraft is built anew, "Cm[alpha^2]": those that equations may lack but splines.
-std::vector<std::string> regressors_along(const LaidAircraft& laid, const Flight& flight) {
-  std::vector<std::string> names = list_regressors(laid.equations, laid.record, flight);
-  std::erase_if(names,
-                [](const std::string& name) { return name.find("[spline(") != std::string::npos; });
-  return names;
+/// Of the values that the record has.
+std::vector<double> knots_over(const Record& record, const EffectName& spline) {
+  if (!record.has(spline.base)) {
+    throw Error("effect " + spline.text + ": the record has no column '" + spline.base +
+                "' whose range the knots could share");
+  }
+  double lowest = infinity;
+  double highest = -infinity;
+  for (const Segment& segment : record.segments()) {
+    for (const double value : record.column(spline.base).subspan(segment.first, segment.rows())) {
+      if (std::isnan(value)) continue;
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+    }
+  }
+  return even_knots(lowest, highest, spline.number);
 }
 
-EffectKit::Maker remodels(const std::string& name) {
+EffectKit::Maker spline_maker(const std::string& text) {
+  const EffectName name = parse_effect_name(text);
+  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
+    if (setting.knots.empty()) setting.knots = knots_over(record, name);
+    const auto build = [name, knots = setting.knots, record](const BlockModel& without) {
+      return with_spline(without, name.port, name.base, knots, record);
+    };
+    build(model);  // throws where there can be none
+    Effect effect{.name = setting.name};
+    effect.remodel = [build](const std::shared_ptr<const BlockModel>& without) {
+      return build(*without);
+    };
+    return effect;
+  };
+}
+
+EffectKit::Maker regressor_maker(const std::string& name) {
   const std::size_t open = name.find('[');
   if (open == std::string::npos || !name.ends_with(']')) {
     throw Error(name + " is no regressor; write it as COEFFICIENT[REGRESSOR]");
@@ -101,6 +129,7 @@ std::vector<Port::Component> places_in(const Tables& tables,
 bool acts_along(AircraftModel model, const std::string& effect) {
   if (model == AircraftModel::path) return true;
   if (model == AircraftModel::aero) return false;
+  if (is_spline(effect)) return true;
   const EffectTable& table = table_of(model);
   return table.find_effect(effect) != nullptr ||
          table.find_port(effect.substr(0, effect.find('['))) != nullptr;
@@ -110,8 +139,9 @@ std::string describe_along(AircraftModel model, const std::string& effect) {
   std::string sentence;
   for (const std::string& part : split_effects(effect)) {
     if (!sentence.empty()) sentence += ", and ";
-    sentence += acts_along(model, part) ? catalogue::describe_effect(table_of(model), part)
-                                        : describe_regressor(part);
+    const bool is_regressor = !acts_along(model, part) || is_spline(part);
+    sentence +=
+        is_regressor ? describe_regressor(part) : catalogue::describe_effect(table_of(model), part);
   }
   return sentence;
 }
@@ -122,7 +152,8 @@ std::vector<std::string> list_along(const AircraftFit& fitted, const LaidAircraf
   std::vector<std::string> names = catalogue::list_candidates(
       table_of(model), trajectory_kit(model, laid.base->tables()), laid.record, flight);
   std::erase_if(names, follows_motion);
-  for (const std::string& name : regressors_along(laid, flight)) names.push_back(name);
+  for (const std::string& name : list_regressors(laid.equations, laid.record, flight))
+    names.push_back(name);
   const std::vector<EffectSetting>& has = fitted.options.calibration.effects;
   std::erase_if(names, [&](const std::string& name) {
     return std::ranges::find(has, name, &EffectSetting::name) != has.end();
@@ -135,16 +166,20 @@ DiagnosedFit diagnosed_trajectory(const AircraftFit& fitted, const Fit& fit,
                                   const std::vector<std::string>& asked) {
   const AircraftModel model = fitted.options.model;
   EffectKit kit = trajectory_kit(model, laid.base->tables());
-  std::vector<std::string> regressors = regressors_along(laid, flight);
+  std::vector<std::string> regressors = list_regressors(laid.equations, laid.record, flight);
   for (const std::string& effect : asked) {
     for (const std::string& part : split_effects(effect)) {
-      if (!acts_along(model, part)) regressors.push_back(part);
+      if (!acts_along(model, part) || is_spline(part)) regressors.push_back(part);
     }
   }
-  for (const std::string& name : regressors) kit.own[name] = remodels(name);
+  const std::vector<EffectSetting> own = effects_along(fitted.options, laid.effects);
+  for (const EffectSetting& effect : own) {
+    if (is_spline(effect.name)) regressors.push_back(effect.name);
+  }
+  add_regressors(regressors, kit);
   return {.model = laid.base,
           .kit = std::move(kit),
-          .effects = effects_along(fitted.options, laid.effects),
+          .effects = own,
           .record = laid.record,
           .rows = laid.record.segments(),
           .fit = fit,
@@ -170,6 +205,12 @@ EffectKit trajectory_kit(AircraftModel model, const Tables& tables) {
   for (Port& port : kit.ports) port.components = places_in(tables, port.components);
   std::erase_if(kit.ports, [](const Port& port) { return port.components.empty(); });
   return kit;
+}
+
+void add_regressors(const std::vector<std::string>& names, EffectKit& kit) {
+  for (const std::string& name : names) {
+    kit.own[name] = is_spline(name) ? spline_maker(name) : regressor_maker(name);
+  }
 }
 
 }  // namespace sepcal::aircraft_log

@@ -37,4 +37,7 @@ Promise promise_along(const AircraftFit& fitted, const Flight& flight, const Air
 /// The kit of these for a model without effects: of its inputs and linear parameters.
 EffectKit trajectory_kit(AircraftModel model, const Tables& tables);
 
+/// Regressors that an aircraft is built anew with, "Cm[alpha^2]", "Cm[spline(alpha,5)]".
+void add_regressors(const std::vector<std::string>& names, EffectKit& kit);
+
 }  // namespace sepcal::aircraft_log
