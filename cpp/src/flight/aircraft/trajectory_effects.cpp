@@ -152,8 +152,10 @@ std::vector<std::string> list_along(const AircraftFit& fitted, const LaidAircraf
   std::vector<std::string> names = catalogue::list_candidates(
       table_of(model), trajectory_kit(model, laid.base->tables()), laid.record, flight);
   std::erase_if(names, follows_motion);
-  for (const std::string& name : list_regressors(laid.equations, laid.record, flight))
-    names.push_back(name);
+  // A spline and a power that do the same have the equation's own coefficients elsewhere.
+  const std::vector<std::string> products =
+      products_among(list_regressors(laid.equations, laid.record, flight));
+  names.insert(names.end(), products.begin(), products.end());
   const std::vector<EffectSetting>& has = fitted.options.calibration.effects;
   std::erase_if(names, [&](const std::string& name) {
     return std::ranges::find(has, name, &EffectSetting::name) != has.end();
