@@ -248,7 +248,7 @@ TEST_CASE("the likelihood is the joint density of all readings, and its score th
 TEST_CASE("the score of a nonlinear model is the gradient of its likelihood") {
   const Record record = swing(80, 3);
   std::vector<double> sine(record.column("sine").begin(), record.column("sine").end());
-  for (const std::size_t row : {5, 6, 40}) sine[row] = sepcal::not_a_number;  // missing
+  for (const std::size_t row : {5UL, 6UL, 40UL}) sine[row] = sepcal::not_a_number;  // missing
   Record with_gaps;
   for (const std::string name : {"time", "torque", "rate_m"}) {
     with_gaps.add(name,
