@@ -331,7 +331,7 @@ class JointFilterError {
     estimation::Prior own = flight_prior();
     estimation::Prior shared = own.tail(layout_.shared);
     own.weight.tail(layout_.shared).setZero();
-    const double readings = static_cast<double>(at.readings);
+    const auto readings = static_cast<double>(at.readings);
     const double ratio =
         readings / std::max(1.0, readings - static_cast<double>(errors.inside.size()));
     std::vector<TriangularFactor> blocks;
