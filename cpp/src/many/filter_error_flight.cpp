@@ -44,8 +44,7 @@ FlightStart FilterErrorFlight::start() const {
   const auto n = static_cast<Index>(places_.size()) - 1;
   const VectorXd theta = estimation::theta_of(fitted);
   const VectorXd floor = layout_.floor_of(fitted);
-  start.x = theta(places_);
-  start.x.conservativeResize(n);
+  start.x = theta(std::vector<Index>(places_.begin(), places_.end() - 1));
   start.floor.resize(noises());
   for (Index k = 0; k < noises(); ++k) {
     start.floor[k] = floor[places_[static_cast<std::size_t>(n - noises() + k)] - layout_.n()];

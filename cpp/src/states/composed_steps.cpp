@@ -230,7 +230,8 @@ StateSteps::Reading ComposedSteps::read(std::size_t row, const VectorXd& x) cons
 }
 
 VectorXd ComposedSteps::expect(std::size_t row, const VectorXd& x) const {
-  return own_->expect(row, x) + read_effects(row, columns_at(row));
+  const VectorXd added = read_effects(row, columns_at(row));
+  return own_->expect(row, x) + added;
 }
 
 StateSteps::JointStep ComposedSteps::advance_jointly(std::size_t row, const VectorXd& x,
