@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import sepcal
+from oracle import kinematic_flight
 
 LIGHT = sepcal.Aircraft(
     area=16.2, chord=1.49, span=10.9, mass=1050.0, inertia=(1285.0, 1825.0, 2667.0, 60.0)
@@ -225,3 +226,48 @@ def test_an_own_model_takes_effects_on_its_inputs(method: str) -> None:
     found = fit["aileron[temp_degc].s"]
     assert abs(found.value - slope) < 4 * found.standard_error < slope
     assert fit.rmse["p_m"] == pytest.approx(0.01, rel=0.15)
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_what_a_path_has_bent_to_is_found_from_its_own_fit(seed: int) -> None:
+    """lambda_beta takes the drift for its own, and from there one step sees nothing of it."""
+    flown = kinematic_flight.fly(seed, gyro_drift=[8e-5, -16e-5, 12e-5])
+    fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown))
+    diagnosis = fit.diagnose()
+    assert diagnosis.verdict == "effect_missing"
+    assert diagnosis.advice["effect"] == "gyro_bias[time]"
+    added = fit.add("gyro_bias[time]")
+    assert added.history[-1].drop > 0.6
+    assert diagnosis.effects[0].predicted_drop == pytest.approx(added.history[-1].drop, abs=0.02)
+    assert not [note for note in added.notes if "would not advise" in note]
+    for axis, drift in zip("xyz", [8e-5, -16e-5, 12e-5], strict=True):
+        slope = added[f"gyro_bias[time].{axis}"]
+        assert abs(slope.value + drift) < 4 * slope.standard_error
+
+
+def test_a_curve_that_holds_the_line_does_not_speak_against_it() -> None:
+    flown = kinematic_flight.fly(1, rate=20.0, gyro_drift=[4e-5, -8e-5, 6e-5])
+    diagnosis = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown)).diagnose()
+    assert diagnosis.advice["effect"] == "gyro_bias[time]"
+
+
+def test_filter_error_promises_what_it_keeps() -> None:
+    """Its noises are found anew beside the effect: one step in the old ones can't foretell them."""
+    flown = kinematic_flight.fly(6, duration=30.0, rate=25.0, late=0.08)
+    fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown), method="filter-error")
+    diagnosis = fit.diagnose()
+    assert diagnosis.advice["effect"] == "imu_late"
+    added = fit.add("imu_late")
+    assert added.history[-1].drop > 0.05
+    assert diagnosis.effects[0].predicted_drop == pytest.approx(added.history[-1].drop, abs=0.01)
+
+
+def test_no_state_made_of_a_reading_is_seen_to_follow_its_noise() -> None:
+    flown = kinematic_flight.fly(21, duration=30.0, rate=25.0)
+    fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown), method="filter-error")
+    channels = fit.compare().channels
+    share = {(one.driver, one.output): one.share_smooth for one in channels}
+    made_of = {"theta": "pitch", "phi": "roll", "psi": "yaw", "u": "airspeed", "w": "alpha"}
+    for state, output in made_of.items():
+        assert share[state, output] < 0.02, state
+    assert {one.unit for one in channels if one.driver == "w"} >= {"rad per m/s"}

@@ -103,6 +103,7 @@ struct EffectFinding {
 
   std::vector<std::string> outputs = {};  // of the fit, that the figures are over
   double predicted_drop = 0.0;            // of the RMSE over all of these, 1 - after / before
+  bool drop_is_fitted = false;            // it is that of a real fit, of a model with a state
   double held_out_before = 0.0;           // RMSE of rows left out, over these
   double held_out_after = 0.0;            // with the effect
   double held_out_gain = 0.0;             // 1 - after / before
@@ -228,7 +229,9 @@ struct DiagnosedFit {
 
 /// What an effect promises before it is added. Undefined numbers are NaN.
 struct Promise {
-  double predicted_drop = not_a_number;   // of the RMSE over all outputs, by one step from the fit
+  /// Of the RMSE over all outputs, by one step from the fit; of a model with a state by a real fit,
+  /// as what it lacks may have bent its own parameters, from where one step sees little.
+  double predicted_drop = not_a_number;
   double held_out_before = not_a_number;  // RMSE of rows left out, by real fits to the others
   double held_out_after = not_a_number;
   std::string against = {};  // why diagnose() would not advise it; empty where a fit bears it out
@@ -240,7 +243,8 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
                 const std::map<std::string, double>& shapes, int threads = 0);
 
 /// What one step from the fit promises of effects at their shapes, before noise is asked: of the
-/// RMSE over all outputs, 1 - after / before. NaN where the record can't tell one.
+/// RMSE over all outputs, 1 - after / before. NaN where the record can't tell one. As it was of
+/// those whose drop is that of a fit.
 std::vector<double> predicted_drops(const DiagnosedFit& fitted,
                                     const std::vector<EffectFinding>& effects, int threads = 0);
 

@@ -53,8 +53,10 @@ std::string disagreement(const EffectFinding& finding, const Fit& fitted) {
   return {};
 }
 
-/// What is wrong with the fit that has the effect; empty where nothing is.
-std::string objection_to_fit(const Fit& before, const EffectFinding& finding, const Fit& fitted) {
+/// What is wrong with the fit that has the effect; empty where nothing is. One that takes as much
+/// of the error as the step promised is believed before it.
+std::string objection_to_fit(const Fit& before, const EffectFinding& finding, const Fit& fitted,
+                             bool keeps_promise) {
   if (fitted.status != FitStatus::converged) {
     return fmt::format("a fit with it is {}", fitted.status == FitStatus::not_converged
                                                   ? "not converged"
@@ -65,36 +67,42 @@ std::string objection_to_fit(const Fit& before, const EffectFinding& finding, co
     return fmt::format("fitted, it runs into the bounds of {}; wider ones may let it",
                        fmt::join(held, ", "));
   }
-  return disagreement(finding, fitted);
+  return keeps_promise ? std::string() : disagreement(finding, fitted);
 }
 
 }  // namespace
 
 Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,
                          base::ThreadPool& pool) {
+  Objection objection;
   if (!(finding.visibility >= least_visibility)) {
-    return {
-        fmt::format("the flight hardly tells it from the model's own parameters (visibility "
-                    "{:.2f})",
-                    finding.visibility)};
+    objection.reason = fmt::format(
+        "the flight hardly tells it from the model's own parameters (visibility {:.2f})",
+        finding.visibility);
+    if (!room.follows_path()) return objection;
   }
   const Candidate candidate = room.make(finding.name);
   const double shape = shape_of(finding);
   try {
     const Fit fitted = refit_with(room, candidate, shape);
-    std::string misfit = objection_to_fit(room.fitted(), finding, fitted);
-    if (!misfit.empty()) return {std::move(misfit), true};
+    if (room.follows_path()) objection.drop = drop_of_adding(room, candidate, fitted);
+    if (!objection.reason.empty()) return objection;
+    const bool keeps_promise = objection.drop >= finding.predicted_drop;
+    objection.reason = objection_to_fit(room.fitted(), finding, fitted, keeps_promise);
+    objection.is_to_fit = !objection.reason.empty();
+    if (objection.is_to_fit) return objection;
     const Folds folds = few_folds(room.fit(), room.columns(candidate, shape).whole);
     const HeldOut held_out = hold_out_by_refits(room, candidate, shape, folds, pool);
     if (held_out.judged && !(held_out.gain > 0.0)) {
-      return {
+      objection.reason =
           fmt::format("real fits without some rows predict them no better ({:.1f} % more error)",
-                      -100.0 * held_out.gain)};
+                      -100.0 * held_out.gain);
     }
   } catch (const Error& error) {
-    return {std::string("it can't be fitted here: ") + error.what(), true};
+    objection.is_to_fit = true;
+    objection.reason = std::string("it can't be fitted here: ") + error.what();
   }
-  return {};
+  return objection;
 }
 
 }  // namespace sepcal::diagnosis

@@ -15,10 +15,13 @@ struct Objection {
   /// Whether no fit takes the effect as it was found, large as it may be: what counts beside it
   /// would then stand in for it.
   bool is_to_fit = false;
+  /// What a fit with the effect takes from the error, drop_of_adding(); NaN where none was made,
+  /// and of models without a state.
+  double drop = not_a_number;
 };
 
-/// None where a fit with the effect converges within its bounds, agrees with the step and predicts
-/// rows left out better.
+/// None where a fit with the effect converges within its bounds, agrees with the step, or along a
+/// path takes as much of the error, and predicts rows left out better.
 Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,
                          base::ThreadPool& pool);
 

@@ -22,7 +22,11 @@ bool may_be_slow(const Trial& trial, double threshold) {
 }
 
 Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool)
-    : fitted_(fitted), options_(options), pool_(pool), room_(fitted, pool) {
+    : Bench(fitted, {}, options, pool) {}
+
+Bench::Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
+             base::ThreadPool& pool)
+    : fitted_(fitted), options_(options), pool_(pool), room_(fitted, released, pool) {
   if (is_exact()) return;
   room_.add_wandering();
   room_.orthonormalise();

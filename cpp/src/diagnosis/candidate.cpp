@@ -92,6 +92,13 @@ double variance_of(const model::Measurements& measurements, int output) {
   return count > 1.0 ? square / (count - 1.0) : 0.0;
 }
 
+/// Whether the parameter is one of the candidate's.
+bool is_of(const Candidate& candidate, const std::string& parameter) {
+  return parameter == candidate.shape.parameter ||
+         std::ranges::find(candidate.coefficients, parameter, &Variable::name) !=
+             candidate.coefficients.end();
+}
+
 /// Whether the effect is a port's columns times a driver's functions and nothing else.
 bool is_driven(const Effect& effect, const EffectKit& kit) {
   return effect.driver && effect.terms.empty() && effect.delays.empty() &&
@@ -101,12 +108,16 @@ bool is_driven(const Effect& effect, const EffectKit& kit) {
 }  // namespace
 
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
+    : CandidateRoom(fitted, {}, pool) {}
+
+CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, const Candidate& released,
+                             base::ThreadPool& pool)
     : fitted_(fitted),
       record_(fitted.record),
       settings_(fitted.effects),
       effects_(make_effects(fitted.kit, *fitted.model, settings_, record_)),
       values_(fitted.fit.by_name()) {
-  linearise(fitted.fit, pool);
+  linearise(released, pool);
 }
 
 void CandidateRoom::add_wandering() {
@@ -114,7 +125,8 @@ void CandidateRoom::add_wandering() {
   if (linearisation_.wandering.cols() > 0) linearisation_.times = times();
 }
 
-void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
+void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool) {
+  const Fit& fit = fitted_.fit;
   const auto model = this->model();
   const Tables& tables = model->tables();
   const std::vector<Variable> parameters = tables.parameters();
@@ -137,9 +149,14 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
             .rows = static_cast<Index>(rows.rows())};
   std::vector<Index> columns;
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    if (fit.parameters[k].fixed || fit.parameters[k].at_bound) continue;
+    const Parameter& parameter = fit.parameters[k];
+    if (parameter.fixed || parameter.at_bound || is_of(released, parameter.name)) continue;
     columns.push_back(static_cast<Index>(k));
-    linearisation_.parameters.push_back(fit.parameters[k].name);
+    linearisation_.parameters.push_back(parameter.name);
+  }
+  const auto own = static_cast<Index>(released.coefficients.size());
+  for (const Variable& coefficient : released.coefficients) {
+    columns.push_back(find_column(parameters, coefficient.name));
   }
   columns.push_back(static_cast<Index>(parameters.size()));
   MatrixXd& tangent = linearisation_.tangent;
@@ -147,6 +164,11 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
       noise_
           ? innovation_rows(*model, used_, fit.values(), *noise_, columns)
           : model::Sweep(*model, measurements, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
+  for (Index k = 0; k < own; ++k) {
+    const Index at = tangent.cols() - 1 - own + k;
+    tangent.rightCols<1>() +=
+        values_.at(released.coefficients[static_cast<std::size_t>(k)].name) * tangent.col(at);
+  }
   const auto count = static_cast<double>(layout.rows);
   for (int j = 0; j < tables.n_z(); ++j) {
     const auto& output = tables.outputs[static_cast<std::size_t>(j)];
@@ -164,7 +186,24 @@ void CandidateRoom::linearise(const Fit& fit, base::ThreadPool& pool) {
   for (UsedOutput& output : layout.outputs) output.weight = one_unit ? output.scale : 1.0;
   scale_outputs(tangent);
   linearisation_.residual = tangent.rightCols<1>();
-  tangent.conservativeResize(Eigen::NoChange, tangent.cols() - 1);
+  if (own > 0) release(released, tangent.middleCols(tangent.cols() - 1 - own, own));
+  tangent.conservativeResize(Eigen::NoChange, tangent.cols() - 1 - own);
+}
+
+void CandidateRoom::release(const Candidate& released, const MatrixXd& columns) {
+  made_.emplace(released.name, released);
+  Index at = 0;
+  for (std::size_t i = 0; i < released.effects.size(); ++i) {
+    const Effect& effect = released.effects[i];
+    const auto own = static_cast<Index>(released.counts[i]);
+    if (is_driven(effect, fitted_.kit)) {
+      open(port_of(effect));
+    } else {
+      const Columns part = MatrixXd(columns.middleCols(at, own));
+      released_.emplace(released.settings[i].name, CandidateColumns{part, part});
+    }
+    at += own;
+  }
 }
 
 /// Those of a correction that the fit has already are the tangent's.
@@ -447,6 +486,8 @@ CandidateColumns CandidateRoom::effect_columns(const Candidate& candidate, std::
                                                std::span<const Variable> coefficients,
                                                double shape) const {
   const Effect& effect = candidate.effects[place];
+  const auto released = released_.find(candidate.settings[place].name);
+  if (released != released_.end()) return released->second;
   if (is_driven(effect, fitted_.kit)) {
     return driven_columns(effect, effect.driver->shape() ? shape : 0.0);
   }

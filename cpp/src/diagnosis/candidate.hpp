@@ -53,6 +53,11 @@ class CandidateRoom {
   /// Evaluates the fit. Throws Error for a fit whose parameters are not those of its model.
   CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool);
 
+  /// At a fit that has the candidate as its last effects, as if it had not: their columns are the
+  /// candidate's, and the residual is what it was before they explained their share. Of a model
+  /// that integrates a state.
+  CandidateRoom(const DiagnosedFit& fitted, const Candidate& released, base::ThreadPool& pool);
+
   /// Adds to fit() what corrections of inputs that may wander do to the outputs.
   void add_wandering();
 
@@ -109,7 +114,8 @@ class CandidateRoom {
                                    const std::vector<std::string>& names) const;
   /// Rows of all outputs become those of the used ones, over their RMSE.
   void scale_outputs(Eigen::MatrixXd& stacked) const;
-  void linearise(const Fit& fit, base::ThreadPool& pool);
+  void linearise(const Candidate& released, base::ThreadPool& pool);
+  void release(const Candidate& released, const Eigen::MatrixXd& columns);
   Eigen::MatrixXd wandering_columns();
 
   const DiagnosedFit& fitted_;
@@ -126,7 +132,8 @@ class CandidateRoom {
   std::map<std::string, PathChange> path_ports_;     // that act on a path
   mutable std::mutex following_;
   mutable std::map<std::string, CandidateColumns> followed_columns_ = {};
-  mutable Eigen::Index kept_ = 0;          // of their numbers
+  mutable Eigen::Index kept_ = 0;                          // of their numbers
+  std::map<std::string, CandidateColumns> released_ = {};  // of effects that the fit has
   std::map<std::string, Candidate> made_;  // once: an effect may leave columns in the record
 };
 

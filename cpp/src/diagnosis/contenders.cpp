@@ -31,13 +31,6 @@ bool may_stand_first(const EffectFinding& finding) {
          (finding.status != FindingStatus::cannot_be_seen && finding.p_value < worth_a_fit);
 }
 
-DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit) {
-  DiagnosedFit next = fitted;
-  next.effects.insert(next.effects.end(), candidate.settings.begin(), candidate.settings.end());
-  next.fit = std::move(fit);
-  return next;
-}
-
 /// Of what was found: the first, what would do as well, what counts beside it, the untried, the
 /// rest. Within each as before.
 void order_by_beside(Findings& findings) {
@@ -118,6 +111,13 @@ EffectFinding& finding_of(Findings& findings, const std::string& name) {
 }
 
 }  // namespace
+
+DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit) {
+  DiagnosedFit next = fitted;
+  next.effects.insert(next.effects.end(), candidate.settings.begin(), candidate.settings.end());
+  next.fit = std::move(fit);
+  return next;
+}
 
 double schwarz_penalty(const Candidate& candidate, Index measurements) {
   return static_cast<double>(candidate.coefficients.size()) *
@@ -210,6 +210,26 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   const auto place = std::ranges::find(findings, first->candidate.name, &EffectFinding::name);
   std::rotate(findings.begin(), place, place + 1);
   return first;
+}
+
+void promise_by_fits(const Bench& bench, const Contest& contest, Findings& findings) {
+  const CandidateRoom& room = bench.room();
+  const bool by_filter = room.fitted().by == FitMethod::filter_error;  // in the noise of the fit
+  if (!room.follows_path() || by_filter) return;
+  for (const Contender& contender : contest.contenders) {
+    if (!std::isfinite(contender.criterion)) continue;
+    EffectFinding& finding = finding_of(findings, contender.candidate.name);
+    finding.predicted_drop = error_drop(room.fitted(), contender.fit);
+    finding.drop_is_fitted = true;
+  }
+}
+
+const Objection& object(Bench& bench, Contest& contest, const EffectFinding& finding) {
+  const auto known = contest.objections.find(finding.name);
+  if (known != contest.objections.end()) return known->second;
+  Objection objection =
+      find_objection(bench.room(), finding, bench.options().least_visibility, bench.pool());
+  return contest.objections.emplace(finding.name, std::move(objection)).first->second;
 }
 
 void test_beside(Bench& bench, const Contender& first, Findings& findings) {

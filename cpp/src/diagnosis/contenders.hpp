@@ -3,9 +3,11 @@
 // the model, nor say what would do as well instead.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
+#include "diagnosis/advice.hpp"
 #include "diagnosis/bench.hpp"
 #include "diagnosis/pair_set.hpp"
 
@@ -26,7 +28,14 @@ struct Contender {
 struct Contest {
   NoiseMembers noise = {};
   std::vector<Contender> contenders = {};
+  std::map<std::string, Objection> objections = {};  // that were asked for
 };
+
+/// find_objection(), once an effect.
+const Objection& object(Bench& bench, Contest& contest, const EffectFinding& finding);
+
+/// The fit with the candidate's effects as its last.
+DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit);
 
 /// Schwarz's penalty for a candidate's coefficients and for the number of shapes tried.
 double schwarz_penalty(const Candidate& candidate, Eigen::Index measurements);
@@ -47,6 +56,10 @@ std::vector<std::string> keep_as_likely(Bench& bench, const Contest& contest,
 /// Returns the first's contender; null where none could be fitted.
 const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
                            std::vector<EffectFinding>& findings);
+
+/// Along a path a fit, not one step, says what of the error goes with each contender.
+void promise_by_fits(const Bench& bench, const Contest& contest,
+                     std::vector<EffectFinding>& findings);
 
 /// What of the other effects found fades beside the first and what counts: tested anew at its fit.
 /// Puts what counts before what fades.

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The recipe in order: make the candidates, screen all of them, test those near the top, calibrate
-// what slow noise could imitate, hold rows out, correct for their number; pairs where no
-// single one passes; and where nothing does, whether anything is there.
+// what slow noise could imitate, hold rows out, correct for their number; where no single one
+// passes those that a path has bent to, then pairs; and where nothing does, whether anything is
+// there.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
 
-#include "diagnosis/advice.hpp"
 #include "diagnosis/bench.hpp"
 #include "diagnosis/bent_effects.hpp"
 #include "diagnosis/contenders.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/omnibus.hpp"
+#include "diagnosis/own_fit.hpp"
 #include "diagnosis/pair_set.hpp"
 #include "diagnosis/residual_noise.hpp"
 #include "diagnosis/rivals.hpp"
@@ -63,6 +67,11 @@ class Recipe {
   std::vector<EffectFinding> collect(const Trials& trials, double tests) const;
   /// `tests`: how many could have been chosen.
   std::vector<EffectFinding> judge(Trials& trials, double tests) const;
+  /// Where a trial was made.
+  const Bench& bench_of(const Trial& trial) const;
+  bool has(FindingStatus status) const;
+  double tests() const;
+  void look_from_own_fits();
   void try_pairs();
   void settle();
   Objection object_to(const EffectFinding& finding);
@@ -73,9 +82,25 @@ class Recipe {
   base::ThreadPool pool_;
   Bench bench_;
   Trials trials_;
+  std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
   Contest contest_;
   Diagnosis result_;
 };
+
+const Bench& Recipe::bench_of(const Trial& trial) const {
+  const auto own = own_fits_.find(trial.candidate.name);
+  return own == own_fits_.end() ? bench_ : own->second->bench();
+}
+
+bool Recipe::has(FindingStatus status) const {
+  return std::ranges::find(result_.effects, status, &EffectFinding::status) !=
+         result_.effects.end();
+}
+
+/// How many effects could have been chosen.
+double Recipe::tests() const {
+  return count_visible(trials_) + static_cast<double>(options_.others);
+}
 
 /// Described, with the probabilities corrected for their number and the status that follows.
 std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) const {
@@ -93,8 +118,9 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   std::vector<EffectFinding> findings;
   std::size_t v = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    EffectFinding finding = describe(bench_.room(), trials[i]);
-    finding.structure = structure_of(bench_.null(), trials[i], options_.pse);
+    const Bench& bench = bench_of(trials[i]);
+    EffectFinding finding = describe(bench.room(), trials[i]);
+    finding.structure = structure_of(bench.null(), trials[i], options_.pse);
     if (v < visible.size() && visible[v] == i) {
       finding.p_adjusted = holm[v];
       finding.p_listed = listed[v];
@@ -126,6 +152,22 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) const {
   return findings;
 }
 
+/// What the fit has bent its own parameters to is found where a fit that has it ends.
+void Recipe::look_from_own_fits() {
+  bench_.report_progress("fitting what may be hidden", 0.0);
+  const double number = std::max(1.0, tests());
+  for (std::unique_ptr<OwnFit>& own : find_hidden(bench_, trials_)) {
+    Trial found = own->test(std::log10(options_.significance / number) + 0.3);
+    Trial& trial = *std::ranges::find_if(
+        trials_, [&](const Trial& other) { return other.candidate.name == found.candidate.name; });
+    if (!found.visible || !(found.log10_p < trial.log10_p)) continue;
+    own_fits_.emplace(found.candidate.name, std::move(own));
+    trial = std::move(found);
+  }
+  result_.effects = collect(trials_, number);
+  rank(result_.effects);
+}
+
 void Recipe::try_pairs() {
   std::vector<std::string> best;
   double visible = 0.0;
@@ -155,6 +197,7 @@ void Recipe::settle() {
   contest_ = fit_contenders(bench_, result_.effects);
   admit_bent(bench_, contest_, result_.effects);
   const Contender* first = put_first(contest_, options_.preferred, result_.effects);
+  promise_by_fits(bench_, contest_, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
   result_.pairs = keep_as_likely(bench_, contest_, find_pair_set(bench_, trials_, contest_.noise));
   for (const Trial& trial : trials_) {
@@ -165,7 +208,7 @@ void Recipe::settle() {
 }
 
 Objection Recipe::object_to(const EffectFinding& finding) {
-  Objection objection = find_objection(bench_.room(), finding, options_.least_visibility, pool_);
+  Objection objection = object(bench_, contest_, finding);
   if (objection.reason.empty()) {
     objection.reason = find_rival(bench_, contest_, finding, result_.effects);
   }
@@ -177,11 +220,15 @@ void Recipe::advise() {
   constexpr std::size_t most_fitted = 3;
   std::size_t fitted = 0;
   bool first_stands = false;  // though no fit takes it
-  for (const EffectFinding& finding : result_.effects) {
+  for (EffectFinding& finding : result_.effects) {
     if (finding.status != FindingStatus::found || fitted == most_fitted) return;
     if (finding.beside == Beside::fades) continue;  // what it explains is the first's
     if (first_stands && finding.beside == Beside::counts) continue;  // alone it would stand in
     const Objection objection = object_to(finding);
+    if (std::isfinite(objection.drop)) {
+      finding.predicted_drop = objection.drop;
+      finding.drop_is_fitted = true;
+    }
     if (objection.reason.empty()) {
       result_.advice.effect = finding.name;
       return;
@@ -206,11 +253,8 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   trials_ = bench_.make(names);
   bench_.screen_all(trials_);
   bench_.test_best(trials_, most_tested);
-  result_.effects = judge(trials_, count_visible(trials_) + static_cast<double>(options_.others));
-  const auto has = [this](FindingStatus status) {
-    return std::ranges::find(result_.effects, status, &EffectFinding::status) !=
-           result_.effects.end();
-  };
+  result_.effects = judge(trials_, tests());
+  if (!has(FindingStatus::found) && room.follows_path()) look_from_own_fits();
   if (!has(FindingStatus::found)) try_pairs();
   if (has(FindingStatus::found)) {
     result_.verdict = Verdict::effect_missing;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
 #include "diagnosis/advice.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/trial.hpp"
@@ -27,6 +29,10 @@ std::vector<double> predicted_drops(const DiagnosedFit& fitted,
   const NullHypothesis null = find_plain_null(room.fit());
   std::vector<double> drops;
   for (const EffectFinding& effect : effects) {
+    if (effect.drop_is_fitted) {
+      drops.push_back(effect.predicted_drop);
+      continue;
+    }
     const Trial trial = trial_of(room, effect.name, effect.shapes);
     const Projection added = project_trial(room, null, trial, trial.shape);
     drops.push_back(added.visible() == 0 ? not_a_number : predict_drop(null, added.basis));
@@ -49,8 +55,10 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
     return promised;
   }
   estimate_plainly(fit.layout, added, fit.residual, trial);
-  promised.against = find_objection(room, describe(room, trial), visible_from, pool).reason;
-  promised.predicted_drop = predict_drop(null, added.basis);
+  const Objection objection = find_objection(room, describe(room, trial), visible_from, pool);
+  promised.against = objection.reason;
+  promised.predicted_drop =
+      std::isnan(objection.drop) ? predict_drop(null, added.basis) : objection.drop;
   hold_out(room, null, trial);
   confirm(room, pool, trial);
   if (!trial.held_out.judged) return promised;

@@ -2,6 +2,7 @@
 #include "diagnosis/refits.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
@@ -81,6 +82,19 @@ FitOptions with_candidate(FitOptions options, const Tables& tables, const Candid
   return options;
 }
 
+/// Holds only those noises that were given to a fit by filter error.
+FitOptions with_noise_as_asked(FitOptions options, const Fit& fit) {
+  options.process_noise.clear();
+  options.noise.clear();
+  for (const NoiseSize& size : fit.noise_sizes) {
+    const bool was_given = std::isnan(size.standard_error) && !size.at_floor && size.value > 0.0;
+    if (!was_given) continue;
+    auto& held = size.name.starts_with("q_") ? options.process_noise : options.noise;
+    held[size.name.substr(2)] = size.value;
+  }
+  return options;
+}
+
 /// The same starts at the estimates of a fit to all rows.
 FitOptions start_from(FitOptions options, const Fit& fit) {
   for (auto& [name, start] : options.start) start = fit[name].value;
@@ -138,6 +152,26 @@ Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double s
     options.start[of_shape] = shape;
   }
   return fit(*with, rows, options);
+}
+
+double error_drop(const Fit& before, const Fit& after) {
+  double square = 0.0;
+  for (std::size_t j = 0; j < after.rmse.size(); ++j) {
+    square += std::pow(after.rmse[j].value / before.rmse[j].value, 2);
+  }
+  return 1.0 - std::sqrt(square / static_cast<double>(after.rmse.size()));
+}
+
+double drop_of_adding(const CandidateRoom& room, const Candidate& candidate, const Fit& fitted) {
+  if (fitted.by != FitMethod::filter_error) return error_drop(room.fitted(), fitted);
+  Record rows = room.record();
+  rows.cut(room.rows());
+  const FitOptions options = with_noise_as_asked(options_from(fitted), room.fitted());
+  try {
+    return error_drop(room.fitted(), fit(*room.model_with(candidate.effects), rows, options));
+  } catch (const Error&) {
+    return not_a_number;
+  }
 }
 
 HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,

@@ -24,6 +24,15 @@ Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double sha
 Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double shape,
                  std::size_t most_rows, bool coloured_errors = false);
 
+/// By how much the error over all outputs, each in units of its own, falls from one fit to another,
+/// 1 - after / before: as adding an effect reports it along a path.
+double error_drop(const Fit& before, const Fit& after);
+
+/// What that is of adding the candidate to a model with a state, of which `fitted` is
+/// refit_with()'s: by filter error noises are free again, as adding leaves them. NaN where that
+/// can't be fitted.
+double drop_of_adding(const CandidateRoom& room, const Candidate& candidate, const Fit& fitted);
+
 /// Fits the model with and without the candidate to all folds but one, from the estimates on all
 /// rows and within the fit's bounds, and predicts the rows left out; of long records to some of the
 /// rows, spread evenly. Not judged where a fit fails.

@@ -8,7 +8,6 @@
 #include <functional>
 #include <utility>
 
-#include "diagnosis/advice.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/refits.hpp"
 
@@ -64,6 +63,23 @@ const Contender* contender_of(const Contest& contest, const std::string& name) {
   return found == contest.contenders.end() ? nullptr : &*found;
 }
 
+/// Whether the columns of one are among those of the other beside the tangent, as a straight line
+/// is among splines: then the other is the same with more that may vary, and says no better where
+/// the model's own parameters are.
+bool is_within(const Bench& bench, const Contender& one, const Contender& other) {
+  constexpr double rounding = 1e-6;
+  if (one.candidate.coefficients.size() >= other.candidate.coefficients.size()) return false;
+  const CandidateRoom& room = bench.room();
+  const RowLayout& layout = room.fit().layout;
+  const TangentBasis& tangent = bench.null().basis;
+  const auto columns_of = [&](const Contender& contender) {
+    return room.columns(contender.candidate, contender.shape).whole;
+  };
+  const MatrixXd beyond = remove_tangent(tangent, columns_of(one)).dense(layout);
+  const MatrixXd left = remove_span(span_beyond(tangent, columns_of(other)).dense(layout), beyond);
+  return left.norm() <= rounding * beyond.norm();
+}
+
 /// What another fit has elsewhere.
 struct Clash {
   double errors = 0.0;  // how many of its errors a parameter is taken away from there
@@ -105,7 +121,7 @@ VectorXd errors_of(const Bench& bench, const Fit& fit) {
 
 }  // namespace
 
-std::string find_rival(Bench& bench, const Contest& contest, const EffectFinding& advised,
+std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advised,
                        const Findings& findings) {
   constexpr double most_errors = 1.5;
   const Contender* chosen = contender_of(contest, advised.name);
@@ -117,6 +133,7 @@ std::string find_rival(Bench& bench, const Contest& contest, const EffectFinding
       const bool is_as_good = finding.beside == Beside::equivalent || &finding == &findings.front();
       const Contender* rival = contender_of(contest, finding.name);
       if (!is_as_good || !rival || rival == chosen) continue;
+      if (is_within(bench, *chosen, *rival)) continue;
       Clash clash = compare(bench, with_chosen, errors, *rival);
       if (clash.errors > most_errors) {
         clash.rival = &finding;
@@ -131,9 +148,7 @@ std::string find_rival(Bench& bench, const Contest& contest, const EffectFinding
       refit_nearly(bench.room(), chosen->candidate, chosen->shape, enough_rows, true);
   for (const Clash& clash : find_clashes(errors_of(bench, coloured))) {
     // What would be withheld itself is no reason to withhold another.
-    const Objection to_rival =
-        find_objection(bench.room(), *clash.rival, bench.options().least_visibility, bench.pool());
-    if (to_rival.reason.empty()) return clash.sentence;
+    if (object(bench, contest, *clash.rival).reason.empty()) return clash.sentence;
   }
   return {};
 }

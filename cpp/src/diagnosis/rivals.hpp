@@ -11,7 +11,7 @@ namespace sepcal::diagnosis {
 
 /// Why an effect should not be added before one that would do as well is ruled out: the end of a
 /// sentence, empty where none of `findings` would take a parameter elsewhere.
-std::string find_rival(Bench& bench, const Contest& contest, const EffectFinding& advised,
+std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advised,
                        const std::vector<EffectFinding>& findings);
 
 }  // namespace sepcal::diagnosis

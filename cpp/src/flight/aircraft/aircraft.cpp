@@ -181,8 +181,9 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
   const FlightInnovations innovations =
       by_filter ? innovations_on(laid, at)
                 : FlightInnovations{verbs::residuals_of(*laid.model, laid.record, at, pool), {}};
-  Comparison result = verbs::compare_residuals(innovations.e, laid.model->tables(), laid.record,
-                                               flight, fitted.fit, pool);
+  Comparison result =
+      verbs::compare_residuals(innovations.e, laid.model->tables(), laid.record,
+                               channels_beside(laid, innovations.e), flight, fitted.fit, pool);
   if (by_filter) judge_by_filter(result, innovations, fitted, at, laid);
   result.model = to_string(fitted.options.model);
   result.notes = std::move(laid.notes);

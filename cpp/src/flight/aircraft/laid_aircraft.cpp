@@ -7,6 +7,7 @@
 #include <iterator>
 #include <optional>
 
+#include "base/columns.hpp"
 #include "estimation/step_times.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
@@ -191,6 +192,35 @@ Record seen_by_model(const LaidAircraft& laid, const Fit& fit) {
   const auto* with = dynamic_cast<const states::ComposedTrajectory*>(laid.model.get());
   if (with == nullptr) return laid.record;
   return with->correct(laid.record, values_of(fit.xi2()));
+}
+
+Record channels_beside(const LaidAircraft& laid, const Eigen::MatrixXd& residuals) {
+  if (dynamic_cast<const StateBlockModel*>(laid.model.get()) == nullptr) return laid.record;
+  const std::vector<Variable>& outputs = laid.model->tables().outputs;
+  Record modelled;  // what states are made of
+  for (const char* name : {"airspeed", "alpha", "beta", "roll", "pitch", "yaw"}) {
+    if (!laid.record.has(name)) continue;
+    const auto read = laid.record.column(name);
+    std::vector<double> values(read.begin(), read.end());
+    const auto output = std::ranges::find(outputs, name, &Variable::name);
+    if (output != outputs.end()) {
+      Eigen::Index k = 0;
+      for (const Segment& segment : laid.record.segments()) {
+        for (std::size_t row = segment.first; row < segment.last; ++row, ++k) {
+          values[row] -= residuals(k, output - outputs.begin());
+        }
+      }
+    }
+    modelled.add(name, std::move(values));
+  }
+  const Record states = with_states(modelled);
+  base::Columns columns(laid.record);
+  for (const char* name : {"u", "v", "w", "phi", "theta", "psi"}) {
+    if (!laid.record.has(name) || !states.has(name)) continue;
+    const auto values = states.column(name);
+    columns.set(name, {values.begin(), values.end()});
+  }
+  return columns.record();
 }
 
 LaidAircraft lay(const Flight& flight, const AircraftOptions& options) {

@@ -57,6 +57,10 @@ Fit fit_laid(LaidAircraft& laid, const FitOptions& options);
 /// The record with inputs as the effects of a fit leave them. It views columns of the one laid.
 Record seen_by_model(const LaidAircraft& laid, const Fit& fit);
 
+/// The record with states as the model has them, not as made of what an output read, which its own
+/// noise would be seen to follow. `residuals` (rows of the segments x n_z): of the readings.
+Record channels_beside(const LaidAircraft& laid, const Eigen::MatrixXd& residuals);
+
 /// The name of a column with the unit as headers have it: "ax_cal_mps2"; of a number without a
 /// dimension and of a coefficient by radians, Cm_alpha, the name alone.
 std::string header_of(const std::string& name, const std::string& unit);

@@ -194,8 +194,7 @@ Promise promise_along(const AircraftFit& fitted, const Flight& flight, const Air
   try {
     LaidAircraft laid = lay(flight, options_on(fitted, flight));
     const Fit fit = fit_on(flight, fitted, laid);
-    DiagnosedFit along = diagnosed_trajectory(fitted, fit, laid, flight, {effect});
-    if (fit.by == FitMethod::output_error) along.noise.reset();  // the residual is what falls
+    const DiagnosedFit along = diagnosed_trajectory(fitted, fit, laid, flight, {effect});
     return promise(along, effect, next.fit.by_name(), fitted.options.calibration.fit.threads);
   } catch (const Error&) {
     return {};

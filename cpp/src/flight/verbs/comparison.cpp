@@ -17,7 +17,7 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
 
   Comparison result =
       compare_residuals(residuals_of(calibration, effective, pool), probe.model().tables(), record,
-                        flight, calibration.fit, pool);
+                        record, flight, calibration.fit, pool);
   result.model = probe.name();
   result.notes = effective.prepared.notes;
   note_other_flight(calibration, flight, result.notes);

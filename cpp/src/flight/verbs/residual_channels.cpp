@@ -71,10 +71,11 @@ VectorXd smooth_shares(const Channel& channel, const MatrixXd& r) {
 /// Quantities that a probe keeps beside its model's inputs have their unit by name.
 std::string unit_of_slope(const Variable& output, const Tables& tables, const std::string& name) {
   static const std::map<std::string_view, std::string_view> kept{
-      {"roll", "rad"}, {"pitch", "rad"},  {"yaw", "rad"}, {"vn", "m/s"},       {"ve", "m/s"},
-      {"vd", "m/s"},   {"rho", "kg/m^3"}, {"ps", "Pa"},   {"dp", "Pa"},        {"bn", "uT"},
-      {"be", "uT"},    {"bd", "uT"},      {"mx", "uT"},   {"my", "uT"},        {"mz", "uT"},
-      {"hx", "uT"},    {"hy", "uT"},      {"hz", "uT"},   {"temperature", "K"}};
+      {"roll", "rad"},  {"pitch", "rad"}, {"yaw", "rad"},    {"vn", "m/s"}, {"ve", "m/s"},
+      {"vd", "m/s"},    {"u", "m/s"},     {"v", "m/s"},      {"w", "m/s"},  {"phi", "rad"},
+      {"theta", "rad"}, {"psi", "rad"},   {"rho", "kg/m^3"}, {"ps", "Pa"},  {"dp", "Pa"},
+      {"bn", "uT"},     {"be", "uT"},     {"bd", "uT"},      {"mx", "uT"},  {"my", "uT"},
+      {"mz", "uT"},     {"hx", "uT"},     {"hy", "uT"},      {"hz", "uT"},  {"temperature", "K"}};
   const auto input = std::ranges::find(tables.inputs, name, &Variable::name);
   if (input != tables.inputs.end()) {
     return input->unit.empty() ? output.unit : fmt::format("{} per {}", output.unit, input->unit);

@@ -38,7 +38,8 @@ Eigen::MatrixXd outputs_of(const Tables& tables, const Record& record) {
 }  // namespace
 
 Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, const Record& record,
-                             const Flight& flight, const Fit& fit, base::ThreadPool& pool) {
+                             const Record& channels, const Flight& flight, const Fit& fit,
+                             base::ThreadPool& pool) {
   Comparison result;
   result.flight = {flight.name(), flight.sha256(), flight.rows(), record.rows()};
   result.status = fit.status;
@@ -50,7 +51,7 @@ Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, co
   result.time = base::gather_time(record);
   result.overall = measure_whole(record, tables.outputs, result.residuals);
   result.where = measure_parts(record, tables.outputs, result.residuals);
-  result.channels = compare_channels(record, tables, result.residuals, pool);
+  result.channels = compare_channels(channels, tables, result.residuals, pool);
   result.windows = find_worst_windows(result.time, result.residuals, result.overall, fit.noise);
   return result;
 }

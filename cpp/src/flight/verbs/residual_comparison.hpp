@@ -16,8 +16,10 @@ namespace sepcal::verbs {
 Eigen::MatrixXd residuals_of(const BlockModel& model, const Record& record, const Fit& fit,
                              base::ThreadPool& pool);
 
-/// All but the model's name and the notes. `tables` say which columns are outputs.
+/// All but the model's name and the notes. `tables` say which columns are outputs. `channels`: what
+/// the residuals may follow, the record's columns or what stands in their place.
 Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, const Record& record,
-                             const Flight& flight, const Fit& fit, base::ThreadPool& pool);
+                             const Record& channels, const Flight& flight, const Fit& fit,
+                             base::ThreadPool& pool);
 
 }  // namespace sepcal::verbs

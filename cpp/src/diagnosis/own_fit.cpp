@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/own_fit.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "diagnosis/contenders.hpp"
+#include "diagnosis/refits.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+constexpr std::size_t most_fitted = 6;  // of either screen
+constexpr std::size_t most_judged = 3;
+constexpr double worth_it = 0.01;  // of the error
+
+DiagnosisOptions silently(DiagnosisOptions options) {
+  options.progress = {};
+  return options;
+}
+
+/// Whether nothing is scanned: a step's row alone is held where the fit begins.
+bool is_at_one_shape(const Trial& trial) {
+  return trial.candidate.shape.parameter.empty() || !trial.candidate.stepping_port.empty();
+}
+
+/// The best `most` of either screen.
+std::vector<const Trial*> best_of(const Trials& trials, std::size_t most) {
+  std::vector<const Trial*> chosen;
+  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
+    std::vector<const Trial*> order;
+    for (const Trial& trial : trials) {
+      if (trial.visible && is_at_one_shape(trial)) order.push_back(&trial);
+    }
+    std::ranges::stable_sort(order, {}, [&](const Trial* trial) { return trial->*by; });
+    if (order.size() > most) order.resize(most);
+    for (const Trial* trial : order) {
+      if (std::ranges::find(chosen, trial) == chosen.end()) chosen.push_back(trial);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+OwnFit::OwnFit(const Bench& bench, const Candidate& candidate, double shape, Fit fit)
+    : candidate_(candidate),
+      shape_(shape),
+      options_(silently(bench.options())),
+      fitted_(with_candidate(bench.fitted(), candidate, std::move(fit))),
+      bench_(fitted_, candidate_, options_, bench.pool()) {}
+
+Trial OwnFit::test(double threshold) {
+  Trials alone(1);
+  alone.front().candidate = candidate_;
+  if (!candidate_.shape.parameter.empty()) alone.front().candidate.shape.values = {shape_};
+  alone.front().slow = is_slow(bench_.room(), candidate_);
+  bench_.screen_all(alone);
+  if (!alone.front().visible) return std::move(alone.front());
+  bench_.test_best(alone, 1);
+  bench_.hold_out_significant(alone);
+  bench_.calibrate_significant(alone, threshold);
+  return std::move(alone.front());
+}
+
+std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trials& trials) {
+  struct Fitted {
+    const Trial* trial;
+    Fit fit = {};
+    double drop = -infinity;
+  };
+  std::vector<Fitted> fits;
+  for (const Trial* trial : best_of(trials, most_fitted)) fits.push_back({trial});
+  bench.pool().for_each(fits.size(), [&](std::size_t i) {
+    auto& [trial, fit, drop] = fits[i];
+    try {
+      fit = refit_with(bench.room(), trial->candidate, trial->shape);
+    } catch (const Error&) {
+      return;
+    }
+    if (fit.status == FitStatus::converged) drop = error_drop(bench.room().fitted(), fit);
+  });
+  std::erase_if(fits, [](const Fitted& fitted) { return !(fitted.drop > worth_it); });
+  std::ranges::stable_sort(fits, std::ranges::greater(), &Fitted::drop);
+  if (fits.size() > most_judged) fits.resize(most_judged);
+  std::vector<std::unique_ptr<OwnFit>> hidden;
+  for (Fitted& fitted : fits) {
+    hidden.push_back(std::make_unique<OwnFit>(bench, fitted.trial->candidate, fitted.trial->shape,
+                                              std::move(fitted.fit)));
+  }
+  return hidden;
+}
+
+}  // namespace sepcal::diagnosis
