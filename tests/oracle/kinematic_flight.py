@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flight that was never integrated: attitude and air velocity are smooth functions of time, and
-what an inertial unit reads follows from the derivatives of their splines.
+"""A flight that was never integrated.
+
+Attitude and air velocity are smooth functions of time; what an inertial unit reads follows from the
+derivatives of their splines.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 #include "base/name_list.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sepcal::base {
 
@@ -26,6 +27,34 @@ std::string list_first(const std::vector<std::string>& names, std::size_t most) 
 
 bool is_among(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
+}
+
+std::size_t count_slips(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, diagonal + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+std::string ask_for_similar(std::string_view name, const std::vector<std::string>& names) {
+  const std::size_t most = std::max<std::size_t>(1, name.size() / 4);
+  std::size_t fewest = most + 1;
+  std::string_view nearest;
+  for (const std::string& known : names) {
+    const std::size_t slips = count_slips(name, known);
+    if (slips >= fewest) continue;
+    fewest = slips;
+    nearest = known;
+  }
+  return nearest.empty() ? "" : "; did you mean '" + std::string(nearest) + "'?";
 }
 
 }  // namespace sepcal::base

@@ -13,12 +13,21 @@ using namespace effects;  // this room's own
 
 namespace {
 
-std::string known_names(const EffectKit& kit) {
+/// Those of the kit; a port's with `driver`, as "[time]".
+std::vector<std::string> known_names(const EffectKit& kit, const std::string& driver) {
   std::vector<std::string> names;
-  for (const Port& port : kit.ports) names.push_back(port.name + "[driver]");
+  for (const Port& port : kit.ports) names.push_back(port.name + driver);
   for (const auto& [name, maker] : kit.own) names.push_back(name);
   for (const auto& [name, resolve] : kit.aliases) names.push_back(name);
-  return base::list_names(names);
+  return names;
+}
+
+std::string describe_unknown(const std::string& name, const EffectKit& kit) {
+  const std::size_t bracket = std::min(name.find('['), name.size());
+  const std::string similar = base::ask_for_similar(name, known_names(kit, name.substr(bracket)));
+  return "there is no effect '" + name + "'" +
+         (similar.empty() ? "; known: " : similar + " Known: ") +
+         base::list_names(known_names(kit, "[driver]"));
 }
 
 Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting& setting,
@@ -36,7 +45,7 @@ Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting&
                   "' is not in the catalogue; if it is one of your own, it can be used only where "
                   "it is defined: load the calibration there");
     }
-    throw Error("there is no effect '" + name.text + "'; known: " + known_names(kit));
+    throw Error(describe_unknown(name.text, kit));
   }
   return make_named(name.text, name, *port, model, setting, record);
 }

@@ -201,6 +201,11 @@ AircraftOptions aircraft_log::options_on(const AircraftFit& fitted, const Flight
     options.calibration.fit.start.erase(name);
     options.calibration.fit.fixed.erase(name);
   }
+  if (options.model != AircraftModel::aero && options.trajectory.outputs.empty()) {
+    for (const OutputValue& output : fitted.fit.noise) {
+      options.trajectory.outputs.push_back(output.name);  // whatever else this flight logs
+    }
+  }
   return options;
 }
 

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <optional>
 
+#include "base/name_list.hpp"
+
 namespace sepcal::files {
 namespace {
 
@@ -93,22 +95,6 @@ bool spell_unit(Words words, const Unit& unit) {
   return has_per && letters == std::string(unit.suffix).erase(per, 1);
 }
 
-/// Levenshtein's distance: the fewest letters inserted, deleted or replaced.
-std::size_t count_slips(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, diagonal + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
 /// A header of a log, the accepted one that it nearly is, and how near.
 struct NearMiss {
   std::string header;
@@ -123,7 +109,7 @@ constexpr std::size_t foreign = 3;  // another name counts as more slips than ar
 std::optional<std::size_t> count_name_slips(std::string_view quantity, Words words) {
   constexpr std::size_t longest_short_name = 3;  // p, vn, dpa, yaw
   constexpr std::size_t longest_middling_name = 6;
-  const std::size_t slips = count_slips(join(words), quantity);
+  const std::size_t slips = base::count_slips(join(words), quantity);
   const std::size_t allowed = quantity.size() <= longest_short_name      ? 0
                               : quantity.size() <= longest_middling_name ? 1
                                                                          : 2;
