@@ -44,8 +44,8 @@ std::size_t count_slips(std::string_view from, std::string_view to) {
   return row.back();
 }
 
-std::string ask_for_similar(std::string_view name, const std::vector<std::string>& names) {
-  const std::size_t most = std::max<std::size_t>(1, name.size() / 4);
+std::string ask_for_similar(std::string_view name, const std::vector<std::string>& names,
+                            std::size_t most) {
   std::size_t fewest = most + 1;
   std::string_view nearest;
   for (const std::string& known : names) {

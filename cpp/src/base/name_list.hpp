@@ -21,8 +21,9 @@ std::string list_first(const std::vector<std::string>& names, std::size_t most);
 /// Levenshtein's distance: the fewest letters inserted, deleted or replaced.
 std::size_t count_slips(std::string_view from, std::string_view to);
 
-/// "; did you mean 'b'?" where one of the names is `name` but for a slip or a few, else "".
-std::string ask_for_similar(std::string_view name, const std::vector<std::string>& names);
+/// "; did you mean 'b'?" where one of the names is `name` but for so many slips, else "".
+std::string ask_for_similar(std::string_view name, const std::vector<std::string>& names,
+                            std::size_t most);
 
 bool is_among(const std::vector<std::string>& names, std::string_view name);
 

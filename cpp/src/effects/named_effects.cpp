@@ -24,7 +24,9 @@ std::vector<std::string> known_names(const EffectKit& kit, const std::string& dr
 
 std::string describe_unknown(const std::string& name, const EffectKit& kit) {
   const std::size_t bracket = std::min(name.find('['), name.size());
-  const std::string similar = base::ask_for_similar(name, known_names(kit, name.substr(bracket)));
+  const std::size_t slips = bracket / 4;  // in a short name a letter makes another
+  const std::string similar =
+      base::ask_for_similar(name, known_names(kit, name.substr(bracket)), slips);
   return "there is no effect '" + name + "'" +
          (similar.empty() ? "; known: " : similar + " Known: ") +
          base::list_names(known_names(kit, "[driver]"));
