@@ -32,6 +32,7 @@ FlightDiagnosis told(Verdict verdict, const std::string& advised = "",
                      const std::string& withheld = "") {
   FlightDiagnosis result;
   result.diagnosis.verdict = verdict;
+  result.diagnosis.unit = "m/s";
   result.diagnosis.advice.effect = advised;
   if (!withheld.empty()) result.diagnosis.advice.withheld = {withheld};
   if (!advised.empty()) {

@@ -273,3 +273,50 @@ def test_no_state_made_of_a_reading_is_seen_to_follow_its_noise() -> None:
     for state, output in made_of.items():
         assert share[state, output] < 0.02, state
     assert {one.unit for one in channels if one.driver == "w"} >= {"rad per m/s"}
+
+
+@pytest.mark.parametrize("header", ["temp_degc", "imu_temp_degc", "gyro_t_degc"])
+def test_a_temperature_is_taken_about_its_mean_whatever_it_is_called(header: str) -> None:
+    """A scale that is right at the mean is none that is right at zero degrees."""
+    flown = kinematic_flight.fly(4, duration=30.0, rate=25.0)
+    warmth = flown.pop("imu_temp_degc")
+    for rate in ("p_radps", "q_radps", "r_radps"):
+        flown[rate] = flown[rate] * (1.0 + 0.02 * (warmth - warmth.mean()))
+    flown[header] = warmth
+    fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown))
+    added = fit.add(f"gyro_scale[{header}]")
+    assert abs(added[f"gyro_scale[{header}].x"].value + 0.02) < 0.004
+    assert added.history[-1].drop > 0.02
+
+
+def test_a_bend_is_seen_close_about_the_trim() -> None:
+    """Alpha's square lies within 0.05 of what the aircraft has, and is told all the same."""
+    flown = sepcal.simulate(
+        "aircraft", hide={"Cm[alpha^2]": -6.0}, rate=25.0, seed=3,
+    )  # fmt: skip
+    fit = sepcal.fit(
+        sepcal.RigidAircraft(LIGHT, "longitudinal"),
+        sepcal.Flight({name: flown[name] for name in flown.columns}),
+    )
+    asked = fit.diagnose(only=["Cm[alpha^2]"]).effects[0]
+    assert asked.status == "found"
+    assert asked.visibility > 0.01
+
+
+def test_each_step_of_a_course_falls_as_its_history_says() -> None:
+    flown = kinematic_flight.fly(6, duration=30.0, rate=25.0, late=0.08)
+    fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown))
+    course = fit.diagnose(auto=True, most=1)
+    (step,) = course.steps
+    assert step.name == "imu_late"
+    drop = course.fitted.history[-1].drop
+    assert step.found_drop == pytest.approx(drop, abs=1e-9)
+    assert step.predicted_drop == pytest.approx(drop, abs=0.02)
+
+
+def test_a_scale_about_the_start_is_not_followed() -> None:
+    flown = kinematic_flight.fly(6, duration=20.0, rate=10.0)
+    model = sepcal.FlightPath(scales_about_start=True)
+    fit = sepcal.fit(model, sepcal.Flight(flown))
+    with pytest.raises(sepcal.Error, match="fit without --scale-about-start"):
+        fit.diagnose()

@@ -196,6 +196,9 @@ std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside);
 
 inline constexpr double significant_below = 0.05;  // p after Holm
 inline constexpr double visible_from = 0.05;       // a sine: below, an effect can't be seen
+/// The same along a trajectory: a power of alpha about its trim is within 0.03 of what the aircraft
+/// has, and twenty seconds tell it at sixty standard errors.
+inline constexpr double visible_along_path = 0.01;
 
 struct DiagnosisOptions {
   double significance = significant_below;  // of the verdict

@@ -75,7 +75,7 @@ std::string objection_to_fit(const Fit& before, const EffectFinding& finding, co
 Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,
                          base::ThreadPool& pool) {
   Objection objection;
-  if (!(finding.visibility >= least_visibility)) {
+  if (!(finding.visibility >= room.visible_from(least_visibility))) {
     objection.reason = fmt::format(
         "the flight hardly tells it from the model's own parameters (visibility {:.2f})",
         finding.visibility);

@@ -57,7 +57,7 @@ void Bench::screen_all(Trials& trials) const {
   std::mutex mutex;
   double done = 0.0;
   pool_.for_each(trials.size(), [&](std::size_t i) {
-    trials[i].least_visibility = options_.least_visibility;
+    trials[i].least_visibility = room_.visible_from(options_.least_visibility);
     screen(room_, null_, trials[i]);
     const std::lock_guard lock(mutex);
     report_progress("screening effects", ++done / static_cast<double>(trials.size()));

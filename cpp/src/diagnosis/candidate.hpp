@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -75,6 +76,11 @@ class CandidateRoom {
 
   /// Whether the model integrates a state: its rows follow from those before them.
   bool follows_path() const { return path_ != nullptr; }
+
+  /// From which sine on an effect can be seen, where `asked` is asked for.
+  double visible_from(double asked) const {
+    return follows_path() ? std::min(asked, visible_along_path) : asked;
+  }
 
   /// Throws Error where the record can't make it.
   const Candidate& make(const std::string& name);

@@ -12,7 +12,7 @@
 namespace sepcal::diagnosis {
 namespace {
 
-constexpr std::size_t most_fitted = 6;  // of either screen
+constexpr std::size_t most_refitted = 6;  // of either screen
 constexpr std::size_t most_judged = 3;
 constexpr double worth_it = 0.01;  // of the error
 
@@ -72,7 +72,7 @@ std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trial
     double drop = -infinity;
   };
   std::vector<Fitted> fits;
-  for (const Trial* trial : best_of(trials, most_fitted)) fits.push_back({trial});
+  for (const Trial* trial : best_of(trials, most_refitted)) fits.push_back({trial});
   bench.pool().for_each(fits.size(), [&](std::size_t i) {
     auto& [trial, fit, drop] = fits[i];
     try {

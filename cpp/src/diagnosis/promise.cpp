@@ -17,6 +17,7 @@ Trial trial_of(CandidateRoom& room, const std::string& effect,
   Trial trial{.candidate = room.make(effect)};
   const auto shape = shapes.find(trial.candidate.shape.parameter);
   if (shape != shapes.end()) trial.shape = shape->second;
+  trial.least_visibility = room.visible_from(trial.least_visibility);
   return trial;
 }
 

@@ -63,23 +63,6 @@ const Contender* contender_of(const Contest& contest, const std::string& name) {
   return found == contest.contenders.end() ? nullptr : &*found;
 }
 
-/// Whether the columns of one are among those of the other beside the tangent, as a straight line
-/// is among splines: then the other is the same with more that may vary, and says no better where
-/// the model's own parameters are.
-bool is_within(const Bench& bench, const Contender& one, const Contender& other) {
-  constexpr double rounding = 1e-6;
-  if (one.candidate.coefficients.size() >= other.candidate.coefficients.size()) return false;
-  const CandidateRoom& room = bench.room();
-  const RowLayout& layout = room.fit().layout;
-  const TangentBasis& tangent = bench.null().basis;
-  const auto columns_of = [&](const Contender& contender) {
-    return room.columns(contender.candidate, contender.shape).whole;
-  };
-  const MatrixXd beyond = remove_tangent(tangent, columns_of(one)).dense(layout);
-  const MatrixXd left = remove_span(span_beyond(tangent, columns_of(other)).dense(layout), beyond);
-  return left.norm() <= rounding * beyond.norm();
-}
-
 /// What another fit has elsewhere.
 struct Clash {
   double errors = 0.0;  // how many of its errors a parameter is taken away from there
@@ -133,7 +116,8 @@ std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advi
       const bool is_as_good = finding.beside == Beside::equivalent || &finding == &findings.front();
       const Contender* rival = contender_of(contest, finding.name);
       if (!is_as_good || !rival || rival == chosen) continue;
-      if (is_within(bench, *chosen, *rival)) continue;
+      // What explains no more with many more coefficients is no cause to doubt the plain one.
+      if (rival->criterion > chosen->criterion + as_likely) continue;
       Clash clash = compare(bench, with_chosen, errors, *rival);
       if (clash.errors > most_errors) {
         clash.rival = &finding;

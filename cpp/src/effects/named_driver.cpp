@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <ranges>
 #include <utility>
 
 #include "base/name_list.hpp"
@@ -107,9 +108,15 @@ void check_channel(const EffectName& name, const Record& record, bool known) {
 }
 
 /// Of altitude, time and temperature zero is far from any flight: they are taken about their mean
-/// before they are raised to a power.
+/// before they are raised to a power. Whatever else the header says: imu_temp_degc, oat_degc.
 bool has_far_zero(const std::string& base) {
-  return base == "time" || base.starts_with("altitude") || base.starts_with("temp");
+  if (base == "time") return true;
+  for (const auto word : std::views::split(base, '_')) {
+    const std::string_view name(word.begin(), word.end());
+    if (name.starts_with("altitude") || name.starts_with("temp")) return true;
+    if (name == "degc" || name == "degf") return true;
+  }
+  return false;
 }
 
 /// Whether the values stay further from zero than they change: nobody has seen the sensor at zero.

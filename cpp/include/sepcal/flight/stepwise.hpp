@@ -32,7 +32,8 @@ struct ChoiceNames<StepwiseEnd> {
 /// An effect that was added.
 struct StepwiseStep {
   EffectFinding promised;    // as the diagnosis before it had it
-  double rmse_before = 0.0;  // over promised.outputs, of the rows that are fitted
+  double rmse_before = 0.0;  // over promised.outputs, of the rows that are fitted; 1 where these
+                             // have different units: in units of each one's own
   double rmse_after = 0.0;
 
   double found_drop() const { return 1.0 - rmse_after / rmse_before; }

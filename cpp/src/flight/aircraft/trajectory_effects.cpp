@@ -167,6 +167,11 @@ DiagnosedFit diagnosed_trajectory(const AircraftFit& fitted, const Fit& fit,
                                   const LaidAircraft& laid, const Flight& flight,
                                   const std::vector<std::string>& asked) {
   const AircraftModel model = fitted.options.model;
+  if (fitted.options.trajectory.scales_about_start) {
+    throw Error(
+        "what a trajectory lacks is followed step by step, and a scale about the start is of no "
+        "step; fit without --scale-about-start (scales_about_start) to ask");
+  }
   EffectKit kit = trajectory_kit(model, laid.base->tables());
   std::vector<std::string> regressors = list_regressors(laid.equations, laid.record, flight);
   for (const std::string& effect : asked) {

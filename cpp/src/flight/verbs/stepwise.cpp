@@ -16,13 +16,19 @@ namespace sepcal {
 
 using namespace verbs;  // this room's own
 
-double verbs::rmse_over(const Fit& fit, const std::vector<std::string>& outputs) {
-  double square = 0.0;
-  for (const OutputValue& rmse : fit.rmse) {
-    const bool counts = std::ranges::find(outputs, rmse.name) != outputs.end();
-    if (counts) square += rmse.value * rmse.value;
+void verbs::measure_step(const Fit& before, const Fit& after, bool one_unit, StepwiseStep& step) {
+  double square_before = 0.0;
+  double square_after = 0.0;
+  for (std::size_t j = 0; j < before.rmse.size(); ++j) {
+    const std::vector<std::string>& outputs = step.promised.outputs;
+    if (std::ranges::find(outputs, before.rmse[j].name) == outputs.end()) continue;
+    const double unit = one_unit ? 1.0 : before.rmse[j].value;
+    square_before += std::pow(before.rmse[j].value / unit, 2);
+    square_after += std::pow(after.rmse[j].value / unit, 2);
   }
-  return std::sqrt(square / static_cast<double>(outputs.size()));
+  const auto count = static_cast<double>(step.promised.outputs.size());
+  step.rmse_before = std::sqrt(square_before / count);
+  step.rmse_after = std::sqrt(square_after / count);
 }
 
 void verbs::check_most(const StepwiseOptions& options) {

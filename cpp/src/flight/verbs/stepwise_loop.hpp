@@ -11,8 +11,9 @@
 
 namespace sepcal::verbs {
 
-/// RMSE over these outputs of a fit; those that it leaves no error of are zero.
-double rmse_over(const Fit& fit, const std::vector<std::string>& outputs);
+/// Keeps the RMSE over the step's outputs of the fits before and after it; where these have
+/// different units in units of each one's own before.
+void measure_step(const Fit& before, const Fit& after, bool one_unit, StepwiseStep& step);
 
 /// Throws OptionError where there is nothing to add.
 void check_most(const StepwiseOptions& options);
@@ -38,8 +39,7 @@ Stepwise run_stepwise(Fitted& fitted, std::size_t most,
     StepwiseStep step{.promised = *advised};
     try {
       Fitted next = add(fitted, advised->name);
-      step.rmse_before = rmse_over(fitted.fit, advised->outputs);
-      step.rmse_after = rmse_over(next.fit, advised->outputs);
+      measure_step(fitted.fit, next.fit, !course.last.diagnosis.unit.empty(), step);
       const std::string objection = objection_to_step(fitted.fit, next.fit, step);
       if (!objection.empty()) {
         finish(course, StepwiseEnd::fit_failed, objection);
