@@ -103,6 +103,9 @@ class CommandLine {
         ->type_name("BASE.json");
     instrument.add_probe_options(*fit_);
     fit_arguments_.add_to(*fit_);
+    fit_->add_flag("--certify", typed_.certify,
+                   "proves that no cost within the bounds is lower, where one or two nonlinear "
+                   "parameters are free");
     add_stream(*fit_, typed_);
     add_explain(*fit_);
     add_json(*fit_);

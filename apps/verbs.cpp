@@ -15,6 +15,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
+#include "sepcal/flight/certified.hpp"
 #include "sepcal/flight/check.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
@@ -100,7 +101,12 @@ int Verbs::fit(CalibrationOptions options) const {
     const auto probe = instrument_.probe(join_flights(flights, options.log, notes));
     return calibrate_jointly(probe, flights, arguments_.own, options);
   };
-  const Calibration calibration = flights.size() == 1 ? fit_one() : fit_all();
+  Calibration calibration = flights.size() == 1 ? fit_one() : fit_all();
+  if (arguments_.certify) {
+    if (flights.size() > 1) throw Error("--certify is of one flight; fit them one by one");
+    const Certificate proof = certify(calibration, flight, {.threads = options.fit.threads});
+    calibration.notes.push_back("certificate: " + proof.message);
+  }
   line.clear();
   delivery.deliver(calibration);
   return exit_code(calibration.fit.status);

@@ -26,6 +26,7 @@ struct Arguments {
   bool json = false;
   bool explain = false;   // the whole message of the fit
   bool stream = false;    // of fit and apply
+  bool certify = false;   // of fit
   LogArguments log = {};  // of check, and of a later verb whatever the calibration says
 };
 

@@ -39,6 +39,7 @@ from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.aircraft_fits import AddedRegressor, AircraftFit, TwoSteps, two_step
 from sepcal.calibration import Calibration, load
 from sepcal.catalogue import effects
+from sepcal.certificates import Certificate, CostBound, bound_cost, certify
 from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
 from sepcal.design_trial import DesignTrial
@@ -86,10 +87,12 @@ __all__ = [
     "Applied",
     "Calibration",
     "CataloguedEffect",
+    "Certificate",
     "ChannelMisfit",
     "ColumnCheck",
     "Combination",
     "Comparison",
+    "CostBound",
     "Departure",
     "Derived",
     "DesignTrial",
@@ -151,6 +154,8 @@ __all__ = [
     "TwoSteps",
     "Window",
     "__version__",
+    "bound_cost",
+    "certify",
     "check",
     "earth_field",
     "effects",

@@ -10,10 +10,12 @@ __all__: list[str] = [
     "Applied",
     "Calibration",
     "CataloguedEffect",
+    "Certificate",
     "ChannelMisfit",
     "ColumnCheck",
     "Combination",
     "Comparison",
+    "CostBound",
     "Departure",
     "Derived",
     "Diagnosed",
@@ -53,8 +55,10 @@ __all__: list[str] = [
     "attitude_independent_magnetometer",
     "autocorrelation",
     "bin_means",
+    "bound_cost",
     "calibrate",
     "calibrate_jointly",
+    "certify",
     "channels",
     "check",
     "effects",
@@ -896,6 +900,141 @@ class Prediction:
         (N, n_z), A xi1 + b.
         """
 
+class Certificate:
+    """
+    What is proven of a fit's cost in a box.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "status",
+        "cost",
+        "lower",
+        "region",
+        "boxes",
+        "better",
+        "better_cost",
+        "message",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Certificate) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def better(self) -> dict[str, float]:
+        """
+        {name: value} where the cost is lower; else empty.
+        """
+    @property
+    def better_cost(self) -> float:
+        """
+        J there, rounded upwards; NaN if nowhere.
+        """
+    @property
+    def boxes(self) -> int:
+        """
+        How many were bounded.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        J at the fit, without ln|R|, rounded upwards.
+        """
+    @property
+    def lower(self) -> float:
+        """
+        Proven: nothing within the bounds has less.
+        """
+    @property
+    def message(self) -> str:
+        """
+        One line.
+        """
+    @property
+    def region(self) -> dict[str, tuple[float, float]]:
+        """
+        {name: (lower, upper)} of the nonlinear parameters, where the minimum may be.
+        """
+    @property
+    def status(self) -> str:
+        """
+        "global": no parameters within the bounds have a cost lower by more than the
+        tolerance; "elsewhere": a lower one was found; "not_certified": the boxes ran out.
+        """
+
+class CostBound:
+    """
+    How far the least cost in a box may be below one.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "cost",
+        "paper_error",
+        "paper_lower",
+        "l_1",
+        "l_2",
+        "l_a",
+        "l_b",
+        "joint_error",
+        "lower",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: CostBound) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        J(xi2p), least over xi1.
+        """
+    @property
+    def joint_error(self) -> float:
+        """
+        E', of all samples at once. Proven.
+        """
+    @property
+    def l_1(self) -> float:
+        """
+        Of |xi1|.
+        """
+    @property
+    def l_2(self) -> float:
+        """
+        Of |xi2 - xi2p|.
+        """
+    @property
+    def l_a(self) -> float:
+        """
+        Lipschitz constant of a sample's A, over R^1/2.
+        """
+    @property
+    def l_b(self) -> float:
+        """
+        Of its b.
+        """
+    @property
+    def lower(self) -> float:
+        """
+        max(0, sqrt J(xi2p) - sqrt E')^2. Proven: nothing in the box has less.
+        """
+    @property
+    def paper_error(self) -> float:
+        """
+        E of Eq. 13.
+        """
+    @property
+    def paper_lower(self) -> float:
+        """
+        J(xi2p) - E, which Eq. 7 takes for a bound and which is none.
+        """
+
 class Flight:
     def __getstate__(
         self,
@@ -1414,6 +1553,12 @@ class Calibration:
     ) -> Calibration: ...
     def apply(self, arg0: Flight) -> dict[str, numpy.typing.NDArray[numpy.float64]]: ...
     def apply_to_file(self, arg0: str, arg1: str) -> Applied: ...
+    def certify(
+        self,
+        arg0: Flight,
+        arg1: typing.SupportsFloat | typing.SupportsIndex,
+        arg2: typing.SupportsInt | typing.SupportsIndex,
+    ) -> Certificate: ...
     def compare(self, flight: Flight, effect: str | None = None) -> Comparison: ...
     def diagnose(
         self,
@@ -2215,6 +2360,19 @@ def bin_means(
     arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg2: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+def bound_cost(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg4: collections.abc.Mapping[
+        str,
+        tuple[
+            typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex
+        ],
+    ],
+    arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+) -> CostBound: ...
 def calibrate(
     arg0: Model,
     arg1: Flight,
@@ -2228,6 +2386,16 @@ def calibrate_jointly(
     arg3: Options,
     arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
 ) -> tuple[Calibration, Flight]: ...
+def certify(
+    arg0: Model,
+    arg1: dict,
+    arg2: collections.abc.Sequence[str],
+    arg3: Options,
+    arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
+    arg5: Fit,
+    arg6: typing.SupportsFloat | typing.SupportsIndex,
+    arg7: typing.SupportsInt | typing.SupportsIndex,
+) -> Certificate: ...
 def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
 def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...

@@ -12,6 +12,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit, read_fit
+from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
@@ -239,6 +240,22 @@ class Calibration(Fit):
         """
         chosen = self._or_fitted(flight, "intervals(")
         return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
+
+    def certify(
+        self, flight: Flight | None = None, *, tolerance: float = 1e-6, boxes: int = 20000
+    ) -> Certificate:
+        """Prove that no cost within the bounds is lower, or find one; see sepcal.certify().
+
+        Args:
+            flight: That was fitted; to be given where the calibration was loaded.
+            tolerance: How much lower another cost may be, as a share of the fit's.
+            boxes: At most so many.
+
+        Raises:
+            Error: Another flight, a calibration with effects, a probe that can't be enclosed.
+        """
+        chosen = self._or_fitted(flight, "certify(")
+        return Certificate(self.core.certify(chosen._core, tolerance, boxes))
 
     def predict(
         self, flight: Flight | Sequence[Flight] | None = None, *, level: float = 0.95

@@ -103,7 +103,7 @@ def profile_intervals(
         Error: The fit is not that of the model, the data and the options; a parameter that there
             isn't or that is fixed; a level outside (0, 1).
     """
-    laid, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=True)
+    laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=True)
     names = to_names("names", names or ())
     return Intervals(_core.profile_intervals(laid, columns, labels, core, own, fit, level, names))
 
@@ -130,11 +130,11 @@ def predict(
     Raises:
         Error: Bad input, a fit of another model, a level outside (0, 1).
     """
-    laid, columns, labels, core, own = _as_fitted(model, data, fit, options, measured=False)
+    laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=False)
     return Prediction(_core.predict(laid, columns, labels, core, own, fit, level))
 
 
-def _as_fitted(
+def as_fitted(
     model: AnyModel,
     data: Columns,
     fit: Fit,

@@ -39,6 +39,8 @@ class Carry {
   virtual ~Carry() = default;
 };
 
+class Enclosure;        // enclosure.hpp
+struct EnclosedRows;    // the same
 class InnovationModel;  // innovation_model.hpp
 
 /// Where the values of x begin, never nullptr: to evaluate(), a null xi1 means "no tangent asked
@@ -115,6 +117,12 @@ class BlockModel {
   /// know them: they then come from differences of the tangent.
   virtual bool add_second_derivatives(const Block& block, const double* xi2, const double* xi1,
                                       Eigen::Ref<Eigen::MatrixXd> sum) const;
+
+  /// Ranges of [A | b] and of its derivatives by xi2 (n_2) wherever that is within these ranges, to
+  /// `rows`: rounded outwards, so that what is shown of them is proven. Of output j the rows from
+  /// j * block.rows on. False where the model can't tell.
+  virtual bool enclose(const Block& block, std::span<const Enclosure> xi2,
+                       EnclosedRows& rows) const;
 
   /// Points of xi2 (n_2 x any number, none unless overridden) that a closed form makes of the
   /// measurements, u of shape (rows, n_u) and z of shape (rows, n_z): stage one descends from them

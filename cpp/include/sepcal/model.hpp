@@ -83,4 +83,12 @@ constexpr bool has_nested_duals() {
   return false;
 }
 
+/// A model whose at() also takes an EnclosedDual (enclosed_dual.hpp) for xi2 says `static constexpr
+/// bool enclosed = true`: then what is said of its cost can be proven (certificate.hpp).
+template <class M>
+constexpr bool has_enclosures() {
+  if constexpr (requires { M::enclosed; }) return M::enclosed;
+  return false;
+}
+
 }  // namespace sepcal

@@ -15,6 +15,7 @@
 #include "sepcal/identifiability.hpp"    // what a record does not determine
 #include "sepcal/profile.hpp"            // intervals where standard errors mislead
 #include "sepcal/prediction.hpp"         // what a fit says of other samples
+#include "sepcal/certificate.hpp"        // what is proven of a cost
 #include "sepcal/check_model.hpp"        // what a concept can't check
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist

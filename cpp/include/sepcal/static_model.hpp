@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/enclosed_dual.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/nested_dual.hpp"
 
@@ -153,6 +154,16 @@ class StaticModel final : public BlockModel {
     }
   }
 
+  bool enclose(const Block& block, std::span<const Enclosure> xi2,
+               EnclosedRows& rows) const override {
+    if constexpr (n_2 > 0 && has_enclosures<M>()) {
+      fill_enclosures(block, xi2, rows);
+      return true;
+    } else {
+      return BlockModel::enclose(block, xi2, rows);
+    }
+  }
+
   Eigen::MatrixXd guess(const Eigen::MatrixXd& u, const Eigen::MatrixXd& z) const override {
     if constexpr (requires { model_.guess(u, z); }) {
       return model_.guess(u, z);
@@ -222,6 +233,25 @@ class StaticModel final : public BlockModel {
         for (int i = 0; i < n_2; ++i) {
           for (int k = 0; k < n_2; ++k) sum(i, k) += z.second_derivative(i, k);
         }
+      }
+    }
+  }
+
+  void fill_enclosures(const Block& block, std::span<const Enclosure> xi2, EnclosedRows& rows) const
+    requires(has_enclosures<M>())
+  {
+    using Dual = EnclosedDual<n_2>;
+    rows.columns = n_1 + 1;
+    rows.n_2 = n_2;
+    rows.resize(static_cast<Eigen::Index>(n_z * block.rows));
+    Vec<Dual, n_2> x;
+    for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[static_cast<std::size_t>(i)], i);
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      const auto [A, b] = model_.at(sample(block, row), x);
+      for (int j = 0; j < n_z; ++j) {
+        const auto at = static_cast<Eigen::Index>(static_cast<std::size_t>(j) * block.rows + row);
+        for (int k = 0; k < n_1; ++k) A(j, k).copy_to(rows.at(at, k));
+        b[j].copy_to(rows.at(at, n_1));
       }
     }
   }

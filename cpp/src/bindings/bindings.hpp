@@ -47,6 +47,7 @@ struct Model {
 const Probe& probe_of(const Model& model);
 
 // Of sepcal._core.
+void define_certificate(py::module_& module);
 void define_check(py::module_& module);
 void define_options(py::module_& module);
 void define_results(py::module_& module);

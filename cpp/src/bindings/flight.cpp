@@ -16,6 +16,7 @@
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/certified.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
@@ -193,6 +194,14 @@ Calibration on_flight(const Calibration& calibration, const Flight& flight, bool
 Flight rejoin(const Calibration& calibration, const std::vector<Flight>& flights) {
   std::vector<std::string> notes;
   return rejoin_flights(calibration, flights, notes);
+}
+
+Certificate certify_on(const Calibration& calibration, const Flight& flight, double tolerance,
+                       std::size_t boxes) {
+  const Released released;
+  return certify(
+      calibration, flight,
+      {.tolerance = tolerance, .boxes = boxes, .threads = calibration.options.fit.threads});
 }
 
 FlightPrediction predict_flight(const Calibration& calibration, const Flight& flight,
@@ -427,6 +436,7 @@ void define_calibration(py::module_& module) {
       .def("diagnose", &diagnose_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)
       .def("intervals", &bindings::find_intervals)
+      .def("certify", &certify_on)
       .def("predict", &predict_flight)
       .def("add", &add_to)
       .def("apply", &apply_to)

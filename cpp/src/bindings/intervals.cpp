@@ -8,46 +8,16 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "flight/verbs/held_options.hpp"
+#include "fitted_columns.hpp"
 #include "model/measurements.hpp"
 #include "python_effect.hpp"
 #include "released.hpp"
 #include "results.hpp"
-#include "sepcal/composition.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
 namespace {
-
-/// Columns brought to the model that was fitted to them or their like.
-struct Prepared {
-  std::shared_ptr<const Probe> probe;
-  std::shared_ptr<const BlockModel> model;
-  Record record;
-  FitOptions options;
-};
-
-Prepared prepare(const Model& model, Record record, const CalibrationOptions& options,
-                 std::vector<EffectSetting> settings, const Fit& fit) {
-  for (EffectSetting& setting : settings) setting.known = true;
-  const CalibrationOptions held = verbs::hold(model.held, model.block->tables(), options);
-  Prepared result{model.probe, model.block, std::move(record), held.fit};
-  EffectKit kit = model.kit();
-  for (const auto& [name, maker] : options.own_effects) kit.own[name] = maker;
-  if (result.probe) {
-    std::shared_ptr<const Probe> told = result.probe->with_noise(fit.noise.front().value);
-    if (told) {
-      result.probe = std::move(told);
-      result.model = {result.probe, &result.probe->model()};
-    }
-  }
-  const std::vector<Effect> effects = make_effects(kit, *result.model, settings, result.record);
-  result.model = compose(result.model, effects, result.record);
-  result.record = without_edges(std::move(result.record), reach(effects, options.fit.bounds));
-  result.options.unsampled.merge(initial_corrections(effects));
-  return result;
-}
 
 FoundIntervals profile_columns(const Model& model, const py::dict& columns,
                                const std::vector<std::string>& labels, CalibrationOptions options,
@@ -57,7 +27,8 @@ FoundIntervals profile_columns(const Model& model, const py::dict& columns,
   options.own_effects = own_effects(own, model.kit());
   const Released released;
   record = model::with_constant_outputs(model.block->tables(), std::move(record));
-  Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fitted.fit);
+  FittedColumns prepared =
+      bring_to_fit(model, std::move(record), options, fitted.effects, fitted.fit);
   if (prepared.probe) {
     prepared.options = prepared.probe->complete(prepared.options, prepared.record);
   }
@@ -76,7 +47,8 @@ FlightPrediction predict_columns(const Model& model, const py::dict& columns,
   Record record = record_of(columns, labels);
   options.own_effects = own_effects(own, model.kit());
   const Released released;
-  const Prepared prepared = prepare(model, std::move(record), options, fitted.effects, fitted.fit);
+  const FittedColumns prepared =
+      bring_to_fit(model, std::move(record), options, fitted.effects, fitted.fit);
   return {
       .time = {},
       .prediction = predict(*prepared.model, prepared.record, fitted.fit, prepared.options, level)};

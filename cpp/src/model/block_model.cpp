@@ -93,6 +93,11 @@ std::unique_ptr<InnovationModel> BlockModel::innovations(const Record& /*record*
   return nullptr;
 }
 
+bool BlockModel::enclose(const Block& /*block*/, std::span<const Enclosure> /*xi2*/,
+                         EnclosedRows& /*rows*/) const {
+  return false;
+}
+
 bool BlockModel::add_second_derivatives(
     const Block& /*block*/, const double* /*xi2*/, const double* /*xi1*/,
     // NOLINTNEXTLINE(performance-unnecessary-value-param): an output

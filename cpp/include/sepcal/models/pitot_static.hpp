@@ -33,6 +33,7 @@ struct PitotStatic {
                                         Quantity{"w_d", "m/s", -100, 100}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  static constexpr bool enclosed = true;
   using LanesOf = PitotStatic;
 
   template <class U, class X>

@@ -18,6 +18,7 @@ struct ScalarExample1 {
   static constexpr std::array nonlinear{Quantity{"b", "rad", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  static constexpr bool enclosed = true;
   using LanesOf = ScalarExample1;
 
   template <class U, class X>
@@ -41,6 +42,7 @@ struct ScalarExample2 {
                                         Quantity{"c", "rad", -1.0, 1.0}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  static constexpr bool enclosed = true;
   using LanesOf = ScalarExample2;
 
   template <class U, class X>

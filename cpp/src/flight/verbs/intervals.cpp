@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/flight/intervals.hpp"
 
-#include <fmt/format.h>
-
 #include "base/parts_of_record.hpp"
 #include "flight/verbs/at_bound.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/composition.hpp"
-#include "sepcal/error.hpp"
 
 namespace sepcal {
 
 using namespace verbs;  // this room's own
-
-namespace {
-
-void check_fitted(const Calibration& calibration, const Flight& flight) {
-  const FittedFlight& fitted = calibration.flight;
-  if (fitted.sha256.empty() || flight.sha256().empty() || fitted.sha256 == flight.sha256()) return;
-  throw Error(fmt::format(
-      "{}: not the flight that the calibration was fitted to, {}; intervals are of a fit: give its "
-      "flight, or fit this one",
-      flight.name(), fitted.file));
-}
-
-}  // namespace
 
 FlightIntervals find_intervals(const Calibration& calibration, const Flight& flight,
                                const ProfileOptions& asked) {

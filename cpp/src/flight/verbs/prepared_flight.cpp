@@ -88,6 +88,14 @@ bool is_other_flight(const Calibration& calibration, const Flight& flight) {
   return !fitted.empty() && !flight.sha256().empty() && fitted != flight.sha256();
 }
 
+void check_fitted(const Calibration& calibration, const Flight& flight) {
+  if (!is_other_flight(calibration, flight)) return;
+  throw Error(fmt::format(
+      "{}: not the flight that the calibration was fitted to, {}; what is asked is of a fit: give "
+      "its flight, or fit this one",
+      flight.name(), calibration.flight.file));
+}
+
 void note_other_flight(const Calibration& calibration, const Flight& flight,
                        std::vector<std::string>& notes) {
   if (!is_other_flight(calibration, flight)) return;

@@ -57,6 +57,9 @@ DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& reading
 /// Whether the flight is another file than the calibration was fitted to.
 bool is_other_flight(const Calibration& calibration, const Flight& flight);
 
+/// Throws Error where both are known and differ.
+void check_fitted(const Calibration& calibration, const Flight& flight);
+
 /// Adds a note where the flight is another file than the calibration was fitted to: its errors are
 /// no longer those of a fit.
 void note_other_flight(const Calibration& calibration, const Flight& flight,

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/certified.hpp"
+
+#include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+
+using namespace verbs;  // this room's own
+
+Certificate certify(const Calibration& calibration, const Flight& flight,
+                    const CertificateOptions& options) {
+  check_fitted(calibration, flight);
+  if (!calibration.options.effects.empty()) {
+    throw Error("a model with effects can't be enclosed: certify the fit without them");
+  }
+  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
+  const Record& record = effective.prepared.record;
+  return certify(*effective.model, record, calibration.fit,
+                 calibration.probe->complete(calibration.options.fit, record), options);
+}
+
+}  // namespace sepcal

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What can be proven of a fit's cost: that no other minimum is lower, or how much lower it can be.
+
+By interval arithmetic through the model itself: no rounding, no sample and no solver is trusted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Unpack
+
+from sepcal import _core
+from sepcal.columns import Columns, labels_in, take_columns
+from sepcal.intervals import as_fitted
+from sepcal.options import FitOptions, spelled_out
+from sepcal.own_state_model import AnyModel, as_model
+from sepcal.results import Fit
+
+
+class Certificate(_core.Certificate):
+    """What is proven of a fit's cost in the box of its bounds; `print(certificate)` says it."""
+
+    def __str__(self) -> str:
+        return self.message
+
+    @property
+    def is_global(self) -> bool:
+        """Whether the fit has the least cost within its bounds, to the tolerance."""
+        return self.status == "global"
+
+
+class CostBound(_core.CostBound):
+    """How far the least cost in a box may be below that at one xi2 (Eqs. 7 to 13)."""
+
+
+@spelled_out()
+def certify(
+    model: AnyModel,
+    data: Columns,
+    fit: Fit,
+    *,
+    tolerance: float = 1e-6,
+    boxes: int = 20000,
+    **options: Unpack[FitOptions],
+) -> Certificate:
+    """Prove that a fit has the least cost within its bounds, or find a lower one.
+
+    Branch and bound over the nonlinear parameters that are free, with R and the fixed ones as the
+    fit has them. It serves for one or two of them; three take many boxes.
+
+    Args:
+        model: That was fitted: a scalar example, a PitotStatic.
+        data: The inputs and outputs that were fitted.
+        fit: The fit, by squares and without priors.
+        tolerance: How much lower another cost may be, as a share of the fit's.
+        boxes: At most so many; time and memory grow with them.
+        **options: Those of the fit.
+
+    Raises:
+        Error: The fit is not that of the model; a model that can't be enclosed, as one of your own
+            in Python; a nonlinear parameter without bounds.
+    """
+    laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=True)
+    return Certificate(_core.certify(laid, columns, labels, core, own, fit, tolerance, boxes))
+
+
+def bound_cost(
+    model: AnyModel,
+    data: Columns,
+    xi2p: Mapping[str, float],
+    *,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    noise: Mapping[str, float] | None = None,
+) -> CostBound:
+    """Bound how far the least cost in a box may be below that at one point of xi2.
+
+    Args:
+        model: A scalar example, a PitotStatic.
+        data: Its inputs and outputs, each of shape (N,).
+        xi2p: The nonlinear parameters there, by name.
+        bounds: Boxes of parameters (lower, upper) [the model's]. Of linear parameters without any
+            the range is proven, where it can be.
+        noise: Standard deviation of outputs [1].
+
+    Raises:
+        Error: A model that can't be enclosed, xi2p outside of the box, a nonlinear parameter
+            without bounds.
+    """
+    model = as_model(model)
+    columns = take_columns(
+        model._owner, data, dict.fromkeys([*model._columns_in(data), *model._measured_in(data)])
+    )
+    labels = labels_in(data)
+    laid = model._core.along(columns, labels)
+    return CostBound(
+        _core.bound_cost(laid, columns, labels, dict(xi2p), dict(bounds or {}), dict(noise or {}))
+    )
