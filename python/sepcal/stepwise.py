@@ -21,8 +21,9 @@ Fitted = TypeVar("Fitted")
 class StepwiseStep:
     """An effect that was added: what it promised and what came of it; None where undefined.
 
-    The RMSE is over `outputs`, of the rows that are fitted, in their unit. partial_f, pse and
-    pse_without are those of EffectFinding.
+    The RMSE is over `outputs`, of the rows that are fitted, in their unit; where these have
+    different ones in units of each one's own before. partial_f, pse and pse_without are those of
+    EffectFinding.
     """
 
     effect: str

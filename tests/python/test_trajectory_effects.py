@@ -308,7 +308,7 @@ def test_each_step_of_a_course_falls_as_its_history_says() -> None:
     fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown))
     course = fit.diagnose(auto=True, most=1)
     (step,) = course.steps
-    assert step.name == "imu_late"
+    assert step.effect == "imu_late"
     drop = course.fitted.history[-1].drop
     assert step.found_drop == pytest.approx(drop, abs=1e-9)
     assert step.predicted_drop == pytest.approx(drop, abs=0.02)
