@@ -126,10 +126,14 @@ inline Enclosure cos(const Enclosure& x) {
   const Enclosure wide = Enclosure::by_libm(least, greatest);
   double lower = std::max(-1.0, wide.lower());
   double upper = std::min(1.0, wide.upper());
-  const double first = std::ceil(x.lower() / pi - near);  // half turns within
-  const double last = std::floor(x.upper() / pi + near);
-  for (double half = first; half <= last; half += 1.0) {
-    (std::fmod(half, 2.0) == 0.0 ? upper : lower) = std::fmod(half, 2.0) == 0.0 ? 1.0 : -1.0;
+  const auto first = static_cast<int>(std::ceil(x.lower() / pi - near));  // half turns within
+  const auto last = static_cast<int>(std::floor(x.upper() / pi + near));
+  for (int half = first; half <= last; ++half) {
+    if (half % 2 == 0) {
+      upper = 1.0;
+    } else {
+      lower = -1.0;
+    }
   }
   return {lower, upper};
 }

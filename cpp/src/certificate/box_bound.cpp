@@ -82,7 +82,8 @@ MatrixXd pseudo_inverse_of(const MatrixXd& A) {
 /// Rows whose every part is finite over the box: the cost is at least that of these.
 std::vector<Index> finite_rows(const EnclosedProblem& problem, const EnclosedRows& over) {
   std::vector<Index> kept;
-  const auto parts = static_cast<std::size_t>(over.columns * EnclosedRows::parts_of(over.n_2));
+  const auto parts = static_cast<std::size_t>(over.columns) *
+                     static_cast<std::size_t>(EnclosedRows::parts_of(over.n_2));
   for (Index i = 0; i < problem.rows(); ++i) {
     const std::span<const Enclosure> row(over.at(i, 0), parts);
     if (std::ranges::all_of(row, &Enclosure::is_finite)) kept.push_back(i);

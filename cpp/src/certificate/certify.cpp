@@ -139,7 +139,7 @@ void BranchAndBound::try_point(const BoxBound& at) {
       best = lower.values();
     }
   } catch (const Error&) {
-    // the point itself is lower already
+    least = cost.upper();  // the point itself is lower already
   }
   upper_ = least;
   for (std::size_t k = 0; k < fit_.parameters.size(); ++k) {

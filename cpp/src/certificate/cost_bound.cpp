@@ -96,7 +96,7 @@ CostBound bound_cost(const BlockModel& model, const Record& record, const Vector
   }
   const Distance distance = measure_distance(problem, problem.over(points(xi2p)),
                                              problem.over(limits.nonlinear), apart, linear);
-  const double N = static_cast<double>(record.rows());
+  const auto N = static_cast<double>(record.rows());
   bound.l_1 = linear.norm();
   bound.l_2 = apart.norm();
   bound.l_a = distance.of_a;

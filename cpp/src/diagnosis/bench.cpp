@@ -21,6 +21,23 @@ bool may_be_slow(const Trial& trial, double threshold) {
   return trial.tested && trial.slow && trial.tails.beside < threshold;
 }
 
+std::vector<std::size_t> best_of(const Trials& trials, std::size_t most,
+                                 const std::function<bool(const Trial&)>& counts) {
+  std::vector<std::size_t> chosen;
+  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      if (counts(trials[i])) order.push_back(i);
+    }
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return trials[i].*by; });
+    if (order.size() > most) order.resize(most);
+    for (const std::size_t i : order) {
+      if (std::ranges::find(chosen, i) == chosen.end()) chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
 Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool)
     : Bench(fitted, {}, options, pool) {}
 
@@ -65,18 +82,8 @@ void Bench::screen_all(Trials& trials) const {
 }
 
 void Bench::test_best(Trials& trials, std::size_t most) const {
-  std::vector<std::size_t> chosen;
-  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (trials[i].visible) order.push_back(i);
-    }
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return trials[i].*by; });
-    if (order.size() > most) order.resize(most);
-    for (const std::size_t i : order) {
-      if (std::ranges::find(chosen, i) == chosen.end()) chosen.push_back(i);
-    }
-  }
+  const std::vector<std::size_t> chosen =
+      best_of(trials, most, [](const Trial& trial) { return trial.visible; });
   std::mutex mutex;
   double done = 0.0;
   pool_.for_each(chosen.size(), [&](std::size_t k) {

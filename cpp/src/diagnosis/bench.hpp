@@ -2,6 +2,8 @@
 // Candidates on the bench: made, screened, tested, calibrated and held out at one fit.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +21,10 @@ using Trials = std::vector<Trial>;
 /// Whether what there is of it could be a slow change, were its noise known not to wander.
 /// `threshold`: log10 of the probability below which it is significant.
 bool may_be_slow(const Trial& trial, double threshold);
+
+/// The places of the best `most` of either screen among those that `counts`.
+std::vector<std::size_t> best_of(const Trials& trials, std::size_t most,
+                                 const std::function<bool(const Trial&)>& counts);
 
 class Bench {
  public:

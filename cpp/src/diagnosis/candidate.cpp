@@ -502,7 +502,7 @@ CandidateColumns CandidateRoom::effect_columns(const Candidate& candidate, std::
 /// Made once, as far as memory goes: a path is followed from its start for every one.
 CandidateColumns CandidateRoom::keep_followed(const std::string& key,
                                               const std::function<CandidateColumns()>& make) const {
-  constexpr Index most_kept = Index{1} << 25;
+  constexpr Index most_kept = 33554432;  // 256 MB
   {
     const std::lock_guard lock(following_);
     const auto known = followed_columns_.find(key);

@@ -228,6 +228,7 @@ void Recipe::advise() {
     if (std::isfinite(objection.drop)) {
       finding.predicted_drop = objection.drop;
       finding.drop_is_fitted = true;
+      result_.floor = std::min(result_.floor, result_.rmse * (1.0 - objection.drop));
     }
     if (objection.reason.empty()) {
       result_.advice.effect = finding.name;

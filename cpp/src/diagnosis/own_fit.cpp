@@ -26,23 +26,6 @@ bool is_at_one_shape(const Trial& trial) {
   return trial.candidate.shape.parameter.empty() || !trial.candidate.stepping_port.empty();
 }
 
-/// The best `most` of either screen.
-std::vector<const Trial*> best_of(const Trials& trials, std::size_t most) {
-  std::vector<const Trial*> chosen;
-  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
-    std::vector<const Trial*> order;
-    for (const Trial& trial : trials) {
-      if (trial.visible && is_at_one_shape(trial)) order.push_back(&trial);
-    }
-    std::ranges::stable_sort(order, {}, [&](const Trial* trial) { return trial->*by; });
-    if (order.size() > most) order.resize(most);
-    for (const Trial* trial : order) {
-      if (std::ranges::find(chosen, trial) == chosen.end()) chosen.push_back(trial);
-    }
-  }
-  return chosen;
-}
-
 }  // namespace
 
 OwnFit::OwnFit(const Bench& bench, const Candidate& candidate, double shape, Fit fit)
@@ -72,7 +55,8 @@ std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trial
     double drop = -infinity;
   };
   std::vector<Fitted> fits;
-  for (const Trial* trial : best_of(trials, most_refitted)) fits.push_back({trial});
+  const auto can_hide = [](const Trial& trial) { return trial.visible && is_at_one_shape(trial); };
+  for (const std::size_t i : best_of(trials, most_refitted, can_hide)) fits.push_back({&trials[i]});
   bench.pool().for_each(fits.size(), [&](std::size_t i) {
     auto& [trial, fit, drop] = fits[i];
     try {

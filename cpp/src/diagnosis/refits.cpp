@@ -87,7 +87,7 @@ FitOptions with_noise_as_asked(FitOptions options, const Fit& fit) {
   options.process_noise.clear();
   options.noise.clear();
   for (const NoiseSize& size : fit.noise_sizes) {
-    const bool was_given = std::isnan(size.standard_error) && !size.at_floor && size.value > 0.0;
+    const bool was_given = std::isnan(size.standard_error) && !size.at_floor;
     if (!was_given) continue;
     auto& held = size.name.starts_with("q_") ? options.process_noise : options.noise;
     held[size.name.substr(2)] = size.value;

@@ -66,7 +66,9 @@ std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
 
 TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
                                const AircraftTrackOptions& options) {
-  const LaidAircraft laid = lay(flight, options_on(fitted, flight));
+  AircraftOptions followed = options_on(fitted, flight);
+  followed.trajectory.outputs = fitted.options.trajectory.outputs;  // what is logged is tracked
+  const LaidAircraft laid = lay(flight, followed);
   return within(flight, [&] {
     if (!laid.along.empty()) {
       throw Error(fmt::format(

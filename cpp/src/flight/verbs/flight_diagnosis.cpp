@@ -247,6 +247,9 @@ struct ErrorLeft {
   std::string of = {};  // " of Cm", of some outputs alone
 
   std::string in_words() const {
+    if (unit.empty()) {  // in units of each output's own, what is left is all there is
+      return fmt::format("noise alone would leave {} of the error{}", with_unit(floor, unit), of);
+    }
     return fmt::format("{} of error are left{}; noise alone would leave {}", with_unit(rmse, unit),
                        of, with_unit(floor, unit));
   }
@@ -294,6 +297,12 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
         "Something is missing that no candidate explains: {}; it shows as offsets of {} from "
         "window to window (p = {:.1g}).",
         left, found.omnibus.where, found.omnibus.p_adjusted);
+  }
+  if (found.verdict == Verdict::adequate && diagnosis.status == FitStatus::not_identifiable) {
+    return fmt::format(
+        "This flight does not tell the model's own parameters, and shows nothing that is missing: "
+        "{}.",
+        left);
   }
   if (found.verdict == Verdict::adequate) {
     return fmt::format("Nothing is missing that this flight can show: {}.", left);
