@@ -143,7 +143,8 @@ class EnclosedDual {
 
  private:
   static constexpr std::size_t place(int j, int k) {
-    return static_cast<std::size_t>(j * (j + 1) / 2 + k);
+    const auto row = static_cast<std::size_t>(j);
+    return row * (row + 1) / 2 + static_cast<std::size_t>(k);
   }
 
   template <class Map>
