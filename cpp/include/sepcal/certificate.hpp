@@ -21,7 +21,7 @@
 
 namespace sepcal {
 
-/// Of bound_cost(). NaN where xi1 is not bounded.
+/// Of bound_cost(). Where xi1 is not bounded the errors are infinite and `lower` is zero.
 struct CostBound {
   double cost = 0.0;  // J(xi2p), least over xi1
 
