@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "model/soft_iron_and_scale.hpp"
 #include "simulated_records.hpp"
 
 namespace ellipsoid_test {
@@ -129,7 +130,7 @@ TEST_CASE("a shape splits into scale factors and soft iron") {
     const Matrix3d soft_iron{
         {1, alpha[0], alpha[1]}, {alpha[0], 1, alpha[2]}, {alpha[1], alpha[2], 1}};
     const Matrix3d C = soft_iron * scale.asDiagonal();
-    const auto split = probes::split_shape(C * C.transpose());
+    const auto split = model::split_shape(C * C.transpose());
     REQUIRE(split);
     CHECK((split->scale - scale).norm() < 1e-9);
     CHECK((split->soft_iron - alpha).norm() < 1e-9);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "sepcal/enclosed_dual.hpp"
+#include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/nested_dual.hpp"
@@ -42,10 +44,10 @@ bool holds(const Enclosure& range, long double value) {
 /// What a model gives in ranges, against what it and its derivatives are at points within.
 template <class Model, int N2, class Draw>
 void check_model(const Draw& draw_inputs, const std::vector<Enclosure>& whole, double width,
-                 std::uint64_t seed) {
+                 std::uint64_t seed, const Model& model = {}, int trials = 300) {
   using Sizes = sepcal::Sizes<Model>;
   std::mt19937_64 generator(seed);
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     const auto u = draw_inputs(generator);
     std::vector<Enclosure> ranges;
     Vec<EnclosedDual<N2>, N2> box;
@@ -54,13 +56,13 @@ void check_model(const Draw& draw_inputs, const std::vector<Enclosure>& whole, d
       ranges.emplace_back(lower, lower + width);
       box[j] = EnclosedDual<N2>(ranges.back(), j);
     }
-    const auto enclosed = Model{}.at(u, box);
+    const auto enclosed = model.at(Vec<Enclosure, Sizes::n_u>(u.template cast<Enclosure>()), box);
     for (int point = 0; point < 10; ++point) {
       Vec<NestedDual<N2>, N2> x;
       for (int j = 0; j < N2; ++j) {
         x[j] = NestedDual<N2>(draw_within(ranges[static_cast<std::size_t>(j)], generator), j);
       }
-      const auto exact = Model{}.at(u, x);
+      const auto exact = model.at(u, x);
       constexpr double rounding = 1e-12;  // of the dual numbers, which are not widened
       const auto near = [&](const Enclosure& range, double value) {
         const double slack = rounding * (1.0 + std::abs(value));
@@ -144,6 +146,22 @@ TEST_CASE("models in ranges hold their values, slopes and second derivatives") {
     };
     check_model<sepcal::PitotStatic, 3>(flown, {{-15.0, 15.0}, {-15.0, 15.0}, {-3.0, 3.0}}, width,
                                         7);
+    const auto turned = [](std::mt19937_64& generator) {
+      std::uniform_real_distribution<double> field(-60.0, 60.0);
+      return Vec<double, 3>(field(generator), field(generator), field(generator));
+    };
+    check_model<sepcal::Magnetometer, 6>(turned, std::vector(6, Enclosure(-0.5, 0.5)), width, 8, {},
+                                         30);
+    const auto probed = [](std::mt19937_64& generator) {
+      std::uniform_real_distribution<double> unit(-1.0, 1.0);
+      Vec<double, 14> u = Vec<double, 14>::Zero();
+      for (int i = 0; i < 6; ++i) u[i] = unit(generator);
+      u.segment<5>(6) << 90200.0 + 100.0 * unit(generator), 90000.0, 100.0 * unit(generator),
+          100.0 * unit(generator), 1.2;
+      return u;
+    };
+    check_model<sepcal::FiveHoleProbe, 5>(probed, std::vector(5, Enclosure(-0.3, 0.3)), width, 9,
+                                          {4.5, 4.6, {0.35, -0.1, -0.02}}, 30);
   }
 }
 

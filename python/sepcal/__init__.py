@@ -12,6 +12,7 @@ SI units, angles in rad, fields in uT. Body axes are forward-right-down, navigat
 north-east-down.
 """
 
+from sepcal import rivals
 from sepcal._core import (
     Applied,
     CataloguedEffect,
@@ -172,6 +173,7 @@ __all__ = [
     "read_csv",
     "read_log",
     "report",
+    "rivals",
     "simulate",
     "smooth",
     "stream_trials",

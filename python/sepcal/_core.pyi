@@ -7,6 +7,7 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "AlonsoShusterFit",
     "Applied",
     "Calibration",
     "CataloguedEffect",
@@ -22,12 +23,14 @@ __all__: list[str] = [
     "Disturbance",
     "EffectSetting",
     "Error",
+    "FirstStep",
     "Fit",
     "Flight",
     "FlightCheck",
     "FlightDeparture",
     "FlightFigures",
     "FlightFit",
+    "HauptKasdinFit",
     "HistoryEntry",
     "Innovation",
     "Intervals",
@@ -46,10 +49,12 @@ __all__: list[str] = [
     "PythonFunctions",
     "SIGNIFICANT_BELOW",
     "ScreenResults",
+    "SingleStageFit",
     "SmoothedRecord",
     "StageOne",
     "SteppedCalibration",
     "Track",
+    "TwoStepProblem",
     "VISIBLE_FROM",
     "Window",
     "attitude_independent_magnetometer",
@@ -62,12 +67,18 @@ __all__: list[str] = [
     "channels",
     "check",
     "effects",
+    "example_in_five_states",
+    "example_in_three_states",
     "fit",
+    "fit_alonso_shuster",
+    "fit_haupt_kasdin",
     "fit_many",
+    "fit_single_stage",
     "fit_trials",
     "five_hole_probe",
     "gather_figures",
     "magnetometer",
+    "magnetometer_in_nine_states",
     "parse_calibration",
     "pitot_static",
     "predict",
@@ -1034,6 +1045,290 @@ class CostBound:
         """
         J(xi2p) - E, which Eq. 7 takes for a bound and which is none.
         """
+
+class SingleStageFit:
+    """
+    All parameters at once by one nonlinear programme.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "converged",
+        "names",
+        "estimates",
+        "noise",
+        "cost",
+        "evaluations",
+        "noise_iterations",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: SingleStageFit) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def converged(self) -> bool:
+        """
+        As the solver says.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        J of Eq. 6, as a Fit has it.
+        """
+    @property
+    def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the cost; of Levenberg-Marquardt iterations.
+        """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """
+        n, linear, then nonlinear, fixed ones among them.
+        """
+    @property
+    def noise(self) -> dict[str, float]:
+        """
+        {output: standard deviation}
+        """
+    @property
+    def noise_iterations(self) -> int:
+        """
+        Of R against the parameters.
+        """
+
+class FirstStep:
+    """
+    The states of a two-step fit, found linearly.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "names",
+        "states",
+        "information",
+        "rank",
+        "condition",
+        "noise",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def condition(self) -> float:
+        """
+        Of H, its columns of unit length.
+        """
+    @property
+    def information(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (p, p), H' R^-1 H.
+        """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """
+        p
+        """
+    @property
+    def noise(self) -> dict[str, float]:
+        """
+        {output: standard deviation}
+        """
+    @property
+    def rank(self) -> int:
+        """
+        Of H.
+        """
+    @property
+    def states(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (p,), of least norm where H is singular.
+        """
+
+class HauptKasdinFit:
+    """
+    A two-step fit by a change of variables.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "first",
+        "converged",
+        "names",
+        "estimates",
+        "standard_errors",
+        "covariance",
+        "cost",
+        "evaluations",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: HauptKasdinFit) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def converged(self) -> bool:
+        """
+        As the second step's solver says.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Of Eq. 32.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n)
+        """
+    @property
+    def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the second step.
+        """
+    @property
+    def first(self) -> FirstStep:
+        """
+        The first step.
+        """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """
+        n
+        """
+    @property
+    def standard_errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,), NaN where undefined.
+        """
+
+class AlonsoShusterFit:
+    """
+    TWOSTEP's magnetometer.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "converged",
+        "message",
+        "names",
+        "estimates",
+        "standard_errors",
+        "covariance",
+        "bias",
+        "shape",
+        "theta",
+        "centred",
+        "cost",
+        "iterations",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: AlonsoShusterFit) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def bias(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        n of B = C h + n [uT], (3,).
+        """
+    @property
+    def centred(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The same of the first step.
+        """
+    @property
+    def converged(self) -> bool:
+        """
+        Whether the second step did.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Half the weighted squares of the second step.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n)
+        """
+    @property
+    def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,), NaN where there are none.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Of the second step.
+        """
+    @property
+    def message(self) -> str:
+        """
+        One line; empty: nothing to say.
+        """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """
+        n: lambda, alpha and n, or n alone.
+        """
+    @property
+    def shape(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        C C', (3, 3).
+        """
+    @property
+    def standard_errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def theta(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (c, E), (9,), or b, (3,).
+        """
+
+class TwoStepProblem:
+    """
+    Both steps of a Haupt/Kasdin fit.
+    """
+    def __init__(
+        self,
+        arg0: Model,
+        arg1: collections.abc.Sequence[
+            tuple[
+                str,
+                str,
+                typing.SupportsFloat | typing.SupportsIndex,
+                typing.SupportsFloat | typing.SupportsIndex,
+            ]
+        ],
+        arg2: typing.Any,
+    ) -> None: ...
+    def at(
+        self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def first(self) -> Model: ...
 
 class Flight:
     def __getstate__(
@@ -2399,6 +2694,8 @@ def certify(
 def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
 def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
+def example_in_five_states() -> TwoStepProblem: ...
+def example_in_three_states() -> TwoStepProblem: ...
 def fit(
     arg0: Model,
     arg1: dict,
@@ -2406,6 +2703,31 @@ def fit(
     arg3: Options,
     arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
 ) -> Fit: ...
+def fit_alonso_shuster(
+    columns: dict,
+    labels: collections.abc.Sequence[str],
+    field_strength: typing.SupportsFloat | typing.SupportsIndex,
+    *,
+    noise: typing.SupportsFloat | typing.SupportsIndex,
+    bias_alone: bool,
+    reweightings: typing.SupportsInt | typing.SupportsIndex,
+    mean_as_printed: bool,
+    iterations: typing.SupportsInt | typing.SupportsIndex,
+    segments: str,
+) -> AlonsoShusterFit: ...
+def fit_haupt_kasdin(
+    problem: TwoStepProblem,
+    columns: dict,
+    labels: collections.abc.Sequence[str],
+    start: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    *,
+    bounds: collections.abc.Mapping[str, tuple[float, float]],
+    noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    segments: str,
+    solver: str,
+    evaluations: typing.SupportsInt | typing.SupportsIndex,
+    threads: typing.SupportsInt | typing.SupportsIndex,
+) -> HauptKasdinFit: ...
 def fit_many(
     arg0: Model,
     arg1: collections.abc.Sequence[str],
@@ -2414,6 +2736,23 @@ def fit_many(
     arg4: bool,
     arg5: collections.abc.Callable,
 ) -> ManyFit: ...
+def fit_single_stage(
+    model: Model,
+    columns: dict,
+    labels: collections.abc.Sequence[str],
+    start: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    *,
+    bounds: collections.abc.Mapping[str, tuple[float, float]],
+    fixed: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    segments: str,
+    solver: str = "levenberg_marquardt",
+    cost: str = "mean",
+    noise_tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.05,
+    noise_iterations: typing.SupportsInt | typing.SupportsIndex = 100,
+    evaluations: typing.SupportsInt | typing.SupportsIndex = 1000,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> SingleStageFit: ...
 def fit_trials(
     arg0: Model,
     arg1: dict,
@@ -2448,6 +2787,9 @@ def magnetometer(
     ]
     | None,
 ) -> Model: ...
+def magnetometer_in_nine_states(
+    arg0: typing.SupportsFloat | typing.SupportsIndex,
+) -> TwoStepProblem: ...
 def parse_calibration(
     arg0: str, arg1: str, arg2: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]]
 ) -> Calibration: ...

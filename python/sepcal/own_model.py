@@ -128,7 +128,9 @@ class OwnModel(Model):
         return f"OwnModel({self.definition!r})"
 
 
-def check_parts(definition: object, parts: Sequence[str], kind: str, protocol: type) -> None:
+def check_parts(
+    definition: object, parts: Sequence[str], kind: str, protocol: type, module: str = "sepcal"
+) -> None:
     """Raises Error for a class in place of an object, and for what is missing of a protocol."""
     if isinstance(definition, type):
         raise _core.Error(
@@ -138,7 +140,7 @@ def check_parts(definition: object, parts: Sequence[str], kind: str, protocol: t
     if missing:
         raise _core.Error(
             f"{type(definition).__name__} is no {kind}: it has no {', '.join(missing)}; "
-            f"help(sepcal.{protocol.__name__}) says what one has"
+            f"help({module}.{protocol.__name__}) says what one has"
         )
 
 

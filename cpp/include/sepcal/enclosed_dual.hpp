@@ -24,6 +24,8 @@ class EnclosedDual {
 
   EnclosedDual() = default;
   EnclosedDual(double value) : value_(value) {}  // NOLINT(*-explicit-*): beside plain numbers
+  EnclosedDual(const Enclosure& value)
+      : value_(value) {}  // NOLINT(*-explicit-*): and beside inputs
   /// The variable k within a range.
   EnclosedDual(const Enclosure& range, int k) : value_(range) {
     slopes_[static_cast<std::size_t>(k)] = Enclosure(1.0);
@@ -165,6 +167,18 @@ class EnclosedDual {
 
 namespace Eigen {
 
+template <>
+struct NumTraits<sepcal::Enclosure> : GenericNumTraits<sepcal::Enclosure> {
+  using Number = sepcal::Enclosure;
+  using Real = Number;
+  using NonInteger = Number;
+  using Nested = Number;
+  using Literal = Number;
+  // NOLINTBEGIN(readability-identifier-naming): Eigen's names
+  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1 };
+  // NOLINTEND(readability-identifier-naming)
+};
+
 /// So that matrices of them can be multiplied, as those of dual numbers.
 template <int N>
 struct NumTraits<sepcal::EnclosedDual<N>> : GenericNumTraits<sepcal::EnclosedDual<N>> {
@@ -184,6 +198,14 @@ struct ScalarBinaryOpTraits<sepcal::EnclosedDual<N>, double, BinaryOp> {
 };
 template <typename BinaryOp, int N>
 struct ScalarBinaryOpTraits<double, sepcal::EnclosedDual<N>, BinaryOp> {
+  using ReturnType = sepcal::EnclosedDual<N>;
+};
+template <typename BinaryOp, int N>
+struct ScalarBinaryOpTraits<sepcal::EnclosedDual<N>, sepcal::Enclosure, BinaryOp> {
+  using ReturnType = sepcal::EnclosedDual<N>;
+};
+template <typename BinaryOp, int N>
+struct ScalarBinaryOpTraits<sepcal::Enclosure, sepcal::EnclosedDual<N>, BinaryOp> {
   using ReturnType = sepcal::EnclosedDual<N>;
 };
 

@@ -78,7 +78,9 @@ inline Enclosure operator/(const Enclosure& x, const Enclosure& y) {
   return Enclosure::rounded(least, most);
 }
 inline Enclosure operator+(const Enclosure& x, double y) { return x + Enclosure(y); }
+inline Enclosure operator+(double x, const Enclosure& y) { return Enclosure(x) + y; }
 inline Enclosure operator*(const Enclosure& x, double y) { return x * Enclosure(y); }
+inline Enclosure operator*(double x, const Enclosure& y) { return Enclosure(x) * y; }
 inline Enclosure& operator+=(Enclosure& x, const Enclosure& y) { return x = x + y; }
 
 /// What holds both.

@@ -84,7 +84,9 @@ constexpr bool has_nested_duals() {
 }
 
 /// A model whose at() also takes an EnclosedDual (enclosed_dual.hpp) for xi2 says `static constexpr
-/// bool enclosed = true`: then what is said of its cost can be proven (certificate.hpp).
+/// bool enclosed = true`: then what is said of its cost can be proven (certificate.hpp). With
+/// `dual_inputs` its inputs are Enclosures (enclosure.hpp); without, numbers of which nothing is to
+/// be computed that rounds.
 template <class M>
 constexpr bool has_enclosures() {
   if constexpr (requires { M::enclosed; }) return M::enclosed;

@@ -16,6 +16,10 @@
 #include "sepcal/profile.hpp"            // intervals where standard errors mislead
 #include "sepcal/prediction.hpp"         // what a fit says of other samples
 #include "sepcal/certificate.hpp"        // what is proven of a cost
+#include "sepcal/rivals/single_stage.hpp"       // what the estimator is measured against
+#include "sepcal/rivals/haupt_kasdin.hpp"
+#include "sepcal/rivals/two_step_problems.hpp"
+#include "sepcal/rivals/alonso_shuster.hpp"
 #include "sepcal/check_model.hpp"        // what a concept can't check
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist

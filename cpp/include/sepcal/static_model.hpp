@@ -184,6 +184,16 @@ class StaticModel final : public BlockModel {
     return u;
   }
 
+  /// In ranges, where at() takes them: what is computed of the inputs alone is then rounded
+  /// outwards too.
+  static auto enclosed_sample(const Block& block, std::size_t row) {
+    if constexpr (has_dual_inputs<M>()) {
+      return Vec<Enclosure, n_u>(sample(block, row).template cast<Enclosure>());
+    } else {
+      return sample(block, row);
+    }
+  }
+
   void fill_values(const Block& block, const double* xi2, Eigen::Ref<Eigen::MatrixXd> rows) const
     requires(!has_lanes<M>())
   {
@@ -247,7 +257,7 @@ class StaticModel final : public BlockModel {
     Vec<Dual, n_2> x;
     for (int i = 0; i < n_2; ++i) x[i] = Dual(xi2[static_cast<std::size_t>(i)], i);
     for (std::size_t row = 0; row < block.rows; ++row) {
-      const auto [A, b] = model_.at(sample(block, row), x);
+      const auto [A, b] = model_.at(enclosed_sample(block, row), x);
       for (int j = 0; j < n_z; ++j) {
         const auto at = static_cast<Eigen::Index>(static_cast<std::size_t>(j) * block.rows + row);
         for (int k = 0; k < n_1; ++k) A(j, k).copy_to(rows.at(at, k));

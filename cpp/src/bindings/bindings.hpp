@@ -51,6 +51,7 @@ void define_certificate(py::module_& module);
 void define_check(py::module_& module);
 void define_options(py::module_& module);
 void define_results(py::module_& module);
+void define_rivals(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
 void define_figures(py::module_& module);

@@ -34,6 +34,7 @@ PYBIND11_MODULE(_core, module) {
   define_engine(module);
   define_intervals(module);
   define_certificate(module);
+  define_rivals(module);
   define_flight(module);
   define_check(module);
   define_figures(module);

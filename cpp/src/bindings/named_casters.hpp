@@ -26,7 +26,7 @@ struct WordCaster {
     make_caster<std::string> word;
     if (!word.load(source, convert)) return false;
     const auto take = [&](Enumeration one) {
-      if (sepcal::to_string(one) != cast_op<std::string&>(word)) return false;
+      if (to_string(one) != cast_op<std::string&>(word)) return false;
       value = one;
       return true;
     };
@@ -34,7 +34,7 @@ struct WordCaster {
   }
 
   static handle cast(Enumeration one, return_value_policy /*policy*/, handle /*parent*/) {
-    return str(std::string(sepcal::to_string(one))).release();
+    return str(std::string(to_string(one))).release();
   }
 };
 

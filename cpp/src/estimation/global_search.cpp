@@ -3,111 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <nlopt.hpp>
-#include <utility>
 
+#include "estimation/nlopt_cost.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::estimation {
 namespace {
 
 using Eigen::Index;
-using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Values = std::vector<double>;
 
 constexpr double beyond_any_logarithm = 1e3;  // |ln S| < 745 for every double S
 
-Values values_in(const VectorXd& x) { return {x.begin(), x.end()}; }
-
-/// S as NLopt sees it.
-double logarithm(double square) {
-  if (!std::isfinite(square)) return beyond_any_logarithm;
-  return std::log(std::max(square, std::numeric_limits<double>::min()));
-}
-
-/// ln S and its gradient as one of NLopt's functions, of x in units of `widths`.
-class LogarithmicCost {
- public:
-  LogarithmicCost(Objective& objective, VectorXd origin, VectorXd widths)
-      : objective_(objective), origin_(std::move(origin)), widths_(std::move(widths)) {}
-
-  VectorXd point(const Values& t) const {
-    return origin_ + widths_.cwiseProduct(Map<const VectorXd>(t.data(), origin_.size()));
+/// ln S: its dips are ratios.
+struct Logarithm final : SquareScale {
+  double value(double square) const override {
+    if (!std::isfinite(square)) return beyond_any_logarithm;
+    return std::log(std::max(square, std::numeric_limits<double>::min()));
   }
-
-  /// The lowest point so far.
-  const Descent& lowest() const { return lowest_; }
-
-  void hear(std::function<void(const VectorXd&, double)> on_point) {
-    on_point_ = std::move(on_point);
+  double slope(double square) const override {
+    return square < std::numeric_limits<double>::min() ? 0.0 : 1.0 / square;
   }
-
-  /// Runs the solver from t. An exception of the model stops it and is thrown again here: NLopt is
-  /// written in C and lets none through. False where the solver ran out of evaluations or failed.
-  bool minimise(nlopt::opt& solver, Values t) {
-    solver.set_min_objective(&LogarithmicCost::evaluate, this);
-    bool converged = false;
-    try {
-      double value = 0.0;
-      converged = solver.optimize(t, value) != nlopt::MAXEVAL_REACHED;
-    } catch (const nlopt::forced_stop&) {
-      std::rethrow_exception(failure_);
-    } catch (const nlopt::roundoff_limited&) {
-      converged = true;  // no better point can be told from the best one
-    } catch (const std::exception&) {
-      converged = false;  // the best point stands
-    }
-    return converged;
-  }
-
- private:
-  static double evaluate(const Values& t, Values& gradient, void* self) {
-    auto& cost = *static_cast<LogarithmicCost*>(self);
-    try {
-      return cost.at(t, gradient);
-    } catch (...) {
-      cost.failure_ = std::current_exception();
-      throw nlopt::forced_stop();
-    }
-  }
-
-  double at(const Values& t, Values& gradient) {
-    const VectorXd x = point(t);
-    const double square = gradient.empty() ? objective_.square(x) : differentiate(x, gradient);
-    if (square < lowest_.square) {
-      lowest_.x = x;
-      lowest_.square = square;
-    }
-    ++lowest_.iterations;
-    if (on_point_) on_point_(x, square);
-    return logarithm(square);
-  }
-
-  /// S, and d ln S / dt = 2 J'r / S times the widths.
-  double differentiate(const VectorXd& x, Values& gradient) {
-    VectorXd residual;
-    MatrixXd jacobian;
-    std::ranges::fill(gradient, 0.0);
-    if (!objective_.linearise(x, residual, jacobian)) return infinity;
-    const double square = residual.squaredNorm();
-    if (square >= std::numeric_limits<double>::min()) {
-      Map<VectorXd>(gradient.data(), x.size()) =
-          (2.0 / square) * widths_.cwiseProduct(jacobian.transpose() * residual);
-    }
-    return square;
-  }
-
-  Objective& objective_;
-  VectorXd origin_;
-  VectorXd widths_;
-  Descent lowest_{{}, infinity};
-  std::function<void(const VectorXd&, double)> on_point_;
-  std::exception_ptr failure_;
 };
+
+const Logarithm logarithm;
 
 numerics::Box finite_box(const std::vector<Variable>& parameters) {
   const auto n = static_cast<Index>(parameters.size());
@@ -129,7 +52,7 @@ numerics::Box finite_box(const std::vector<Variable>& parameters) {
 Descent descend_within(Objective& objective, const VectorXd& from, const numerics::Box& box,
                        const VectorXd& widths, double reach) {
   const auto n = static_cast<unsigned>(from.size());
-  LogarithmicCost cost(objective, from, widths);
+  NloptCost cost(objective, logarithm, from, widths);
   nlopt::opt solver(nlopt::LD_SLSQP, n);
   solver.set_lower_bounds(
       values_in((box.lower - from).cwiseQuotient(widths).cwiseMax(-reach).cwiseMin(0.0)));
@@ -155,7 +78,7 @@ SearchedPoints search_globally(Objective& objective, const std::vector<Variable>
   const auto n = static_cast<Index>(parameters.size());
   SearchedPoints searched{MatrixXd(n, evaluations), VectorXd(evaluations)};
   Index count = 0;
-  LogarithmicCost cost(objective, box.lower, box.upper - box.lower);
+  NloptCost cost(objective, logarithm, box.lower, box.upper - box.lower);
   cost.hear([&](const VectorXd& x, double square) {
     if (count == evaluations) return;
     searched.points.col(count) = box.clip(x);

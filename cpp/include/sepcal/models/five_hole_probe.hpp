@@ -43,6 +43,7 @@ struct FiveHoleProbe {
                                         Quantity{"eps_phi", "rad", -0.2618, 0.2618}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  static constexpr bool enclosed = true;
   using LanesOf = FiveHoleProbe;
 
   double k_alpha;

@@ -28,6 +28,7 @@ struct Magnetometer {
       Quantity{"alpha_xz", "1", -0.5, 0.5}, Quantity{"alpha_yz", "1", -0.5, 0.5}};
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
+  static constexpr bool enclosed = true;
   using LanesOf = Magnetometer;
 
   template <class U>

@@ -13,6 +13,7 @@
 #include "base/excerpt.hpp"
 #include "base/sentences.hpp"
 #include "flight/probes/ellipsoid.hpp"
+#include "model/soft_iron_and_scale.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/option_error.hpp"
 
@@ -133,7 +134,7 @@ Start start_from_sphere(const Points& points, const PointBox& box, double field_
 }
 
 std::optional<Start> start_from_ellipsoid(const Ellipsoid& ellipsoid, double field_strength) {
-  const auto split = split_shape(ellipsoid.shape / (field_strength * field_strength));
+  const auto split = model::split_shape(ellipsoid.shape / (field_strength * field_strength));
   if (!split) return std::nullopt;
   Start start;
   start << split->scale.array() - 1.0, split->soft_iron, ellipsoid.centre;

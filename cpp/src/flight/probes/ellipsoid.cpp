@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/symmetric.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::probes {
@@ -58,18 +59,6 @@ std::optional<Eigen::Vector<double, n>> regress(const Points& points, const Scal
       T.col(n).template head<n>());
 }
 
-Matrix3d symmetric(const Vector3d& diagonal, const Vector3d& off_diagonal) {
-  Matrix3d matrix;
-  matrix << diagonal[0], off_diagonal[0], off_diagonal[1],  //
-      off_diagonal[0], diagonal[1], off_diagonal[2],        //
-      off_diagonal[1], off_diagonal[2], diagonal[2];
-  return matrix;
-}
-
-Eigen::Vector<double, 6> entries(const Matrix3d& S) {
-  return {S(0, 0), S(1, 1), S(2, 2), S(0, 1), S(0, 2), S(1, 2)};
-}
-
 }  // namespace
 
 double Ellipsoid::radius() const { return std::pow(shape.determinant(), 1.0 / 6.0); }
@@ -98,7 +87,7 @@ std::optional<Ellipsoid> fit_ellipsoid(const Points& points) {
   });
   if (!x) return std::nullopt;
   const Vector3d a(1 + (*x)[0], 1 + (*x)[1], 1 - (*x)[0] - (*x)[1]);
-  const Matrix3d Q = symmetric(a, x->segment<3>(2));
+  const Matrix3d Q = numerics::symmetric(a, x->segment<3>(2));
   const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(Q, Eigen::EigenvaluesOnly);
   if (!(axes.eigenvalues()[0] > 1e-6 * axes.eigenvalues()[2])) return std::nullopt;
   const Matrix3d Q_inverse = Q.inverse();
@@ -137,34 +126,6 @@ Coverage judge_coverage(const Points& points, const Ellipsoid& ellipsoid) {
   }
   const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(moments / rows, Eigen::EigenvaluesOnly);
   return {std::sqrt(square / rows), sum.norm() / rows, axes.eigenvalues()[0]};
-}
-
-std::optional<SoftIronAndScale> split_shape(const Matrix3d& shape) {
-  constexpr int most_steps = 50;
-  constexpr double small_step = 1e-12;  // of the largest unknown, which are of order one
-  const double unit = shape.diagonal().mean();
-  const Matrix3d S = shape / unit;
-  Vector3d d = S.diagonal();  // scale factors squared
-  Vector3d alpha = Vector3d::Zero();
-  for (int step = 0; step < most_steps; ++step) {
-    const Matrix3d A = symmetric(Vector3d::Ones(), alpha);
-    const Matrix3d AD = A * d.asDiagonal();
-    Eigen::Matrix<double, 6, 6> jacobian;
-    for (Index k = 0; k < 3; ++k) {
-      jacobian.col(k) = entries(A.col(k) * A.col(k).transpose());
-      const Matrix3d by_alpha = symmetric(Vector3d::Zero(), Vector3d::Unit(k)) * AD.transpose();
-      jacobian.col(3 + k) = entries(by_alpha + by_alpha.transpose());
-    }
-    const Eigen::Vector<double, 6> change =
-        jacobian.fullPivLu().solve(entries(S - AD * A.transpose()));
-    if (!change.allFinite()) return std::nullopt;
-    d += change.head<3>();
-    alpha += change.tail<3>();
-    if (change.cwiseAbs().maxCoeff() > small_step * std::max(1.0, d.maxCoeff())) continue;
-    if (!(d.minCoeff() > 0)) return std::nullopt;
-    return SoftIronAndScale{(unit * d).cwiseSqrt(), alpha};
-  }
-  return std::nullopt;
 }
 
 }  // namespace sepcal::probes

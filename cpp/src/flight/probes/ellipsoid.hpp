@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The linear first step for a magnetometer of which only the field's strength is known: its
 // readings lie on the ellipsoid (m - n)' S^-1 (m - n) = 1, S = F^2 C C'. Fitted algebraically in
-// one pass, then split into scale factors and soft iron.
+// one pass; model::split_shape() makes scale factors and soft iron of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -53,15 +53,5 @@ struct Coverage {
   double thinnest = 0.0;  // least mean square of y / |y| along an axis: 1/3 all round, 0 in a plane
 };
 Coverage judge_coverage(const Points& points, const Ellipsoid& ellipsoid);
-
-/// C_alpha C_lambda with (C_alpha C_lambda)(C_alpha C_lambda)' = S.
-struct SoftIronAndScale {
-  Eigen::Vector3d scale;      // 1 + lambda, positive
-  Eigen::Vector3d soft_iron;  // alpha_xy, alpha_xz, alpha_yz
-};
-
-/// Newton's method on the six entries. Nothing where it does not converge to positive scale
-/// factors: soft iron too strong for a unit diagonal.
-std::optional<SoftIronAndScale> split_shape(const Eigen::Matrix3d& shape);
 
 }  // namespace sepcal::probes
