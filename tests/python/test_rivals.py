@@ -258,3 +258,37 @@ def test_twostep_refuses_and_says_what_readings_leave_open() -> None:
     assert not fit.converged
     assert "leave parameters open" in fit.message
     assert np.isnan(fit.estimates).all()
+
+
+# --- where the two stages must not do worse
+
+
+@pytest.mark.parametrize(("seed", "noise"), [(2, 0.15), (3, 0.15), (0, 3.0), (2, 3.0)])
+def test_along_bounds_and_flat_valleys_the_two_stages_end_as_low_as_any(
+    seed: int, noise: float
+) -> None:
+    """A short flight on one heading: parameters at their bounds, others left open by the record.
+
+    Levenberg-Marquardt alone, whose steps are clipped to the box, ends up to four of ln L above.
+    """
+    probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+    flight = sepcal.simulate(
+        probe,
+        parameters={"lambda_alpha": 0.2982, "lambda_beta": -0.2673, "eps_phi": -0.138},
+        noise=dict.fromkeys(probe.outputs, noise),
+        rows=400,
+        excitation="poor",
+        seed=seed,
+    )
+    wanted = {*probe.inputs, *probe.outputs}
+    data = {n: flight[h] for h in flight if (n := h.rsplit("_", 1)[0]) in wanted}
+    angles = dict.fromkeys(("b_alpha", "b_beta", "eps_phi"), (-0.5, 0.5))
+    winds = dict.fromkeys(("w_n", "w_e", "w_d"), (-60.0, 60.0))
+    scales = dict.fromkeys(("lambda_va", "lambda_alpha", "lambda_beta"), (-0.5, 0.5))
+    bounds = {**angles, **winds, **scales, "b_va": (-10.0, 10.0)}
+    fit = sepcal.fit(probe, data, bounds=bounds, coloured_errors=False)
+    single = rivals.fit_single_stage(
+        probe, data, bounds=bounds, solver="slsqp", noise_tolerance=1e-8
+    )
+    assert fit.cost <= single.cost + 0.01
+    assert "did not converge" not in fit.message

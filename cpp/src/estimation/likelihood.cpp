@@ -8,6 +8,7 @@
 
 #include "estimation/objective.hpp"
 #include "estimation/plausibility.hpp"
+#include "estimation/sqp.hpp"
 #include "sepcal/identifiability.hpp"
 
 namespace sepcal::estimation {
@@ -70,6 +71,18 @@ StageTwo Likelihood::descend(StageTwo at, double first_radius) const {
   const Descent end = minimise(objective, at.x, box_, descent(first_radius));
   at.iterations += end.iterations;
   at.x = end.x;
+  return at;
+}
+
+StageTwo Likelihood::slide(StageTwo at) const {
+  constexpr int evaluations = 5;  // for each of Levenberg and Marquardt's iterations
+  JointObjective objective = joint_objective(at);
+  const double before = objective.square(at.x);
+  const Descent end =
+      descend_by_sqp(objective, at.x, box_, at.scale,
+                     {.rows = rows(), .evaluations = evaluations * problem_.options().iterations});
+  at.iterations += end.iterations;
+  if (end.square < before) at.x = end.x;
   return at;
 }
 

@@ -34,6 +34,9 @@ class Likelihood {
   /// linear parameter meets a bound, which the inner problem does not know.
   StageTwo descend(StageTwo at, double first_radius) const;
 
+  /// The same by SLSQP, jointly: along bounds and flat valleys, where descend() stands still.
+  StageTwo slide(StageTwo at) const;
+
   /// x to the last digit, or until steps are as short as a `share` of the first; not `refined`,
   /// with x as it was, where no minimum is near.
   StageTwo refine(StageTwo at, double share = 0.0) const;

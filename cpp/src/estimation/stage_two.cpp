@@ -55,7 +55,9 @@ struct Turns {
   }
 
   StageTwo descend(StageTwo at, double share) const {
-    return likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius), share);
+    at = likelihood.refine(likelihood.descend(std::move(at), attempt.first_radius), share);
+    if (at.refined || at.method != SecondStage::joint) return at;
+    return likelihood.refine(likelihood.slide(std::move(at)), share);
   }
 
   Eigen::VectorXd noise_at(const StageTwo& at) const { return likelihood.noise_at(at); }

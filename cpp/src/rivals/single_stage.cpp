@@ -2,16 +2,15 @@
 #include "sepcal/rivals/single_stage.hpp"
 
 #include <cmath>
-#include <nlopt.hpp>
 
 #include "base/name_list.hpp"
 #include "base/thread_pool.hpp"
 #include "estimation/alternation.hpp"
 #include "estimation/likelihood.hpp"
 #include "estimation/minimise.hpp"
-#include "estimation/nlopt_cost.hpp"
 #include "estimation/objective.hpp"
 #include "estimation/problem.hpp"
+#include "estimation/sqp.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
 #include "sepcal/error.hpp"
@@ -28,18 +27,6 @@ std::string_view to_string(Solver solver) {
 std::string_view to_string(CostScale scale) { return scale == CostScale::sum ? "sum" : "mean"; }
 
 namespace {
-
-constexpr double tolerance = 1e-12;  // of the cost and of each parameter
-
-/// The cost in NLopt's eyes, J = S / 2 over `rows`.
-struct Share final : estimation::SquareScale {
-  explicit Share(double rows_) : rows(rows_) {}
-  double value(double square) const override {
-    return std::isfinite(square) ? 0.5 * square / rows : infinity;
-  }
-  double slope(double /*square*/) const override { return 0.5 / rows; }
-  double rows;
-};
 
 FitOptions fit_options(const SingleStageOptions& options) {
   FitOptions asked;
@@ -123,22 +110,9 @@ class Programme {
   }
 
   estimation::Descent descend_by_slsqp(estimation::Objective& objective, const VectorXd& x) const {
-    const Share share(options_.cost == CostScale::mean ? rows() : 1.0);
-    const auto n = static_cast<unsigned>(x.size());
-    estimation::NloptCost cost(objective, share, VectorXd::Zero(x.size()),
-                               VectorXd::Ones(x.size()));
-    nlopt::opt solver(nlopt::LD_SLSQP, n);
-    const numerics::Box box = problem_.box();
-    solver.set_lower_bounds(estimation::values_in(box.lower));
-    solver.set_upper_bounds(estimation::values_in(box.upper));
-    solver.set_maxeval(options_.evaluations);
-    solver.set_ftol_rel(tolerance);
-    solver.set_xtol_rel(tolerance);
-    const bool converged = cost.minimise(solver, estimation::values_in(x));
-    estimation::Descent end = cost.lowest();
-    if (end.x.size() == 0) end.x = x;
-    end.converged = converged && std::isfinite(end.square);
-    return end;
+    return estimation::descend_by_sqp(objective, x, problem_.box(), VectorXd::Ones(x.size()),
+                                      {.rows = options_.cost == CostScale::mean ? rows() : 1.0,
+                                       .evaluations = options_.evaluations});
   }
 
   const estimation::Problem& problem_;
