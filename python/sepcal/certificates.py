@@ -46,10 +46,12 @@ def certify(
     """Prove that a fit has the least cost within its bounds, or find a lower one.
 
     Branch and bound over the nonlinear parameters that are free, with R and the fixed ones as the
-    fit has them. It serves for one or two of them; three take many boxes.
+    fit has them. It serves for one or two of them; three take many boxes, and
+    more are refused.
 
     Args:
-        model: That was fitted: a scalar example, a PitotStatic.
+        model: That was fitted, one of sepcal's own: a scalar example, a PitotStatic, or a probe or
+            magnetometer most of whose nonlinear parameters are held.
         data: The inputs and outputs that were fitted.
         fit: The fit, by squares and without priors.
         tolerance: How much lower another cost may be, as a share of the fit's.
@@ -75,7 +77,7 @@ def bound_cost(
     """Bound how far the least cost in a box may be below that at one point of xi2.
 
     Args:
-        model: A scalar example, a PitotStatic.
+        model: A scalar example, a PitotStatic, a FiveHoleProbe, a Magnetometer.
         data: Its inputs and outputs, each of shape (N,).
         xi2p: The nonlinear parameters there, by name.
         bounds: Boxes of parameters (lower, upper) [the model's]. Of linear parameters without any

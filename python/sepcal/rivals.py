@@ -19,6 +19,7 @@ from sepcal.own_model import OwnModel, Table, check_parts, to_rows
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 
 Solver = Literal["levenberg_marquardt", "slsqp"]
+SOLVERS = ("levenberg_marquardt", "slsqp")
 Bounds = Mapping[str, tuple[float | None, float | None]]
 
 
@@ -158,7 +159,8 @@ def fit_single_stage(
         fixed: Parameters held at a value.
         noise: Standard deviation of every output; without it R is estimated (Eqs. 24-26).
         segments: Labels or spans of time [all].
-        solver: Ceres' Levenberg-Marquardt, or NLopt's SLSQP, the nearest to MATLAB's fmincon.
+        solver: Ceres' Levenberg-Marquardt, after which SLSQP goes on where steps that are clipped
+            to the bounds end at no minimum; or NLopt's SLSQP, the nearest to MATLAB's fmincon.
         cost: What SLSQP minimises: J over the number of rows, or J.
         noise_tolerance: R and the parameters alternate until every variance changes by less.
         noise_iterations: At most so many times.
@@ -168,11 +170,11 @@ def fit_single_stage(
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
     """
+    _check_choice("solver", solver, SOLVERS)
+    _check_choice("cost", cost, ("mean", "sum"))
     model = as_model(model)
     data = by_name(data)
-    columns = take_columns(
-        model._owner, data, dict.fromkeys([*model._columns_in(data), *model._measured_in(data)])
-    )
+    columns = _columns_of(model, data)
     labels = labels_in(data)
     return SingleStageFit(
         _core.fit_single_stage(
@@ -227,9 +229,9 @@ def fit_haupt_kasdin(
         core, first = problem._core, problem._first
     else:
         core, first = _to_core(problem)
+    _check_choice("solver", solver, SOLVERS)
     data = by_name(data)
-    wanted = dict.fromkeys([*first._columns_in(data), *first._measured_in(data)])
-    columns = take_columns(type(problem).__name__, data, wanted)
+    columns = _columns_of(first, data)
     return HauptKasdinFit(
         _core.fit_haupt_kasdin(
             core,
@@ -279,7 +281,7 @@ def fit_alonso_shuster(
         Error: Columns that are missing, too few rows, a strength or noise that is not positive.
     """
     data = by_name(data)
-    wanted = ["mx", "my", "mz", *({"field_change"} & set(data))]
+    wanted = ["mx", "my", "mz", *sorted({"field_change", "time"} & set(data))]
     columns = take_columns("fit_alonso_shuster()", data, wanted)
     return AlonsoShusterFit(
         _core.fit_alonso_shuster(
@@ -318,6 +320,18 @@ def _to_core(problem: TwoStepProblem) -> tuple[_core.TwoStepProblem, Model]:
     first = OwnModel(_FirstStep(problem))
     parameters = to_rows(f"{type(problem).__name__}.parameters", problem.parameters)
     return _core.TwoStepProblem(first._core, parameters, problem.at), first
+
+
+def _columns_of(model: Model, data: Columns) -> dict[str, Array]:
+    """Inputs, outputs, and the time where there is one."""
+    wanted = [*model._columns_in(data), *model._measured_in(data), *({"time"} & set(data))]
+    return take_columns(model._owner, data, dict.fromkeys(wanted))
+
+
+def _check_choice(option: str, given: str, known: tuple[str, ...]) -> None:
+    """Raises Error for another word."""
+    if given not in known:
+        raise _core.Error(f"{option}: {given!r} is unknown; known: {', '.join(known)}")
 
 
 def _ends(bounds: Bounds | None) -> dict[str, tuple[float, float]]:

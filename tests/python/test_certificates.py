@@ -7,9 +7,11 @@ import pickle
 
 import numpy as np
 import pytest
+from scipy.optimize import lsq_linear
 
 import sepcal
 from apps import Bench
+from own_models import WindBox, simulate_wind_box
 
 POINT = {"b": 0.05, "c": 0.1}
 
@@ -94,8 +96,24 @@ def test_what_can_not_be_proven_is_refused() -> None:
     probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
     flight = sepcal.Flight({name: flown[name] for name in flown.columns})
     calibration = sepcal.fit(probe, flight)
-    with pytest.raises(sepcal.Error, match="can't be enclosed"):
+    with pytest.raises(sepcal.Error, match=r"at most 3 nonlinear parameters, .* 5 are free; hold"):
         calibration.certify()
+    with pytest.raises(sepcal.Error, match="can't be enclosed"):
+        sepcal.bound_cost(WindBox(), simulate_wind_box(20), {"delta": 0.0})
+
+
+def test_a_probe_whose_other_angles_are_known_is_certified() -> None:
+    """What depends on the inputs alone, attitude and pressures, is rounded outwards too."""
+    probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+    flown = sepcal.simulate(probe, rows=60, seed=1)
+    flight = sepcal.Flight({name: flown[name] for name in flown.columns})
+    held = {name: flown.truth[name] for name in probe.nonlinear if name != "eps_phi"}
+    calibration = sepcal.fit(probe, flight, fixed=held)
+    proof = calibration.certify()
+    assert proof.is_global
+    lower, upper = proof.region["eps_phi"]
+    assert lower <= calibration["eps_phi"].value <= upper
+    assert upper - lower < 0.02
 
 
 def test_the_app_says_it_of_a_pitot_static_tube(pitot: Bench) -> None:
@@ -107,3 +125,28 @@ def test_the_app_says_it_of_a_pitot_static_tube(pitot: Bench) -> None:
     fitted = pitot.run("fit", "tube.csv", "--probe", "pitot-static", *held, "--certify")
     assert fitted.code == 0
     assert "note: certificate: proven: " in fitted.err
+
+
+def test_a_bound_of_a_linear_parameter_is_kept_in_both_proofs() -> None:
+    """J(xi2p) is the least within the bounds of xi1, and a certificate succeeds with one active."""
+    eta = np.linspace(0.0, 6.0, 40)
+    noise = 0.1 * np.random.default_rng(2).standard_normal(40)
+    data = {"eta": eta, "z": 1.5 * np.cos(eta + 0.4) + 0.3 + noise}
+    bounds = {"a": (-0.2, 0.1)}
+    model = sepcal.ScalarExample1()
+    at = {"b": 0.3}
+    found = sepcal.bound_cost(
+        model, data, at, bounds=bounds | {"b": (0.25, 0.35)}, noise={"z": 0.1}
+    )
+    wave = np.cos(eta + 0.3)
+    solved = lsq_linear(
+        np.column_stack([wave, np.ones(40)]), data["z"] - wave, ([-0.2, -np.inf], [0.1, np.inf])
+    )
+    assert found.cost == pytest.approx(solved.cost / 0.1**2, rel=1e-9)
+    exact = sepcal.bound_cost(model, data, at, bounds=bounds | {"b": (0.3, 0.3)}, noise={"z": 0.1})
+    assert exact.lower == pytest.approx(found.cost, rel=1e-9)
+    fit = sepcal.fit(model, data, bounds=bounds, noise={"z": 0.1})
+    assert fit.at_bound == ["a"]
+    proof = sepcal.certify(model, data, fit, bounds=bounds, noise={"z": 0.1})
+    assert proof.is_global
+    assert proof.boxes < 200

@@ -115,8 +115,10 @@ def test_a_single_stage_refuses_what_it_does_not_know() -> None:
         rivals.fit_single_stage(sepcal.ScalarExample1(), data, evaluations=0)
     with pytest.raises(sepcal.Error, match="column 'z' is missing"):
         rivals.fit_single_stage(sepcal.ScalarExample1(), {"eta": data["eta"]})
-    with pytest.raises(TypeError):
+    with pytest.raises(sepcal.Error, match="solver: 'sqp' is unknown; known: levenberg_marquardt"):
         rivals.fit_single_stage(sepcal.ScalarExample1(), data, solver="sqp")  # type: ignore[arg-type]
+    with pytest.raises(sepcal.Error, match="start: 'c' is fixed"):
+        rivals.fit_single_stage(sepcal.ScalarExample1(), data, {"c": 1.0}, fixed={"c": 0.5})
 
 
 # --- Haupt and Kasdin
@@ -292,3 +294,71 @@ def test_along_bounds_and_flat_valleys_the_two_stages_end_as_low_as_any(
     )
     assert fit.cost <= single.cost + 0.01
     assert "did not converge" not in fit.message
+
+
+def test_segments_may_be_spans_of_time() -> None:
+    data = dict(state_case("scalar_1").record)
+    data["time"] = np.arange(len(data["z"]), dtype=float)
+    early = {name: column[:40] for name, column in data.items()}
+    span = rivals.fit_single_stage(sepcal.ScalarExample1(), data, segments="0:39.5")
+    alone = rivals.fit_single_stage(sepcal.ScalarExample1(), early)
+    assert_allclose(span.estimates, alone.estimates, atol=1e-9)
+
+
+def test_states_may_be_any_view_and_none_is_refused() -> None:
+    class Tone:
+        inputs: ClassVar = {"eta": "rad"}
+        outputs: ClassVar = {"z": "1"}
+        states: ClassVar = {"x": "1", "y": "1", "level": "1"}
+        parameters: ClassVar = {"a": "1", "c": "1", "b": "rad"}
+
+        def rows(self, u: Any) -> Array:
+            ones = np.ones_like(u.eta)
+            return np.stack([np.cos(u.eta), -np.sin(u.eta), ones], axis=-1)[:, np.newaxis]
+
+        def at(self, xi: Array) -> Array:
+            a, c, b = xi
+            whole = np.array([c, (1 + a) * np.sin(b), (1 + a) * np.cos(b)])
+            return whole[::-1]
+
+    data = example(1)
+    built_in = rivals.fit_haupt_kasdin(rivals.ExampleInThreeStates(), data)
+    assert_allclose(rivals.fit_haupt_kasdin(Tone(), data).estimates, built_in.estimates, atol=1e-8)
+
+    class Nothing(Tone):
+        def at(self, xi: Array) -> Array:
+            return np.array([])
+
+    with pytest.raises(sepcal.Error, match="must give its states"):
+        rivals.fit_haupt_kasdin(Nothing(), data)
+    with pytest.raises(sepcal.Error, match="no rows"):
+        rivals.fit_haupt_kasdin(rivals.ExampleInThreeStates(), {"eta": [], "z": []})
+
+
+@pytest.mark.parametrize("noise", [np.inf, 1e160, 1e-200])
+@pytest.mark.parametrize("bias_alone", [False, True])
+def test_twostep_refuses_what_overflows(noise: float, bias_alone: bool) -> None:
+    with pytest.raises(sepcal.Error, match=r"finite|overflow"):
+        rivals.fit_alonso_shuster(tumble(1, 0.3), STRENGTH, noise=noise, bias_alone=bias_alone)
+
+
+@pytest.mark.parametrize("solver", ["levenberg_marquardt", "slsqp"])
+def test_every_end_of_a_single_stage_is_a_minimum(solver: Any) -> None:
+    """Where it says that it converged, SciPy's trf finds nothing lower from there."""
+    case = state_case("scalar_2")
+    model, data = sepcal.ScalarExample2(), dict(case.record)
+    rng = np.random.default_rng(5)
+    bounds = {"a": (-0.5, 2.0), "d": (-1.0, 1.5), "b": (-0.5, 0.5), "c": (-1.0, 1.0)}
+    lower, upper = np.array([bounds[name] for name in model.parameters]).T
+    for _ in range(40):
+        start = dict(zip(model.parameters, rng.uniform(lower, upper), strict=True))
+        fit = rivals.fit_single_stage(
+            model, data, start, bounds=bounds, solver=solver, noise={"z": 0.3}
+        )
+        if not fit.converged:
+            continue
+        inside = np.clip(fit.estimates, lower + 1e-9, upper - 1e-9)
+        further = single_stage(
+            case.model, case.record, inside, lower, upper, np.array([0.3]), "trf"
+        )
+        assert further.cost > fit.cost - 1e-3

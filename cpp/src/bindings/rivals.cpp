@@ -63,8 +63,9 @@ class PythonChange final : public ChangeOfVariables {
   VectorXd at(const VectorXd& xi) const override {
     const py::gil_scoped_acquire gil;
     const py::object answer = (*at_)(xi);
-    const auto states = py::array_t<double, py::array::forcecast>::ensure(answer);
-    if (!states || states.ndim() != 1) {
+    using Contiguous = py::array_t<double, py::array::c_style | py::array::forcecast>;
+    const auto states = Contiguous::ensure(answer);
+    if (!states || states.ndim() != 1 || states.size() == 0) {
       throw Error("at(xi) of a two-step problem must give its states, an array (p,)");
     }
     return Eigen::Map<const VectorXd>(states.data(), states.size());

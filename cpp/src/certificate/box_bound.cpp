@@ -17,14 +17,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Columns in ranges, in plain numbers about the middle, and how far each may be multiplied.
+/// Columns in ranges, in plain numbers about the middle, and what each may be multiplied by.
 struct Columns {
   std::vector<Ranges> ranges = {};
-  std::vector<double> limits = {};
+  Ranges factors = {};  // zero among them
 
-  void add(Ranges column, double limit) {
+  void add(Ranges column, const Enclosure& factor) {
     ranges.push_back(std::move(column));
-    limits.push_back(limit);
+    factors.push_back(factor);
   }
 
   MatrixXd plain(Index rows) const {
@@ -44,7 +44,7 @@ Enclosure dot(const Ranges& x, const VectorXd& y) {
   return sum;
 }
 
-/// |y - K v| minimised with |v| within the limits, about: what is left.
+/// |y - K v| minimised with v within its limits, about: what is left.
 VectorXd leftover(const Columns& columns, const Ranges& ranges) {
   VectorXd y(static_cast<Index>(ranges.size()));
   for (Index i = 0; i < y.size(); ++i) y[i] = ranges[static_cast<std::size_t>(i)].middle();
@@ -54,9 +54,12 @@ VectorXd leftover(const Columns& columns, const Ranges& ranges) {
   const Index p = std::min(K.rows(), K.cols());
   const MatrixXd R = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
   const VectorXd q = (qr.householderQ().adjoint() * y).head(p);
-  numerics::Box box;
-  box.upper = Eigen::Map<const VectorXd>(columns.limits.data(), K.cols());
-  box.lower = -box.upper;
+  numerics::Box box{VectorXd(K.cols()), VectorXd(K.cols())};
+  for (Index c = 0; c < K.cols(); ++c) {
+    const Enclosure& factor = columns.factors[static_cast<std::size_t>(c)];
+    box.lower[c] = factor.lower();
+    box.upper[c] = factor.upper();
+  }
   return y - K * numerics::solve_bounded(R, q, box).x;
 }
 
@@ -67,8 +70,7 @@ double dual_bound(const Columns& columns, const Ranges& y, const VectorXd& rho) 
   for (const double value : rho) square_of_rho += square(Enclosure(value));
   bound = bound - square_of_rho * 0.5;
   for (std::size_t c = 0; c < columns.ranges.size(); ++c) {
-    const double most = dot(columns.ranges[c], rho).magnitude();
-    bound = bound - Enclosure(most) * columns.limits[c];
+    bound = bound - Enclosure((dot(columns.ranges[c], rho) * columns.factors[c]).upper());
   }
   return bound.lower();
 }
@@ -116,12 +118,7 @@ class Linear {
       y[r] = problem.weight(i) * without_held(at, i).middle();
     }
     P_ = pseudo_inverse_of(A);
-    const VectorXd found = P_ * y;
-    for (Index f = 0; f < found.size(); ++f) {
-      const Index l = free_[static_cast<std::size_t>(f)];
-      const Enclosure& limit = limits[static_cast<std::size_t>(l)];
-      xi1_[l] = std::clamp(found[f], limit.lower(), limit.upper());
-    }
+    solve_within(A, y, limits);
   }
 
   /// Least squares in the middle, within the limits: a guess.
@@ -133,6 +130,24 @@ class Linear {
   VectorXd reach(const EnclosedRows& over, double most) const;
 
  private:
+  /// The free part of xi1, the least within the limits.
+  void solve_within(const MatrixXd& A, const VectorXd& y, const Ranges& limits) {
+    const Index n = A.cols();
+    numerics::Box box{VectorXd(n), VectorXd(n)};
+    for (Index f = 0; f < n; ++f) {
+      const auto l = static_cast<std::size_t>(free_[static_cast<std::size_t>(f)]);
+      box.lower[f] = limits[l].lower();
+      box.upper[f] = limits[l].upper();
+    }
+    const VectorXd unbounded = P_ * y;
+    VectorXd x = box.clip(unbounded);
+    if (x != unbounded) {
+      x += numerics::solve_bounded(A, y - A * x, {box.lower - x, box.upper - x}).x;
+      x = box.clip(x);
+    }
+    for (Index f = 0; f < n; ++f) xi1_[free_[static_cast<std::size_t>(f)]] = x[f];
+  }
+
   /// z - b - A xi1 of what is held.
   Enclosure without_held(const EnclosedRows& rows, Index i) const {
     Enclosure left = Enclosure(problem_.z(i)) - *rows.at(i, problem_.n_1());
@@ -211,11 +226,13 @@ class Relaxer {
           const std::vector<Index>& kept)
       : problem_(problem), at_(at), over_(over), kept_(kept) {}
 
-  Relaxation relax(const VectorXd& half, const VectorXd& reach, BoxBound& result) const {
+  /// `steps` (n_1): what dx may be.
+  Relaxation relax(const VectorXd& half, const Ranges& steps, BoxBound& result) const {
     Relaxation relaxed;
     const Index n_1 = problem_.n_1();
     for (Index l = 0; l < n_1; ++l) {
-      relaxed.columns.add(weighted([&](Index i) { return *at_.at(i, l); }), reach[l]);
+      relaxed.columns.add(weighted([&](Index i) { return *at_.at(i, l); }),
+                          steps[static_cast<std::size_t>(l)]);
     }
     for (Index j = 0; j < problem_.n_2(); ++j) {
       if (half[j] == 0.0) continue;
@@ -228,10 +245,11 @@ class Relaxer {
       double length = 0.0;
       for (const Enclosure& one : slopes) length = std::hypot(length, one.middle());
       result.swing[j] = half[j] * length;
-      relaxed.columns.add(std::move(slopes), half[j]);
+      const Enclosure w(-half[j], half[j]);
+      relaxed.columns.add(std::move(slopes), w);
       for (Index l = 0; l < n_1; ++l) {
         relaxed.columns.add(weighted([&](Index i) { return at_.at(i, l)[slope]; }),
-                            (Enclosure(half[j]) * reach[l]).upper());
+                            w * steps[static_cast<std::size_t>(l)]);
       }
     }
     relaxed.y = weighted([&](Index i) {
@@ -241,7 +259,7 @@ class Relaxer {
     });
     Enclosure sum(0.0);
     for (const Enclosure& one :
-         weighted([&](Index i) { return bend(i, half, reach, result.xi1); })) {
+         weighted([&](Index i) { return bend(i, half, result.reach, result.xi1); })) {
       sum += square(one);
     }
     relaxed.remainder = sqrt(sum).upper();
@@ -304,11 +322,14 @@ BoxBound bound_over(const EnclosedProblem& problem, const Ranges& box, const Ran
   const Linear linear(problem, at, kept, limits);
   result.xi1 = linear.xi1();
   result.reach = linear.reach(over, most);
+  Ranges steps;
   for (Index l = 0; l < n_1; ++l) {
-    const Enclosure off = limits[static_cast<std::size_t>(l)] - Enclosure(result.xi1[l]);
-    result.reach[l] = std::min(result.reach[l], off.magnitude());
+    const Enclosure within = limits[static_cast<std::size_t>(l)] - Enclosure(result.xi1[l]);
+    steps.emplace_back(std::max(within.lower(), -result.reach[l]),
+                       std::min(within.upper(), result.reach[l]));
+    result.reach[l] = steps.back().magnitude();
   }
-  const Relaxation relaxed = Relaxer(problem, at, over, kept).relax(half, result.reach, result);
+  const Relaxation relaxed = Relaxer(problem, at, over, kept).relax(half, steps, result);
   const double bound = dual_bound(relaxed.columns, relaxed.y, leftover(relaxed.columns, relaxed.y));
   if (!(bound > 0.0)) return result;
   const Enclosure root = sqrt(Enclosure(bound) * 2.0) - Enclosure(relaxed.remainder);

@@ -70,6 +70,16 @@ void check_fit(const BlockModel& model, const Fit& fit, const FitOptions& option
   if (fit.by == FitMethod::filter_error) {
     throw Error("a fit by filter error has no cost that a box of parameters bounds");
   }
+  constexpr std::ptrdiff_t most = 3;
+  const auto is_free = [&](const Parameter& parameter) { return !parameter.fixed; };
+  const std::ptrdiff_t free =
+      std::ranges::count_if(fit.parameters.begin() + fit.n_1, fit.parameters.end(), is_free);
+  if (free > most) {
+    throw Error(
+        fmt::format("a certificate is of at most {} nonlinear parameters, as boxes multiply "
+                    "with each: {} are free; hold some",
+                    most, free));
+  }
   if (options.loss != Loss::squares || !options.prior.empty()) {
     throw Error("a certificate is of plain least squares: fit without a loss and without priors");
   }

@@ -15,7 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Values = std::vector<double>;
 
 constexpr double beyond_any_logarithm = 1e3;  // |ln S| < 745 for every double S
 
@@ -62,7 +61,7 @@ Descent descend_within(Objective& objective, const VectorXd& from, const numeric
   solver.set_maxeval(most_evaluations);
   solver.set_ftol_abs(1e-10);
   solver.set_xtol_abs(1e-8);
-  const bool converged = cost.minimise(solver, Values(n, 0.0));
+  const bool converged = cost.minimise(solver, std::vector<double>(n, 0.0));
   Descent descent = cost.lowest();
   if (descent.x.size() == 0) descent.x = from;
   descent.x = box.clip(descent.x);
@@ -89,7 +88,7 @@ SearchedPoints search_globally(Objective& objective, const std::vector<Variable>
   solver.set_lower_bounds(0.0);
   solver.set_upper_bounds(1.0);
   solver.set_maxeval(evaluations);
-  cost.minimise(solver, Values(static_cast<std::size_t>(n), 0.5));
+  cost.minimise(solver, std::vector<double>(static_cast<std::size_t>(n), 0.5));
   searched.points.conservativeResize(n, count);
   searched.squares.conservativeResize(count);
   if (on_progress && count < evaluations) on_progress(1.0);

@@ -75,7 +75,7 @@ StageTwo Likelihood::descend(StageTwo at, double first_radius) const {
 }
 
 StageTwo Likelihood::slide(StageTwo at) const {
-  constexpr int evaluations = 5;  // for each of Levenberg and Marquardt's iterations
+  constexpr int evaluations = 2;  // for each of Levenberg and Marquardt's iterations
   JointObjective objective = joint_objective(at);
   const double before = objective.square(at.x);
   const Descent end =

@@ -9,9 +9,8 @@ namespace sepcal::estimation {
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Values = std::vector<double>;
 
-Values values_in(const VectorXd& x) { return {x.begin(), x.end()}; }
+std::vector<double> values_in(const VectorXd& x) { return {x.begin(), x.end()}; }
 
 NloptCost::NloptCost(Objective& objective, const SquareScale& scale, VectorXd origin,
                      VectorXd widths)
@@ -21,7 +20,7 @@ NloptCost::NloptCost(Objective& objective, const SquareScale& scale, VectorXd or
       widths_(std::move(widths)),
       lowest_{{}, infinity} {}
 
-VectorXd NloptCost::point(const Values& t) const {
+VectorXd NloptCost::point(const std::vector<double>& t) const {
   return origin_ + widths_.cwiseProduct(Map<const VectorXd>(t.data(), origin_.size()));
 }
 
@@ -29,7 +28,7 @@ void NloptCost::hear(std::function<void(const VectorXd&, double)> on_point) {
   on_point_ = std::move(on_point);
 }
 
-bool NloptCost::minimise(nlopt::opt& solver, Values t) {
+bool NloptCost::minimise(nlopt::opt& solver, std::vector<double> t) {
   solver.set_min_objective(&NloptCost::evaluate, this);
   bool converged = false;
   try {
@@ -45,7 +44,8 @@ bool NloptCost::minimise(nlopt::opt& solver, Values t) {
   return converged;
 }
 
-double NloptCost::evaluate(const Values& t, Values& gradient, void* self) {
+double NloptCost::evaluate(const std::vector<double>& t, std::vector<double>& gradient,
+                           void* self) {
   auto& cost = *static_cast<NloptCost*>(self);
   try {
     return cost.at(t, gradient);
@@ -55,7 +55,7 @@ double NloptCost::evaluate(const Values& t, Values& gradient, void* self) {
   }
 }
 
-double NloptCost::at(const Values& t, Values& gradient) {
+double NloptCost::at(const std::vector<double>& t, std::vector<double>& gradient) {
   const VectorXd x = point(t);
   const double square = gradient.empty() ? objective_.square(x) : differentiate(x, gradient);
   if (square < lowest_.square) {
@@ -67,7 +67,7 @@ double NloptCost::at(const Values& t, Values& gradient) {
   return scale_.value(square);
 }
 
-double NloptCost::differentiate(const VectorXd& x, Values& gradient) {
+double NloptCost::differentiate(const VectorXd& x, std::vector<double>& gradient) {
   VectorXd residual;
   MatrixXd jacobian;
   std::ranges::fill(gradient, 0.0);

@@ -33,24 +33,32 @@ constexpr double least_singular_value = 1e-10;  // of the largest, columns of un
 constexpr Index bias_alone = 3;
 constexpr Index complete = 9;
 
-/// c and E of theta; E = 0 of the bias alone.
-struct Theta {
-  Vector3d c;
-  Matrix3d E;
+/// What theta says: a perfect sensor at first.
+struct Sensor {
+  explicit Sensor(Index n) : theta(VectorXd::Zero(n)) {}
 
-  explicit Theta(const VectorXd& theta) : c(theta.head<3>()), E(Matrix3d::Zero()) {
-    if (theta.size() == complete) E = numerics::symmetric(theta.segment<3>(3), theta.tail<3>());
-  }
-  /// (I + E)^-1, the squared gains; nothing where one is over 100, or the readings' locus is no
-  /// ellipsoid.
-  std::optional<Matrix3d> inverse() const {
-    constexpr double least = 0.01;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(Matrix3d::Identity() + E);
-    if (!(axes.eigenvalues()[0] > least)) return std::nullopt;
-    return Matrix3d(axes.eigenvectors() * axes.eigenvalues().cwiseInverse().asDiagonal() *
-                    axes.eigenvectors().transpose());
-  }
+  VectorXd theta;
+  Vector3d c = Vector3d::Zero();
+  Matrix3d squared_gains = Matrix3d::Identity();  // (I + E)^-1
+
+  /// b of (I + D) B = A h + b + noise, squared.
+  double bias_square() const { return c.dot(squared_gains * c); }
 };
+
+/// Nothing where a squared gain is over 100, or the readings' locus is no ellipsoid.
+std::optional<Sensor> sensor_of(const VectorXd& theta) {
+  constexpr double least = 0.01;
+  Sensor sensor(theta.size());
+  sensor.theta = theta;
+  sensor.c = theta.head<3>();
+  if (theta.size() == bias_alone) return sensor;
+  const Matrix3d E = numerics::symmetric(theta.segment<3>(3), theta.tail<3>());
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(Matrix3d::Identity() + E);
+  if (!(axes.eigenvalues()[0] > least)) return std::nullopt;
+  sensor.squared_gains = axes.eigenvectors() * axes.eigenvalues().cwiseInverse().asDiagonal() *
+                         axes.eigenvectors().transpose();
+  return sensor;
+}
 
 RowVectorXd row_of(const Vector3d& B, Index n) {
   RowVectorXd L(n);
@@ -70,6 +78,7 @@ struct Reduced {
   double mean_z = 0.0;    // of z - mu
   double spread = 0.0;    // sigma-bar: standard deviation of the equation of the means
   double left = 0.0;      // squares that theta-tilde leaves of the centred measurements
+  bool finite = false;    // nothing overflowed
   bool complete = false;  // they determine theta-tilde
 };
 
@@ -91,15 +100,14 @@ class TwoStep {
 
  private:
   /// Of v: 4 y'Sigma y + 2 tr Sigma^2, y = (I + D) B - b, |y|^2 = |B|^2 - L theta + |b|^2.
-  VectorXd variances(const VectorXd& at) const;
+  VectorXd variances(const Sensor& sensor) const;
   /// The first step.
   Reduced centre(const VectorXd& variances) const;
-  /// Nothing where theta is no sensor's.
-  std::optional<Equations> linearise(const Reduced& reduced, const VectorXd& theta) const;
-  /// The second step, from fit.theta.
-  void refine(AlonsoShusterFit& fit, const Reduced& reduced) const;
+  Equations linearise(const Reduced& reduced, const Sensor& sensor) const;
+  /// The second step, from a sensor.
+  Sensor refine(AlonsoShusterFit& fit, const Reduced& reduced, Sensor sensor) const;
   /// lambda, alpha, n and their covariance of theta's.
-  void state(AlonsoShusterFit& fit, const MatrixXd& J) const;
+  void state(AlonsoShusterFit& fit, const Sensor& sensor, const MatrixXd& J) const;
 
   Readings readings_;
   VectorXd strengths_;
@@ -107,14 +115,13 @@ class TwoStep {
   Index n_;
 };
 
-VectorXd TwoStep::variances(const VectorXd& at) const {
+VectorXd TwoStep::variances(const Sensor& sensor) const {
   const double square = options_.noise * options_.noise;
-  const Theta theta(at);
-  const double bias_square = theta.c.dot(theta.inverse().value() * theta.c);
   VectorXd variances(readings_.cols());
   for (Index k = 0; k < variances.size(); ++k) {
     const Vector3d B = readings_.col(k);
-    const double corrected = B.squaredNorm() - row_of(B, n_).dot(at) + bias_square;
+    const double corrected =
+        B.squaredNorm() - row_of(B, n_).dot(sensor.theta) + sensor.bias_square();
     variances[k] = 4.0 * square * corrected + 6.0 * square * square;
   }
   return variances;
@@ -146,6 +153,8 @@ Reduced TwoStep::centre(const VectorXd& variances) const {
     }
     factor.absorb(rows);
   }
+  centred.finite = factor.all_finite();
+  if (!centred.finite) return centred;
   centred.R = factor.matrix().topLeftCorner(n_, n_);
   const TriangularSolution solution = solve_triangular(centred.R, factor.matrix().col(n_).head(n_));
   centred.estimate = solution.x;
@@ -154,42 +163,40 @@ Reduced TwoStep::centre(const VectorXd& variances) const {
   return centred;
 }
 
-std::optional<Equations> TwoStep::linearise(const Reduced& reduced, const VectorXd& at) const {
-  const Theta theta(at);
-  const auto inverse = theta.inverse();
-  if (!inverse) return std::nullopt;
-  const Vector3d w = *inverse * theta.c;  // d|b|^2 = 2 w'dc - w'dE w
+Equations TwoStep::linearise(const Reduced& reduced, const Sensor& sensor) const {
+  const Vector3d w = sensor.squared_gains * sensor.c;  // d|b|^2 = 2 w'dc - w'dE w
   Equations equations{MatrixXd(n_ + 1, n_), VectorXd(n_ + 1)};
   equations.J << reduced.R, (reduced.mean_row - row_of(w, n_)) / reduced.spread;
-  equations.r << reduced.R * (reduced.estimate - at),
-      (reduced.mean_z - reduced.mean_row.dot(at) + theta.c.dot(w)) / reduced.spread;
+  equations.r << reduced.R * (reduced.estimate - sensor.theta),
+      (reduced.mean_z - reduced.mean_row.dot(sensor.theta) + sensor.bias_square()) / reduced.spread;
   return equations;
 }
 
-void TwoStep::refine(AlonsoShusterFit& fit, const Reduced& reduced) const {
+Sensor TwoStep::refine(AlonsoShusterFit& fit, const Reduced& reduced, Sensor sensor) const {
   constexpr double small_step = 1e-14;  // of the squared step in standard errors
   constexpr int most_halvings = 30;     // of a step that would leave the sensors
-  auto here = linearise(reduced, fit.theta);
+  Equations here = linearise(reduced, sensor);
   fit.converged = false;
   for (int i = 0; i < options_.iterations && !fit.converged; ++i) {
     ++fit.iterations;
-    VectorXd step = here->J.householderQr().solve(here->r);
-    fit.converged = (here->J * step).squaredNorm() < small_step;
-    auto next = linearise(reduced, fit.theta + step);
+    VectorXd step = here.J.householderQr().solve(here.r);
+    fit.converged = (here.J * step).squaredNorm() < small_step;
+    auto next = sensor_of(sensor.theta + step);
     for (int halving = 0; !next && halving < most_halvings; ++halving) {
       step *= 0.5;
-      next = linearise(reduced, fit.theta + step);
+      next = sensor_of(sensor.theta + step);
     }
     if (!next) break;
-    fit.theta += step;
-    here = std::move(next);
+    sensor = *next;
+    here = linearise(reduced, sensor);
   }
   if (!fit.converged) {
     fit.message = "the second step did not converge within " + std::to_string(options_.iterations) +
                   " iterations; cover more of the sphere";
   }
-  fit.cost = 0.5 * (here->r.squaredNorm() + reduced.left);
-  state(fit, here->J);
+  fit.cost = 0.5 * (here.r.squaredNorm() + reduced.left);
+  state(fit, sensor, here.J);
+  return sensor;
 }
 
 /// theta of (lambda, alpha, n).
@@ -205,10 +212,10 @@ Vec<X, 9> theta_of(const Vec<X, 9>& xi) {
   return theta;
 }
 
-void TwoStep::state(AlonsoShusterFit& fit, const MatrixXd& J) const {
-  const Theta theta(fit.theta);
-  fit.shape = theta.inverse().value();
-  fit.bias = fit.shape * theta.c;
+void TwoStep::state(AlonsoShusterFit& fit, const Sensor& sensor, const MatrixXd& J) const {
+  fit.theta = sensor.theta;
+  fit.shape = sensor.squared_gains;
+  fit.bias = fit.shape * sensor.c;
   const MatrixXd root = J.householderQr().matrixQR().topRows(n_).triangularView<Eigen::Upper>();
   const MatrixXd half = root.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n_, n_));
   const MatrixXd covariance = half * half.transpose();
@@ -252,6 +259,7 @@ AlonsoShusterFit unknown(Index n) {
   }
   fit.estimates = fit.standard_errors = VectorXd::Constant(n, not_a_number);
   fit.covariance = MatrixXd::Constant(n, n, not_a_number);
+  fit.theta = VectorXd::Constant(n, not_a_number);
   fit.bias = Vector3d::Constant(not_a_number);
   fit.shape = Matrix3d::Constant(not_a_number);
   fit.cost = not_a_number;
@@ -260,17 +268,20 @@ AlonsoShusterFit unknown(Index n) {
 
 AlonsoShusterFit TwoStep::run() const {
   AlonsoShusterFit fit = unknown(n_);
-  fit.theta = VectorXd::Zero(n_);
+  Sensor sensor(n_);
   for (int turn = 0; turn <= options_.reweightings; ++turn) {
-    const Reduced reduced = centre(variances(fit.theta));
+    const Reduced reduced = centre(variances(sensor));
+    if (!reduced.finite) throw Error("the squares of the readings overflow; give them in uT");
     fit.centred = reduced.estimate;
-    if (reduced.complete && Theta(reduced.estimate).inverse()) fit.theta = reduced.estimate;
-    if (leaves_open(linearise(reduced, fit.theta)->J)) {
+    if (const auto centred = sensor_of(reduced.estimate); centred && reduced.complete) {
+      sensor = *centred;
+    }
+    if (leaves_open(linearise(reduced, sensor).J)) {
       fit.message = "the readings leave parameters open; cover more of the sphere";
       break;
     }
     fit.message.clear();
-    refine(fit, reduced);
+    sensor = refine(fit, reduced, std::move(sensor));
     if (!fit.converged) break;
   }
   return fit;
@@ -280,8 +291,14 @@ AlonsoShusterFit TwoStep::run() const {
 
 AlonsoShusterFit fit_alonso_shuster(const Record& record, double field_strength,
                                     const AlonsoShusterOptions& options) {
-  if (!(field_strength > 0.0)) throw Error("the field's strength must be above zero");
-  if (!(options.noise > 0.0)) throw Error("the noise of the readings must be above zero");
+  if (!(field_strength > 0.0) || !std::isfinite(field_strength)) {
+    throw Error("the field's strength must be above zero and finite");
+  }
+  if (!(options.noise > 0.0) || !std::isfinite(options.noise)) {
+    throw Error("the noise of the readings must be above zero and finite");
+  }
+  if (options.reweightings < 0) throw Error("reweightings must not be negative");
+  if (options.iterations < 1) throw Error("iterations must be at least 1");
   const Record rows = record.select(options.segments);
   const auto count = static_cast<Index>(rows.rows());
   const Index n = options.bias_alone ? bias_alone : complete;
@@ -304,6 +321,9 @@ AlonsoShusterFit fit_alonso_shuster(const Record& record, double field_strength,
   }
   if (!readings.allFinite() || !strengths.allFinite()) {
     throw Error("a reading is not finite; leave out such rows");
+  }
+  if (!(strengths.minCoeff() > 0.0)) {
+    throw Error("field_change makes a row's field strength zero or less");
   }
   return TwoStep(std::move(readings), std::move(strengths), options).run();
 }

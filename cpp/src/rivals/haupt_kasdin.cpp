@@ -10,6 +10,7 @@
 #include "estimation/problem.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
+#include "rivals/noise_of.hpp"
 #include "rivals/second_step.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/triangular_factor.hpp"
@@ -27,24 +28,12 @@ struct Solved {
   MatrixXd root;  // S, p x p
 };
 
-VectorXd least_noise(const model::Measurements& measurements, Index outputs) {
-  constexpr double share = 1e-12;  // of the measurements
-  VectorXd least(outputs);
-  for (Index j = 0; j < outputs; ++j) {
-    const double square = measurements.output_square(static_cast<int>(j));
-    const auto rows = static_cast<double>(measurements.rows());
-    least[j] = square > 0.0 ? share * std::sqrt(square / rows) : share;
-  }
-  return least;
-}
-
 /// Step one: y by linear least squares, R with it where it is not given (Eqs. 24-26).
 Solved solve_first_step(const estimation::Problem& problem, const model::Sweep& sweep) {
   constexpr int most_turns = 100;
   constexpr double settled = 1e-10;
   const int p = sweep.tables().n_1();
   const Index n_z = sweep.tables().n_z();
-  const auto rows = static_cast<double>(sweep.measurements().rows());
   const std::vector<TriangularFactor> factors = sweep.linear_factors(VectorXd(0));
   const bool given = problem.noise().size() > 0;
   VectorXd sigma = given ? problem.noise() : VectorXd::Ones(n_z);
@@ -59,9 +48,9 @@ Solved solve_first_step(const estimation::Problem& problem, const model::Sweep& 
     solved.step.rank = solution.rank;
     solved.step.condition = whitened.condition(p);
     if (given) break;
-    const VectorXd found = (sweep.squared_residuals(solution.x, VectorXd(0)) / rows)
-                               .cwiseSqrt()
-                               .cwiseMax(least_noise(sweep.measurements(), n_z));
+    const VectorXd found =
+        noise_of(sweep.squared_residuals(solution.x, VectorXd(0)), sweep.measurements());
+    if (!found.allFinite()) throw Error("the first step's residuals overflow; use another unit");
     const double change = estimation::change_of_variance(sigma, found);
     solved.root *= n_z == 1 ? sigma[0] / found[0] : 1.0;
     sigma = found;
@@ -109,6 +98,7 @@ HauptKasdinFit fit_haupt_kasdin(const BlockModel& first_step, const Record& reco
   const model::Measurements measurements(
       first_step,
       model::with_constant_outputs(first_step.tables(), record.select(options.segments)));
+  if (measurements.rows() == 0) throw Error("the record has no rows");
   const model::Sweep sweep(first_step, measurements, pool);
   Solved first = solve_first_step(problem, sweep);
 

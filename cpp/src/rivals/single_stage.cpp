@@ -9,10 +9,13 @@
 #include "estimation/likelihood.hpp"
 #include "estimation/minimise.hpp"
 #include "estimation/objective.hpp"
+#include "estimation/plausibility.hpp"
 #include "estimation/problem.hpp"
+#include "estimation/refine.hpp"
 #include "estimation/sqp.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
+#include "rivals/noise_of.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::rivals {
@@ -59,18 +62,16 @@ class Programme {
 
   bool noise_given() const { return problem_.noise().size() > 0; }
 
-  Point begin(VectorXd x) const {
+  Point begin(const VectorXd& x) const {
     const VectorXd noise = noise_given() ? problem_.noise() : VectorXd::Ones(sweep_.tables().n_z());
     return {problem_.box().clip(x), noise};
   }
 
   Point find_minimum(Point at) const {
     estimation::JointObjective objective(sweep_, at.noise.cwiseInverse());
-    const estimation::Descent end =
-        options_.solver == Solver::slsqp
-            ? descend_by_slsqp(objective, at.x)
-            : estimation::minimise(objective, at.x, problem_.box(),
-                                   {.iterations = options_.evaluations});
+    const estimation::Descent end = options_.solver == Solver::slsqp
+                                        ? descend_by_slsqp(objective, at.x)
+                                        : descend_to_minimum(objective, at.x);
     at.x = end.x;
     at.refined = end.converged;
     at.evaluations += end.iterations;
@@ -78,11 +79,7 @@ class Programme {
   }
   Point follow_minimum(Point at) const { return find_minimum(std::move(at)); }
 
-  /// Standard deviations of the residuals, above zero: that of an output without any noise would
-  /// end every later minimisation.
-  VectorXd noise_at(const Point& at) const {
-    return (squares(at) / rows()).cwiseSqrt().cwiseMax(least_noise());
-  }
+  VectorXd noise_at(const Point& at) const { return noise_of(squares(at), sweep_.measurements()); }
   void take_noise(Point& at, VectorXd noise) const { at.noise = std::move(noise); }
 
   /// J of Eq. 6.
@@ -94,19 +91,32 @@ class Programme {
  private:
   double rows() const { return static_cast<double>(sweep_.measurements().rows()); }
 
-  VectorXd least_noise() const {
-    constexpr double share = 1e-12;  // of the measurements
-    VectorXd least(sweep_.tables().n_z());
-    for (Index j = 0; j < least.size(); ++j) {
-      const double square = sweep_.measurements().output_square(static_cast<int>(j));
-      least[j] = square > 0.0 ? share * std::sqrt(square / rows()) : share;
-    }
-    return least;
-  }
-
   VectorXd squares(const Point& at) const {
     const Index n_1 = sweep_.tables().n_1();
     return sweep_.squared_residuals(at.x.head(n_1), at.x.tail(at.x.size() - n_1));
+  }
+
+  /// Ceres clips steps to the box and may stand still beside a minimum: then SLSQP goes on.
+  estimation::Descent descend_to_minimum(estimation::JointObjective& objective,
+                                         const VectorXd& x) const {
+    estimation::Descent end =
+        estimation::minimise(objective, x, problem_.box(), {.iterations = options_.evaluations});
+    if (!std::isfinite(end.square)) return end;
+    const Index n_1 = sweep_.tables().n_1();
+    const VectorXd scale = estimation::plausible_scale(
+        problem_.parameters(),
+        sweep_.tangent_factors(end.x.head(n_1), end.x.tail(end.x.size() - n_1)),
+        sweep_.measurements());
+    const estimation::Refinement last = estimation::refine(objective, end.x, problem_.box(), scale);
+    end.iterations += last.iterations;
+    if (last.converged) {
+      end.x = last.x;
+      end.converged = true;
+      return end;
+    }
+    estimation::Descent along = descend_by_slsqp(objective, end.x);
+    along.iterations += end.iterations;
+    return along;
   }
 
   estimation::Descent descend_by_slsqp(estimation::Objective& objective, const VectorXd& x) const {
@@ -120,8 +130,9 @@ class Programme {
   const SingleStageOptions& options_;
 };
 
-/// Throws Error for a name that is no parameter and a start that is not finite.
-void check_start(const Tables& tables, const std::map<std::string, double>& start) {
+/// Throws Error for a name that is no parameter or is fixed, and a start that is not finite.
+void check_start(const Tables& tables, const std::map<std::string, double>& start,
+                 const std::map<std::string, double>& fixed) {
   std::vector<std::string> names;
   for (const Variable& parameter : tables.parameters()) names.push_back(parameter.name);
   for (const auto& [name, value] : start) {
@@ -129,6 +140,7 @@ void check_start(const Tables& tables, const std::map<std::string, double>& star
       throw Error("start: there is no parameter '" + name +
                   "'; there are: " + base::list_names(names));
     }
+    if (fixed.contains(name)) throw Error("start: '" + name + "' is fixed");
     if (!std::isfinite(value)) throw Error("start: '" + name + "' must be finite");
   }
 }
@@ -138,7 +150,7 @@ void check_start(const Tables& tables, const std::map<std::string, double>& star
 SingleStageFit fit_single_stage(const BlockModel& model, const Record& record,
                                 const std::map<std::string, double>& start,
                                 const SingleStageOptions& options) {
-  check_start(model.tables(), start);
+  check_start(model.tables(), start, options.fixed);
   if (options.evaluations < 1) throw Error("evaluations must be at least 1");
   const FitOptions asked = fit_options(options);
   const estimation::Problem problem(model, asked);

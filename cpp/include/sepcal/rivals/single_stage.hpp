@@ -19,7 +19,8 @@
 namespace sepcal::rivals {
 
 enum class Solver {
-  levenberg_marquardt,  // Ceres, which knows that the cost is a sum of squares
+  levenberg_marquardt,  // Ceres, which knows that the cost is a sum of squares; where its steps,
+                        // clipped to the bounds, end at no minimum, SLSQP goes on
   slsqp  // NLopt's sequential quadratic programming, the nearest to MATLAB's fmincon: it knows only
          // the cost and its gradient, with every parameter in its own unit
 };
@@ -49,7 +50,7 @@ struct SingleStageOptions {
 };
 
 struct SingleStageFit {
-  bool converged = false;          // as the solver says
+  bool converged = false;          // a minimum at this R, as the solver says, and R settled
   std::vector<std::string> names;  // n, linear, then nonlinear, fixed ones among them
   Eigen::VectorXd estimates;       // n
   std::vector<OutputValue> noise;  // standard deviations
