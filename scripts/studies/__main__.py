@@ -24,6 +24,7 @@ from studies import (
     model_structure,
     monte_carlo,
     native,
+    paper,
     trajectories,
     trust,
 )
@@ -39,6 +40,7 @@ STUDIES: tuple[Study, ...] = (
     flight_path.STUDY,
     trajectories.STUDY,
     model_structure.STUDY,
+    paper.STUDY,
     *native.STUDIES,
 )
 OUTSIDE_LIMITS = 1

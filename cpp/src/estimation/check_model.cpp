@@ -151,14 +151,15 @@ void check_linear(const Trial& trial, const Tables& tables, const VectorXd& xi2,
 }
 
 /// Lengths over which the differences of a parameter are taken. How small an unbounded one is meant
-/// to be only its start tells: its size is tried where 1 is too far.
+/// to be only its start tells: its size is tried where 1 is too far. Near a kink, as of a speed
+/// over the ground that is the wind's, only the short ones are exact.
 std::vector<double> steps_to_try(const Variable& parameter, double value) {
   const double width = 0.5 * (parameter.upper - parameter.lower);
   const double size = std::abs(value);
-  // Near a kink, as of a speed over the ground that is the wind's, only the short one is exact.
-  if (std::isfinite(width)) return {difference_step * width, difference_step * width / 32.0};
-  if (size == 0.0 || size >= 1.0) return {difference_step * std::max(1.0, size)};
-  return {difference_step, difference_step * size};
+  const double step = difference_step * (std::isfinite(width) ? width : std::max(1.0, size));
+  std::vector<double> steps{step, step / 32.0, step / 1024.0};
+  if (!std::isfinite(width) && size > 0.0 && size < 1.0) steps.push_back(difference_step * size);
+  return steps;
 }
 
 /// Central differences of the outputs at xi1 = 1 with respect to xi2[k].
