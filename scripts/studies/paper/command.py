@@ -9,8 +9,7 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from sepcal import Error
 from studies.paper import (
@@ -24,6 +23,9 @@ from studies.paper import (
 )
 from studies.paper.parts import Options, Part, Result, share_of
 from studies.study import Outcome, Progress, Study
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PARTS: tuple[Part, ...] = (
     *scalar_examples.PARTS,
@@ -94,6 +96,7 @@ def check(arguments: argparse.Namespace, names: Sequence[str]) -> None:
     if file is not None and (file.is_dir() or not file.parent.is_dir()):
         raise Error(f"--json {file} is no file in a folder that there is")
     if folder is not None:
+        figure_class()
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -110,10 +113,23 @@ def write_numbers(file: Path, options: Options, results: Mapping[str, Result]) -
     file.write_text(json.dumps(whole, indent=2, allow_nan=True) + "\n", encoding="utf-8")
 
 
+def figure_class() -> type[Figure]:
+    """Matplotlib's, which figures alone need.
+
+    Raises:
+        Error: It is missing.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise Error("--figures needs matplotlib: pip install matplotlib") from error
+    return Figure
+
+
 def draw_figures(folder: Path, result: Result) -> None:
     """One SVG each."""
     for name, draw in result.figures.items():
-        figure = Figure(figsize=(7.0, 5.0), layout="constrained")
+        figure = figure_class()(figsize=(7.0, 5.0), layout="constrained")
         draw(figure)
         figure.savefig(folder / f"{name}.svg", dpi=120, metadata={"Date": None})
 

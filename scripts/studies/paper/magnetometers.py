@@ -12,10 +12,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.random import Generator, default_rng
 
 import sepcal
@@ -23,6 +22,9 @@ from sepcal import rivals
 from sepcal.columns import Array
 from studies.paper.parts import Options, Part, Result, Table, exact, over, rate, share_of
 from studies.study import Finding, Progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 NAMES = (
     "lambda_x", "lambda_y", "lambda_z", "alpha_xy", "alpha_xz", "alpha_yz", "n_x", "n_y", "n_z",

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.random import default_rng
 
 import sepcal
@@ -35,6 +34,9 @@ from studies.paper.probe_flights import (
     two_stages,
 )
 from studies.study import Progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RATE = 10.0  # rows a second
 STARTS = 10  # random ones a flight

@@ -11,10 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.random import Generator, default_rng
 
 import sepcal
@@ -22,6 +21,9 @@ from sepcal import rivals
 from sepcal.columns import Array
 from studies.paper.parts import Options, Part, Result, Table, exact, figures, over, rate, share_of
 from studies.study import Finding, Progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SIGMA = 0.3
 ETA = np.linspace(1.0, 10.0, 100)

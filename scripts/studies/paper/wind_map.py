@@ -10,9 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import cos, pi, radians, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
 from numpy.random import Generator, default_rng
 
 from studies.paper.parts import Options, Part, Result, Table, exact, over, rate
@@ -29,6 +28,9 @@ from studies.paper.probe_flights import (
     try_all,
 )
 from studies.study import Progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 AIRSPEED = 17.4  # of the simulated aircraft, mean [m/s]
 RATIOS = (0.0, 0.25, 0.5, 1.0, 2.0, 3.0)  # wind over airspeed
