@@ -23,28 +23,27 @@ SOLVERS = ("levenberg_marquardt", "slsqp")
 Bounds = Mapping[str, tuple[float | None, float | None]]
 
 
-class SingleStageFit(_core.SingleStageFit):
+class _Named:
+    """Estimates that have names."""
+
+    names: tuple[str, ...]
+    estimates: Array
+
+    def by_name(self) -> dict[str, float]:
+        """The estimates."""
+        return dict(zip(self.names, map(float, self.estimates), strict=True))
+
+
+class SingleStageFit(_Named, _core.SingleStageFit):
     """All parameters at once by one nonlinear programme, from one start."""
 
-    def by_name(self) -> dict[str, float]:
-        """The estimates."""
-        return dict(zip(self.names, map(float, self.estimates), strict=True))
 
-
-class HauptKasdinFit(_core.HauptKasdinFit):
+class HauptKasdinFit(_Named, _core.HauptKasdinFit):
     """A two-step fit by a change of variables; `first` is its first step."""
 
-    def by_name(self) -> dict[str, float]:
-        """The estimates."""
-        return dict(zip(self.names, map(float, self.estimates), strict=True))
 
-
-class AlonsoShusterFit(_core.AlonsoShusterFit):
+class AlonsoShusterFit(_Named, _core.AlonsoShusterFit):
     """TWOSTEP's magnetometer: the reading is C h + n, `shape` is C C', `bias` is n."""
-
-    def by_name(self) -> dict[str, float]:
-        """The estimates."""
-        return dict(zip(self.names, map(float, self.estimates), strict=True))
 
 
 class TwoStepProblem(Protocol):
