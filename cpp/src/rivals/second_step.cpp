@@ -28,13 +28,16 @@ SecondStepModel::SecondStepModel(const ChangeOfVariables& change, MatrixXd root)
 void SecondStepModel::evaluate(const Block& /*block*/, const double* xi2, const double* xi1,
                                Carry* /*carry*/, Eigen::Ref<MatrixXd> rows) const {
   const VectorXd xi = Eigen::Map<const VectorXd>(xi2, tables().n_2());
-  if (xi1 != nullptr) rows.leftCols(tables().n_2()) = slopes(xi);
   const VectorXd states = change_.at(xi);
-  if (states.size() != root_.cols()) {
-    throw Error("the change of variables gives " + std::to_string(states.size()) +
-                " states, the first step has " + std::to_string(root_.cols()));
-  }
+  check(states.size());
   rows.rightCols<1>() = root_ * states;
+  if (xi1 != nullptr) rows.leftCols(tables().n_2()) = slopes(xi);
+}
+
+void SecondStepModel::check(Index states) const {
+  if (states == root_.cols()) return;
+  throw Error("the change of variables gives " + std::to_string(states) +
+              " states, the first step has " + std::to_string(root_.cols()));
 }
 
 Record SecondStepModel::measure(const VectorXd& states) const {
@@ -46,6 +49,10 @@ Record SecondStepModel::measure(const VectorXd& states) const {
   return record;
 }
 
-MatrixXd SecondStepModel::slopes(const VectorXd& xi) const { return root_ * change_.slopes(xi); }
+MatrixXd SecondStepModel::slopes(const VectorXd& xi) const {
+  const MatrixXd by_parameter = change_.slopes(xi);
+  check(by_parameter.rows());
+  return root_ * by_parameter;
+}
 
 }  // namespace sepcal::rivals

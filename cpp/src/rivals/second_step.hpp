@@ -23,6 +23,9 @@ class SecondStepModel final : public BlockModel {
   Eigen::MatrixXd slopes(const Eigen::VectorXd& xi) const;
 
  private:
+  /// Throws Error for another number of states than the first step's.
+  void check(Eigen::Index states) const;
+
   const ChangeOfVariables& change_;
   Eigen::MatrixXd root_;
 };
