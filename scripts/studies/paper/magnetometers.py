@@ -113,7 +113,7 @@ def in_nine(fit: rivals.AlonsoShusterFit | rivals.HauptKasdinFit, vouched: bool)
 
 
 OURS, PRINTED, MENDED, BIAS_ALONE, QUADRIC = (
-    "ours",
+    "ours, white errors",
     "TWOSTEP as printed",
     "TWOSTEP, mean mended",
     "TWOSTEP, bias alone",
@@ -126,7 +126,7 @@ METHODS: Mapping[str, Method] = {
     BIAS_ALONE: partial(fit_twostep, options={"bias_alone": True}),
     QUADRIC: fit_quadric,
 }
-COLOURED = "ours, errors of coloured noise"
+COLOURED = "ours, default errors"
 WITH_COLOURED: Mapping[str, Method] = {
     OURS: fit_ours,
     COLOURED: partial(fit_ours, options={"coloured_errors": True}),

@@ -47,6 +47,7 @@ class Example:
     methods: Mapping[str, Method]
     paper_correct: Mapping[str, str]
     paper_estimate: Mapping[str, tuple[str, str]]  # estimate, standard deviation
+    paper_variance: tuple[str, str]  # R of the noise that was drawn, and its estimate
 
     def predict(self, xi: Array) -> Array:
         """The output without noise, (N,)."""
@@ -59,6 +60,15 @@ class Example:
     def at_truth(self) -> Array:
         """The truth in the model's order."""
         return np.array([self.truth[name] for name in self.model.parameters])
+
+    def errors_at_papers(self) -> Array:
+        """Standard errors (n,) by the tangent at the paper's estimates and its R."""
+        xi = np.array([float(self.paper_estimate[name][0]) for name in self.model.parameters])
+        n_1 = len(self.model.linear)
+        A, _, D = self.model.evaluate({"eta": ETA}, xi[n_1:], xi[:n_1])
+        J = np.concatenate([A[:, 0], D[:, 0]], axis=1)
+        errors: Array = np.sqrt(float(self.paper_variance[1]) * np.diag(np.linalg.inv(J.T @ J)))
+        return errors
 
     def measure(self, rng: Generator) -> dict[str, Array]:
         """A realisation of the noise."""
@@ -140,6 +150,7 @@ EXAMPLES = (
             "Haupt/Kasdin, three states": "",
         },
         {"a": ("0.9512", "0.0507"), "b": ("0.0812", "0.0182"), "c": ("0.9415", "0.0360")},
+        ("0.1237", "0.1199"),
     ),
     Example(
         "2",
@@ -160,6 +171,7 @@ EXAMPLES = (
             "c": ("0.0895", "0.0351"),
             "d": ("0.9897", "0.0333"),
         },
+        ("0.1016", "0.1008"),
     ),
 )
 
@@ -278,6 +290,7 @@ def estimate_table(example: Example, run: Run, fresh: Sequence[Run]) -> Table:
     names = example.model.parameters
     estimates = np.array([one.fit.values for one in fresh])
     errors = np.array([[one.fit[name].standard_error for name in names] for one in fresh])
+    at_papers = example.errors_at_papers()
     rows = []
     for k, name in enumerate(names):
         truth = example.truth[name]
@@ -288,6 +301,7 @@ def estimate_table(example: Example, run: Run, fresh: Sequence[Run]) -> Table:
                 name,
                 f"{truth:g}",
                 *example.paper_estimate[name],
+                figures(at_papers[k]),
                 figures(run.fit[name].value),
                 figures(run.fit[name].standard_error),
                 figures(float(np.mean(estimates[:, k])) - truth),
@@ -296,11 +310,28 @@ def estimate_table(example: Example, run: Run, fresh: Sequence[Run]) -> Table:
                 rate(int(np.sum(holds & inside)), int(np.sum(inside))),
             ]
         )
+    variances = [one.fit.noise["z"] ** 2 for one in fresh]
+    rows.append(
+        [
+            "R",
+            f"{SIGMA**2:g}",
+            f"{example.paper_variance[1]} (drawn: {example.paper_variance[0]})",
+            "-",
+            "-",
+            figures(run.fit.noise["z"] ** 2),
+            "-",
+            figures(float(np.mean(variances)) - SIGMA**2),
+            figures(float(np.std(variances, ddof=1))),
+            "-",
+            "-",
+        ]
+    )
     head = [
         "parameter",
         "truth",
         "paper: estimate",
         "paper: standard deviation",
+        "by the tangent there",
         "estimate",
         "standard error",
         "bias",
