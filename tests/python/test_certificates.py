@@ -88,6 +88,11 @@ def test_what_can_not_be_proven_is_refused() -> None:
         sepcal.certify(sepcal.ScalarExample1(), data, fit)
     with pytest.raises(sepcal.Error, match="plain least squares"):
         sepcal.certify(model, data, fit, loss="huber")
+    with pytest.raises(sepcal.Error, match="bounds of 'b' are not those of the fit"):
+        sepcal.certify(model, data, fit, bounds={"b": (0.0, 0.1)})
+    part = sepcal.fit(model, data | {"maneuver": ["x"] * 60 + ["y"] * 40}, stage_two="x")
+    with pytest.raises(sepcal.Error, match="the fit is of 60 rows, its options select 100"):
+        sepcal.certify(model, data, part)
     with pytest.raises(sepcal.Error, match="'c' has no value"):
         sepcal.bound_cost(model, data, {"b": 0.0})
     with pytest.raises(sepcal.Error, match="'b' is outside of its bounds"):

@@ -85,8 +85,8 @@ struct CertificateOptions {
 /// Branch and bound over the box of the nonlinear parameters that the fit has free, with R and the
 /// fixed ones as the fit has them. It serves for one or two of them; three take many boxes, and
 /// more are refused. `fitted_with`: the options of the fit. Throws Error for a fit of another
-/// model, of a loss or with priors, a model that can't be enclosed, a parameter without bounds, and
-/// more than three nonlinear ones that are free.
+/// model, of other rows or bounds, of a loss or with priors, a model that can't be enclosed, a
+/// parameter without bounds, and more than three nonlinear ones that are free.
 Certificate certify(const BlockModel& model, const Record& record, const Fit& fit,
                     const FitOptions& fitted_with = {}, const CertificateOptions& options = {});
 

@@ -80,6 +80,13 @@ void check_fit(const BlockModel& model, const Fit& fit, const FitOptions& option
                     "with each: {} are free; hold some",
                     most, free));
   }
+  for (const auto& [name, given] : options.bounds) {
+    const auto fitted = std::ranges::find(fit.parameters, name, &Parameter::name);
+    if (fitted == fit.parameters.end() || fitted->fixed) continue;
+    if (given.lower != fitted->lower || given.upper != fitted->upper) {
+      throw Error("the bounds of '" + name + "' are not those of the fit; give its options");
+    }
+  }
   if (options.loss != Loss::squares || !options.prior.empty()) {
     throw Error("a certificate is of plain least squares: fit without a loss and without priors");
   }
@@ -257,6 +264,11 @@ Certificate certify(const BlockModel& model, const Record& record, const Fit& fi
                     const FitOptions& fitted_with, const CertificateOptions& options) {
   check_fit(model, fit, fitted_with);
   if (!(options.tolerance > 0.0)) throw Error("the tolerance of a certificate must be above zero");
+  const std::size_t rows = record.select(fitted_with.stage_two_segments).rows();
+  if (rows != fit.rows) {
+    throw Error(fmt::format("the fit is of {} rows, its options select {}: give those of the fit",
+                            fit.rows, rows));
+  }
   return BranchAndBound(model, record, fit, fitted_with, options).run();
 }
 
