@@ -12,10 +12,12 @@
 #include <optional>
 #include <utility>
 
+#include "estimation/covariance.hpp"
 #include "model/soft_iron_and_scale.hpp"
 #include "numerics/symmetric.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/rivals/two_step_problems.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::rivals {
@@ -202,11 +204,7 @@ Sensor TwoStep::refine(AlonsoShusterFit& fit, const Reduced& reduced, Sensor sen
 /// theta of (lambda, alpha, n).
 template <class X>
 Vec<X, 9> theta_of(const Vec<X, 9>& xi) {
-  const Eigen::Matrix<X, 3, 3> C = AttitudeIndependentMagnetometer::soft_iron_and_scale<X>(xi);
-  const Eigen::Matrix<X, 3, 3> inverse = C.inverse();
-  const Eigen::Matrix<X, 3, 3> Q = inverse.transpose() * inverse;  // I + E
-  const Vec<X, 3> n = xi.template tail<3>();
-  const Vec<X, 3> c = Q * n;
+  const auto [Q, c] = quadric_of(xi);  // Q = I + E
   Vec<X, 9> theta;
   theta << c, Q(0, 0) - 1.0, Q(1, 1) - 1.0, Q(2, 2) - 1.0, Q(0, 1), Q(0, 2), Q(1, 2);
   return theta;
@@ -217,8 +215,7 @@ void TwoStep::state(AlonsoShusterFit& fit, const Sensor& sensor, const MatrixXd&
   fit.shape = sensor.squared_gains;
   fit.bias = fit.shape * sensor.c;
   const MatrixXd root = J.householderQr().matrixQR().topRows(n_).triangularView<Eigen::Upper>();
-  const MatrixXd half = root.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n_, n_));
-  const MatrixXd covariance = half * half.transpose();
+  const MatrixXd covariance = estimation::inverse_of_square(root);
   if (n_ == bias_alone) {
     fit.estimates = fit.bias;
     fit.covariance = covariance;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/rivals/haupt_kasdin.hpp"
 
-#include <Eigen/SVD>
-#include <cmath>
-#include <limits>
-
 #include "base/thread_pool.hpp"
 #include "estimation/alternation.hpp"
+#include "estimation/covariance.hpp"
 #include "estimation/problem.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
@@ -65,20 +62,11 @@ Solved solve_first_step(const estimation::Problem& problem, const model::Sweep& 
   return solved;
 }
 
-/// (J'J)^-1, or NaN throughout where J leaves a direction open.
-MatrixXd covariance_of(const MatrixXd& J) {
-  const Index n = J.cols();
-  const VectorXd lengths = J.colwise().norm();
-  if (!J.allFinite() || !(lengths.minCoeff() > 0.0)) return MatrixXd::Constant(n, n, not_a_number);
-  const MatrixXd scaled = J * lengths.cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinV);
-  const double least = static_cast<double>(n) * std::numeric_limits<double>::epsilon();
-  if (J.rows() < n || !(svd.singularValues()[n - 1] > least * svd.singularValues()[0])) {
-    return MatrixXd::Constant(n, n, not_a_number);
-  }
-  const MatrixXd half = lengths.cwiseInverse().asDiagonal() * svd.matrixV() *
-                        svd.singularValues().cwiseInverse().asDiagonal();
-  return half * half.transpose();
+/// (J'J)^-1; NaN throughout where J leaves a direction open.
+MatrixXd covariance_of(MatrixXd J) {
+  TriangularFactor factor(static_cast<int>(J.cols()));
+  factor.absorb(J);
+  return estimation::inverse_of_square(factor.matrix());
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class Options:
 
 @dataclass(frozen=True)
 class Table:
-    """Cells are as they are read; `beside` says which columns are the paper's own figures."""
+    """Cells are as they are read."""
 
     title: str
     head: Sequence[str]

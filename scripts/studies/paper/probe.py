@@ -58,8 +58,7 @@ def fly_and_fit(seed: int) -> Flown:
     """Stage one on the circles and the pushover-pullup, stage two on the rest."""
     data = fly(seed, rate=RATE)
     question = Question(data, PAPER_BOUNDS, STAGE_ONE, STAGE_TWO)
-    endings = try_all(question, default_rng([seed, 7]), STARTS)
-    fit, _ = two_stages(question)
+    fit, endings = try_all(question, default_rng([seed, 7]), STARTS)
     assert fit is not None
     off = residuals_of(data, fit)
     airspeed = airspeed_of(data, values_of(fit)) - airspeed_of(data, TRUTH)

@@ -161,15 +161,18 @@ METHODS = (
 SAME = 0.01  # of J: no record tells such costs apart
 
 
-def try_all(question: Question, rng: Generator, starts: int) -> dict[str, list[Ending]]:
-    """Every method, those from random starts so many times."""
+def try_all(
+    question: Question, rng: Generator, starts: int
+) -> tuple[sepcal.Fit | None, dict[str, list[Ending]]]:
+    """The proposed fit, and the ends of every method, those from random starts so many times."""
     solvers: Sequence[tuple[str, rivals.Solver]] = (
         ("Levenberg-Marquardt", "levenberg_marquardt"),
         ("SLSQP", "slsqp"),
     )
     drawn = [random_start(question.bounds, rng) for _ in range(starts)]
+    fit, ending = two_stages(question)
     endings = {
-        "two stages": [two_stages(question)[1]],
+        "two stages": [ending],
         "two stages, xi2 alone": [two_stages(question, "projected")[1]],
         "two stages, joint": [two_stages(question, "joint")[1]],
     }
@@ -178,7 +181,7 @@ def try_all(question: Question, rng: Generator, starts: int) -> dict[str, list[E
         endings[f"single stage from random, {name}"] = [
             one_stage(question, start, solver)[1] for start in drawn
         ]
-    return endings
+    return fit, endings
 
 
 def least_of(endings: Mapping[str, Sequence[Ending]]) -> float:

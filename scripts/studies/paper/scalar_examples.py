@@ -201,18 +201,27 @@ def judge(example: Example, data: Mapping[str, Array], least: Array, fitted: Fit
 
 
 @dataclass(frozen=True)
-class Run:
-    """All methods on one realisation, and whether the least cost is proven."""
+class Problem:
+    """A realisation, its two-stage fit within bounds, and the least cost where it is proven."""
 
     data: Mapping[str, Array]
+    bounds: Bounds
     fit: sepcal.Fit
+    least: Array
     certified: bool
     boxes: int
+
+
+@dataclass(frozen=True)
+class Run:
+    """All methods on a problem, from one start."""
+
+    problem: Problem
     verdicts: Mapping[str, Verdict]
 
 
-def run_all(example: Example, data: Mapping[str, Array], start: Values, bounds: Bounds) -> Run:
-    """Every method from one start, and the certificate of the two-stage fit."""
+def prove(example: Example, data: Mapping[str, Array], bounds: Bounds) -> Problem:
+    """With the certificate of the two-stage fit."""
     fit = fit_two_stage(example.model, data, bounds)
     proof = sepcal.certify(
         example.model, data, fit, bounds=bounds, coloured_errors=False, threads=1
@@ -220,20 +229,27 @@ def run_all(example: Example, data: Mapping[str, Array], start: Values, bounds: 
     least = fit.values
     if proof.status == "elsewhere":
         least = np.array([proof.better[name] for name in example.model.parameters])
+    certified = proof.is_global or proof.status == "elsewhere"
+    return Problem(data, bounds, fit, least, certified, proof.boxes)
+
+
+def run_all(example: Example, problem: Problem, start: Values) -> Run:
+    """Every method from one start."""
+    data, bounds = problem.data, problem.bounds
     verdicts = {
-        name: judge(example, data, least, method(data, start, bounds))
+        name: judge(example, data, problem.least, method(data, start, bounds))
         for name, method in example.methods.items()
     }
-    return Run(data, fit, proof.is_global or proof.status == "elsewhere", proof.boxes, verdicts)
+    return Run(problem, verdicts)
 
 
 def run_one_noise(example: Example, options: Options, report_progress: Progress) -> list[Run]:
     """The paper's protocol: one realisation, whose every run is another start."""
-    data = example.measure(default_rng(options.seed))
+    problem = prove(example, example.measure(default_rng(options.seed)), example.bounds)
 
     def work(run: int) -> Run:
         rng = default_rng([options.seed, run])
-        return run_all(example, data, example.draw_start(rng), example.bounds)
+        return run_all(example, problem, example.draw_start(rng))
 
     return over(range(options.runs), work, options, report_progress)
 
@@ -251,7 +267,7 @@ def run_fresh_noise(
         data, start = example.measure(rng), example.draw_start(rng)
         if bounds is not example.bounds:
             start |= {name: rng.uniform(*ends) for name, ends in bounds.items()}
-        return run_all(example, data, start, bounds)
+        return run_all(example, prove(example, data, bounds), start)
 
     return over(range(options.runs), work, options, report_progress)
 
@@ -288,8 +304,8 @@ def success_table(example: Example, title: str, runs: Sequence[Run], paper: bool
 def estimate_table(example: Example, run: Run, fresh: Sequence[Run]) -> Table:
     """Tables 2 and 4, and what becomes of them with other noise."""
     names = example.model.parameters
-    estimates = np.array([one.fit.values for one in fresh])
-    errors = np.array([[one.fit[name].standard_error for name in names] for one in fresh])
+    estimates = np.array([one.problem.fit.values for one in fresh])
+    errors = np.array([[one.problem.fit[name].standard_error for name in names] for one in fresh])
     at_papers = example.errors_at_papers()
     rows = []
     for k, name in enumerate(names):
@@ -302,15 +318,15 @@ def estimate_table(example: Example, run: Run, fresh: Sequence[Run]) -> Table:
                 f"{truth:g}",
                 *example.paper_estimate[name],
                 figures(at_papers[k]),
-                figures(run.fit[name].value),
-                figures(run.fit[name].standard_error),
+                figures(run.problem.fit[name].value),
+                figures(run.problem.fit[name].standard_error),
                 figures(float(np.mean(estimates[:, k])) - truth),
                 figures(float(np.std(estimates[:, k], ddof=1))),
                 figures(float(np.nanmean(errors[:, k]))),
                 rate(int(np.sum(holds & inside)), int(np.sum(inside))),
             ]
         )
-    variances = [one.fit.noise["z"] ** 2 for one in fresh]
+    variances = [one.problem.fit.noise["z"] ** 2 for one in fresh]
     rows.append(
         [
             "R",
@@ -318,7 +334,7 @@ def estimate_table(example: Example, run: Run, fresh: Sequence[Run]) -> Table:
             f"{example.paper_variance[1]} (drawn: {example.paper_variance[0]})",
             "-",
             "-",
-            figures(run.fit.noise["z"] ** 2),
+            figures(run.problem.fit.noise["z"] ** 2),
             "-",
             figures(float(np.mean(variances)) - SIGMA**2),
             figures(float(np.std(variances, ddof=1))),
@@ -396,7 +412,7 @@ def run_example(example: Example, options: Options, report_progress: Progress) -
 def findings_of(example: Example, fresh: Sequence[Run], same: Sequence[Run]) -> list[Finding]:
     """Known answers: the proposed estimator finds what is proven to be the least."""
     of = len(fresh)
-    proven = sum(run.certified for run in fresh)
+    proven = sum(run.problem.certified for run in fresh)
     found = sum(run.verdicts[PROPOSED].kind == "least" for run in fresh)
     name = f"example {example.name}"
     return [
@@ -415,8 +431,8 @@ def numbers_of(example: Example, runs: Sequence[Run]) -> dict[str, Any]:
     """For JSON."""
     return {
         "runs": len(runs),
-        "certified": sum(run.certified for run in runs),
-        "mean boxes": float(np.mean([run.boxes for run in runs])),
+        "certified": sum(run.problem.certified for run in runs),
+        "mean boxes": float(np.mean([run.problem.boxes for run in runs])),
         "methods": {
             name: {
                 "near": sum(run.verdicts[name].near for run in runs),
@@ -434,7 +450,7 @@ def numbers_of(example: Example, runs: Sequence[Run]) -> dict[str, Any]:
 def draw_trace(example: Example, run: Run, figure: Figure) -> None:
     """Figs. 2 and 4: Tr[R] at samples of xi2."""
     stage_one = sepcal.fit(
-        example.model, run.data, bounds=example.bounds, samples=2000, threads=1
+        example.model, run.problem.data, bounds=example.bounds, samples=2000, threads=1
     ).stage_one
     axes = figure.subplots()
     samples = np.asarray(stage_one.samples).T

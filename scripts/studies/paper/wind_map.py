@@ -87,7 +87,7 @@ def fly_cell(seed: int, cell: Cell, flight: int) -> dict[str, list[Ending]]:
     truth = draw_truth(cell, rng)
     noise = dict.fromkeys(("vn", "ve", "vd"), cell.noise)
     data = fly(int(rng.integers(2**31)), truth, noise, rows=ROWS, excitation=cell.excitation)
-    return try_all(Question(data, bounds_of(cell)), rng, STARTS)
+    return try_all(Question(data, bounds_of(cell)), rng, STARTS)[1]
 
 
 def run(options: Options, report_progress: Progress) -> Result:

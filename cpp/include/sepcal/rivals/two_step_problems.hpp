@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "sepcal/model.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
@@ -70,6 +71,15 @@ struct ExampleInThreeStates {
   }
 };
 
+/// Q = (C C')^-1 and Q n of AttitudeIndependentMagnetometer's parameters.
+template <class X>
+std::pair<Eigen::Matrix<X, 3, 3>, Vec<X, 3>> quadric_of(const Vec<X, 9>& xi) {
+  const Eigen::Matrix<X, 3, 3> C = AttitudeIndependentMagnetometer::soft_iron_and_scale<X>(xi);
+  const Eigen::Matrix<X, 3, 3> inverse = C.inverse();
+  const Eigen::Matrix<X, 3, 3> Q = inverse.transpose() * inverse;
+  return {Q, Q * xi.template tail<3>()};
+}
+
 /// Readings m = C h + n, |h| = F, lie on (m - n)' Q (m - n) = F^2, Q = (C C')^-1: divided by Q_xx,
 ///   0 = m_x^2 + [m_y^2, m_z^2, 2 m_x m_y, 2 m_x m_z, 2 m_y m_z, -2 m', 1] y + v
 /// (Gebre-Egziabher, Elkaim, Powell & Parkinson, 2001, there of equal axes without cross terms).
@@ -97,11 +107,8 @@ struct MagnetometerInNineStates {
 
   template <class X>
   Vec<X, 9> states_at(const Vec<X, 9>& xi) const {
-    const Eigen::Matrix<X, 3, 3> C = AttitudeIndependentMagnetometer::soft_iron_and_scale<X>(xi);
-    const Eigen::Matrix<X, 3, 3> inverse = C.inverse();
-    const Eigen::Matrix<X, 3, 3> Q = inverse.transpose() * inverse;
+    const auto [Q, Qn] = quadric_of(xi);
     const Vec<X, 3> n = xi.template tail<3>();
-    const Vec<X, 3> Qn = Q * n;
     Vec<X, 9> y;
     y << Q(1, 1), Q(2, 2), Q(0, 1), Q(0, 2), Q(1, 2), Qn[0], Qn[1], Qn[2],
         n.dot(Qn) - field_strength * field_strength;
