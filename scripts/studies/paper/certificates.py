@@ -18,7 +18,18 @@ from scipy.optimize import minimize
 
 import sepcal
 from sepcal.columns import Array
-from studies.paper.parts import Options, Part, Result, Table, exact, figures, over, rate, share_of
+from studies.paper.parts import (
+    Options,
+    Part,
+    Result,
+    Table,
+    exact,
+    figures,
+    measure_wave,
+    over,
+    rate,
+    share_of,
+)
 from studies.study import Finding, Progress
 
 TOLERANCES = (1e-6, 1e-3)
@@ -55,14 +66,6 @@ class Proof:
     boxes: int
     seconds: float
     lower: float  # of the fit's cost
-
-
-def measure_wave(model: sepcal.Model, truth: Sequence[float], rng: Generator) -> Data:
-    """The paper's record: 100 angles from 1 to 10 rad, noise of 0.3."""
-    eta = np.linspace(1.0, 10.0, 100)
-    A, b = model.evaluate({"eta": eta}, truth[2:])
-    z = A[:, 0] @ truth[:2] + b[:, 0]
-    return {"eta": eta, "z": z + 0.3 * rng.standard_normal(eta.size)}
 
 
 def measure_airspeed(rng: Generator) -> Data:

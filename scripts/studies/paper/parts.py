@@ -9,6 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+from numpy.random import Generator
+
+import sepcal
+from sepcal.columns import Array
 from sepcal.quantiles import binomial_limits
 from studies.study import Finding, Progress
 
@@ -94,6 +99,19 @@ def over(
 def share_of(report_progress: Progress, part: int, parts: int) -> Progress:
     """Of one part among several that take about as long."""
     return lambda done: report_progress((part + done) / parts)
+
+
+ETA = np.linspace(1.0, 10.0, 100)  # of the scalar examples [rad]
+SIGMA = 0.3  # of their noise
+
+
+def measure_wave(
+    model: sepcal.Model, xi: Sequence[float] | Array, rng: Generator
+) -> dict[str, Array]:
+    """The paper's record of a scalar example, whose two linear parameters come first."""
+    A, b = model.evaluate({"eta": ETA}, xi[2:])
+    z = A[:, 0] @ xi[:2] + b[:, 0]
+    return {"eta": ETA, "z": z + SIGMA * rng.standard_normal(ETA.size)}
 
 
 def rate(events: int, of: int) -> str:

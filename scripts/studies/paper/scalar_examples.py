@@ -19,14 +19,25 @@ from numpy.random import Generator, default_rng
 import sepcal
 from sepcal import rivals
 from sepcal.columns import Array
-from studies.paper.parts import Options, Part, Result, Table, exact, figures, over, rate, share_of
+from studies.paper.parts import (
+    ETA,
+    SIGMA,
+    Options,
+    Part,
+    Result,
+    Table,
+    exact,
+    figures,
+    measure_wave,
+    over,
+    rate,
+    share_of,
+)
 from studies.study import Finding, Progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SIGMA = 0.3
-ETA = np.linspace(1.0, 10.0, 100)
 NEAR = 0.1  # the paper's "correct": 2-norm from the truth
 SHOWN = 100  # runs in a figure
 Values = dict[str, float]
@@ -72,8 +83,7 @@ class Example:
 
     def measure(self, rng: Generator) -> dict[str, Array]:
         """A realisation of the noise."""
-        z = self.predict(self.at_truth) + SIGMA * rng.standard_normal(ETA.size)
-        return {"eta": ETA, "z": z}
+        return measure_wave(self.model, self.at_truth, rng)
 
     def draw_start(self, rng: Generator) -> Values:
         """Normal about zero, as the paper draws it."""

@@ -20,14 +20,25 @@ from scipy.optimize import lsq_linear, minimize_scalar
 
 import sepcal
 from sepcal.columns import Array
-from studies.paper.parts import Options, Part, Result, Table, exact, figures, over, rate, share_of
+from studies.paper.parts import (
+    ETA,
+    Options,
+    Part,
+    Result,
+    Table,
+    exact,
+    figures,
+    measure_wave,
+    over,
+    rate,
+    share_of,
+)
 from studies.study import Finding, Progress
 
 THRESHOLDS = (0.1, 0.5, 1.0, 2.0, 5.0)  # t_1 = t_2
 SAMPLES = 500
 ROWS = 150  # of a flight: second derivatives of every sample are dear
 REPEATS = 5  # of a time
-ETA = np.linspace(1.0, 10.0, 100)
 EXAMPLE = sepcal.ScalarExample1()
 Mask = NDArray[np.bool]
 Data = Mapping[str, Any]
@@ -55,13 +66,6 @@ class Screened:
     convex_there: Mask  # (2,)
 
 
-def wave(model: sepcal.Model, truth: Sequence[float], seed: int) -> Data:
-    """The paper's record of a scalar example."""
-    A, b = model.evaluate({"eta": ETA}, truth[2:])
-    z = A[:, 0] @ truth[:2] + b[:, 0]
-    return {"eta": ETA, "z": z + 0.3 * default_rng(seed).standard_normal(ETA.size)}
-
-
 def flight(name: str) -> Callable[[int], Data]:
     """A simulated one."""
     return lambda seed: sepcal.simulate(name, rows=ROWS, seed=seed)
@@ -69,8 +73,18 @@ def flight(name: str) -> Callable[[int], Data]:
 
 SECOND = sepcal.ScalarExample2()
 CASES = (
-    Case("scalar example 1", EXAMPLE, lambda seed: wave(EXAMPLE, (1.0, 1.0, 0.1), seed), {}),
-    Case("scalar example 2", SECOND, lambda seed: wave(SECOND, (1.0, 1.0, 0.05, 0.1), seed), {}),
+    Case(
+        "scalar example 1",
+        EXAMPLE,
+        lambda seed: measure_wave(EXAMPLE, (1.0, 1.0, 0.1), default_rng(seed)),
+        {},
+    ),
+    Case(
+        "scalar example 2",
+        SECOND,
+        lambda seed: measure_wave(SECOND, (1.0, 1.0, 0.05, 0.1), default_rng(seed)),
+        {},
+    ),
     Case(
         "five-hole probe",
         sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02)),
@@ -287,7 +301,7 @@ SIGNS = (1.0, -1.0)
 
 def mirror(seed: int) -> Mirrored:
     """One record."""
-    data = wave(EXAMPLE, (1.0, 1.0, 0.1), seed)
+    data = measure_wave(EXAMPLE, (1.0, 1.0, 0.1), default_rng(seed))
     first, second = (fit_wave(sign, data) for sign in SIGNS)
     screened = fit_wave(1.0, data, t_2=1e-12).stage_one.screens
     assert screened is not None
@@ -373,7 +387,7 @@ def least_over_b(cost: Callable[[float], float]) -> tuple[float, float]:
 
 def nest(bounds: Bounds, seed: int) -> Nested:
     """One record."""
-    data = wave(EXAMPLE, (1.0, 1.0, 0.1), seed)
+    data = measure_wave(EXAMPLE, (1.0, 1.0, 0.1), default_rng(seed))
     lower, upper = np.transpose([bounds[name] for name in EXAMPLE.linear])
 
     def system(b: float) -> tuple[Array, Array]:
