@@ -9,6 +9,7 @@
 #include "benchmark.hpp"
 #include "sepcal/innovation_model.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/recursive_likelihood.hpp"
 #include "sepcal/triangular_factor.hpp"

@@ -5,6 +5,7 @@
 #include "benchmark.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace benchmark {
 namespace {

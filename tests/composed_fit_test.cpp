@@ -10,7 +10,7 @@
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/effects/magnetic.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 namespace composed_fit_test {
 

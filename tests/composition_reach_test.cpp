@@ -6,7 +6,7 @@
 #include "sepcal/composition.hpp"
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 namespace composition_reach_test {
 

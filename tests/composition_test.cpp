@@ -11,7 +11,7 @@
 #include "dense_reference.hpp"
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 #include "small_models.hpp"
 
 namespace composition_test {

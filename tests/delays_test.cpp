@@ -9,7 +9,7 @@
 #include "composed_checks.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/effects/magnetic.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 #include "small_models.hpp"
 
 namespace delays_test {

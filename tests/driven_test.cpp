@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "composed_checks.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 namespace driven_test {
 

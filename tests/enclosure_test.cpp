@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/enclosed_dual.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"

@@ -16,6 +16,7 @@
 #include "sepcal/fit_many.hpp"
 #include "sepcal/innovation_model.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "short_periods.hpp"
 #include "simulated_fleets.hpp"
 #include "trajectories.hpp"

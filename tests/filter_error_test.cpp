@@ -20,6 +20,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/innovation_model.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "short_periods.hpp"
 #include "trajectories.hpp"

@@ -16,6 +16,7 @@
 
 #include "sepcal/fit.hpp"
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace harv_test {
 

@@ -10,7 +10,7 @@
 #include "calibrated_flights.hpp"
 #include "dense_reference.hpp"
 #include "sepcal/composition.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 #include "small_models.hpp"
 
 namespace named_effects_test {

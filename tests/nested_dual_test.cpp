@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "block_inputs.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "simulated_records.hpp"

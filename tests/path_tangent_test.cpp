@@ -18,6 +18,7 @@
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
 #include "sepcal/path_model.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "short_periods.hpp"
 #include "trajectories.hpp"
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/static_model.hpp"
 #include "simulated_records.hpp"
 

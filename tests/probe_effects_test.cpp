@@ -10,7 +10,7 @@
 #include "flights_with_effects.hpp"
 #include "sepcal/check_model.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 namespace probe_effects_test {
 

@@ -8,6 +8,7 @@
 
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "trajectories.hpp"
 
 namespace state_model_test {

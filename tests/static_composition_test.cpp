@@ -3,6 +3,8 @@
 // alone and several together in both orders.
 #include "sepcal/static_composition.hpp"
 
+#include "sepcal/run_time_effect.hpp"
+
 #include <doctest/doctest.h>
 
 #include "composed_checks.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effects written as structs, made into run-time effects.
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 #include <doctest/doctest.h>
 

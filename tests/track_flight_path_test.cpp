@@ -8,6 +8,7 @@
 
 #include "flight_paths.hpp"
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/track.hpp"
 
 namespace track_flight_path_test {

@@ -17,6 +17,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace {
 

@@ -17,6 +17,7 @@
 #include "sepcal/aircraft/two_step.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/track.hpp"
 #include "short_periods.hpp"
 #include "studies/seeds.hpp"

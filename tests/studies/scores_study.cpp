@@ -9,6 +9,7 @@
 
 #include "sepcal/innovation_model.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/triangular_factor.hpp"
 #include "short_periods.hpp"
 #include "studies/seeds.hpp"

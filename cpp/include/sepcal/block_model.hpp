@@ -14,8 +14,8 @@
 
 #include "sepcal/eigen.hpp"
 #include "sepcal/lane_kernel.hpp"
-#include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/tables.hpp"
 
 namespace sepcal {
 

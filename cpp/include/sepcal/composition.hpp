@@ -12,8 +12,8 @@
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/effect.hpp"
-#include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/tables.hpp"
 
 namespace sepcal {
 

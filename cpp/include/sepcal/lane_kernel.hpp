@@ -102,4 +102,23 @@ constexpr bool has_lanes() {
 template <class M>
 const LaneKernel& lane_kernel();
 
+struct AttitudeIndependentMagnetometer;
+struct FiveHoleProbe;
+struct Magnetometer;
+struct PitotStatic;
+struct ScalarExample1;
+struct ScalarExample2;
+template <>
+const LaneKernel& lane_kernel<AttitudeIndependentMagnetometer>();
+template <>
+const LaneKernel& lane_kernel<FiveHoleProbe>();
+template <>
+const LaneKernel& lane_kernel<Magnetometer>();
+template <>
+const LaneKernel& lane_kernel<PitotStatic>();
+template <>
+const LaneKernel& lane_kernel<ScalarExample1>();
+template <>
+const LaneKernel& lane_kernel<ScalarExample2>();
+
 }  // namespace sepcal

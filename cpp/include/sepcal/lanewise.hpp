@@ -8,6 +8,19 @@
 
 namespace sepcal {
 
+/// The plain number that a number is made of: float, or double. Constants of a model, and what it
+/// holds, are brought to it: Real<U>(2.0) * u is then of one kind, whatever U.
+template <class T>
+struct RealOf {
+  using Type = double;
+};
+template <>
+struct RealOf<float> {
+  using Type = float;
+};
+template <class T>
+using Real = typename RealOf<T>::Type;
+
 /// Of numbers of one kind; specialised where they have lanes (sepcal/lanes.hpp).
 template <class T>
 struct Lanewise {

@@ -5,8 +5,10 @@
 
 #include <concepts>
 #include <limits>
+#include <string_view>
 
 #include "sepcal/eigen.hpp"
+#include "sepcal/lanewise.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal {
@@ -18,8 +20,8 @@ using Vec = Eigen::Matrix<T, N, 1>;
 /// set is seen by check_model() and by the first fit instead of passing for a number.
 template <class T, int NZ, int N1>
 struct Affine {
-  Eigen::Matrix<T, NZ, N1> A = Eigen::Matrix<T, NZ, N1>::Constant(T(poison));
-  Eigen::Matrix<T, NZ, 1> b = Eigen::Matrix<T, NZ, 1>::Constant(T(poison));
+  Eigen::Matrix<T, NZ, N1> A = Eigen::Matrix<T, NZ, N1>::Constant(T(static_cast<Real<T>>(poison)));
+  Eigen::Matrix<T, NZ, 1> b = Eigen::Matrix<T, NZ, 1>::Constant(T(static_cast<Real<T>>(poison)));
 
  private:
   static constexpr double poison = std::numeric_limits<double>::quiet_NaN();
@@ -32,6 +34,15 @@ concept QuantityTable = requires(const Table& table) {
   { table.size() } -> std::convertible_to<std::size_t>;
   { table.data() } -> std::convertible_to<const Quantity*>;
 };
+
+/// The place of a name in a table; -1 where it isn't there.
+template <QuantityTable Table>
+constexpr int place_of(std::string_view name, const Table& table) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table.data()[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
 
 /// The sizes of a model, read off its tables.
 template <class M>

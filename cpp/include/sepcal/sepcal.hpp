@@ -4,6 +4,7 @@
 
 // clang-format off: reading order
 #include "sepcal/quantity.hpp"           // a name, a unit
+#include "sepcal/tables.hpp"             // a model's, at run time
 #include "sepcal/model.hpp"              // four tables and one function
 #include "sepcal/record.hpp"             // measured samples
 #include "sepcal/fit.hpp"                // the two-stage estimator
@@ -25,11 +26,13 @@
 #include "sepcal/static_model.hpp"       // from a struct to the waist
 #include "sepcal/static_concatenation.hpp" // several sensors side by side
 #include "sepcal/joined_tables.hpp"
+#include "sepcal/dual.hpp"               // derivatives in flight
 #include "sepcal/nested_dual.hpp"        // second derivatives
 #include "sepcal/natural_spline.hpp"     // smooth functions
 #include "sepcal/driver.hpp"             // what drives an effect
 #include "sepcal/effect.hpp"             // a physical term that a model lacks
 #include "sepcal/static_effect.hpp"      // an effect written as a struct
+#include "sepcal/run_time_effect.hpp"    // from it to one chosen by name
 #include "sepcal/static_composition.hpp" // model + effects, while compiling
 #include "sepcal/composition.hpp"        // the same at run time
 #include "sepcal/channel_product.hpp"    // alpha*elevator
@@ -46,6 +49,7 @@
 #include "sepcal/models/triad.hpp"       // the canonical form of a sensor of three axes
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/damped_sinusoids.hpp" // Prony's problem
+#include "sepcal/compiled_models.hpp"    // those that the library has compiled
 #include "sepcal/states/state_model.hpp"       // a model with a state
 #include "sepcal/states/trajectory_options.hpp"
 #include "sepcal/states/trajectory_model.hpp"  // from it to the waist, along a record
@@ -56,6 +60,8 @@
 #include "sepcal/states/stream_start.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
+#include "sepcal/states/reconstruct.hpp"  // what was flown
 #include "sepcal/aircraft/geometry.hpp"        // an aircraft as its equations of motion know it
 #include "sepcal/aircraft/equations.hpp"       // coefficients as sums of regressors
 #include "sepcal/aircraft/coefficients.hpp"    // those that a flight had

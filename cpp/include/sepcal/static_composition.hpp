@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "sepcal/hoisted_model.hpp"
@@ -15,21 +16,6 @@
 #include "sepcal/static_effect.hpp"
 
 namespace sepcal {
-
-/// A term whose columns are the model's: factor(u, xi2) times those of the linear parameters that
-/// it names in `targets`, one for each of its own.
-template <class T>
-concept VaryingTerm =
-    QuantityTable<decltype(T::inputs)> && QuantityTable<decltype(T::linear)> &&
-    QuantityTable<decltype(T::nonlinear)> &&
-    requires(const T& effect, const Vec<double, static_cast<int>(T::inputs.size())>& u,
-             const Vec<double, static_cast<int>(T::nonlinear.size())>& xi2) {
-      T::targets.size();
-      effect.factor(u, xi2);
-    };
-
-template <class T>
-concept StaticEffect = Term<T> || InputCorrection<T> || VaryingTerm<T>;
 
 namespace composing {
 
@@ -105,13 +91,21 @@ struct Composed {
     const Vec<X, n_2m> of_model = xi2.template head<n_2m>();
     const Vec<X, n_2e> of_effect = xi2.template tail<n_2e>();
     if constexpr (InputCorrection<E>) {
-      Vec<X, n_u> corrected = u.template cast<X>();
-      const Vec<X, E::corrected> values = effect.correct(select<E>(corrected), of_effect);
-      for (int c = 0; c < E::corrected; ++c) corrected[position<E>(c)] = values[c];
-      return model.at(select<M>(corrected), of_model);
+      return model.at(correct<X>(u.template cast<X>(), of_effect), of_model);
     } else {
       return join<U, X>(model.at(select<M>(u), of_model), u, of_effect);
     }
+  }
+
+  /// The inputs that `model` sees behind this correction.
+  template <class X>
+  Vec<X, Sizes<M>::n_u> correct(Vec<X, static_cast<int>(inputs.size())> u,
+                                const Vec<X, static_cast<int>(E::nonlinear.size())>& xi) const
+    requires InputCorrection<E>
+  {
+    const Vec<X, E::corrected> values = effect.correct(select<E>(u), xi);
+    for (int c = 0; c < E::corrected; ++c) u[position<E>(c)] = values[c];
+    return select<M>(u);
   }
 
   /// What a model tells of itself it still tells beside an effect that leaves its inputs alone
@@ -179,6 +173,38 @@ struct Composed {
     return static_cast<int>(composing::find(M::linear, E::targets[static_cast<std::size_t>(c)]));
   }
 };
+
+namespace composing {
+
+/// The model that effects were added to.
+template <class M>
+struct BaseOf {
+  using Type = M;
+};
+template <class M, class E>
+struct BaseOf<Composed<M, E>> : BaseOf<M> {};
+
+template <class M>
+inline constexpr bool is_corrected = false;
+template <class M, InputCorrection E>
+inline constexpr bool is_corrected<Composed<M, E>> = true;
+
+/// Calls `visit(inner, u, xi2)` with the model without its input corrections, the inputs that it
+/// then sees, and its own parameters.
+template <class M, class X, class Visit>
+auto behind_corrections(const M& model, const Vec<X, Sizes<M>::n_u>& u,
+                        const Vec<X, Sizes<M>::n_2>& xi2, const Visit& visit) {
+  if constexpr (is_corrected<M>) {
+    constexpr int own = Sizes<std::remove_const_t<decltype(model.model)>>::n_2;
+    const Vec<X, own> inner = xi2.template head<own>();
+    const Vec<X, Sizes<M>::n_2 - own> of_effect = xi2.template tail<Sizes<M>::n_2 - own>();
+    return behind_corrections(model.model, model.template correct<X>(u, of_effect), inner, visit);
+  } else {
+    return visit(model, u, xi2);
+  }
+}
+
+}  // namespace composing
 
 /// model + effect + effect ...: a model with all of them.
 template <SeparableModel M, StaticEffect E>

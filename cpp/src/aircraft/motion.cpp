@@ -9,6 +9,7 @@
 #include "numerics/order_statistics.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal::aircraft {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "base/short_number.hpp"
 #include "sepcal/aircraft/path.hpp"
+#include "sepcal/states/reconstruct.hpp"
 
 namespace sepcal {
 namespace {

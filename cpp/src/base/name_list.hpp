@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/quantity.hpp"
+#include "sepcal/tables.hpp"
 
 namespace sepcal::base {
 

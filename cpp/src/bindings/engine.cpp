@@ -19,6 +19,7 @@
 #include "python_model.hpp"
 #include "released.hpp"
 #include "results.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"

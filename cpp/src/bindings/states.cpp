@@ -19,6 +19,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "sepcal/states/track.hpp"
 #include "structs.hpp"

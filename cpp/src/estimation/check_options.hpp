@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sepcal/options.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/tables.hpp"
 
 namespace sepcal::estimation {
 

@@ -13,7 +13,7 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/identifiability.hpp"
 #include "sepcal/options.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/tables.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,8 @@
 
 #include "base/columns.hpp"
 #include "sepcal/models/flight_path.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
+#include "sepcal/states/reconstruct.hpp"
 
 namespace sepcal {
 

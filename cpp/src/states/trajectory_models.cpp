@@ -3,6 +3,7 @@
 // again.
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal {
 

@@ -10,6 +10,7 @@
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal {
 

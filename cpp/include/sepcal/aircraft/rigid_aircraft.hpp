@@ -22,6 +22,7 @@
 #include "sepcal/natural_spline.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/rotation.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/trajectory_model.hpp"
 
 namespace sepcal {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Effects on an air-data probe (FiveHoleProbe). With phi = (d - centre)^k of a driver d, v the
-// airspeed as read and V the corrected one.
+// Effects on an air-data probe (FiveHoleProbe). With phi = (d - centre)^k - mean of a driver d, v
+// the airspeed as read and V the corrected one.
 #pragma once
 
 #include <array>
@@ -60,7 +60,7 @@ struct LeverArm {
   template <class U, class X>
   Eigen::Matrix<U, 3, 3> columns(const Vec<U, 6>& u, const Vec<X, 0>& /*xi2*/) const {
     Eigen::Matrix<U, 3, 3> cross;
-    const U zero(0.0);
+    const U zero(Real<U>(0));
     cross << zero, -u[5], u[4],  //
         u[5], zero, -u[3],       //
         -u[4], u[3], zero;
@@ -81,7 +81,7 @@ struct MountingError {
   Vec<T, 3> correct(const Vec<T, 3>& u, const Vec<T, 2>& xi2) const {
     using std::asin;
     using std::atan2;
-    const T zero(0.0);
+    const T zero(Real<T>(0));
     const Eigen::Matrix<T, 3, 3> C =
         body_to_ned<T>(u[0], u[1], u[2]) * body_to_ned<T>(zero, xi2[0], xi2[1]);
     return {atan2(C(2, 1), C(2, 2)), -asin(C(2, 0)), atan2(C(1, 0), C(0, 0))};
@@ -89,3 +89,17 @@ struct MountingError {
 };
 
 }  // namespace sepcal::effects
+
+/// Effects on a Pitot-static tube (PitotStatic): what the tube makes of the air. Its pressure's
+/// offset is PressureOffset.
+namespace sepcal::effects::tube {
+
+/// V = (1 + s phi) V_met + ...
+template <Text driver, int power = 1>
+using AirspeedScale = Shifts<"airspeed_scale", driver, power, "1">;
+
+/// ... + s phi [m/s].
+template <Text driver, int power = 1>
+using AirspeedBias = Shifts<"airspeed_bias", driver, power, "m/s">;
+
+}  // namespace sepcal::effects::tube

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effects `port[driver]` and `port[driver^k]` for composition at compile time: a coefficient s
-// times phi = (d - centre)^k of the column `driver`. At run time make_effect() builds the same by
-// name.
+// times phi = (d - centre)^k - mean of the column `driver`. At run time make_effect() builds the
+// same by name.
 #pragma once
 
 #include <algorithm>
@@ -45,12 +45,13 @@ constexpr std::string_view parameter_name() {
   }
 }
 
-/// (d - centre)^power
+/// (d - centre)^power - mean
 template <int power, class T>
-T power_of(const T& d, double centre) {
-  T value = d - centre;
-  for (int i = 1; i < power; ++i) value = value * (d - centre);
-  return value;
+T power_of(const T& d, double centre, double mean = 0.0) {
+  const auto from = static_cast<Real<T>>(centre);
+  T value = d - from;
+  for (int i = 1; i < power; ++i) value = value * (d - from);
+  return value - static_cast<Real<T>>(mean);
 }
 
 /// One coefficient's name, and the model's linear parameter that it adds to.
@@ -71,10 +72,11 @@ struct Follows {
   static constexpr std::array targets{Components::target...};
 
   double centre = 0.0;
+  double mean = 0.0;
 
   template <class U, class X>
   X factor(const Vec<U, 1>& u, const Vec<X, 0>& /*xi2*/) const {
-    return X(power_of<power>(u[0], centre));
+    return X(power_of<power>(u[0], centre, mean));
   }
 };
 
@@ -88,10 +90,30 @@ struct Shifts {
       Quantity{parameter_name<port, driver, power, "s">(), unit.view()}};
 
   double centre = 0.0;
+  double mean = 0.0;
 
   template <class T>
   Vec<T, 1> correct(const Vec<T, 2>& u, const Vec<T, 1>& xi2) const {
-    return Vec<T, 1>(u[0] + xi2[0] * power_of<power>(u[1], centre));
+    return Vec<T, 1>(u[0] + xi2[0] * power_of<power>(u[1], centre, mean));
+  }
+};
+
+/// Several inputs that follow a driver, each with a coefficient of its own: u_i + sign s_i phi.
+template <Text name, Text driver, int power, Text unit, int sign, class... Components>
+struct ShiftsEach {
+  static constexpr int corrected = static_cast<int>(sizeof...(Components));
+  static constexpr std::array inputs{sepcal::port(Components::target, unit.view())...,
+                                     Quantity{driver.view(), ""}};
+  static constexpr std::array nonlinear{
+      Quantity{parameter_name<name, driver, power, Components::name>(), unit.view()}...};
+
+  double centre = 0.0;
+  double mean = 0.0;
+
+  template <class T>
+  Vec<T, corrected> correct(const Vec<T, corrected + 1>& u, const Vec<T, corrected>& xi2) const {
+    const T phi = power_of<power>(u[corrected], centre, mean);
+    return u.template head<corrected>() + Real<T>(sign) * phi * xi2;
   }
 };
 

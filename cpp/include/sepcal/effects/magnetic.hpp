@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effects on a magnetometer (Magnetometer): z = C h + n + ..., h the true field in body axes [uT],
-// phi = (d - centre)^k of a driver d.
+// phi = (d - centre)^k - mean of a driver d.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -30,10 +30,11 @@ struct Scale {
   static constexpr bool dual_inputs = true;
 
   double centre = 0.0;
+  double mean = 0.0;
 
   template <class U, class X>
   Vec<U, 3> columns(const Vec<U, 4>& u, const Vec<X, 0>& /*xi2*/) const {
-    return u.template head<3>() * power_of<power>(u[3], centre);
+    return u.template head<3>() * power_of<power>(u[3], centre, mean);
   }
 };
 
@@ -50,10 +51,11 @@ struct AxisScale {
   static constexpr bool dual_inputs = true;
 
   double centre = 0.0;
+  double mean = 0.0;
 
   template <class U, class X>
   Eigen::Matrix<U, 3, 3> columns(const Vec<U, 4>& u, const Vec<X, 0>& /*xi2*/) const {
-    const Vec<U, 3> h = u.template head<3>() * power_of<power>(u[3], centre);
+    const Vec<U, 3> h = u.template head<3>() * power_of<power>(u[3], centre, mean);
     return h.asDiagonal();
   }
 };
@@ -70,7 +72,7 @@ struct CubicNonlinearity {
 
   template <class U, class X>
   Eigen::Matrix<U, 3, 6> columns(const Vec<U, 3>& h, const Vec<X, 0>& /*xi2*/) const {
-    Eigen::Matrix<U, 3, 6> G = Eigen::Matrix<U, 3, 6>::Constant(U(0.0));
+    Eigen::Matrix<U, 3, 6> G = Eigen::Matrix<U, 3, 6>::Constant(U(Real<U>(0)));
     for (int i = 0; i < 3; ++i) {
       G(i, i) = h[i] * h[i] * h[i];
       G(i, 3 + i) = h[i] * h[i];
@@ -94,7 +96,7 @@ struct EddyCurrents {
 
   template <class U, class X>
   Eigen::Matrix<U, 3, 9> columns(const Vec<U, 3>& h_dot, const Vec<X, 0>& /*xi2*/) const {
-    Eigen::Matrix<U, 3, 9> G = Eigen::Matrix<U, 3, 9>::Constant(U(0.0));
+    Eigen::Matrix<U, 3, 9> G = Eigen::Matrix<U, 3, 9>::Constant(U(Real<U>(0)));
     for (int i = 0; i < 3; ++i) G.row(i).template segment<3>(3 * i) = h_dot.transpose();
     return G;
   }
@@ -115,7 +117,7 @@ struct FieldDeclination {
     const Vec<T, 3> h = u.template head<3>();
     const Vec<T, 3> down(-sin(u[4]), sin(u[3]) * cos(u[4]), cos(u[3]) * cos(u[4]));
     const T c = cos(xi2[0]);
-    return c * h + sin(xi2[0]) * down.cross(h) + (T(1.0) - c) * down.dot(h) * down;
+    return c * h + sin(xi2[0]) * down.cross(h) + (T(Real<T>(1)) - c) * down.dot(h) * down;
   }
 };
 
@@ -129,8 +131,27 @@ struct AttitudeBias {
 
   template <class T>
   Vec<T, 3> correct(const Vec<T, 3>& h, const Vec<T, 2>& xi2) const {
-    return h + h.cross(Vec<T, 3>(xi2[0], xi2[1], T(0.0)));
+    return h + h.cross(Vec<T, 3>(xi2[0], xi2[1], T(Real<T>(0))));
   }
 };
 
 }  // namespace sepcal::effects
+
+/// Effects on an AttitudeIndependentMagnetometer: those that show in the field's strength.
+namespace sepcal::effects::strength {
+
+/// m = C h + n + s phi, on every axis [uT].
+template <Text driver, int power = 1>
+using Bias = ShiftsEach<"bias", driver, power, "uT", -1, Component<"x", "mx">, Component<"y", "my">,
+                        Component<"z", "mz">>;
+
+/// (C + s phi I) h.
+template <Text driver, int power = 1>
+using Scale = Shifts<"scale", driver, power, "1">;
+
+/// (C + diag(s_i phi)) h.
+template <Text driver, int power = 1>
+using AxisScale = ShiftsEach<"axis_scale", driver, power, "1", 1, Component<"x", "axis_scale_x">,
+                             Component<"y", "axis_scale_y">, Component<"z", "axis_scale_z">>;
+
+}  // namespace sepcal::effects::strength

@@ -10,10 +10,8 @@
 #include <cmath>
 
 #include "sepcal/eigen.hpp"
-#include "sepcal/lane_kernel.hpp"
 #include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -80,11 +78,12 @@ struct AttitudeIndependentMagnetometer {
   template <class U, class X>
   Affine<X, 1, 0> combine(const Prepared<U>& row, const Settled<X>& settled) const {
     const Vec<X, 3> r(row.m[0] - settled.n[0], row.m[1] - settled.n[1], row.m[2] - settled.n[2]);
-    if (row.plain) return see(r, settled.W, settled.trace, field_strength);
+    if (row.plain) return see(r, settled.W, settled.trace, static_cast<Real<X>>(field_strength));
     Eigen::Matrix<X, 3, 3> C = settled.C;
     for (int i = 0; i < 3; ++i) C(i, i) += X(row.scale[i]);
     const Settled<X> scaled = settle<X>(C, settled.n);
-    return see<X, X>(r, scaled.W, scaled.trace, X(row.field_change) + field_strength);
+    return see<X, X>(r, scaled.W, scaled.trace,
+                     X(row.field_change) + static_cast<Real<X>>(field_strength));
   }
 
   template <class U, class X>
@@ -96,7 +95,7 @@ struct AttitudeIndependentMagnetometer {
   /// diag(lambda).
   template <class X>
   static Eigen::Matrix<X, 3, 3> soft_iron_and_scale(const Vec<X, 9>& xi2) {
-    const X one(1.0);
+    const X one(Real<X>(1));
     Eigen::Matrix<X, 3, 3> C;
     C << one, xi2[3], xi2[4],  //
         xi2[3], one, xi2[5],   //
@@ -120,19 +119,16 @@ struct AttitudeIndependentMagnetometer {
     using std::sqrt;
     const Vec<X, 3> slope = W * r;
     // A reading of n itself has no direction: the floor keeps its derivative finite.
-    const double floor = 1e-9 * field_strength;
+    const auto floor = static_cast<Real<X>>(1e-9 * field_strength);
+    const auto variance = static_cast<Real<X>>(noise * noise);
     const X square = r.dot(slope) + floor * floor;
     const X slope_square = slope.squaredNorm() + floor * floor;
     const X length = sqrt(square);
-    const X mu = noise * noise / (2.0 * F) * (trace - slope_square / square);
+    const X mu = variance / (Real<X>(2) * F) * (trace - slope_square / square);
     Affine<X, 1, 0> z;
     z.b[0] = -(length - F - mu) * length / sqrt(slope_square);
     return z;
   }
 };
-
-template <>
-const LaneKernel& lane_kernel<AttitudeIndependentMagnetometer>();
-extern template class StaticModel<AttitudeIndependentMagnetometer>;
 
 }  // namespace sepcal

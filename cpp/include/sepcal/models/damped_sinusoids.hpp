@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 
 namespace sepcal {
@@ -54,7 +55,7 @@ struct DampedSinusoids {
     using std::exp;
     using std::sin;
     Affine<X, 1, 2 * Modes + 1> z;
-    X omega(1.0);
+    X omega(Real<X>(1));
     for (int k = 0; k < Modes; ++k) {
       omega = omega * xi2[k];
       const X decay = exp(-xi2[Modes + k] * time[0]);
@@ -62,8 +63,8 @@ struct DampedSinusoids {
       z.A(0, 2 * k) = decay * cos(angle);
       z.A(0, 2 * k + 1) = decay * sin(angle);
     }
-    z.A(0, 2 * Modes) = X(1.0);
-    z.b[0] = X(0.0);
+    z.A(0, 2 * Modes) = X(Real<X>(1));
+    z.b[0] = X(Real<X>(0));
     return z;
   }
 };

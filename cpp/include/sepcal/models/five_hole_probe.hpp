@@ -14,7 +14,6 @@
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
 #include "sepcal/rotation.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -63,13 +62,17 @@ struct FiveHoleProbe {
   template <class U>
   Prepared<U> prepare(const Vec<U, 14>& u) const {
     using std::sqrt;
+    const Real<U> two = 2;
+    const auto sensitivity_a = static_cast<Real<U>>(k_alpha);
+    const auto sensitivity_b = static_cast<Real<U>>(k_beta);
     enum { roll, pitch, yaw, p, q, r, pt, ps, dpa, dpb, rho, d_pressure, d_alpha, d_beta };
     const U pressure = u[pt] - u[ps];
     const Eigen::Matrix<U, 3, 3> C_bn = body_to_ned<U>(u[roll], u[pitch], u[yaw]);
     const Vec<U, 3> rates(u[p], u[q], u[r]);
     const Vec<U, 3> arm = lever_arm.template cast<U>();
-    return {C_bn, C_bn * rates.cross(arm), sqrt(2.0 * (pressure + u[d_pressure]) / u[rho]),
-            u[dpa] / (k_alpha * pressure) + u[d_alpha], u[dpb] / (k_beta * pressure) + u[d_beta]};
+    return {C_bn, C_bn * rates.cross(arm), sqrt(two * (pressure + u[d_pressure]) / u[rho]),
+            u[dpa] / (sensitivity_a * pressure) + u[d_alpha],
+            u[dpb] / (sensitivity_b * pressure) + u[d_beta]};
   }
 
   /// What depends on xi2 alone.
@@ -99,10 +102,10 @@ struct FiveHoleProbe {
     const Vec<X, 2> angles = flow_angles<U, X>(row.alpha, row.beta, settled.xi2);
     const AirDirection<X> air(angles[0], angles[1]);
     const Vec<X, 3> in_body = to_body(air.at(), settled);
-    const X speed = row.airspeed * (1.0 + xi1[0]) + xi1[1];
+    const X speed = row.airspeed * (Real<X>(1) + xi1[0]) + xi1[1];
     const Vec<X, 3> by_alpha = row.C_bn * to_body(air.by_alpha(), settled) * speed;
     const Vec<X, 3> by_beta = row.C_bn * to_body(air.by_beta(), settled) * speed;
-    const Vec<X, 3> by_eps = row.C_bn * Vec<X, 3>(X(0.0), in_body[2], -in_body[1]) * speed;
+    const Vec<X, 3> by_eps = row.C_bn * Vec<X, 3>(X(Real<X>(0)), in_body[2], -in_body[1]) * speed;
     Tangent<X, 3, 5, 5> result{place(row, in_body), {}};
     result.D << by_alpha * row.alpha, by_alpha, by_beta * row.beta, by_beta, by_eps;
     return result;
@@ -116,7 +119,8 @@ struct FiveHoleProbe {
   /// [alpha, beta] (rad) from the angles as read (Eq. 36).
   template <class U, class X>
   static Vec<X, 2> flow_angles(const U& alpha_read, const U& beta_read, const Vec<X, 5>& xi2) {
-    return {(1.0 + xi2[0]) * alpha_read + xi2[1], (1.0 + xi2[2]) * beta_read + xi2[3]};
+    const Real<X> one = 1;
+    return {(one + xi2[0]) * alpha_read + xi2[1], (one + xi2[2]) * beta_read + xi2[3]};
   }
 
   /// C(eps) [cos a cos b, sin b, sin a cos b]: the air's direction in body axes (Eqs. 38, 41).
@@ -134,7 +138,7 @@ struct FiveHoleProbe {
       std::tie(cos_b, sin_b) = cos_sin(beta);
     }
     Vec<X, 3> at() const { return {cos_a * cos_b, sin_b, sin_a * cos_b}; }
-    Vec<X, 3> by_alpha() const { return {-sin_a * cos_b, X(0.0), cos_a * cos_b}; }
+    Vec<X, 3> by_alpha() const { return {-sin_a * cos_b, X(Real<X>(0)), cos_a * cos_b}; }
     Vec<X, 3> by_beta() const { return {-cos_a * sin_b, cos_b, -sin_a * sin_b}; }
 
     X cos_a, sin_a, cos_b, sin_b;
@@ -159,9 +163,5 @@ struct FiveHoleProbe {
     return z;
   }
 };
-
-template <>
-const LaneKernel& lane_kernel<FiveHoleProbe>();
-extern template class StaticModel<FiveHoleProbe>;
 
 }  // namespace sepcal

@@ -12,16 +12,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <string>
 #include <string_view>
 
-#include "sepcal/record.hpp"
+#include "sepcal/lanewise.hpp"
 #include "sepcal/rotation.hpp"
-#include "sepcal/states/trajectory_model.hpp"
+#include "sepcal/states/state_model.hpp"
 
 namespace sepcal {
+
+class Record;
+struct TrajectoryOptions;
 
 /// Throws Error for rates or angles in degrees, and a vertical specific force that level flight
 /// doesn't read as az = -9.81 m/s^2: the other sign, g, gravity taken out.
@@ -132,7 +133,8 @@ struct FlightPathModel {
     using std::cos;
     using std::sin;
     Rate<X, n_x> dx;
-    if (!(abs(x[theta]) < steepest_pitch)) return dx;
+    if (!(abs(x[theta]) < static_cast<Real<X>>(steepest_pitch))) return dx;
+    const auto g = static_cast<Real<X>>(gravity);
     const Vec<X, 3> a(u[ax] + p[ax], u[ay] + p[ay], u[az] + p[az]);
     const Vec<X, 3> turn(u[roll_rate] + p[roll_rate], u[pitch_rate] + p[pitch_rate],
                          u[yaw_rate] + p[yaw_rate]);
@@ -140,9 +142,9 @@ struct FlightPathModel {
     const X c_phi = cos(x[phi]);
     const X s_theta = sin(x[theta]);
     const X c_theta = cos(x[theta]);
-    dx[forward] = a[0] - turn[1] * x[below] + turn[2] * x[right] - gravity * s_theta;
-    dx[right] = a[1] - turn[2] * x[forward] + turn[0] * x[below] + gravity * s_phi * c_theta;
-    dx[below] = a[2] - turn[0] * x[right] + turn[1] * x[forward] + gravity * c_phi * c_theta;
+    dx[forward] = a[0] - turn[1] * x[below] + turn[2] * x[right] - g * s_theta;
+    dx[right] = a[1] - turn[2] * x[forward] + turn[0] * x[below] + g * s_phi * c_theta;
+    dx[below] = a[2] - turn[0] * x[right] + turn[1] * x[forward] + g * c_phi * c_theta;
     dx[theta] = turn[1] * c_phi - turn[2] * s_phi;
     dx[psi] = (turn[1] * s_phi + turn[2] * c_phi) / c_theta;
     dx[phi] = turn[0] + s_theta * dx[psi];
@@ -166,7 +168,7 @@ struct FlightPathModel {
     Vec<X, 3> arm;
     for (int i = 0; i < 3; ++i) {
       change[i] = X(u[gust + i]);
-      arm[i] = X(vane[i] + u[vane_shift + i]);
+      arm[i] = X(static_cast<Real<X>>(vane[i]) + u[vane_shift + i]);
     }
     const auto at_vane = [&](const Vec<X, n_x>& state) -> Vec<X, 3> {
       return state.template head<3>() + turn.cross(arm) -
@@ -175,8 +177,9 @@ struct FlightPathModel {
     const Vec<X, n_x> by_air = ago(u[airdata_delay], x, u, p);
     const Vec<X, n_x> by_velocity = ago(u[velocity_delay], x, u, p);
     const Vec<X, 3> air = at_vane(by_air);
-    const Vec<X, 3> at_alpha =
-        u[alpha_delay] == U(0.0) ? air : at_vane(ago(u[airdata_delay] + u[alpha_delay], x, u, p));
+    const Vec<X, 3> at_alpha = u[alpha_delay] == U(Real<U>(0))
+                                   ? air
+                                   : at_vane(ago(u[airdata_delay] + u[alpha_delay], x, u, p));
     Affine<X, n_z, n_1> z{.A = Eigen::Matrix<X, n_z, n_1>::Zero()};
     z.b[airspeed] = sqrt(air.dot(air));
     z.b[beta] = asin(air[1] / z.b[airspeed]);
@@ -184,7 +187,7 @@ struct FlightPathModel {
     z.b.template segment<3>(roll) = ago(u[attitude_delay], x, u, p).template segment<3>(phi);
     for (int j = 0; j < 6; ++j) {
       z.A(j, j) = z.b[j];
-      z.A(j, 6 + j) = X(1.0);
+      z.A(j, 6 + j) = X(Real<X>(1));
     }
     z.b.template segment<3>(vn) = over_ground(
         body_to_ned(by_velocity[phi], by_velocity[theta], by_velocity[psi]), by_velocity, p);
@@ -207,12 +210,12 @@ struct FlightPathModel {
     const X c = cos(x[phi]);
     const X t = tan(x[theta]);
     const X d = cos(x[theta]);
-    const X o(0.0);
+    const X o(Real<X>(0));
     Eigen::Matrix<X, n_x, 6> G = Eigen::Matrix<X, n_x, 6>::Zero();
     G.template topLeftCorner<3, 3>().setIdentity();
     G.template block<3, 3>(0, 3) << o, -x[below], x[right], x[below], o, -x[forward], -x[right],
         x[forward], o;
-    G.template block<3, 3>(3, 3) << X(1.0), s * t, c * t, o, c, -s, o, s / d, c / d;
+    G.template block<3, 3>(3, 3) << X(Real<X>(1)), s * t, c * t, o, c, -s, o, s / d, c / d;
     return G;
   }
 
@@ -242,7 +245,7 @@ struct FlightPathModel {
   template <class U, class X>
   Vec<X, n_x> ago(const U& delay, const Vec<X, n_x>& x, const Vec<U, n_u>& u,
                   const Vec<X, n_p>& p) const {
-    if (delay == U(0.0)) return x;
+    if (delay == U(Real<U>(0))) return x;
     return x - X(delay) * rate(x, u, p);
   }
 
@@ -258,15 +261,5 @@ struct FlightPathModel {
 
 using FlightPath = FlightPathModel<false>;
 using FlightPathWithPosition = FlightPathModel<true>;
-
-/// What was flown, by a fit's parameters (Fit::by_name()): the record with its accelerations and
-/// rates corrected, a + b; airspeed, alpha and beta as error-free sensors at the vane read them,
-/// roll, pitch, yaw, and u v w phi theta psi, as integrated. Columns that the record doesn't have
-/// are added. NaN outside segments.
-Record reconstruct(const TrajectoryModel<FlightPath>& model,
-                   const std::map<std::string, double>& parameters, const Record& record);
-
-extern template class TrajectoryModel<FlightPath>;
-extern template class TrajectoryModel<FlightPathWithPosition>;
 
 }  // namespace sepcal

@@ -10,7 +10,6 @@
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
 #include "sepcal/models/triad.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -68,9 +67,5 @@ struct Magnetometer {
     return C_alpha * C_eta;
   }
 };
-
-template <>
-const LaneKernel& lane_kernel<Magnetometer>();
-extern template class StaticModel<Magnetometer>;
 
 }  // namespace sepcal

@@ -10,7 +10,6 @@
 #include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -43,12 +42,12 @@ struct PitotStatic {
     const X east = u[ve] - wind[1];
     const X down = u[vd] - wind[2];
     const X airspeed = root(X(north * north + east * east + down * down));
-    const X undisturbed = (airspeed - u[airspeed_bias]) / (1.0 + u[airspeed_scale]);
-    const U offset = 2.0 * u[pressure_offset] / u[rho];
+    const X undisturbed = (airspeed - u[airspeed_bias]) / (Real<U>(1) + u[airspeed_scale]);
+    const U offset = Real<U>(2) * u[pressure_offset] / u[rho];
     Affine<X, 1, 2> z;
     z.A(0, 0) = root(X(undisturbed * undisturbed - offset));
-    z.A(0, 1) = X(1.0);
-    z.b[0] = X(0.0);
+    z.A(0, 1) = X(Real<X>(1));
+    z.b[0] = X(Real<X>(0));
     return z;
   }
 
@@ -63,14 +62,11 @@ struct PitotStatic {
   template <class X>
   static X root(const X& square) {
     using std::sqrt;
-    constexpr double floor = 1e-6;  // [m/s]
-    return where(square < 0.0, X(floor),
-                 X(sqrt(where(square < 0.0, X(0.0), square) + floor * floor)));
+    const Real<X> floor = static_cast<Real<X>>(1e-6);  // [m/s]
+    const Real<X> zero = 0;
+    return where(square < zero, X(floor),
+                 X(sqrt(where(square < zero, X(zero), square) + floor * floor)));
   }
 };
-
-template <>
-const LaneKernel& lane_kernel<PitotStatic>();
-extern template class StaticModel<PitotStatic>;
 
 }  // namespace sepcal

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -26,7 +26,7 @@ struct ScalarExample1 {
     using std::cos;
     const X wave = cos(u[0] + xi2[0]);
     Affine<X, 1, 2> z;
-    z.A << wave, X(1.0);
+    z.A << wave, X(Real<X>(1));
     z.b << wave;
     return z;
   }
@@ -48,19 +48,12 @@ struct ScalarExample2 {
   template <class U, class X>
   Affine<X, 1, 2> at(const Vec<U, 1>& u, const Vec<X, 2>& xi2) const {
     using std::cos;
-    const X wave = cos(u[0] * (1.0 + xi2[0]) + xi2[1]);
+    const X wave = cos(u[0] * (Real<X>(1) + xi2[0]) + xi2[1]);
     Affine<X, 1, 2> z;
-    z.A << wave, X(1.0);
+    z.A << wave, X(Real<X>(1));
     z.b << wave;
     return z;
   }
 };
-
-template <>
-const LaneKernel& lane_kernel<ScalarExample1>();
-template <>
-const LaneKernel& lane_kernel<ScalarExample2>();
-extern template class StaticModel<ScalarExample1>;
-extern template class StaticModel<ScalarExample2>;
 
 }  // namespace sepcal

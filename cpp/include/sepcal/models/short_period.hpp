@@ -8,7 +8,7 @@
 #include <array>
 #include <string_view>
 
-#include "sepcal/states/trajectory_model.hpp"
+#include "sepcal/states/state_model.hpp"
 
 namespace sepcal {
 
@@ -47,7 +47,5 @@ struct ShortPeriod {
  private:
   enum Parameter { za, ma, mq, zd, md };  // of p
 };
-
-extern template class TrajectoryModel<ShortPeriod>;
 
 }  // namespace sepcal

@@ -8,9 +8,9 @@
 #include <array>
 
 #include "sepcal/joined_tables.hpp"
+#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/models/scale.hpp"
-#include "sepcal/static_model.hpp"
 
 namespace sepcal {
 
@@ -22,7 +22,7 @@ struct Misalignment {
                                         Quantity{"eta_z", "rad", -0.5, 0.5}};
   template <class X>
   static Eigen::Matrix<X, 3, 3> matrix(const Vec<X, 3>& eta) {
-    const X one(1.0);
+    const X one(Real<X>(1));
     Eigen::Matrix<X, 3, 3> C;
     C << one, -eta[2], eta[1],  //
         eta[2], one, -eta[0],   //
@@ -38,7 +38,7 @@ struct CrossCoupling {
                                         Quantity{"alpha_yz", "1", -0.5, 0.5}};
   template <class X>
   static Eigen::Matrix<X, 3, 3> matrix(const Vec<X, 3>& alpha) {
-    const X one(1.0);
+    const X one(Real<X>(1));
     Eigen::Matrix<X, 3, 3> C;
     C << one, alpha[0], alpha[1],  //
         alpha[0], one, alpha[2],   //
@@ -127,7 +127,5 @@ struct Triad {
 
 /// Scale errors, biases and small misalignments of an accelerometer, Eq. A2.
 using Accelerometer = Triad<SpecificForceInBody, Misalignment>;
-
-extern template class StaticModel<Accelerometer>;
 
 }  // namespace sepcal

@@ -5,12 +5,11 @@
 // Asks for no memory where sizes are fixed.
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <span>
 
+#include "sepcal/dual.hpp"
 #include "sepcal/nested_dual.hpp"
 #include "sepcal/states/integration.hpp"
 #include "sepcal/states/noise_response.hpp"
@@ -198,7 +197,7 @@ bend_noise(const M& model, const Vec<double, StateSizes<M>::n_x>& x,
   if constexpr (!has_noise_input<M>()) {
     noise.G = noise_input<M, double>(model, x, between.u(0.0), p);
   } else {
-    using Number = ceres::Jet<double, n_x + n_p>;
+    using Number = Dual<double, n_x + n_p>;
     using Slopes = Eigen::Matrix<double, n_x * n_w, n_x + n_p>;
     const auto at = [&](const Vec<double, n_x>& state, double share, Slopes& slopes) {
       Vec<Number, n_x> begin;
@@ -210,8 +209,8 @@ bend_noise(const M& model, const Vec<double, StateSizes<M>::n_x>& x,
       Eigen::Matrix<double, n_x, n_w> value;
       for (int k = 0; k < n_w; ++k) {
         for (int i = 0; i < n_x; ++i) {
-          value(i, k) = G(i, k).a;
-          slopes.row(k * n_x + i) = G(i, k).v.transpose();
+          value(i, k) = G(i, k).value();
+          slopes.row(k * n_x + i) = G(i, k).slopes().transpose();
         }
       }
       return value;

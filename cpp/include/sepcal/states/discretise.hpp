@@ -4,15 +4,16 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "sepcal/states/matrix_exponential.hpp"
 
 namespace sepcal {
 
-template <int NX>
+template <int NX, class Scalar = double>
 struct DiscreteNoise {
-  Eigen::Matrix<double, NX, NX> Phi;  // exp(F dt), S 3.9
-  Eigen::Matrix<double, NX, NX> Q_d;  // integral of exp(F s) G Q G' exp(F's) ds over dt; Gamma = I
+  Eigen::Matrix<Scalar, NX, NX> Phi;  // exp(F dt), S 3.9
+  Eigen::Matrix<Scalar, NX, NX> Q_d;  // integral of exp(F s) G Q G' exp(F's) ds over dt; Gamma = I
 };
 
 /// Phi and Q_d from F (1/s), the density = G Q G' (state^2/s) and dt (s). S 3.7 and 3.11 leave
@@ -21,19 +22,21 @@ struct DiscreteNoise {
 /// only, where its exp(-F dt) is harmless, and doubled s times: Q_d <- Q_d + Phi Q_d Phi', which
 /// adds positive terms. Of F dt balanced: units of states don't count. All NaN where an argument is
 /// not finite.
-template <int NX>
-DiscreteNoise<NX> discretise(const Eigen::Matrix<double, NX, NX>& F,
-                             const Eigen::Matrix<double, NX, NX>& density, double dt) {
-  using Matrix = Eigen::Matrix<double, NX, NX>;
-  using Square = Eigen::Matrix<double, 2 * NX, 2 * NX>;
+template <int NX, class Scalar>
+DiscreteNoise<NX, Scalar> discretise(
+    const Eigen::Matrix<Scalar, NX, NX>& F,
+    const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& density,
+    std::type_identity_t<Scalar> dt) {
+  using Matrix = Eigen::Matrix<Scalar, NX, NX>;
+  using Square = Eigen::Matrix<Scalar, 2 * NX, 2 * NX>;
   Matrix whole = F * dt;
-  const Eigen::Vector<double, NX> d = states::balance(whole);
+  const Eigen::Vector<Scalar, NX> d = states::balance(whole);
   const int doublings = states::count_halvings(whole);
   const Matrix balanced_density =
       d.cwiseInverse().asDiagonal() * density * d.cwiseInverse().asDiagonal();
-  const double size = states::column_norm(balanced_density);  // Q_d is linear in it
-  const double unit = size > 0 ? 1.0 / size : 1.0;
-  const double part = std::ldexp(1.0, -doublings);
+  const Scalar size = states::column_norm(balanced_density);  // Q_d is linear in it
+  const Scalar unit = size > 0 ? 1 / size : Scalar(1);
+  const Scalar part = std::ldexp(Scalar(1), -doublings);
   Square block = Square::Zero();
   block.template topLeftCorner<NX, NX>() = -whole * part;
   block.template bottomRightCorner<NX, NX>() = whole.transpose() * part;
@@ -46,31 +49,32 @@ DiscreteNoise<NX> discretise(const Eigen::Matrix<double, NX, NX>& F,
     Q += states::product(Phi, Q, Phi.transpose());
     Phi = states::product(Phi, Phi);
   }
-  Q = (0.5 * dt * part / unit) * (Q + Q.transpose()).eval();
+  Q = (Scalar(0.5) * dt * part / unit) * (Q + Q.transpose()).eval();
   return {d.asDiagonal() * Phi * d.cwiseInverse().asDiagonal(),
           d.asDiagonal() * Q * d.asDiagonal()};
 }
 
-template <int NX, int NU>
+template <int NX, int NU, class Scalar = double>
 struct DiscreteInputs {
-  Eigen::Matrix<double, NX, NU> held;   // Psi of S 2.1: x(k+1) = Phi x(k) + held u(k)
-  Eigen::Matrix<double, NX, NU> begin;  // linear between samples:
-  Eigen::Matrix<double, NX, NU> end;    // x(k+1) = Phi x(k) + begin u(k) + end u(k+1)
+  Eigen::Matrix<Scalar, NX, NU> held;   // Psi of S 2.1: x(k+1) = Phi x(k) + held u(k)
+  Eigen::Matrix<Scalar, NX, NU> begin;  // linear between samples:
+  Eigen::Matrix<Scalar, NX, NU> end;    // x(k+1) = Phi x(k) + begin u(k) + end u(k+1)
 };
 
 /// What inputs do over dt (s), from F (1/s) and B: exp([F dt, B dt, 0; 0 0 I; 0 0 0]). Held inputs
 /// lag linear ones by half a sample.
-template <int NX, int NU>
-DiscreteInputs<NX, NU> discretise_inputs(const Eigen::Matrix<double, NX, NX>& F,
-                                         const Eigen::Matrix<double, NX, NU>& B, double dt) {
-  using Square = Eigen::Matrix<double, NX + 2 * NU, NX + 2 * NU>;
+template <int NX, int NU, class Scalar>
+DiscreteInputs<NX, NU, Scalar> discretise_inputs(const Eigen::Matrix<Scalar, NX, NX>& F,
+                                                 const Eigen::Matrix<Scalar, NX, NU>& B,
+                                                 std::type_identity_t<Scalar> dt) {
+  using Square = Eigen::Matrix<Scalar, NX + 2 * NU, NX + 2 * NU>;
   Square block = Square::Zero();
   block.template topLeftCorner<NX, NX>() = F * dt;
   block.template block<NX, NU>(0, NX) = B * dt;
   block.template block<NU, NU>(NX, NX + NU).setIdentity();
   const Square E = matrix_exponential(block);
-  const Eigen::Matrix<double, NX, NU> held = E.template block<NX, NU>(0, NX);
-  const Eigen::Matrix<double, NX, NU> end = E.template block<NX, NU>(0, NX + NU);
+  const Eigen::Matrix<Scalar, NX, NU> held = E.template block<NX, NU>(0, NX);
+  const Eigen::Matrix<Scalar, NX, NU> end = E.template block<NX, NU>(0, NX + NU);
   return {held, held - end, end};
 }
 

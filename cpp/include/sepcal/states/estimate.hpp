@@ -6,12 +6,12 @@
 
 namespace sepcal {
 
-template <int NX>
+template <int NX, class Scalar = double>
 struct Estimate {
-  Eigen::Vector<double, NX> x;         // n_x
-  Eigen::Matrix<double, NX, NX> root;  // U_P, upper triangular, P = U_P'U_P
+  Eigen::Vector<Scalar, NX> x;         // n_x
+  Eigen::Matrix<Scalar, NX, NX> root;  // U_P, upper triangular, P = U_P'U_P
 
-  Eigen::Matrix<double, NX, NX> covariance() const {
+  Eigen::Matrix<Scalar, NX, NX> covariance() const {
     return states::product(root.transpose(), root);
   }
 };

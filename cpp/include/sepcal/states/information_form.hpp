@@ -5,6 +5,7 @@
 // Estimation (1977), Ch. V and VI.
 #pragma once
 
+#include <concepts>
 #include <limits>
 
 #include "sepcal/states/product.hpp"
@@ -13,10 +14,10 @@
 
 namespace sepcal {
 
-template <int NX>
+template <int NX, class Scalar = double>
 class InformationForm {
  public:
-  using Matrix = Eigen::Matrix<double, NX, NX>;
+  using Matrix = Eigen::Matrix<Scalar, NX, NX>;
 
   /// From P (n_x x n_x, positive definite; else everything that follows is NaN).
   explicit InformationForm(const Matrix& P) : root_(states::inverse_root(states::upper_root(P))) {}
@@ -50,40 +51,40 @@ class InformationForm {
   /// S 2.8, 2.13, 3.11, as information (Bierman, Ch. VI): with w_d = U_Q' omega of unit covariance,
   /// [I 0; -R Phi^-1 Gamma U_Q'  R Phi^-1] = Q [. .; 0 R+]. Q_d may be singular; Phi may not: NaN.
   template <int NW>
-  void predict(const Matrix& Phi, const Eigen::Matrix<double, NX, NW>& Gamma,
-               const Eigen::Matrix<double, NW, NW>& Q_d) {
+  void predict(const Matrix& Phi, const Eigen::Matrix<Scalar, NX, NW>& Gamma,
+               const Eigen::Matrix<Scalar, NW, NW>& Q_d) {
     constexpr int all = states::together(NW, NX);
-    using Array = Eigen::Matrix<double, all, all>;
+    using Array = Eigen::Matrix<Scalar, all, all>;
     const Eigen::Index n_w = Q_d.cols();
     const Eigen::Index n_x = Phi.cols();
     const Matrix back =
-        states::solve_square<NX, NX>(Phi.transpose(), root_.transpose()).transpose();
-    const Eigen::Matrix<double, NW, NX> noise =
+        states::solve_square(Matrix(Phi.transpose()), Matrix(root_.transpose())).transpose();
+    const Eigen::Matrix<Scalar, NW, NX> noise =
         states::product(states::upper_root(Q_d), Gamma.transpose());
     Array T = Array::Zero(n_w + n_x, n_w + n_x);
     T.template topLeftCorner<NW, NW>(n_w, n_w).setIdentity();
-    Eigen::Matrix<double, NX, all> rows(n_x, n_w + n_x);
+    Eigen::Matrix<Scalar, NX, all> rows(n_x, n_w + n_x);
     rows << -states::product(back, noise.transpose()), back;
     states::absorb_rows(T, rows);
     root_ = T.template bottomRightCorner<NX, NX>(n_x, n_x);
     for (Eigen::Index i = 0; i < n_x; ++i) {  // before a state that dies away is known beyond range
-      const double largest = root_.row(i).cwiseAbs().maxCoeff();
+      const Scalar largest = root_.row(i).cwiseAbs().maxCoeff();
       if (largest > enough) root_.row(i) *= enough / largest;
     }
   }
 
   /// R absorbs U_R^-T C. The gain of S 2.10 by V = R^-T C': Lambda = V'V + R, Kbar = R^-1 V S^-1.
   template <int NZ>
-  Gain<NX, NZ> update(const Eigen::Matrix<double, NZ, NX>& C,
-                      const Eigen::Matrix<double, NZ, NZ>& R) {
-    const Eigen::Matrix<double, NZ, NZ> U_R = states::upper_root(R);
+  Gain<NX, NZ, Scalar> update(const Eigen::Matrix<Scalar, NZ, NX>& C,
+                              const Eigen::Matrix<Scalar, NZ, NZ>& R) {
+    const Eigen::Matrix<Scalar, NZ, NZ> U_R = states::upper_root(R);
     const Even even(root_);
-    Eigen::Matrix<double, NX, NZ> V =
-        even.solve_transposed(Eigen::Matrix<double, NX, NZ>(C.transpose()));
-    const Eigen::Matrix<double, NZ, NX> PC = even.solve(V).transpose();
-    Eigen::Matrix<double, NZ, NZ> S = U_R;
+    Eigen::Matrix<Scalar, NX, NZ> V =
+        even.solve_transposed(Eigen::Matrix<Scalar, NX, NZ>(C.transpose()));
+    const Eigen::Matrix<Scalar, NZ, NX> PC = even.solve(V).transpose();
+    Eigen::Matrix<Scalar, NZ, NZ> S = U_R;
     states::absorb_rows(S, V);
-    Eigen::Matrix<double, NZ, NX> rows = states::solve_transposed(U_R, C);
+    Eigen::Matrix<Scalar, NZ, NX> rows = states::solve_transposed(U_R, C);
     states::absorb_rows(root_, rows);
     if (!states::is_regular(Even(root_).root) || !states::is_regular(U_R)) {
       root_.setConstant(no_number);
@@ -95,7 +96,7 @@ class InformationForm {
   /// R = S E with rows of E of size 1: what is nil in E has no information beside its own row, not
   /// beside the rows of states that die away, whose information grows without end.
   struct Even {
-    Eigen::Vector<double, NX> size;
+    Eigen::Vector<Scalar, NX> size;
     Matrix root;
 
     explicit Even(const Matrix& R)
@@ -103,19 +104,18 @@ class InformationForm {
 
     /// X with R'X = B.
     template <int M>
-    Eigen::Matrix<double, NX, M> solve_transposed(const Eigen::Matrix<double, NX, M>& B) const {
-      return size.cwiseInverse().asDiagonal() * states::solve_transposed<NX, M>(root, B);
+    Eigen::Matrix<Scalar, NX, M> solve_transposed(const Eigen::Matrix<Scalar, NX, M>& B) const {
+      return size.cwiseInverse().asDiagonal() * states::solve_transposed(root, B);
     }
     /// X with R X = B.
     template <int M>
-    Eigen::Matrix<double, NX, M> solve(const Eigen::Matrix<double, NX, M>& B) const {
-      return states::solve_upper<NX, M>(
-          root, Eigen::Matrix<double, NX, M>(size.cwiseInverse().asDiagonal() * B));
+    Eigen::Matrix<Scalar, NX, M> solve(const Eigen::Matrix<Scalar, NX, M>& B) const {
+      return states::solve_upper(root, size.cwiseInverse().asDiagonal() * B);
     }
   };
 
-  static constexpr double enough = 1e100;
-  static constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+  static constexpr Scalar enough = std::same_as<Scalar, float> ? Scalar(1e12) : Scalar(1e100);
+  static constexpr Scalar no_number = std::numeric_limits<Scalar>::quiet_NaN();
 
   InformationForm() = default;
 

@@ -12,12 +12,12 @@
 namespace sepcal {
 
 /// Of N parameters p in z = H p + e, S 4.9.
-template <int N>
+template <int N, class Scalar = double>
 class InformationRoot {
  public:
-  using Triangle = Eigen::Matrix<double, states::together(N, 1), states::together(N, 1)>;
-  using Vector = Eigen::Vector<double, N>;
-  using Matrix = Eigen::Matrix<double, N, N>;
+  using Triangle = Eigen::Matrix<Scalar, states::together(N, 1), states::together(N, 1)>;
+  using Vector = Eigen::Vector<Scalar, N>;
+  using Matrix = Eigen::Matrix<Scalar, N, N>;
 
   /// Nothing is known; a size that is Eigen::Dynamic comes with a matrix of zeros, below.
   InformationRoot() = default;
@@ -30,12 +30,12 @@ class InformationRoot {
   /// definite: a covariance, its inverse weighs). False where W or a number is unfit: nothing is
   /// absorbed.
   template <int M>
-  bool absorb(const Eigen::Matrix<double, M, N>& H, const Eigen::Vector<double, M>& z,
-              const Eigen::Matrix<double, M, M>& W) {
-    const states::Measured<M, N> seen(z, Eigen::Vector<double, M>::Zero(z.size()), H, W);
-    const Eigen::Matrix<double, M, M> U_W = states::upper_root(seen.R);
+  bool absorb(const Eigen::Matrix<Scalar, M, N>& H, const Eigen::Vector<Scalar, M>& z,
+              const Eigen::Matrix<Scalar, M, M>& W) {
+    const states::Measured<M, N, Scalar> seen(z, Eigen::Vector<Scalar, M>::Zero(z.size()), H, W);
+    const Eigen::Matrix<Scalar, M, M> U_W = states::upper_root(seen.R);
     if (!(U_W.diagonal().array() > 0).all()) return false;
-    Eigen::Matrix<double, M, states::together(N, 1)> rows(H.rows(), H.cols() + 1);
+    Eigen::Matrix<Scalar, M, states::together(N, 1)> rows(H.rows(), H.cols() + 1);
     rows << seen.H, seen.e;
     rows = states::solve_transposed(U_W, rows);
     Triangle T = T_;
@@ -64,18 +64,18 @@ class InformationRoot {
 
   /// p (N), S 4.6 and 4.10. What the rows leave open is zero: see determined().
   Vector solution() const {
-    return states::solve_upper<N, 1>(root(), T_.template topRightCorner<N, 1>(size(), 1));
+    return states::solve_upper(root(), T_.template topRightCorner<N, 1>(size(), 1));
   }
 
   /// E(dp dp') = (H'W^-1 H)^-1, N x N, S 4.7: where W is the errors' covariance. Where it is known
   /// up to a factor, times s^2 = 2 cost() / (count() - N).
   Matrix covariance() const {
-    const Matrix inverse = states::solve_upper<N, N>(root(), Matrix::Identity(size(), size()));
+    const Matrix inverse = states::solve_upper(root(), Matrix::Identity(size(), size()));
     return states::product(inverse, inverse.transpose());
   }
 
   /// V(p) at the solution, S 4.5: half the weighted sum of squares that is left.
-  double cost() const { return 0.5 * T_(size(), size()) * T_(size(), size()); }
+  Scalar cost() const { return Scalar(0.5) * T_(size(), size()) * T_(size(), size()); }
 
  private:
   Eigen::Index size() const { return T_.cols() - 1; }

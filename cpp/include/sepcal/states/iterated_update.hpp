@@ -24,25 +24,28 @@ struct IterationOptions {
 /// every step is short where little was known before. What rounds in eta is not asked for.
 /// P(k+1|k) does not depend on eta, other than S 3.18 prints.
 template <int NX, class Form, int NZ, class Outputs>
-Innovation<NZ> iterated_update(Filter<NX, Form>& filter, const Eigen::Vector<double, NZ>& y,
-                               const Outputs& outputs, const Eigen::Matrix<double, NZ, NZ>& R,
-                               const IterationOptions& options = {}) {
-  using Vector = Eigen::Vector<double, NX>;
-  constexpr double digits_lost = 8.0;
+Innovation<NZ, typename Form::Matrix::Scalar> iterated_update(
+    Filter<NX, Form>& filter, const Eigen::Vector<typename Form::Matrix::Scalar, NZ>& y,
+    const Outputs& outputs, const Eigen::Matrix<typename Form::Matrix::Scalar, NZ, NZ>& R,
+    const IterationOptions& options = {}) {
+  using Scalar = typename Form::Matrix::Scalar;
+  using Vector = Eigen::Vector<Scalar, NX>;
+  constexpr Scalar digits_lost = 8;
   Filter<NX, Form> latest = filter;
-  Innovation<NZ> innovation;
+  Innovation<NZ, Scalar> innovation;
   for (int l = 0; l < options.iterations; ++l) {
     // S 3.15 is S 2.9 with the linearisation about eta carried to x(k+1|k).
     const Vector eta = latest.x();
-    Linearisation<NZ, NX> carried = outputs(eta);
+    Linearisation<NZ, NX, Scalar> carried = outputs(eta);
     carried.value += states::product(carried.jacobian, filter.x() - eta);
     latest = filter;
     innovation = latest.update(y, carried, R);
     if (innovation.status != FilterStatus::ok) return innovation;
     const auto U = latest.form().root();
-    const double step = states::solve_transposed<NX, 1>(U, latest.x() - eta).norm();
-    const double size = states::solve_transposed<NX, 1>(U, eta).norm();
-    if (step <= options.tolerance + digits_lost * states::rounding * size) {
+    const Scalar step = states::solve_transposed(U, latest.x() - eta).norm();
+    const Scalar size = states::solve_transposed(U, eta).norm();
+    if (step <=
+        static_cast<Scalar>(options.tolerance) + digits_lost * states::rounding<Scalar> * size) {
       filter = std::move(latest);
       return innovation;
     }

@@ -51,10 +51,11 @@ class JointFilter {
   static constexpr int n_1 = Sized::n_1;
   static constexpr int n_p = Sized::n_p;
   static constexpr int n_w = Sized::n_w;
-  using Vector = Vec<double, n>;
-  using Matrix = Eigen::Matrix<double, n, n>;
-  using Outputs = Vec<double, n_z>;
-  using Covariance = Eigen::Matrix<double, n_z, n_z>;
+  using Scalar = typename Form::Matrix::Scalar;
+  using Vector = Vec<Scalar, n>;
+  using Matrix = Eigen::Matrix<Scalar, n, n>;
+  using Outputs = Vec<Scalar, n_z>;
+  using Covariance = Eigen::Matrix<Scalar, n_z, n_z>;
 
   /// `start`: s and its covariance. A batch's: Filter(xi, Form::of_information_root(R)), R the
   /// leading n columns of its triangular factor.
@@ -62,18 +63,19 @@ class JointFilter {
       : model_(std::move(model)), filter_(std::move(start)) {}
 
   const Filter<n, Form>& filter() const { return filter_; }
-  Vec<double, n_x> x() const { return filter_.x().template head<n_x>(); }
-  Vec<double, n_1> xi1() const { return filter_.x().template segment<n_1>(n_x); }
-  Vec<double, n_p> p() const { return filter_.x().template tail<n_p>(); }
+  Vec<Scalar, n_x> x() const { return filter_.x().template head<n_x>(); }
+  Vec<Scalar, n_1> xi1() const { return filter_.x().template segment<n_1>(n_x); }
+  Vec<Scalar, n_p> p() const { return filter_.x().template tail<n_p>(); }
 
   /// The extended filter's update by z (n_z, NaN where missing) at inputs u, noise covariance R.
-  Innovation<n_z> update(const Vec<double, n_u>& u, const Outputs& z, const Covariance& R) {
+  Innovation<n_z, Scalar> update(const Vec<Scalar, n_u>& u, const Outputs& z, const Covariance& R) {
     return filter_.update(z, outputs(u, filter_.x()), R);
   }
 
   /// The iterated one's.
-  Innovation<n_z> update_iterated(const Vec<double, n_u>& u, const Outputs& z, const Covariance& R,
-                                  const IterationOptions& options = {}) {
+  Innovation<n_z, Scalar> update_iterated(const Vec<Scalar, n_u>& u, const Outputs& z,
+                                          const Covariance& R,
+                                          const IterationOptions& options = {}) {
     const auto at = [this, &u](const Vector& s) { return outputs(u, s); };
     return iterated_update(filter_, z, at, R, options);
   }
@@ -82,9 +84,9 @@ class JointFilter {
   /// numbers through it. Q (n_w x n_w): the density of the model's noise, (unit of the table)^2;
   /// of a model in discrete time its covariance.
   template <StateModel S = M>
-  FilterStatus predict(const StateRow<S>& from, const StateRow<S>& to,
-                       const Eigen::Matrix<double, n_w, n_w>& Q, const JointStep& how = {}) {
-    const Between<M> between(from, to, how.inputs, how.measured);
+  FilterStatus predict(const StateRow<S, Scalar>& from, const StateRow<S, Scalar>& to,
+                       const Eigen::Matrix<Scalar, n_w, n_w>& Q, const JointStep& how = {}) {
+    const Between<M, Scalar> between(from, to, how.inputs, how.measured);
     const Vector s = filter_.x();
     const auto advance = [&]<class T>(const Vec<T, n>& at) {
       Vec<T, n> next = at;
@@ -92,11 +94,11 @@ class JointFilter {
                                              at.template tail<n_p>(), between, how.substeps);
       return next;
     };
-    const Linearisation<n, n> next = differentiate(advance, s);
-    const Vec<double, n_x> half_way = 0.5 * (s + next.value).template head<n_x>();
-    Transition<n, n_x> transition{
-        next.value, next.jacobian, Eigen::Matrix<double, n, n_x>::Identity(),
-        noise_of_step<M>(model_, between, half_way, s.template tail<n_p>(), Q)};
+    const Linearisation<n, n, Scalar> next = differentiate(advance, s);
+    const Vec<Scalar, n_x> half_way = Scalar(0.5) * (s + next.value).template head<n_x>();
+    Transition<n, n_x, Scalar> transition{
+        next.value, next.jacobian, Eigen::Matrix<Scalar, n, n_x>::Identity(),
+        noise_of_step<M, Scalar>(model_, between, half_way, s.template tail<n_p>(), Q)};
     for (const int i : how.measured) {  // what is read has no noise here
       transition.Q_d.row(i).setZero();
       transition.Q_d.col(i).setZero();
@@ -106,12 +108,12 @@ class JointFilter {
 
   /// A new segment: x begins anew, independent of the past, with U_x'U_x its covariance; what is
   /// known of parameters stays.
-  void restart(const Vec<double, n_x>& x, const Eigen::Matrix<double, n_x, n_x>& U_x) {
+  void restart(const Vec<Scalar, n_x>& x, const Eigen::Matrix<Scalar, n_x, n_x>& U_x) {
     constexpr int parameters = n - n_x;
-    Eigen::Matrix<double, n, parameters> rows =
+    Eigen::Matrix<Scalar, n, parameters> rows =
         filter_.form().root().template rightCols<parameters>();
-    Eigen::Matrix<double, parameters, parameters> marginal =
-        Eigen::Matrix<double, parameters, parameters>::Zero();
+    Eigen::Matrix<Scalar, parameters, parameters> marginal =
+        Eigen::Matrix<Scalar, parameters, parameters>::Zero();
     states::absorb_rows(marginal, rows);
     Matrix U = Matrix::Zero();
     U.template topLeftCorner<n_x, n_x>() = U_x;
@@ -123,7 +125,7 @@ class JointFilter {
 
  private:
   /// h(s) = A xi1 + b with its derivatives.
-  Linearisation<n_z, n> outputs(const Vec<double, n_u>& u, const Vector& s) const {
+  Linearisation<n_z, n, Scalar> outputs(const Vec<Scalar, n_u>& u, const Vector& s) const {
     return differentiate(
         [&]<class T>(const Vec<T, n>& at) {
           const Vec<T, n_p> p = at.template tail<n_p>();

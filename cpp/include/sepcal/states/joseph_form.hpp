@@ -11,10 +11,10 @@
 
 namespace sepcal {
 
-template <int NX>
+template <int NX, class Scalar = double>
 class JosephForm {
  public:
-  using Matrix = Eigen::Matrix<double, NX, NX>;
+  using Matrix = Eigen::Matrix<Scalar, NX, NX>;
 
   /// From P (n_x x n_x, positive semidefinite).
   explicit JosephForm(Matrix P) : P_(std::move(P)) {}
@@ -32,9 +32,9 @@ class JosephForm {
 
   /// S 2.8, 2.13, 3.11: P <- Phi P Phi' + Gamma Q_d Gamma'.
   template <int NW>
-  void predict(const Matrix& Phi, const Eigen::Matrix<double, NX, NW>& Gamma,
-               const Eigen::Matrix<double, NW, NW>& Q_d) {
-    const Eigen::Matrix<double, NW, NX> noise =  // all NaN where Q_d is no covariance
+  void predict(const Matrix& Phi, const Eigen::Matrix<Scalar, NX, NW>& Gamma,
+               const Eigen::Matrix<Scalar, NW, NW>& Q_d) {
+    const Eigen::Matrix<Scalar, NW, NX> noise =  // all NaN where Q_d is no covariance
         states::product(states::upper_root(Q_d), Gamma.transpose());
     P_ = symmetric(states::product(Phi, P_, Phi.transpose()) +
                    states::product(noise.transpose(), noise));
@@ -42,23 +42,23 @@ class JosephForm {
 
   /// S 2.11, and 3.18 in place of 2.10: P <- (I - K C) P (I - K C)' + K R K'.
   template <int NZ>
-  Gain<NX, NZ> update(const Eigen::Matrix<double, NZ, NX>& C,
-                      const Eigen::Matrix<double, NZ, NZ>& R) {
-    const Eigen::Matrix<double, NZ, NZ> U_R = states::upper_root(R);
-    const Eigen::Matrix<double, NZ, NX> CP = states::product(C, P_);
-    const Eigen::Matrix<double, NZ, NZ> S = states::upper_root<NZ>(
-        states::product(CP, C.transpose()) + states::product(U_R.transpose(), U_R));
-    const Eigen::Matrix<double, NZ, NX> whitened = states::solve_transposed(S, CP);  // Kbar'
-    const Eigen::Matrix<double, NX, NZ> K = states::solve_upper(S, whitened).transpose();
+  Gain<NX, NZ, Scalar> update(const Eigen::Matrix<Scalar, NZ, NX>& C,
+                              const Eigen::Matrix<Scalar, NZ, NZ>& R) {
+    const Eigen::Matrix<Scalar, NZ, NZ> U_R = states::upper_root(R);
+    const Eigen::Matrix<Scalar, NZ, NX> CP = states::product(C, P_);
+    const Eigen::Matrix<Scalar, NZ, NZ> S = states::upper_root(
+        (states::product(CP, C.transpose()) + states::product(U_R.transpose(), U_R)).eval());
+    const Eigen::Matrix<Scalar, NZ, NX> whitened = states::solve_transposed(S, CP);  // Kbar'
+    const Eigen::Matrix<Scalar, NX, NZ> K = states::solve_upper(S, whitened).transpose();
     const Matrix rest = Matrix::Identity(P_.rows(), P_.cols()) - states::product(K, C);
-    const Eigen::Matrix<double, NZ, NX> noise = states::product(U_R, K.transpose());
+    const Eigen::Matrix<Scalar, NZ, NX> noise = states::product(U_R, K.transpose());
     P_ = symmetric(states::product(rest, P_, rest.transpose()) +
                    states::product(noise.transpose(), noise));
     return {S, whitened.transpose()};
   }
 
  private:
-  static Matrix symmetric(const Matrix& P) { return 0.5 * (P + P.transpose()); }
+  static Matrix symmetric(const Matrix& P) { return Scalar(0.5) * (P + P.transpose()); }
 
   Matrix P_;
 };

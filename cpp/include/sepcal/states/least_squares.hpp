@@ -6,16 +6,17 @@
 #include <cmath>
 
 #include "sepcal/states/information_root.hpp"
+#include "sepcal/states/triangle.hpp"
 
 namespace sepcal {
 
 /// A sample about p: z = y - f(k, p) (NaN where missing), H = df/dp (S 4.2 calls one matrix h and
 /// H).
-template <int M, int N>
+template <int M, int N, class Scalar = double>
 struct LeastSquaresRows {
-  Eigen::Vector<double, M> z;
-  Eigen::Matrix<double, M, N> H;
-  Eigen::Matrix<double, M, M> W;  // covariance of e: its inverse weighs (S 4.5)
+  Eigen::Vector<Scalar, M> z;
+  Eigen::Matrix<Scalar, M, N> H;
+  Eigen::Matrix<Scalar, M, M> W;  // covariance of e: its inverse weighs (S 4.5)
 };
 
 enum class LeastSquaresStatus {
@@ -25,14 +26,14 @@ enum class LeastSquaresStatus {
   refused,         // a number that is not finite, or a W that is not positive definite
 };
 
-template <int N>
+template <int N, class Scalar = double>
 struct LeastSquares {
   LeastSquaresStatus status = LeastSquaresStatus::refused;
   int iterations = 0;
-  Eigen::Vector<double, N> p;  // S 4.8
-  InformationRoot<N> rows =
-      {};             // about p: rows.covariance() is S 4.7, rows.matrix() starts a stream
-  double cost = 0.0;  // V(p), S 4.5
+  Eigen::Vector<Scalar, N> p;  // S 4.8
+  InformationRoot<N, Scalar> rows =
+      {};           // about p: rows.covariance() is S 4.7, rows.matrix() starts a stream
+  Scalar cost = 0;  // V(p), S 4.5
 };
 
 struct LeastSquaresOptions {
@@ -44,10 +45,10 @@ struct LeastSquaresOptions {
 namespace states {
 
 /// All samples about p, as [R q; 0 rho] of W^-1/2 [H z]; false where one is unfit.
-template <int N, class Sample>
-bool gather(const Sample& sample, int count, const Eigen::Vector<double, N>& p,
-            InformationRoot<N>& rows) {
-  rows = InformationRoot<N>();
+template <int N, class Scalar, class Sample>
+bool gather(const Sample& sample, int count, const Eigen::Vector<Scalar, N>& p,
+            InformationRoot<N, Scalar>& rows) {
+  rows = InformationRoot<N, Scalar>();
   for (int k = 0; k < count; ++k) {
     const auto at = sample(k, p);
     if (!rows.absorb(at.H, at.z, at.W)) return false;
@@ -56,21 +57,23 @@ bool gather(const Sample& sample, int count, const Eigen::Vector<double, N>& p,
 }
 
 /// V(p) of the rows about p, S 4.5: at dp = 0, where rows.cost() is that of their solution.
-template <int N>
-double cost_about(const InformationRoot<N>& rows) {
-  return 0.5 * rows.matrix().col(N).squaredNorm();
+template <int N, class Scalar>
+Scalar cost_about(const InformationRoot<N, Scalar>& rows) {
+  return Scalar(0.5) * rows.matrix().col(N).squaredNorm();
 }
 
 }  // namespace states
 
 /// Gauss and Newton from p (S 4.6 and 4.8), `sample(k, p)` giving LeastSquaresRows<M, N> of sample
 /// k = 0 ... count - 1. A linear f takes one step, and a second to see it.
-template <int N, class Sample>
-LeastSquares<N> iterate_least_squares(const Sample& sample, int count, Eigen::Vector<double, N> p,
-                                      const LeastSquaresOptions& options = {}) {
+template <int N, class Scalar, class Sample>
+LeastSquares<N, Scalar> iterate_least_squares(const Sample& sample, int count,
+                                              Eigen::Vector<Scalar, N> p,
+                                              const LeastSquaresOptions& options = {}) {
   using enum LeastSquaresStatus;
-  constexpr double slack = 1e-12;  // two costs differ by rounding before their steps do
-  LeastSquares<N> fit{.p = p};
+  constexpr Scalar slack =
+      4096 * states::rounding<Scalar>;  // two costs differ by rounding before their steps do
+  LeastSquares<N, Scalar> fit{.p = p};
   if (!states::gather(sample, count, fit.p, fit.rows)) return fit;
   fit.cost = states::cost_about(fit.rows);
   fit.status = not_converged;
@@ -79,12 +82,13 @@ LeastSquares<N> iterate_least_squares(const Sample& sample, int count, Eigen::Ve
       fit.status = not_determined;
       return fit;
     }
-    Eigen::Vector<double, N> step = fit.rows.solution();
-    const bool last = fit.rows.matrix().col(N).template head<N>().norm() <= options.tolerance;
-    InformationRoot<N> rows;
-    const double most = fit.cost * (1.0 + slack);
+    Eigen::Vector<Scalar, N> step = fit.rows.solution();
+    const bool last = fit.rows.matrix().col(N).template head<N>().norm() <=
+                      static_cast<Scalar>(options.tolerance);
+    InformationRoot<N, Scalar> rows;
+    const Scalar most = fit.cost * (1 + slack);
     bool lower = false;
-    for (int half = 0; half <= options.halvings && !lower; ++half, step *= 0.5) {
+    for (int half = 0; half <= options.halvings && !lower; ++half, step *= Scalar(0.5)) {
       p = fit.p + step;
       lower = states::gather(sample, count, p, rows) && (last || states::cost_about(rows) <= most);
     }

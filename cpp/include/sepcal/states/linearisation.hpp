@@ -9,43 +9,43 @@
 namespace sepcal {
 
 /// A function of n_x states at one of them: h(x) and dh/dx.
-template <int NZ, int NX>
+template <int NZ, int NX, class Scalar = double>
 struct Linearisation {
-  Eigen::Vector<double, NZ> value;         // n_z
-  Eigen::Matrix<double, NZ, NX> jacobian;  // n_z x n_x
+  Eigen::Vector<Scalar, NZ> value;         // n_z
+  Eigen::Matrix<Scalar, NZ, NX> jacobian;  // n_z x n_x
 };
 
 /// From sample k to k + 1: x(k+1) = f(x(k)) + Gamma w_d, about x(k|k).
-template <int NX, int NW = NX>
+template <int NX, int NW = NX, class Scalar = double>
 struct Transition {
-  Eigen::Vector<double, NX> x;          // x(k+1|k), S 2.7 or 3.10
-  Eigen::Matrix<double, NX, NX> Phi;    // df/dx
-  Eigen::Matrix<double, NX, NW> Gamma;  // n_x x n_w
-  Eigen::Matrix<double, NW, NW> Q_d;    // covariance of w_d; a density's integral, not the density
+  Eigen::Vector<Scalar, NX> x;          // x(k+1|k), S 2.7 or 3.10
+  Eigen::Matrix<Scalar, NX, NX> Phi;    // df/dx
+  Eigen::Matrix<Scalar, NX, NW> Gamma;  // n_x x n_w
+  Eigen::Matrix<Scalar, NW, NW> Q_d;    // covariance of w_d; a density's integral, not the density
 };
 
 /// S 2.1: x(k+1) = Phi x(k) + Psi u(k) + Gamma w_d(k). Every sample may have its own.
-template <int NX, int NW = NX>
+template <int NX, int NW = NX, class Scalar = double>
 struct LinearDynamics {
-  Eigen::Matrix<double, NX, NX> Phi;
-  Eigen::Matrix<double, NX, NW> Gamma;
-  Eigen::Matrix<double, NW, NW> Q_d;
+  Eigen::Matrix<Scalar, NX, NX> Phi;
+  Eigen::Matrix<Scalar, NX, NW> Gamma;
+  Eigen::Matrix<Scalar, NW, NW> Q_d;
 
   /// From x, with shift = Psi u (n_x). S 2.7.
-  Transition<NX, NW> from(const Eigen::Vector<double, NX>& x,
-                          const Eigen::Vector<double, NX>& shift) const {
+  Transition<NX, NW, Scalar> from(const Eigen::Vector<Scalar, NX>& x,
+                                  const Eigen::Vector<Scalar, NX>& shift) const {
     return {states::product(Phi, x) + shift, Phi, Gamma, Q_d};
   }
 };
 
 /// S 1.2 and 2.2: y = C x + D u + v (1.2 prints y-dot; a measurement has no derivative).
-template <int NZ, int NX>
+template <int NZ, int NX, class Scalar = double>
 struct LinearOutputs {
-  Eigen::Matrix<double, NZ, NX> C;
+  Eigen::Matrix<Scalar, NZ, NX> C;
 
   /// At x, with shift = D u (n_z).
-  Linearisation<NZ, NX> at(const Eigen::Vector<double, NX>& x,
-                           const Eigen::Vector<double, NZ>& shift) const {
+  Linearisation<NZ, NX, Scalar> at(const Eigen::Vector<Scalar, NX>& x,
+                                   const Eigen::Vector<Scalar, NZ>& shift) const {
     return {states::product(C, x) + shift, C};
   }
 };

@@ -6,8 +6,11 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
+#include <limits>
 #include <utility>
 
+#include "sepcal/lanewise.hpp"
 #include "sepcal/states/product.hpp"
 
 namespace sepcal {
@@ -17,9 +20,9 @@ namespace states {
 template <class T, int N>
 T column_norm(const Eigen::Matrix<T, N, N>& A) {
   using std::abs;
-  T norm(0.0);
+  T norm(Real<T>(0));
   for (int j = 0; j < N; ++j) {
-    T sum(0.0);
+    T sum(Real<T>(0));
     for (int i = 0; i < N; ++i) sum += abs(A(i, j));
     if (!(sum <= norm)) norm = sum;  // a NaN stays
   }
@@ -29,33 +32,35 @@ T column_norm(const Eigen::Matrix<T, N, N>& A) {
 /// Makes columns of A as long as their rows by d, powers of two: A <- D^-1 A D, so that units which
 /// differ don't cost squarings. Parlett & Reinsch, Numerische Mathematik 13 (1969) 293.
 template <class T, int N>
-Eigen::Vector<double, N> balance(Eigen::Matrix<T, N, N>& A) {
+Eigen::Vector<Real<T>, N> balance(Eigen::Matrix<T, N, N>& A) {
   using std::abs;
   constexpr int sweeps = 20;
-  Eigen::Vector<double, N> d = Eigen::Vector<double, N>::Ones();
+  constexpr Real<T> most = std::same_as<Real<T>, float> ? Real<T>(1e9) : Real<T>(1e100);
+  Eigen::Vector<Real<T>, N> d = Eigen::Vector<Real<T>, N>::Ones();
   bool changed = true;
   for (int sweep = 0; changed && sweep < sweeps; ++sweep) {
     changed = false;
     for (int i = 0; i < N; ++i) {
-      T column(0.0);
-      T row(0.0);
+      T column(Real<T>(0));
+      T row(Real<T>(0));
       for (int j = 0; j < N; ++j) {
         if (j == i) continue;
         column += abs(A(j, i));
         row += abs(A(i, j));
       }
-      double factor = 1.0;
-      while (column > T(0.0) && column * T(4.0 * factor * factor) <= row && factor < 1e100)
-        factor *= 2.0;
-      while (row > T(0.0) && column * T(factor * factor) >= row * T(4.0) && factor > 1e-100)
-        factor *= 0.5;
-      if (factor == 1.0) continue;
+      Real<T> factor = 1;
+      while (column > T(Real<T>(0)) && column * T(4 * factor * factor) <= row && factor < most)
+        factor *= 2;
+      while (row > T(Real<T>(0)) && column * T(factor * factor) >= row * T(Real<T>(4)) &&
+             factor > 1 / most)
+        factor /= 2;
+      if (factor == 1) continue;
       changed = true;
       d[i] *= factor;
       for (int j = 0; j < N; ++j) {
         if (j == i) continue;
         A(j, i) *= T(factor);
-        A(i, j) *= T(1.0 / factor);
+        A(i, j) *= T(1 / factor);
       }
     }
   }
@@ -68,11 +73,11 @@ template <class T, int N>
 int count_halvings(const Eigen::Matrix<T, N, N>& A) {
   T norm = column_norm(A);
   int count = 0;
-  while (norm > T(0.5) && count < 1000) {
-    norm *= T(0.5);
+  while (norm > T(Real<T>(0.5)) && count < 1000) {
+    norm *= T(Real<T>(0.5));
     ++count;
   }
-  return norm <= T(0.5) ? count : -1;
+  return norm <= T(Real<T>(0.5)) ? count : -1;
 }
 
 /// X with A X = B, by elimination with row pivots. Not finite where A is singular.
@@ -111,18 +116,19 @@ template <class T, int N>
 Eigen::Matrix<T, N, N> matrix_exponential(const Eigen::Matrix<T, N, N>& A) {
   using Matrix = Eigen::Matrix<T, N, N>;
   Matrix balanced = A;
-  const Eigen::Vector<double, N> d = states::balance(balanced);
+  const Eigen::Vector<Real<T>, N> d = states::balance(balanced);
   const int halvings = states::count_halvings(balanced);
-  if (halvings < 0) return Matrix::Constant(T(std::nan("")));
-  const Matrix scaled = balanced * T(std::ldexp(1.0, -halvings));
+  if (halvings < 0) return Matrix::Constant(T(std::numeric_limits<Real<T>>::quiet_NaN()));
+  const Matrix scaled = balanced * T(std::ldexp(Real<T>(1), -halvings));
 
   constexpr int order = 6;
-  double coefficient = 1.0;
+  Real<T> coefficient = 1;
   Matrix power = Matrix::Identity();
   Matrix above = power;  // of the rational function, N(A) / N(-A)
   Matrix below = power;
   for (int k = 1; k <= order; ++k) {
-    coefficient *= static_cast<double>(order - k + 1) / (k * (2 * order - k + 1));
+    coefficient *=
+        static_cast<Real<T>>(order - k + 1) / static_cast<Real<T>>(k * (2 * order - k + 1));
     power = states::product(scaled, power);
     above += power * T(coefficient);
     below += power * T(k % 2 == 0 ? coefficient : -coefficient);

@@ -13,11 +13,11 @@
 namespace sepcal {
 
 /// S 4.13 and 4.12: R(k+1) = R(k) + H'W^-1 H is kept, and a matrix of N x N is factored a sample.
-template <int N>
+template <int N, class Scalar = double>
 class InformationRecursion {
  public:
-  using Vector = Eigen::Vector<double, N>;
-  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Vector<Scalar, N>;
+  using Matrix = Eigen::Matrix<Scalar, N, N>;
 
   /// p(0) and R(0) = the inverse of its covariance, positive definite.
   InformationRecursion(Vector p, Matrix R) : p_(std::move(p)), R_(std::move(R)) {}
@@ -25,11 +25,11 @@ class InformationRecursion {
   /// y = H p + e (M rows, NaN in y where missing), W = E(ee') (M x M, positive definite). False
   /// where a number or a matrix is unfit: nothing is changed.
   template <int M>
-  bool absorb(const Eigen::Matrix<double, M, N>& H, const Eigen::Vector<double, M>& y,
-              const Eigen::Matrix<double, M, M>& W) {
-    const states::Measured<M, N> seen(y, states::product(H, p_), H, W);
-    const Eigen::Matrix<double, M, M> U_W = states::upper_root(seen.R);
-    const Eigen::Matrix<double, M, N> whitened = states::solve_transposed(U_W, seen.H);
+  bool absorb(const Eigen::Matrix<Scalar, M, N>& H, const Eigen::Vector<Scalar, M>& y,
+              const Eigen::Matrix<Scalar, M, M>& W) {
+    const states::Measured<M, N, Scalar> seen(y, states::product(H, p_), H, W);
+    const Eigen::Matrix<Scalar, M, M> U_W = states::upper_root(seen.R);
+    const Eigen::Matrix<Scalar, M, N> whitened = states::solve_transposed(U_W, seen.H);
     const Matrix R = R_ + states::product(whitened.transpose(), whitened);
     const Matrix U = states::upper_root(R);
     const Vector gradient =
@@ -46,8 +46,8 @@ class InformationRecursion {
   /// R^-1, S 4.13.
   Matrix covariance() const {
     const Matrix U = states::upper_root(R_);
-    return states::solve_upper(
-        U, states::solve_transposed<N, N>(U, Matrix::Identity(p_.size(), p_.size())));
+    return states::solve_upper(U,
+                               states::solve_transposed(U, Matrix::Identity(p_.size(), p_.size())));
   }
 
  private:
@@ -58,22 +58,22 @@ class InformationRecursion {
 /// S 4.14 and 4.12: R^-1 is kept, as its root: subtracted as it stands, what little is left of a
 /// wide start would be rounding. S 4.14 prints a W^-1 too many:
 /// R^-1(k+1) = (I - R^-1 H'(H R^-1 H' + W)^-1 H) R^-1, W = W(k+1).
-template <int N>
+template <int N, class Scalar = double>
 class CovarianceRecursion {
  public:
-  using Vector = Eigen::Vector<double, N>;
-  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Vector<Scalar, N>;
+  using Matrix = Eigen::Matrix<Scalar, N, N>;
 
   /// p(0) and R^-1(0), its covariance, positive semidefinite.
   CovarianceRecursion(Vector p, const Matrix& P) : p_(std::move(p)), form_(P) {}
 
   /// As InformationRecursion::absorb(); W may be singular as long as H R^-1 H' + W is not.
   template <int M>
-  bool absorb(const Eigen::Matrix<double, M, N>& H, const Eigen::Vector<double, M>& y,
-              const Eigen::Matrix<double, M, M>& W) {
-    const states::Measured<M, N> seen(y, states::product(H, p_), H, W);
-    SquareRootForm<N> next = form_;
-    const Gain<N, M> gain = next.update(seen.H, seen.R);
+  bool absorb(const Eigen::Matrix<Scalar, M, N>& H, const Eigen::Vector<Scalar, M>& y,
+              const Eigen::Matrix<Scalar, M, M>& W) {
+    const states::Measured<M, N, Scalar> seen(y, states::product(H, p_), H, W);
+    SquareRootForm<N, Scalar> next = form_;
+    const Gain<N, M, Scalar> gain = next.update(seen.H, seen.R);
     const Vector p = p_ + states::product(gain.Kbar, states::solve_transposed(gain.S, seen.e));
     if (!(gain.S.diagonal().array() > 0).all() || !p.allFinite()) return false;
     p_ = p;
@@ -86,7 +86,7 @@ class CovarianceRecursion {
 
  private:
   Vector p_;
-  SquareRootForm<N> form_;
+  SquareRootForm<N, Scalar> form_;
 };
 
 }  // namespace sepcal

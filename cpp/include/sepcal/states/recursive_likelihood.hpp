@@ -102,7 +102,7 @@ class ScoreRecursion {
     const Eigen::Index n = theta_.size();
     const Root R = T_.topLeftCorner(n, n);
     const Theta q = T_.col(n).head(n);
-    Theta shift = states::solve_upper<NT, 1>(R, q);
+    Theta shift = states::solve_upper(R, q);
     for (Eigen::Index i = first_noise(); i < n; ++i) shift[i] = std::clamp(shift[i], -1.0, 1.0);
     shift = (theta_ + shift).cwiseMax(lower_).cwiseMin(upper_) - theta_;
     if (!shift.allFinite()) return;

@@ -119,8 +119,8 @@ class ScoreFilter {
   /// B Lambda^-1.
   static Eigen::Matrix<double, NX, NZ> over_covariance(const Eigen::Matrix<double, NX, NZ>& B,
                                                        const Eigen::Matrix<double, NZ, NZ>& S) {
-    const Eigen::Matrix<double, NZ, NX> Kbar = states::solve_transposed<NZ, NX>(S, B.transpose());
-    return states::solve_upper<NZ, NX>(S, Kbar).transpose();
+    const Eigen::Matrix<double, NZ, NX> Kbar = states::solve_transposed(S, B.transpose());
+    return states::solve_upper(S, Kbar).transpose();
   }
 
   auto slope_of_covariance(Eigen::Index i) { return dP_.middleCols(i * dx_.rows(), dx_.rows()); }
@@ -144,7 +144,7 @@ class ScoreFilter {
     for (Eigen::Index j = 0; j < n_z_; ++j) {
       if (std::isnan(at.y[j])) dz[j] = 0.0;
     }
-    const Outputs d = states::solve_transposed<NZ, 1>(S, -dz);
+    const Outputs d = states::solve_transposed(S, -dz);
     rows.col(i).head(n_z_) = -d;
     State moved = dx_.col(i) - states::product(at.K, dz);
     if (moves_[i]) moved += differentiate_gain(at, expected, r, i, rows);
@@ -171,8 +171,8 @@ class ScoreFilter {
         states::product(at.H, moved) + states::product(dH, at.PH);
     dLambda.diagonal() += dR;
 
-    const Eigen::Matrix<double, NZ, NZ> half = states::solve_transposed<NZ, NZ>(S, dLambda);
-    const Eigen::Matrix<double, NZ, NZ> M = states::solve_transposed<NZ, NZ>(S, half.transpose());
+    const Eigen::Matrix<double, NZ, NZ> half = states::solve_transposed(S, dLambda);
+    const Eigen::Matrix<double, NZ, NZ> M = states::solve_transposed(S, half.transpose());
     Eigen::Index row = n_z_;
     for (Eigen::Index k = 0; k < n_z_; ++k) {
       for (Eigen::Index j = 0; j < k; ++j) rows(row++, i) = M(j, k);

@@ -10,16 +10,16 @@
 namespace sepcal {
 
 /// What an update hands to the state: Lambda = S'S, and the gain K = Kbar S^-T of S 2.11.
-template <int NX, int NZ>
+template <int NX, int NZ, class Scalar = double>
 struct Gain {
-  Eigen::Matrix<double, NZ, NZ> S;     // upper triangular root of the innovation's covariance
-  Eigen::Matrix<double, NX, NZ> Kbar;  // x(k+1|k+1) = x(k+1|k) + Kbar w, w = S^-T e
+  Eigen::Matrix<Scalar, NZ, NZ> S;     // upper triangular root of the innovation's covariance
+  Eigen::Matrix<Scalar, NX, NZ> Kbar;  // x(k+1|k+1) = x(k+1|k) + Kbar w, w = S^-T e
 };
 
-template <int NX>
+template <int NX, class Scalar = double>
 class SquareRootForm {
  public:
-  using Matrix = Eigen::Matrix<double, NX, NX>;
+  using Matrix = Eigen::Matrix<Scalar, NX, NX>;
 
   /// From P (n_x x n_x, positive semidefinite; else everything that follows is NaN).
   explicit SquareRootForm(const Matrix& P) : root_(states::upper_root(P)) {}
@@ -39,9 +39,9 @@ class SquareRootForm {
 
   /// S 2.8, 2.13, 3.11: P <- Phi P Phi' + Gamma Q_d Gamma'.
   template <int NW>
-  void predict(const Matrix& Phi, const Eigen::Matrix<double, NX, NW>& Gamma,
-               const Eigen::Matrix<double, NW, NW>& Q_d) {
-    Eigen::Matrix<double, states::together(NX, NW), NX> rows(Phi.rows() + Q_d.rows(), Phi.cols());
+  void predict(const Matrix& Phi, const Eigen::Matrix<Scalar, NX, NW>& Gamma,
+               const Eigen::Matrix<Scalar, NW, NW>& Q_d) {
+    Eigen::Matrix<Scalar, states::together(NX, NW), NX> rows(Phi.rows() + Q_d.rows(), Phi.cols());
     rows << states::product(root_, Phi.transpose()),
         states::product(states::upper_root(Q_d), Gamma.transpose());
     root_.setZero();
@@ -50,15 +50,15 @@ class SquareRootForm {
 
   /// S 2.10, 2.11: [U_R 0; U C' U] = Q [S Kbar'; 0 U+].
   template <int NZ>
-  Gain<NX, NZ> update(const Eigen::Matrix<double, NZ, NX>& C,
-                      const Eigen::Matrix<double, NZ, NZ>& R) {
+  Gain<NX, NZ, Scalar> update(const Eigen::Matrix<Scalar, NZ, NX>& C,
+                              const Eigen::Matrix<Scalar, NZ, NZ>& R) {
     constexpr int n = states::together(NZ, NX);
-    using Array = Eigen::Matrix<double, n, n>;
+    using Array = Eigen::Matrix<Scalar, n, n>;
     const Eigen::Index n_z = C.rows();
     const Eigen::Index n_x = C.cols();
     Array T = Array::Zero(n_z + n_x, n_z + n_x);
     T.template topLeftCorner<NZ, NZ>(n_z, n_z) = states::upper_root(R);
-    Eigen::Matrix<double, NX, n> rows(n_x, n_z + n_x);
+    Eigen::Matrix<Scalar, NX, n> rows(n_x, n_z + n_x);
     rows << states::product(root_, C.transpose()), root_;
     states::absorb_rows(T, rows);
     root_ = T.template bottomRightCorner<NX, NX>(n_x, n_x);

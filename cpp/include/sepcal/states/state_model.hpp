@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "sepcal/eigen.hpp"
+#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/quantity.hpp"
 
@@ -73,15 +74,6 @@ concept StateModel =
       };
     };
 
-/// The place of a name in a table; -1 where it isn't there.
-template <QuantityTable Table>
-constexpr int place_of(std::string_view name, const Table& table) {
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table.data()[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 /// Whether a model has a noise_input() of its own.
 template <class M>
 constexpr bool has_noise_input() {
@@ -103,14 +95,14 @@ constexpr int noise_place(int k) {
 /// belong to the states named in M::noise.
 template <StateModel M, class X>
 Eigen::Matrix<X, StateSizes<M>::n_x, StateSizes<M>::n_w> noise_input(
-    const M& model, const Vec<X, StateSizes<M>::n_x>& x, const Vec<double, StateSizes<M>::n_u>& u,
+    const M& model, const Vec<X, StateSizes<M>::n_x>& x, const Vec<Real<X>, StateSizes<M>::n_u>& u,
     const Vec<X, StateSizes<M>::n_p>& p) {
   if constexpr (has_noise_input<M>()) {
     return model.noise_input(x, u, p);
   } else {
     using Columns = Eigen::Matrix<X, StateSizes<M>::n_x, StateSizes<M>::n_w>;
-    Columns G = Columns::Zero();
-    for (int k = 0; k < StateSizes<M>::n_w; ++k) G(noise_place<M>(k), k) = X(1.0);
+    Columns G = Columns::Constant(X(Real<X>(0)));
+    for (int k = 0; k < StateSizes<M>::n_w; ++k) G(noise_place<M>(k), k) = X(Real<X>(1));
     return G;
   }
 }

@@ -12,22 +12,22 @@ namespace sepcal {
 
 /// Q_d (n_x x n_x) of a step, Van Loan's with F and G at x, a state half-way. Q (n_w x n_w): the
 /// density of the model's noise, (unit of the table)^2; of a model in discrete time its covariance.
-template <StateModel M>
-Eigen::Matrix<double, StateSizes<M>::n_x, StateSizes<M>::n_x> noise_of_step(
-    const M& model, const Between<M>& between, const Vec<double, StateSizes<M>::n_x>& x,
-    const Vec<double, StateSizes<M>::n_p>& p,
-    const Eigen::Matrix<double, StateSizes<M>::n_w, StateSizes<M>::n_w>& Q) {
+template <StateModel M, class Scalar>
+Eigen::Matrix<Scalar, StateSizes<M>::n_x, StateSizes<M>::n_x> noise_of_step(
+    const M& model, const Between<M, Scalar>& between, const Vec<Scalar, StateSizes<M>::n_x>& x,
+    const Vec<Scalar, StateSizes<M>::n_p>& p,
+    const Eigen::Matrix<Scalar, StateSizes<M>::n_w, StateSizes<M>::n_w>& Q) {
   constexpr int n_x = StateSizes<M>::n_x;
-  const Vec<double, StateSizes<M>::n_u> u = between.u(is_discrete<M>() ? 0.0 : 0.5);
-  const Eigen::Matrix<double, n_x, StateSizes<M>::n_w> G = noise_input<M, double>(model, x, u, p);
-  const Eigen::Matrix<double, n_x, n_x> density = states::product(G, Q, G.transpose());
+  const Vec<Scalar, StateSizes<M>::n_u> u = between.u(Scalar(is_discrete<M>() ? 0.0 : 0.5));
+  const Eigen::Matrix<Scalar, n_x, StateSizes<M>::n_w> G = noise_input<M, Scalar>(model, x, u, p);
+  const Eigen::Matrix<Scalar, n_x, n_x> density = states::product(G, Q, G.transpose());
   if constexpr (is_discrete<M>()) {
     return density;
   } else {
     const auto rate = [&]<class T>(const Vec<T, n_x>& at) -> Vec<T, n_x> {
       return model.rate(at, u, Vec<T, StateSizes<M>::n_p>(p.template cast<T>()));
     };
-    return discretise<n_x>(differentiate(rate, x).jacobian, density, between.duration()).Q_d;
+    return discretise(differentiate(rate, x).jacobian, density, between.duration()).Q_d;
   }
 }
 

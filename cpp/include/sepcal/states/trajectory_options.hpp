@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "sepcal/quantity.hpp"
+#include "sepcal/states/inputs_between_rows.hpp"
 
 namespace sepcal {
-
-/// What inputs do from one row to the next. Half a sample of time lies between the two.
-enum class InputsBetweenRows { linear, hold };
 
 /// "linear", "hold".
 std::string_view to_string(InputsBetweenRows inputs);

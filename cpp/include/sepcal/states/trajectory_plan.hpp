@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "sepcal/eigen.hpp"
-#include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/states/trajectory_options.hpp"
+#include "sepcal/tables.hpp"
 
 namespace sepcal {
 

@@ -9,6 +9,7 @@
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/aircraft/coefficients.hpp"
 #include "sepcal/flight/aircraft.hpp"
+#include "sepcal/states/reconstruct.hpp"
 
 namespace sepcal {
 

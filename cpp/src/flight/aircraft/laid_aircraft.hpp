@@ -11,6 +11,7 @@
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/option_error.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal::aircraft_log {
 

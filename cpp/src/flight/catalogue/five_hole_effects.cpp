@@ -8,7 +8,7 @@
 #include "flight/catalogue/air_data_rows.hpp"
 #include "flight/catalogue/effect_makers.hpp"
 #include "sepcal/effects/air_data.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 namespace sepcal::catalogue {
 namespace {

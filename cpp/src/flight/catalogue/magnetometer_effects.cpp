@@ -9,7 +9,7 @@
 #include "flight/catalogue/magnetic_rows.hpp"
 #include "numerics/interpolated_column.hpp"
 #include "sepcal/effects/magnetic.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/run_time_effect.hpp"
 
 namespace sepcal::catalogue {
 namespace {

@@ -14,6 +14,7 @@
 #include "base/sentences.hpp"
 #include "flight/probes/ellipsoid.hpp"
 #include "model/soft_iron_and_scale.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/option_error.hpp"
 

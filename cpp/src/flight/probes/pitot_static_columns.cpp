@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "flight/probes/air_columns.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/models/pitot_static.hpp"

@@ -12,6 +12,7 @@
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/restatements.hpp"
 #include "numerics/order_statistics.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"

@@ -8,6 +8,7 @@
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/restatements.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/option_error.hpp"

@@ -7,6 +7,7 @@
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/restatements.hpp"
+#include "sepcal/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/quantity.hpp"
+#include "sepcal/tables.hpp"
 
 #include <set>
 

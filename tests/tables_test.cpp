@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Names, units and bounds: the four tables at run time.
-#include "sepcal/quantity.hpp"
+#include "sepcal/tables.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 
 #include "sepcal/error.hpp"
 
-namespace quantity_test {
+namespace tables_test {
 
 using doctest::Contains;
 using sepcal::Error;
@@ -78,4 +78,4 @@ TEST_CASE("an input, an output and a parameter may share a name") {
   CHECK_NOTHROW(tables.check_names());
 }
 
-}  // namespace quantity_test
+}  // namespace tables_test

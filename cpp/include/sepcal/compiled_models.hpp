@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The models that the library has compiled: who fits one of them and includes this need not compile
+// it once more.
+#pragma once
+
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/models/magnetometer.hpp"
+#include "sepcal/models/pitot_static.hpp"
+#include "sepcal/models/scalar_examples.hpp"
+#include "sepcal/models/triad.hpp"
+#include "sepcal/static_model.hpp"
+
+namespace sepcal {
+
+extern template class StaticModel<Accelerometer>;
+extern template class StaticModel<AttitudeIndependentMagnetometer>;
+extern template class StaticModel<FiveHoleProbe>;
+extern template class StaticModel<Magnetometer>;
+extern template class StaticModel<PitotStatic>;
+extern template class StaticModel<ScalarExample1>;
+extern template class StaticModel<ScalarExample2>;
+
+}  // namespace sepcal

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What was flown: the states of a flight path along its record.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "sepcal/record.hpp"
+#include "sepcal/states/compiled_trajectories.hpp"
+
+namespace sepcal {
+
+/// What was flown, by a fit's parameters (Fit::by_name()): the record with its accelerations and
+/// rates corrected, a + b; airspeed, alpha and beta as error-free sensors at the vane read them,
+/// roll, pitch, yaw, and u v w phi theta psi, as integrated. Columns that the record doesn't have
+/// are added. NaN outside segments.
+Record reconstruct(const TrajectoryModel<FlightPath>& model,
+                   const std::map<std::string, double>& parameters, const Record& record);
+
+}  // namespace sepcal

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corrections on board, each with three effects: what a sensor reads of a truth is written down
+// here once more, and the correction has to give the truth back.
+#include "sepcal/correction.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "draws.hpp"
+#include "sepcal/effects/air_data.hpp"
+#include "sepcal/effects/magnetic.hpp"
+
+namespace correction_test {
+
+using doctest::Approx;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using sepcal::Calibrated;
+using sepcal::CorrectionStatus;
+using sepcal::Sizes;
+using sepcal::Vec;
+using sepcal::test::Draws;
+namespace effects = sepcal::effects;
+
+namespace {
+
+template <class M>
+auto calibrated(const M& model, Vec<double, Sizes<M>::n_1> xi1, Vec<double, Sizes<M>::n_2> xi2) {
+  return Calibrated<M>{model, xi1, xi2};
+}
+
+template <class M>
+Calibrated<M, float> in_float(const Calibrated<M>& calibrated) {
+  return {calibrated.model, calibrated.xi1.template cast<float>(),
+          calibrated.xi2.template cast<float>()};
+}
+
+}  // namespace
+
+TEST_CASE("a magnetometer with a current, a temperature and a curved response") {
+  const auto model = sepcal::Magnetometer{} + effects::Bias<"current_a">{.centre = 4.0} +
+                     effects::AxisScale<"temp_degc">{.centre = 25.0} + effects::CubicNonlinearity{};
+  using M = std::remove_const_t<decltype(model)>;
+  Vec<double, Sizes<M>::n_1> xi1;
+  xi1 << 0.1, -0.05, 0.02, 3.0, -7.0, 12.0,  // lambda, n
+      0.8, -0.4, 1.1,                        // bias[current_a]
+      1e-3, -2e-3, 5e-4,                     // axis_scale[temp_degc]
+      2e-6, -3e-6, 1e-6, 4e-5, -2e-5, 3e-5;  // cubic
+  Vec<double, 6> xi2{{0.02, -0.03, 0.05, 0.04, -0.02, 0.01}};
+  const auto board = calibrated(model, xi1, xi2);
+  Draws draws(1);
+  int worst = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Vector3d h = 50.0 * Vector3d(draws.normal(), draws.normal(), draws.normal()).normalized();
+    const double current = draws.uniform(0.0, 30.0);
+    const double temperature = draws.uniform(-10.0, 60.0);
+    Matrix3d C_alpha;
+    C_alpha << 1, 0.04, -0.02, 0.04, 1, 0.01, -0.02, 0.01, 1;
+    Matrix3d C_eta;
+    C_eta << 1, -0.05, -0.03, 0.05, 1, -0.02, 0.03, 0.02, 1;
+    const Vector3d scale = Vector3d(1.1, 0.95, 1.02);
+    const Vector3d reading = C_alpha * C_eta * scale.asDiagonal() * h + Vector3d(3, -7, 12) +
+                             (current - 4.0) * Vector3d(0.8, -0.4, 1.1) +
+                             (temperature - 25.0) * Vector3d(1e-3, -2e-3, 5e-4).cwiseProduct(h) +
+                             Vector3d(2e-6, -3e-6, 1e-6).cwiseProduct(Vector3d(h.array().cube())) +
+                             Vector3d(4e-5, -2e-5, 3e-5).cwiseProduct(Vector3d(h.array().square()));
+    const Vec<double, 5> u{{0, 0, 0, current, temperature}};
+    const auto corrected = sepcal::correct(board, reading, u);
+    REQUIRE(corrected.status == CorrectionStatus::ok);
+    CHECK((corrected.h - h).norm() < 1e-12 * 50.0);
+    worst = std::max(worst, corrected.iterations);
+    const auto coarse = sepcal::correct(in_float(board), Vec<float, 3>(reading.cast<float>()),
+                                        Vec<float, 5>(u.cast<float>()));
+    CHECK(coarse.status == CorrectionStatus::ok);
+    CHECK((coarse.h.cast<double>() - h).norm() < 4e-6 * 50.0);
+  }
+  CHECK(worst <= 5);
+  const Vec<double, 5> unknown{{0, 0, 0, sepcal::not_a_number, 20}};
+  const auto refused = sepcal::correct(board, Vector3d(1, 2, 3), unknown);
+  CHECK(refused.status == CorrectionStatus::refused);
+  CHECK(refused.h.array().isNaN().all());
+  // No field makes a saturated cubic read a thousand times the Earth's.
+  const auto lost =
+      sepcal::correct(board, Vector3d(5e4, -5e4, 5e4), Vec<double, 5>{{0, 0, 0, 5, 20}});
+  CHECK(lost.iterations <= 20);
+}
+
+TEST_CASE("what turns the reference is no part of a magnetometer's correction") {
+  const auto plain = sepcal::Magnetometer{} + effects::Bias<"current_a">{};
+  const auto turned = plain + effects::AttitudeBias{};
+  const Vec<double, 9> xi1{{0.1, 0.0, 0.0, 1.0, 2.0, 3.0, 0.5, 0.6, 0.7}};
+  const Vec<double, 6> xi2 = Vec<double, 6>::Constant(0.01);
+  Vec<double, 8> more;
+  more << xi2, 0.1, 0.1;
+  const Vec<double, 4> u{{0, 0, 0, 2.0}};
+  CHECK(sepcal::correct(calibrated(plain, xi1, xi2), Vector3d(20, 5, 40), u).h ==
+        sepcal::correct(calibrated(turned, xi1, more), Vector3d(20, 5, 40), u).h);
+}
+
+TEST_CASE("a magnetometer by strength with a current, a temperature and a supply") {
+  const auto model = sepcal::AttitudeIndependentMagnetometer{48.0} +
+                     effects::strength::Bias<"current_a">{.centre = 2.0} +
+                     effects::strength::Scale<"temp_degc">{.centre = 20.0} +
+                     effects::strength::AxisScale<"voltage_v">{.centre = 12.0};
+  using M = std::remove_const_t<decltype(model)>;
+  Vec<double, Sizes<M>::n_2> xi2;
+  xi2 << 0.1, -0.05, 0.02, 0.04, -0.02, 0.01, 3.0, -7.0, 12.0,  // C, n
+      0.8, -0.4, 1.1, 1e-3, 2e-3, -1e-3, 5e-4;
+  const auto board = calibrated(model, Vec<double, 0>(), xi2);
+  Draws draws(2);
+  for (int k = 0; k < 200; ++k) {
+    const Vector3d h = 48.0 * Vector3d(draws.normal(), draws.normal(), draws.normal()).normalized();
+    const double current = draws.uniform(0.0, 30.0);
+    const double temperature = draws.uniform(-10.0, 60.0);
+    const double voltage = draws.uniform(10.0, 12.6);
+    Matrix3d C;
+    C << 1, 0.04, -0.02, 0.04, 1, 0.01, -0.02, 0.01, 1;
+    C = C * Vector3d(1.1, 0.95, 1.02).asDiagonal();
+    C.diagonal() += (voltage - 12.0) * Vector3d(2e-3, -1e-3, 5e-4) +
+                    (temperature - 20.0) * Vector3d::Constant(1e-3);
+    const Vector3d m = C * h + Vector3d(3, -7, 12) + (current - 2.0) * Vector3d(0.8, -0.4, 1.1);
+    Vec<double, 11> u;
+    u << m, 0, 0, 0, 0, 0, current, temperature, voltage;
+    const auto corrected = sepcal::correct(board, u);
+    REQUIRE(corrected.status == CorrectionStatus::ok);
+    CHECK((corrected.h - h).norm() < 1e-12 * 48.0);
+    CHECK((sepcal::correct(in_float(board), Vec<float, 11>(u.cast<float>())).h.cast<double>() - h)
+              .norm() < 4e-6 * 48.0);
+  }
+}
+
+TEST_CASE("a five-hole probe with a pressure's offset, a scale and a vane that follow drivers") {
+  const auto model = sepcal::FiveHoleProbe{4.5, 4.2, {0.3, 0.1, 0.0}} +
+                     effects::Wind<"altitude_m">{.centre = 500.0} +
+                     effects::AirspeedScale<"temp_degc">{.centre = 20.0} +
+                     effects::PressureOffset<"current_a">{} + effects::AlphaOffset<"flaps">{} +
+                     effects::HeadingBias{};
+  using M = std::remove_const_t<decltype(model)>;
+  const Vec<double, 8> xi1{{0.05, -0.3, 4, -2, 0.1, 0.01, 0.02, 2e-3}};
+  const Vec<double, 8> xi2{{0.1, 0.02, -0.1, 0.03, 0.1, 1.5, 0.2, 0.05}};
+  const auto board = calibrated(model, xi1, xi2);
+  Draws draws(3);
+  for (int k = 0; k < 200; ++k) {
+    const double speed = draws.uniform(12.0, 40.0);
+    const double alpha = draws.uniform(-0.2, 0.3);  // in the probe's axes
+    const double beta = draws.uniform(-0.2, 0.2);
+    const double temperature = draws.uniform(-10, 50);
+    const double current = draws.uniform(0, 20);
+    const double flaps = draws.uniform(0, 0.5);
+    const double rho = draws.uniform(0.9, 1.25);
+    // speed = (1 + lambda + s (T - 20)) v + b, v = sqrt(2 (dp + s I) / rho)
+    const double v = (speed + 0.3) / (1.05 + 2e-3 * (temperature - 20.0));
+    const double dp = 0.5 * rho * v * v - 1.5 * current;
+    const double alpha_read = (alpha - 0.02) / 1.1 - 0.2 * flaps;
+    const double beta_read = (beta - 0.03) / 0.9;
+    using Inputs = Vec<double, Sizes<M>::n_u>;
+    Inputs u = Inputs::Zero();
+    const auto put = [&](std::string_view name, double value) {
+      u[static_cast<Eigen::Index>(sepcal::composing::find(M::inputs, name))] = value;
+    };
+    put("roll", draws.normal());
+    put("yaw", draws.normal());
+    put("q", draws.normal());
+    put("pt", 9e4 + dp);
+    put("ps", 9e4);
+    put("dpa", alpha_read * 4.5 * dp);
+    put("dpb", beta_read * 4.2 * dp);
+    put("rho", rho);
+    put("altitude_m", 700.0);
+    put("temp_degc", temperature);
+    put("current_a", current);
+    put("flaps", flaps);
+    const auto air = sepcal::correct(board, u);
+    REQUIRE(air.status == CorrectionStatus::ok);
+    // The probe is turned by eps = 0.1 about x.
+    const Vector3d in_probe(std::cos(alpha) * std::cos(beta), std::sin(beta),
+                            std::sin(alpha) * std::cos(beta));
+    const Vector3d in_body(in_probe[0], std::cos(0.1) * in_probe[1] + std::sin(0.1) * in_probe[2],
+                           std::cos(0.1) * in_probe[2] - std::sin(0.1) * in_probe[1]);
+    CHECK(air.airspeed == Approx(speed).epsilon(1e-12));
+    CHECK(std::abs(air.alpha - std::atan2(in_body[2], in_body[0])) < 1e-12);
+    CHECK(std::abs(air.beta - std::asin(in_body[1])) < 1e-12);
+    const auto coarse = sepcal::correct(in_float(board), u.cast<float>().eval());
+    CHECK(std::abs(static_cast<double>(coarse.airspeed) - speed) < 5e-4 * speed);
+  }
+  using Inputs = Vec<double, Sizes<M>::n_u>;
+  CHECK(sepcal::correct(board, Inputs::Zero().eval()).status == CorrectionStatus::refused);
+}
+
+TEST_CASE("a Pitot-static tube with an offset of its pressure, a scale and a bias") {
+  const auto model = sepcal::PitotStatic{} + effects::tube::AirspeedScale<"alpha">{} +
+                     effects::tube::AirspeedBias<"temp_degc">{.centre = 15.0} +
+                     effects::PressureOffset<"current_a">{};
+  using M = std::remove_const_t<decltype(model)>;
+  const Vec<double, 2> xi1{{0.97, 0.4}};
+  const Vec<double, 6> xi2{{3.0, -1.0, 0.0, 0.2, 0.01, 2.0}};
+  const auto board = calibrated(model, xi1, xi2);
+  Draws draws(4);
+  for (int k = 0; k < 200; ++k) {
+    const double V = draws.uniform(10.0, 60.0);
+    const double alpha = draws.uniform(-0.2, 0.3);
+    const double temperature = draws.uniform(-10.0, 50.0);
+    const double current = draws.uniform(0.0, 10.0);
+    const double rho = draws.uniform(0.9, 1.25);
+    const double undisturbed = (V - 0.01 * (temperature - 15.0)) / (1.0 + 0.2 * alpha);
+    const double met = std::sqrt(undisturbed * undisturbed - 2.0 * 2.0 * current / rho);
+    using Inputs = Vec<double, Sizes<M>::n_u>;
+    Inputs u = Inputs::Zero();
+    u[6] = rho;
+    u[7] = alpha;
+    u[8] = temperature;
+    u[9] = current;
+    const auto corrected = sepcal::correct(board, 0.97 * met + 0.4, u);
+    REQUIRE(corrected.status == CorrectionStatus::ok);
+    CHECK(corrected.airspeed == Approx(V).epsilon(1e-12));
+    CHECK(static_cast<double>(sepcal::correct(in_float(board), static_cast<float>(0.97 * met + 0.4),
+                                              u.cast<float>().eval())
+                                  .airspeed) == Approx(V).epsilon(1e-5));
+  }
+}
+
+}  // namespace correction_test
