@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 
 #include "diagnose_arguments.hpp"
+#include "export_arguments.hpp"
 #include "fit_arguments.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
@@ -70,6 +71,16 @@ void add_applying_options(CLI::App& apply, Arguments& arguments) {
   add_stream(apply, arguments);
 }
 
+/// The calibration comes first here: most exports need no flight.
+void add_exporting_options(CLI::App& verb, Arguments& arguments) {
+  add_file(verb, "CALIBRATION", arguments.calibration, "what fit or add wrote with -o")->required();
+  add_file(verb, "FLIGHT", arguments.flight,
+           "the log that it was fitted to, a CSV file [the one that it names]");
+  add_file(verb, "-o,--output", arguments.output, "writes what the vehicle loads there")
+      ->type_name("FILE")
+      ->required();
+}
+
 /// The verbs of an app with their options, and what was typed.
 class CommandLine {
  public:
@@ -84,6 +95,7 @@ class CommandLine {
         diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
         add_(add_later_verb("add", "adds a physical effect and fits again")),
         apply_(add_later_verb("apply", "adds the calibrated readings to a log", false)),
+        export_(cli.add_subcommand("export", "writes what a vehicle loads of a calibration")),
         simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
     add_flight(*check_);
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
@@ -118,6 +130,11 @@ class CommandLine {
     instrument.add_flight_options(*add_);
     add_applying_options(*apply_, typed_);
 
+    add_exporting_options(*export_, typed_);
+    exporting_.add_to(*export_);
+    instrument.add_flight_options(*export_);
+    add_json(*export_);
+
     add_simulate_options(*simulate_, typed_, instrument, simulation_);
     add_json(*simulate_);
     add_json(*cli.add_subcommand("effects", "lists the physical effects a model may lack"));
@@ -132,6 +149,7 @@ class CommandLine {
     if (intervals_->parsed()) return verbs.intervals();
     if (add_->parsed()) return verbs.add();
     if (apply_->parsed()) return verbs.apply();
+    if (export_->parsed()) return verbs.export_to(exporting_.resolve());
     if (simulate_->parsed()) return verbs.simulate(simulation_.resolve());
     if (diagnose_->parsed()) return verbs.diagnose(diagnosis_.resolve(), diagnosis_.adds());
     return verbs.effects();
@@ -180,6 +198,7 @@ class CommandLine {
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
   DiagnoseArguments diagnosis_;
+  ExportArguments exporting_;
   CLI::App* check_;
   CLI::App* fit_;
   CLI::App* compare_;
@@ -187,6 +206,7 @@ class CommandLine {
   CLI::App* diagnose_;
   CLI::App* add_;
   CLI::App* apply_;
+  CLI::App* export_;
   CLI::App* simulate_;
 };
 

@@ -19,6 +19,7 @@
 #include "sepcal/flight/check.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/flight/export.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/joint.hpp"
@@ -196,6 +197,22 @@ int Verbs::apply() const {
   print_notes(applied.notes);
   print(arguments_.json ? to_json(applied, calibration)
                         : to_text(applied, calibration, detail_of(arguments_.explain)));
+  return 0;
+}
+
+int Verbs::export_to(ExportOptions options) const {
+  check_not_input(arguments_.output, arguments_.calibration);
+  const Calibration calibration = read_base();
+  std::optional<Flight> flight;
+  if (!arguments_.flight.empty()) flight = read_flight();
+  ProgressLine line;
+  options.progress = shown_on(line);
+  const Exported exported =
+      export_to_file(calibration, flight ? &*flight : nullptr, options, arguments_.output);
+  line.clear();
+  print_notes(exported.notes);
+  print(arguments_.json ? to_json(exported, arguments_.output)
+                        : to_text(exported, arguments_.output));
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include "instrument.hpp"
 #include "log_arguments.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/export.hpp"
 #include "sepcal/flight/stepwise.hpp"
 
 namespace sepcal::app {
@@ -46,6 +47,8 @@ class Verbs {
   int diagnose(StepwiseOptions options, bool adds) const;
   int add() const;
   int apply() const;
+  /// To the file of -o; `export` is a word of C++.
+  int export_to(ExportOptions options) const;
   int simulate(SimulationOrder order) const;
   int effects() const;
 

@@ -23,6 +23,7 @@ from sepcal._core import (
     Derived,
     EffectSetting,
     Error,
+    ExportLoss,
     FlightFit,
     HistoryEntry,
     Innovation,
@@ -45,6 +46,7 @@ from sepcal.checking import FlightCheck, check
 from sepcal.comparison import Comparison
 from sepcal.design_trial import DesignTrial
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
+from sepcal.exporting import Exported, export
 from sepcal.filters import Filter, RecursiveLeastSquares
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
@@ -104,6 +106,8 @@ __all__ = [
     "EffectSetting",
     "Error",
     "Estimates",
+    "ExportLoss",
+    "Exported",
     "Failure",
     "Filter",
     "Fit",
@@ -160,6 +164,7 @@ __all__ = [
     "check",
     "earth_field",
     "effects",
+    "export",
     "fit",
     "fit_jointly",
     "fit_many",

@@ -23,6 +23,8 @@ __all__: list[str] = [
     "Disturbance",
     "EffectSetting",
     "Error",
+    "ExportLoss",
+    "Exported",
     "FirstStep",
     "Fit",
     "Flight",
@@ -69,6 +71,7 @@ __all__: list[str] = [
     "effects",
     "example_in_five_states",
     "example_in_three_states",
+    "export_to_file",
     "fit",
     "fit_alonso_shuster",
     "fit_haupt_kasdin",
@@ -2110,6 +2113,153 @@ class FlightCheck:
         What print() shows: the app's page.
         """
 
+class ExportLoss:
+    """
+    What a vehicle's correction lacks of a calibration's, over the fitted rows of a flight; NaN where it isn't known.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "dropped",
+        "flight",
+        "rows",
+        "rotation_deg",
+        "heading_rms_deg",
+        "heading_largest_deg",
+        "strength_rms_ut",
+        "airspeed_rms_mps",
+        "airspeed_largest_mps",
+        "residual_before",
+        "residual_after",
+        "residual_unit",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def airspeed_largest_mps(self) -> float:
+        """
+        By size.
+        """
+    @property
+    def airspeed_rms_mps(self) -> float:
+        """
+        The true airspeed, likewise.
+        """
+    @property
+    def dropped(self) -> list[str]:
+        """
+        In words.
+        """
+    @property
+    def flight(self) -> str: ...
+    @property
+    def heading_largest_deg(self) -> float:
+        """
+        By size.
+        """
+    @property
+    def heading_rms_deg(self) -> float:
+        """
+        The vehicle's magnetic heading less the calibration's.
+        """
+    @property
+    def residual_after(self) -> float:
+        """
+        Of what the vehicle holds.
+        """
+    @property
+    def residual_before(self) -> float:
+        """
+        RMS of measured less modelled, of the calibration.
+        """
+    @property
+    def residual_unit(self) -> str: ...
+    @property
+    def rotation_deg(self) -> float:
+        """
+        Between sensor and body, which has no home on the vehicle.
+        """
+    @property
+    def rows(self) -> int:
+        """
+        That both correct.
+        """
+    @property
+    def strength_rms_ut(self) -> float:
+        """
+        The field's strength, likewise.
+        """
+
+class Exported:
+    """
+    What export() wrote.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "output",
+        "text",
+        "parameters",
+        "loss",
+        "left_to_others",
+        "notes",
+        "json",
+        "page",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Exported) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def json(self) -> str:
+        """
+        As the app's export prints it.
+        """
+    @property
+    def left_to_others(self) -> list[str]:
+        """
+        Effects that act on the reference or the wind: no part of a correction.
+        """
+    @property
+    def loss(self) -> ExportLoss | None:
+        """
+        None where nothing was changed.
+        """
+    @property
+    def notes(self) -> list[str]:
+        """
+        What a person must know or do, one line each.
+        """
+    @property
+    def output(self) -> str:
+        """
+        The file.
+        """
+    @property
+    def page(self) -> str:
+        """
+        What print() shows: the app's page.
+        """
+    @property
+    def parameters(self) -> dict[str, float]:
+        """
+        Of an autopilot, by name.
+        """
+    @property
+    def text(self) -> str:
+        """
+        All that is in it.
+        """
+
 class FlightFigures:
     def channel(
         self, arg0: str
@@ -2696,6 +2846,21 @@ def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def example_in_five_states() -> TwoStepProblem: ...
 def example_in_three_states() -> TwoStepProblem: ...
+def export_to_file(
+    arg0: Calibration,
+    arg1: str,
+    arg2: str,
+    arg3: Flight | None,
+    arg4: typing.SupportsInt | typing.SupportsIndex | None,
+    arg5: typing.SupportsInt | typing.SupportsIndex | None,
+    arg6: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ]
+    | None,
+    arg7: typing.SupportsFloat | typing.SupportsIndex | None,
+    arg8: collections.abc.Sequence[str],
+    arg9: bool,
+) -> Exported: ...
 def fit(
     arg0: Model,
     arg1: dict,

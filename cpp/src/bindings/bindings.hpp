@@ -54,6 +54,7 @@ void define_results(py::module_& module);
 void define_rivals(py::module_& module);
 void define_effects(py::module_& module);
 void define_engine(py::module_& module);
+void define_export(py::module_& module);
 void define_figures(py::module_& module);
 void define_flight(py::module_& module);
 void define_intervals(py::module_& module);

@@ -37,6 +37,7 @@ PYBIND11_MODULE(_core, module) {
   define_rivals(module);
   define_flight(module);
   define_check(module);
+  define_export(module);
   define_figures(module);
   define_many(module);
   define_trials(module);

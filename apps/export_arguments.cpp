@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "export_arguments.hpp"
+
+#include <limits>
+
+#include "option_values.hpp"
+
+namespace sepcal::app {
+
+void ExportArguments::add_to(CLI::App& verb) {
+  verb.add_option("--to", target_,
+                  "c or cpp, a header with the whole correction; px4 or ardupilot, parameters")
+      ->type_name("TARGET")
+      ->required();
+  const auto read_sensor = [this](const std::string& text) {
+    sensor_ = static_cast<std::uint32_t>(
+        parse_whole_number("--sensor", text, std::numeric_limits<std::int32_t>::max()));
+  };
+  verb.add_option_function<std::string>(
+          "--sensor", read_sensor,
+          "which sensor, as the autopilot counts [its first]; of a header, its names end so")
+      ->type_name("N");
+  verb.add_option("--device-id", device_id_, "of PX4: the sensor's CAL_MAGn_ID")->type_name("ID");
+  verb.add_option("--mounting", mounting_,
+                  "of PX4: how the sensor is turned, where the log has it turned into body axes "
+                  "[deg]")
+      ->type_name("ROLL,PITCH,YAW");
+  verb.add_option("--in-use", in_use_,
+                  "of a logged airspeed: the ARSPD_RATIO or ASPD_SCALE_n that it was read with")
+      ->type_name("VALUE");
+  verb.add_option("--without", options_.without,
+                  "leaves an effect out and fits the rest anew; may be repeated")
+      ->type_name("E")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb.add_flag("--force", options_.force,
+                "exports also what did not converge, is not all determined, or is at a bound");
+}
+
+ExportOptions ExportArguments::resolve() const {
+  ExportOptions options = options_;
+  options.target = choice_of<ExportTarget>("--to", target_);
+  if (sensor_) options.sensor = static_cast<int>(*sensor_);
+  if (!device_id_.empty()) {
+    constexpr std::uint32_t highest = std::numeric_limits<std::int32_t>::max();
+    options.device_id =
+        static_cast<std::uint32_t>(parse_whole_number("--device-id", device_id_, highest));
+  }
+  if (!in_use_.empty()) options.in_use = parse_value("--in-use", in_use_);
+  if (!mounting_.empty()) {
+    options.mounting =
+        parse_triple("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");
+  }
+  return options;
+}
+
+}  // namespace sepcal::app

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A calibration as something that a vehicle loads: a C or C++ header with the whole correction, or
+// the parameters of PX4 or ArduPilot, fitted anew to the flight where these can't hold all of it,
+// and what that loses in numbers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sepcal/choices.hpp"
+#include "sepcal/flight/calibration.hpp"
+
+namespace sepcal {
+
+enum class ExportTarget {
+  c,          // a header for C99, which C++ takes too
+  cpp,        // a header for C++17
+  px4,        // QGroundControl's .params
+  ardupilot,  // .param, NAME,VALUE
+};
+
+template <>
+struct ChoiceNames<ExportTarget> {
+  static constexpr std::array<std::string_view, 4> names{"c", "cpp", "px4", "ardupilot"};
+};
+
+struct ExportOptions {
+  ExportTarget target = ExportTarget::c;
+  /// Which of the vehicle's sensors, as the target counts: n of PX4's CAL_MAGn (from 0) and
+  /// ASPD_SCALE_n (from 1), 1 to 3 of ArduPilot's compasses, 1 or 2 of its airspeeds. Unset: the
+  /// first. Of a header a number that its names end in, or none.
+  std::optional<int> sensor = {};
+  std::optional<std::uint32_t> device_id = {};  // PX4's CAL_MAGn_ID
+  /// ARSPD_RATIO or ASPD_SCALE_n with which a logged airspeed was read.
+  std::optional<double> in_use = {};
+  /// Of PX4, roll, pitch, yaw [deg]: how the sensor is mounted, where the log's readings were
+  /// turned into body axes already. Unset: not turned.
+  std::optional<std::array<double, 3>> mounting = {};
+  std::vector<std::string> without = {};  // effects that are left out; the rest is fitted anew
+  bool force = false;                     // exports also what is not fit to be used
+  FitProgress progress = {};
+};
+
+/// A parameter of an autopilot.
+struct VehicleParameter {
+  std::string name;
+  double value = 0.0;
+  bool whole = false;  // an integer
+};
+
+/// What the vehicle's correction lacks of the calibration's, over the rows of a flight that were
+/// fitted. NaN: not known, or not of this probe.
+struct ExportLoss {
+  std::vector<std::string> dropped = {};  // in words
+  std::string flight = {};
+  std::size_t rows = 0;                        // that both correct
+  double rotation_deg = not_a_number;          // between sensor and body, which has no home
+  double heading_rms_deg = not_a_number;       // vehicle's heading less the calibration's
+  double heading_largest_deg = not_a_number;   // by size
+  double strength_rms_ut = not_a_number;       // the field's strength, likewise
+  double airspeed_rms_mps = not_a_number;      // the true airspeed, likewise
+  double airspeed_largest_mps = not_a_number;  // by size
+  double residual_before = not_a_number;       // RMS of measured less modelled, of the calibration
+  double residual_after = not_a_number;        // of what the vehicle holds
+  std::string residual_unit = {};
+};
+
+struct Exported {
+  ExportTarget target = ExportTarget::c;
+  Calibration calibration;  // that the file holds: the one given, or fitted anew
+  std::string text = {};    // of the file
+  std::vector<VehicleParameter> parameters = {};  // of an autopilot, in the file's order
+  std::vector<std::string> left_to_others = {};   // effects that act on the reference or the wind
+  std::optional<ExportLoss> loss = {};            // none where nothing was changed
+  std::vector<std::string> notes = {};            // one line each, for people
+};
+
+/// The calibration for a vehicle. `flight`: to refit to and to compare on; without, the file that
+/// the calibration names, where it is there unchanged. Throws Error in one line for a calibration
+/// that is not fit to be used (unless forced), an effect that the vehicle can't follow, a value
+/// beyond what the autopilot takes, and a flight that is needed and not there.
+Exported export_calibration(const Calibration& calibration, const Flight* flight,
+                            const ExportOptions& options);
+
+/// The same to a file that appears whole or not at all. Throws Error also where `output` can't be
+/// written, or is one of the files that are read.
+Exported export_to_file(const Calibration& calibration, const Flight* flight,
+                        const ExportOptions& options, const std::string& output);
+
+/// What was written to `output` and what is lost, for people; the JSON says the same.
+std::string to_text(const Exported& exported, const std::string& output);
+std::string to_json(const Exported& exported, const std::string& output);
+
+}  // namespace sepcal

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A calibration as something that a vehicle loads.
+#include "sepcal/flight/export.hpp"
+
+#include <pybind11/stl.h>
+
+#include <map>
+#include <utility>
+
+#include "bindings.hpp"
+#include "released.hpp"
+#include "results.hpp"
+#include "structs.hpp"
+
+namespace sepcal::bindings {
+namespace {
+
+/// sepcal.Exported
+struct ExportedFile {
+  std::string output;
+  std::string text;
+  std::map<std::string, double> parameters;
+  std::optional<ExportLoss> loss;
+  std::vector<std::string> left_to_others;
+  std::vector<std::string> notes;
+  std::string json;
+  std::string page;
+};
+
+/// A file that appears whole or not at all, as the apps'.
+ExportedFile write_export(const Calibration& calibration, const std::string& output,
+                          const std::string& target, const std::optional<Flight>& flight,
+                          std::optional<int> sensor, std::optional<std::uint32_t> device_id,
+                          std::optional<std::array<double, 3>> mounting,
+                          std::optional<double> in_use, const std::vector<std::string>& without,
+                          bool force) {
+  const Released released;
+  const auto to = choice_of<ExportTarget>("to", target);
+  Exported exported = sepcal::export_to_file(calibration, flight ? &*flight : nullptr,
+                                             {.target = to,
+                                              .sensor = sensor,
+                                              .device_id = device_id,
+                                              .in_use = in_use,
+                                              .mounting = mounting,
+                                              .without = without,
+                                              .force = force},
+                                             output);
+  ExportedFile result{.output = output,
+                      .text = std::move(exported.text),
+                      .parameters = {},
+                      .loss = exported.loss,
+                      .left_to_others = exported.left_to_others,
+                      .notes = exported.notes,
+                      .json = to_json(exported, output),
+                      .page = without_last_end(to_text(exported, output))};
+  for (const VehicleParameter& one : exported.parameters) result.parameters[one.name] = one.value;
+  return result;
+}
+
+}  // namespace
+
+void define_export(py::module_& module) {
+  BoundStruct<ExportLoss>(module, "ExportLoss",
+                          "What a vehicle's correction lacks of a calibration's, over the fitted "
+                          "rows of a flight; NaN where it isn't known.")
+      .field("dropped", &ExportLoss::dropped, "In words.")
+      .field("flight", &ExportLoss::flight, "")
+      .field("rows", &ExportLoss::rows, "That both correct.")
+      .field("rotation_deg", &ExportLoss::rotation_deg,
+             "Between sensor and body, which has no home on the vehicle.")
+      .field("heading_rms_deg", &ExportLoss::heading_rms_deg,
+             "The vehicle's magnetic heading less the calibration's.")
+      .field("heading_largest_deg", &ExportLoss::heading_largest_deg, "By size.")
+      .field("strength_rms_ut", &ExportLoss::strength_rms_ut, "The field's strength, likewise.")
+      .field("airspeed_rms_mps", &ExportLoss::airspeed_rms_mps, "The true airspeed, likewise.")
+      .field("airspeed_largest_mps", &ExportLoss::airspeed_largest_mps, "By size.")
+      .field("residual_before", &ExportLoss::residual_before,
+             "RMS of measured less modelled, of the calibration.")
+      .field("residual_after", &ExportLoss::residual_after, "Of what the vehicle holds.")
+      .field("residual_unit", &ExportLoss::residual_unit, "")
+      .comparable()
+      .finish();
+  BoundStruct<ExportedFile>(module, "Exported", "What export() wrote.")
+      .field("output", &ExportedFile::output, "The file.")
+      .field("text", &ExportedFile::text, "All that is in it.")
+      .field("parameters", &ExportedFile::parameters, "Of an autopilot, by name.")
+      .field("loss", &ExportedFile::loss, "None where nothing was changed.")
+      .field("left_to_others", &ExportedFile::left_to_others,
+             "Effects that act on the reference or the wind: no part of a correction.")
+      .field("notes", &ExportedFile::notes, "What a person must know or do, one line each.")
+      .field("json", &ExportedFile::json, "As the app's export prints it.")
+      .field("page", &ExportedFile::page, "What print() shows: the app's page.")
+      .copied()
+      .finish();
+  module.def("export_to_file", &write_export);
+}
+
+}  // namespace sepcal::bindings

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/export.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <ranges>
+
+#include "flight/export/fit_for_use.hpp"
+#include "flight/export/header_text.hpp"
+#include "flight/export/loss.hpp"
+#include "flight/export/parameters.hpp"
+#include "flight/export/provenance.hpp"
+#include "flight/export/vehicle_notes.hpp"
+#include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/flight/joint.hpp"
+#include "sepcal/flight/output_file.hpp"
+#include "sepcal/option_error.hpp"
+
+namespace sepcal {
+
+using namespace exporting;  // this room's own
+
+namespace {
+
+bool is_header(ExportTarget target) {
+  return target == ExportTarget::c || target == ExportTarget::cpp;
+}
+
+/// The flight that is given, or the one that the calibration names, where it is there unchanged.
+class FlightAtHand {
+ public:
+  FlightAtHand(const Calibration& calibration, const Flight* given)
+      : fitted_(calibration.flight), flight_(given) {
+    if (flight_ != nullptr || fitted_.sha256.empty()) return;
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(fitted_.file, unreadable)) return;
+    Flight named = read_csv(fitted_.file);
+    if (named.sha256() != fitted_.sha256) return;
+    named_ = std::move(named);
+    flight_ = &*named_;
+  }
+  FlightAtHand(const FlightAtHand&) = delete;
+  FlightAtHand& operator=(const FlightAtHand&) = delete;
+
+  const Flight* find() const { return flight_; }
+
+  /// Throws Error where there is none.
+  const Flight& need(const std::string& for_what) const {
+    if (flight_ != nullptr) return *flight_;
+    throw Error(fmt::format(
+        "{} takes the flight, and {} is not there as it was fitted; give the flight after the "
+        "calibration",
+        for_what, fitted_.file.empty() ? "the one of the fit" : fitted_.file));
+  }
+
+ private:
+  FittedFlight fitted_;
+  std::optional<Flight> named_;
+  const Flight* flight_;
+};
+
+/// Of a joint calibration what holds of one flight.
+Calibration of_one_flight(const Calibration& calibration, const Flight* flight,
+                          const ExportOptions& options) {
+  const JointSetup* const joint = joint_setup(*calibration.probe);
+  if (joint == nullptr) return calibration;
+  const auto files = joint->flights | std::views::transform(&JoinedFlight::file);
+  if (!is_header(options.target) || !options.without.empty()) {
+    throw Error(fmt::format(
+        "the calibration is of {} flights jointly, and what is fitted anew is of one: fit one of "
+        "them alone and export that: {}",
+        joint->flights.size(), fmt::join(files, ", ")));
+  }
+  const Calibration one = flight == nullptr ? calibration : for_flight(calibration, *flight);
+  if (joint_setup(*one.probe) == nullptr) return one;
+  throw Error(
+      fmt::format("the calibration is of {} flights; give the one whose own values are "
+                  "wanted after it: {}",
+                  joint->flights.size(), fmt::join(files, ", ")));
+}
+
+void check_without(const Calibration& calibration, const std::vector<std::string>& names) {
+  std::vector<std::string> effects;
+  for (const EffectSetting& one : calibration.options.effects) effects.push_back(one.name);
+  for (const std::string& name : names) {
+    if (std::ranges::find(effects, name) != effects.end()) continue;
+    throw OptionError(
+        {Option{"without"},
+         fmt::format(" {}: the calibration has no such effect; it has {}", name,
+                     effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")))});
+  }
+}
+
+std::string instrument(const Calibration& calibration) {
+  const std::string_view name = calibration.probe->name();
+  if (name == "five-hole") return "a five-hole probe";
+  return name == "pitot-static" ? "a Pitot-static tube" : "a magnetometer";
+}
+
+/// A number beside a name, as the header's names have it.
+std::string header_name(const Calibration& calibration, const ExportOptions& options) {
+  std::string name(calibration.probe->name());
+  std::ranges::replace(name, '-', '_');
+  if (name == "magnetometer_norm") name = "magnetometer";
+  if (!options.sensor) return "sepcal_" + name;
+  if (*options.sensor < 0) throw OptionError({Option{"sensor"}, " is below zero; count from 0"});
+  return fmt::format("sepcal_{}_{}", name, *options.sensor);
+}
+
+void export_header(const Calibration& given, const Calibration& held, const ExportOptions& options,
+                   Exported& exported) {
+  const Dialect dialect(options.target == ExportTarget::cpp, header_name(held, options));
+  std::vector<std::string> comment =
+      provenance("The correction of " + instrument(held), given, held);
+  if (exported.loss) std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
+  Header header = header_text(held, dialect, comment);
+  exported.text = std::move(header.text);
+  exported.left_to_others = std::move(header.left_to_others);
+}
+
+void refuse_five_hole(const Calibration& calibration, const ExportOptions& options) {
+  if (is_header(options.target) || calibration.probe->name() != "five-hole") return;
+  throw OptionError({std::string("a five-hole probe has no home in ") +
+                         (options.target == ExportTarget::px4 ? "PX4" : "ArduPilot") +
+                         ", which knows no flow angles; ",
+                     Option{"to"}, " c or cpp holds all of it"});
+}
+
+void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
+  const bool px4_field =
+      options.target == ExportTarget::px4 && calibration.probe->app() == "sepcal-mag";
+  const bool airspeed = !is_header(options.target) && calibration.probe->name() == "pitot-static";
+  const auto idle = [](const char* option, const std::string& of) {
+    throw OptionError({Option{option}, " is of " + of + "; leave it out"});
+  };
+  if (options.device_id && !px4_field) idle("device_id", "PX4's magnetometers");
+  if (options.mounting && !px4_field) idle("mounting", "PX4's magnetometers");
+  if (options.in_use && !airspeed) idle("in_use", "an autopilot's airspeed");
+  if (options.in_use && !(std::isfinite(*options.in_use) && *options.in_use > 0)) {
+    throw OptionError({Option{"in_use"}, fmt::format(" is {}; give the ratio or the scale, above "
+                                                     "zero",
+                                                     *options.in_use)});
+  }
+}
+
+void write_parameters(const std::vector<std::string>& comment, const ExportOptions& options,
+                      Exported& exported) {
+  exported.text = options.target == ExportTarget::px4
+                      ? px4_text(exported.parameters, comment)
+                      : ardupilot_text(exported.parameters, comment);
+}
+
+/// What the autopilot holds of `base`, and what that loses against `given`.
+void export_parameters(const Calibration& given, const Calibration& base,
+                       const FlightAtHand& flight, const ExportOptions& options,
+                       Exported& exported) {
+  check_held(base, options.target);
+  const bool refits = needs_refit(base);
+  Calibration held = base;
+  if (refits) {
+    held = refit_held(base, flight.need("what an autopilot holds is fitted anew: that"), options);
+    if (!options.force) check_fit_for_use(held, "what the autopilot can hold of the calibration");
+  }
+  const bool px4 = options.target == ExportTarget::px4;
+  ExportLoss loss;
+  if (held.probe->app() == "sepcal-mag") {
+    const HeldField field = held_field(held);
+    exported.parameters =
+        px4 ? px4_magnetometer(field, options) : ardupilot_compass(field, options);
+    if (flight.find() != nullptr) loss = field_loss(given, held, field, *flight.find());
+    drop_rotation(refits, loss);
+  } else {
+    if (options.in_use && !reads_airspeed(given, *flight.find())) {
+      throw OptionError(
+          {Option{"in_use"}, " is of a logged airspeed, and what was read is dp_pa; leave it out"});
+    }
+    const HeldAirspeed airspeed = held_airspeed(held);
+    exported.parameters =
+        px4 ? px4_airspeed(airspeed, options) : ardupilot_airspeed(airspeed, options);
+    loss = airspeed_loss(given, held, airspeed, *flight.find());
+    drop_bias(base, airspeed, loss);
+  }
+  for (const std::string& effect : options.without) loss.dropped.push_back("the effect " + effect);
+  exported.loss = std::move(loss);
+  exported.left_to_others = effects_on_the_world(base);
+  exported.calibration = std::move(held);
+}
+
+}  // namespace
+
+Exported export_calibration(const Calibration& calibration, const Flight* flight,
+                            const ExportOptions& options) {
+  refuse_five_hole(calibration, options);
+  refuse_idle(calibration, options);
+  const Calibration given = of_one_flight(calibration, flight, options);
+  check_without(given, options.without);
+  if (!options.force) check_fit_for_use(given, "the calibration");
+  const FlightAtHand at_hand(given, flight);
+  Exported exported{.target = options.target, .calibration = given};
+  if (flight != nullptr) verbs::note_other_flight(given, *flight, exported.notes);
+  if (!options.without.empty()) {
+    const Flight& fitted = at_hand.need("a fit without an effect");
+    exported.calibration =
+        verbs::calibrate(given.probe, verbs::prepare(given, fitted),
+                         options_without(given, options.without, options.progress));
+    if (!options.force) check_fit_for_use(exported.calibration, "the fit without what is left out");
+    exported.loss = refit_loss(given, exported.calibration, fitted);
+    for (const std::string& effect : options.without) {
+      exported.loss->dropped.push_back("the effect " + effect);
+    }
+  }
+  if (is_header(options.target)) {
+    const Calibration held = exported.calibration;
+    export_header(given, held, options, exported);
+    return exported;
+  }
+  const Calibration base = exported.calibration;
+  export_parameters(given, base, at_hand, options, exported);
+  const std::vector<std::string> told =
+      vehicle_notes(exported.calibration, at_hand.find(), options);
+  std::vector<std::string> comment =
+      provenance(vehicle_title(exported.calibration, options), given, exported.calibration);
+  std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
+  std::ranges::copy(told, std::back_inserter(comment));
+  std::ranges::copy(told, std::back_inserter(exported.notes));
+  write_parameters(comment, options, exported);
+  return exported;
+}
+
+Exported export_to_file(const Calibration& calibration, const Flight* flight,
+                        const ExportOptions& options, const std::string& output) {
+  if (!calibration.file.empty()) check_not_input(output, calibration.file);
+  if (!calibration.flight.sha256.empty()) check_not_input(output, calibration.flight.file);
+  if (flight != nullptr && !flight->sha256().empty()) check_not_input(output, flight->name());
+  OutputFile file(output);
+  Exported exported = export_calibration(calibration, flight, options);
+  file.write(exported.text);
+  file.commit();
+  return exported;
+}
+
+}  // namespace sepcal

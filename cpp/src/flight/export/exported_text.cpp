@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "flight/export/provenance.hpp"
+#include "flight/export/vehicle_notes.hpp"
+#include "flight/files/json_values.hpp"
+#include "sepcal/flight/export.hpp"
+
+namespace sepcal {
+
+using namespace exporting;  // this room's own
+
+namespace {
+
+files::Json write_loss(const ExportLoss& loss) {
+  using files::number;
+  return {{"dropped", loss.dropped},
+          {"flight", loss.flight},
+          {"rows", loss.rows},
+          {"rotation_deg", number(loss.rotation_deg)},
+          {"heading_rms_deg", number(loss.heading_rms_deg)},
+          {"heading_largest_deg", number(loss.heading_largest_deg)},
+          {"strength_rms_ut", number(loss.strength_rms_ut)},
+          {"airspeed_rms_mps", number(loss.airspeed_rms_mps)},
+          {"airspeed_largest_mps", number(loss.airspeed_largest_mps)},
+          {"residual_before", number(loss.residual_before)},
+          {"residual_after", number(loss.residual_after)},
+          {"residual_unit", loss.residual_unit}};
+}
+
+}  // namespace
+
+std::string to_text(const Exported& exported, const std::string& output) {
+  std::string text = fmt::format("wrote {}: ", output);
+  if (exported.parameters.empty()) {
+    text += fmt::format("the correction as a {} header, with its self-test\n",
+                        exported.target == ExportTarget::c ? "C" : "C++");
+  } else {
+    text += fmt::format("{} parameters of {}\n", exported.parameters.size(),
+                        exported.target == ExportTarget::px4 ? "PX4" : "ArduPilot");
+  }
+  for (const std::string& effect : exported.left_to_others) {
+    text +=
+        fmt::format("{}: acts on the reference or the wind, no part of the correction\n", effect);
+  }
+  if (!exported.loss) return text;
+  if (!exported.loss->flight.empty()) {
+    text += fmt::format("against the calibration, over {} rows of {}:\n", exported.loss->rows,
+                        exported.loss->flight);
+  }
+  for (const std::string& line : loss_lines(*exported.loss)) text += "  " + line + "\n";
+  return text;
+}
+
+std::string to_json(const Exported& exported, const std::string& output) {
+  files::Json parameters = files::Json::object();
+  for (const VehicleParameter& one : exported.parameters) {
+    parameters[one.name] = files::number(one.value);
+  }
+  const Fit& fit = exported.calibration.fit;
+  files::Json estimates = files::Json::object();
+  for (const Parameter& one : fit.parameters) estimates[one.name] = files::number(one.value);
+  return files::text_of(
+      {{"schema_version", schema_version},
+       {"model", exported.calibration.probe->name()},
+       {"to", to_string(exported.target)},
+       {"output", output},
+       {"parameters", std::move(parameters)},
+       {"held", std::move(estimates)},
+       {"left_to_others", exported.left_to_others},
+       {"loss", exported.loss ? write_loss(*exported.loss) : files::Json(nullptr)},
+       {"status", to_string(fit.status)},
+       {"message", fit.message}});
+}
+
+}  // namespace sepcal

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/export/header_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "flight/export/probe_body.hpp"
+#include "flight/export/self_test.hpp"
+
+namespace sepcal::exporting {
+namespace {
+
+/// A comment's lines; what would end it is taken out.
+std::string in_comment(std::string text) {
+  for (std::size_t at = text.find("*/"); at != std::string::npos; at = text.find("*/")) {
+    text.replace(at, 2, "* /");
+  }
+  for (std::size_t at = text.find("/*"); at != std::string::npos; at = text.find("/*")) {
+    text.replace(at, 2, "/ *");
+  }
+  return text;
+}
+
+/// A function's array argument in C and C++: its size is for the reader.
+std::string declared(const Quantities& one, bool output) {
+  if (output) return one.size == 1 ? "double *" + one.argument : "double " + one.argument + "[3]";
+  return one.size == 1 ? "double " + one.argument : "const double " + one.argument + "[3]";
+}
+
+std::vector<std::string> arguments_of(const ProbeBody& body, const Correction& correction) {
+  std::vector<std::string> arguments;
+  for (const Quantities& one : body.readings) arguments.push_back(declared(one, false));
+  for (const Driver& driver : correction.drivers) {
+    arguments.push_back("double " + driver.argument);
+  }
+  for (const Quantities& one : body.outputs) arguments.push_back(declared(one, true));
+  return arguments;
+}
+
+/// The function that every spline is read by; a straight line beyond its end knots.
+std::string spline_function(const Dialect& dialect) {
+  return dialect.function("double", "spline",
+                          {"double x", "int count", "const double *knots", "const double *values",
+                           "const double *curvatures"}) +
+         "  int i = 0;\n"
+         "  double inside = x;\n"
+         "  if (inside < knots[0]) inside = knots[0];\n"
+         "  if (inside > knots[count - 1]) inside = knots[count - 1];\n"
+         "  while (i < count - 2 && inside >= knots[i + 1]) ++i;\n"
+         "  const double h = knots[i + 1] - knots[i];\n"
+         "  const double t = inside - knots[i];\n"
+         "  const double third = (curvatures[i + 1] - curvatures[i]) / h;\n"
+         "  const double start = (values[i + 1] - values[i]) / h -\n"
+         "                       h * (2.0 * curvatures[i] + curvatures[i + 1]) / 6.0;\n"
+         "  const double slope = start + t * (curvatures[i] + 0.5 * t * third);\n"
+         "  return values[i] + t * (start + t * (0.5 * curvatures[i] + t * third / 6.0)) +\n"
+         "         (x - inside) * slope;\n}\n\n";
+}
+
+std::string explain_arguments(const ProbeBody& body, const Correction& correction) {
+  std::string text = fmt::format("/* {}.\n", body.summary);
+  const auto add = [&](const std::string& name, const std::string& what) {
+    text += in_comment(fmt::format("     {}: {}\n", name, what));
+  };
+  for (const Quantities& one : body.readings) add(one.argument, one.comment);
+  for (const Driver& driver : correction.drivers) {
+    add(driver.argument,
+        driver.is_state ? driver.comment : fmt::format("{}, {}", driver.channel, driver.comment));
+  }
+  for (const Quantities& one : body.outputs) add(one.argument, "output, " + one.comment);
+  return text + "*/\n";
+}
+
+std::string check_inputs(const ProbeBody& body, const Correction& correction,
+                         const Dialect& dialect) {
+  std::vector<std::string> inputs;
+  for (const Quantities& one : body.readings) {
+    for (int i = 0; i < one.size; ++i) {
+      inputs.push_back(one.size == 1 ? one.argument : fmt::format("{}[{}]", one.argument, i));
+    }
+  }
+  for (const Driver& driver : correction.drivers) inputs.push_back(driver.argument);
+  std::string text;
+  for (const std::string& input : inputs) {
+    text += fmt::format("  if (!isfinite({})) return {};\n", input, dialect.own("bad_input"));
+  }
+  return text;
+}
+
+/// What a five-hole probe reads before anything is corrected: effects may follow it.
+std::string read_angles(const Calibration& calibration, const Dialect& dialect) {
+  if (calibration.probe->name() != "five-hole") return "";
+  return fmt::format(
+      "  const double pressure = pt_pa - ps_pa;\n"
+      "  if (!(pressure > 0.0) || !(rho_kgpm3 > 0.0)) return {};\n"
+      "  const double alpha_read = dpa_pa / ({} * pressure);\n"
+      "  const double beta_read = dpb_pa / ({} * pressure);\n",
+      dialect.own("bad_input"), dialect.constant("k_alpha"), dialect.constant("k_beta"));
+}
+
+std::string define_constants(const ProbeBody& body, const Correction& correction,
+                             const Dialect& dialect) {
+  std::string text = dialect.is_cpp() ? "namespace constants {\n\n" : "";
+  for (const auto* const list : {&body.constants, &correction.constants}) {
+    for (const Constant& one : *list) {
+      text += dialect.define(one.name, one.values, one.columns, in_comment(one.comment));
+    }
+  }
+  return text + (dialect.is_cpp() ? "\n} /* namespace constants */\n\n" : "\n");
+}
+
+}  // namespace
+
+Header header_text(const Calibration& calibration, const Dialect& dialect,
+                   const std::vector<std::string>& comment) {
+  const Correction correction = describe_correction(calibration, dialect);
+  const ProbeBody body = body_of(calibration, correction, dialect);
+  std::string text = "/*\n";
+  for (const std::string& line : comment) text += in_comment(fmt::format(" * {}\n", line));
+  for (const std::string& effect : correction.left_to_others) {
+    text += in_comment(fmt::format(
+        " * {}: on the reference or the wind, not on the reading: no part of this\n", effect));
+  }
+  text += " */\n" + dialect.opening() + define_constants(body, correction, dialect);
+  if (correction.has_splines) text += spline_function(dialect);
+  text += explain_arguments(body, correction);
+  text += dialect.function(dialect.status_type(), "correct", arguments_of(body, correction));
+  text += check_inputs(body, correction, dialect) + read_angles(calibration, dialect);
+  for (const std::string& statement : correction.statements) {
+    text += "  " + statement + "\n";
+  }
+  text += body.text + "}\n\n";
+  text += self_test(calibration, body, correction, dialect);
+  return {text + dialect.closing(), correction.left_to_others};
+}
+
+}  // namespace sepcal::exporting

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/export/held.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <ranges>
+#include <utility>
+
+#include "flight/catalogue/effect_channels.hpp"
+#include "flight/export/polar.hpp"
+#include "flight/export/symmetric_magnetometer.hpp"
+#include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/models/attitude_independent_magnetometer.hpp"
+#include "sepcal/option_error.hpp"
+
+namespace sepcal::exporting {
+namespace {
+
+constexpr const char* constant_offset = "pressure_offset";  // Pa, of the refit alone
+constexpr double largest_offset = 1000.0;                   // Pa
+
+/// A column that an autopilot compensates the motors by.
+struct MotorColumn {
+  std::string_view header;
+  Motor motor;
+  double unit;
+};
+constexpr std::array motor_columns{MotorColumn{"current_a", Motor::current, 1.0},
+                                   MotorColumn{"throttle", Motor::throttle, 1.0},
+                                   MotorColumn{"throttle_1", Motor::throttle, 1.0},
+                                   MotorColumn{"throttle_pct", Motor::throttle, 0.01}};
+
+bool is_magnetometer(const Calibration& calibration) {
+  return calibration.probe->app() == "sepcal-mag";
+}
+
+bool acts_on_reading(const Calibration& calibration, const EffectSetting& setting) {
+  if (calibration.options.own_effects.contains(setting.name)) return true;
+  return !catalogue::acts_on_the_world(catalogue::effect_table(calibration.probe->name()),
+                                       parse_effect_name(setting.name));
+}
+
+/// The column of bias[current_a] and its like; nullptr for any other effect.
+const MotorColumn* motor_of(const Calibration& calibration, const EffectSetting& setting) {
+  if (calibration.options.own_effects.contains(setting.name)) return nullptr;
+  const EffectName name = parse_effect_name(setting.name);
+  const bool straight = name.shape == EffectName::Shape::power && name.number == 1;
+  if (name.port != "bias" || !straight) return nullptr;
+  const auto* const found = std::ranges::find(motor_columns, name.base, &MotorColumn::header);
+  return found == motor_columns.end() ? nullptr : found;
+}
+
+void forget(std::string_view prefix, FitOptions& fit) {
+  const auto erase = [prefix](auto& map) {
+    std::erase_if(map, [prefix](const auto& entry) { return entry.first.starts_with(prefix); });
+  };
+  erase(fit.bounds);
+  erase(fit.fixed);
+  erase(fit.prior);
+  erase(fit.start);
+  erase(fit.sampling_distribution);
+}
+
+/// Keeps of the options what is said of the parameters of another model and of the effects.
+void keep_known(const Tables& model, CalibrationOptions& options) {
+  std::vector<std::string> parameters;
+  for (const Variable& one : model.parameters()) parameters.push_back(one.name);
+  const auto is_foreign = [&](const auto& entry) {
+    const bool of_effect = std::ranges::any_of(options.effects, [&](const EffectSetting& effect) {
+      return entry.first.starts_with(effect.name + ".");
+    });
+    return !of_effect && std::ranges::find(parameters, entry.first) == parameters.end();
+  };
+  std::erase_if(options.fit.bounds, is_foreign);
+  std::erase_if(options.fit.fixed, is_foreign);
+  std::erase_if(options.fit.prior, is_foreign);
+  std::erase_if(options.fit.start, is_foreign);
+  std::erase_if(options.fit.sampling_distribution, is_foreign);
+}
+
+/// The pressure in the tube is off by a constant.
+EffectKit::Maker constant_pressure() {
+  return [](const BlockModel& model, EffectSetting& setting, Record& record) {
+    const Port port{.name = constant_offset,
+                    .unit = "Pa",
+                    .components = {{.name = "s", .input = constant_offset}},
+                    .plausible = largest_offset};
+    return make_driven(setting.name, port, constant_driver(), port.unit, model, record);
+  };
+}
+
+}  // namespace
+
+void check_held(const Calibration& calibration, ExportTarget target) {
+  const std::string_view autopilot = target == ExportTarget::px4 ? "PX4" : "ArduPilot";
+  const EffectSetting* motor = nullptr;
+  for (const EffectSetting& setting : calibration.options.effects) {
+    if (!acts_on_reading(calibration, setting)) continue;
+    const bool held = is_magnetometer(calibration) && motor_of(calibration, setting) != nullptr;
+    if (held && motor == nullptr) {
+      motor = &setting;
+      continue;
+    }
+    const std::string why =
+        held ? fmt::format("{} follows one driver, and {} is there already", autopilot, motor->name)
+        : is_magnetometer(calibration)
+            ? fmt::format(
+                  "{} follows current_a or throttle alone, by bias[current_a] or "
+                  "bias[throttle]",
+                  autopilot)
+            : fmt::format("{} knows a scale and a pressure offset, both constant", autopilot);
+    throw OptionError({fmt::format("{} has no home there: {}; ", setting.name, why),
+                       Option{"without"},
+                       fmt::format(" {} fits the rest anew and says what is lost", setting.name)});
+  }
+}
+
+std::vector<std::string> effects_on_the_world(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const EffectSetting& setting : calibration.options.effects) {
+    if (!acts_on_reading(calibration, setting)) names.push_back(setting.name);
+  }
+  return names;
+}
+
+bool needs_refit(const Calibration& calibration) {
+  return calibration.probe->name() != "magnetometer-norm";
+}
+
+CalibrationOptions options_without(const Calibration& base, const std::vector<std::string>& effects,
+                                   const FitProgress& progress) {
+  CalibrationOptions options = verbs::options_from(base, {}, progress);
+  for (const std::string& name : effects) {
+    std::erase_if(options.effects, [&](const EffectSetting& one) { return one.name == name; });
+    options.own_effects.erase(name);
+    forget(name + ".", options.fit);
+  }
+  return options;
+}
+
+Calibration refit_held(const Calibration& calibration, const Flight& flight,
+                       const ExportOptions& options) {
+  CalibrationOptions held = options_without(calibration, {}, options.progress);
+  std::shared_ptr<const Probe> probe = calibration.probe;
+  if (is_magnetometer(calibration)) {
+    probe = symmetric_magnetometer(probe);
+    keep_known(probe->model().tables(), held);
+    held.free.clear();
+  } else {
+    held.own_effects[constant_offset] = constant_pressure();
+    held.effects.push_back({.name = constant_offset});
+    forget("c_va", held.fit);
+    std::erase(held.free, "c_va");
+    held.fit.fixed["c_va"] = 0.0;
+  }
+  return verbs::calibrate(std::move(probe), verbs::prepare(calibration, flight), held);
+}
+
+HeldField held_field(const Calibration& calibration) {
+  const Eigen::VectorXd values = own_values(calibration);
+  HeldField held;
+  if (needs_refit(calibration)) {
+    held.W = SymmetricMagnetometer::matrix(values).inverse();
+    held.n = values.segment<3>(6);
+  } else {
+    const Vec<double, 9> xi2 = values.head<9>();
+    const Eigen::Matrix3d C = AttitudeIndependentMagnetometer::soft_iron_and_scale<double>(xi2);
+    held.W = polar(C.inverse()).symmetric;
+    held.n = xi2.tail<3>();
+  }
+  for (const EffectSetting& setting : calibration.options.effects) {
+    const MotorColumn* const motor = motor_of(calibration, setting);
+    if (motor == nullptr) continue;
+    const auto s = [&](const char* axis) {
+      return calibration.fit[setting.name + "." + axis].value;
+    };
+    const Eigen::Vector3d per_column(s("x"), s("y"), s("z"));
+    held.n -= per_column * (setting.centre.value_or(0.0) + setting.mean.value_or(0.0));
+    held.kappa = per_column / motor->unit;
+    held.motor = motor->motor;
+    held.column = motor->header;
+    held.unit = motor->unit;
+  }
+  return held;
+}
+
+HeldAirspeed held_airspeed(const Calibration& calibration) {
+  const double s = calibration.fit["s_va"].value;
+  const double offset = calibration.fit[std::string(constant_offset) + ".s"].value;
+  return {.factor = 1.0 / s, .offset = -offset * s * s};
+}
+
+}  // namespace sepcal::exporting

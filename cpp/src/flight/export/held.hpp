@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What both autopilots can hold of a probe, and the calibration that is the best of that kind:
+// fitted, not cut out of a richer one.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/export.hpp"
+
+namespace sepcal::exporting {
+
+enum class Motor { none, throttle, current };
+
+/// h = W (m - n - kappa x), W symmetric; x the motors' current [A] or the throttle [0 to 1].
+struct HeldField {
+  Eigen::Matrix3d W = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();      // uT
+  Eigen::Vector3d kappa = Eigen::Vector3d::Zero();  // uT per A, or at full throttle
+  Motor motor = Motor::none;
+  std::string column = {};  // of x
+  double unit = 1.0;        // of the column, in A or of full throttle
+};
+
+/// V = factor sqrt(2 (dp - offset) / rho), dp the pressure [Pa] behind the airspeed as read.
+struct HeldAirspeed {
+  double factor = 1.0;
+  double offset = 0.0;  // Pa
+};
+
+/// Throws Error that names the first effect which `target` (with words) can't follow.
+void check_held(const Calibration& calibration, ExportTarget target);
+
+/// Effects that act on the reference or the wind, not on the reading.
+std::vector<std::string> effects_on_the_world(const Calibration& calibration);
+
+/// Whether the calibration must be fitted anew to be held.
+bool needs_refit(const Calibration& calibration);
+
+/// The best that is held, on a flight: of a magnetometer in a known field with a symmetric C, of a
+/// tube without c_va and with a constant offset of its pressure.
+Calibration refit_held(const Calibration& calibration, const Flight& flight,
+                       const ExportOptions& options);
+
+/// Of what refit_held() gave, or of a magnetometer against the field's strength.
+HeldField held_field(const Calibration& calibration);
+HeldAirspeed held_airspeed(const Calibration& calibration);
+
+/// Options for a fit without some of the base's effects, from where it ended.
+CalibrationOptions options_without(const Calibration& base, const std::vector<std::string>& effects,
+                                   const FitProgress& progress);
+
+}  // namespace sepcal::exporting

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/export/loss.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "base/thread_pool.hpp"
+#include "flight/export/polar.hpp"
+#include "flight/files/headers.hpp"
+#include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/flight/apply.hpp"
+#include "sepcal/flight/read_as.hpp"
+
+namespace sepcal::exporting {
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+/// Root of the mean square, and the largest by size.
+struct Spread {
+  double square = 0.0;
+  double largest = 0.0;
+  std::size_t rows = 0;
+
+  void add(double error) {
+    square += error * error;
+    largest = std::max(largest, std::abs(error));
+    ++rows;
+  }
+  double rms() const {
+    return rows == 0 ? not_a_number : std::sqrt(square / static_cast<double>(rows));
+  }
+  double most() const { return rows == 0 ? not_a_number : largest; }
+};
+
+using Columns = std::vector<CorrectedColumn>;
+
+/// Both corrections in one row; none where either has no value, or the fit left the row out.
+class BothCorrected {
+ public:
+  BothCorrected(Columns full, Columns held) : full_(std::move(full)), held_(std::move(held)) {}
+
+  std::size_t rows() const { return full_.front().values.size(); }
+  bool has(std::size_t row) const {
+    const auto is_number = [row](const CorrectedColumn& column) {
+      return std::isfinite(column.values[row]);
+    };
+    if (!std::ranges::all_of(full_, is_number) || !std::ranges::all_of(held_, is_number)) {
+      return false;
+    }
+    return full_.back().header != "outside_fit" || full_.back().values[row] == 0.0;
+  }
+  double full(std::size_t i, std::size_t row) const { return full_[i].values[row]; }
+  double held(std::size_t i, std::size_t row) const { return held_[i].values[row]; }
+
+ private:
+  Columns full_;
+  Columns held_;
+};
+
+/// RMS of measured less modelled over all outputs, on the rows that a fit takes.
+double residual_of(const Calibration& calibration, const verbs::PreparedFlight& prepared) {
+  const EffectiveFlight flight = verbs::with_effects_of(calibration, prepared);
+  EffectiveFlight chosen = flight;
+  chosen.prepared.record =
+      flight.prepared.record.select(calibration.options.fit.stage_two_segments);
+  base::ThreadPool pool(calibration.options.fit.threads);
+  const Eigen::MatrixXd residuals = verbs::residuals_of(calibration, chosen, pool);
+  return std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
+}
+
+/// What both have in common.
+ExportLoss residual_loss(const Calibration& full, const Calibration& refitted,
+                         const Flight& flight) {
+  ExportLoss loss{.flight = flight.name()};
+  const verbs::PreparedFlight prepared = verbs::prepare(full, flight);
+  loss.residual_before = residual_of(full, prepared);
+  loss.residual_after = residual_of(refitted, prepared);
+  loss.residual_unit = full.probe->model().tables().outputs.front().unit;
+  return loss;
+}
+
+/// As the calibration reads its flight.
+ReadFlight read_flight(const Calibration& calibration, const Flight& flight) {
+  std::vector<std::string> unused;
+  return read_as(flight, verbs::choice_for(calibration, flight, unused));
+}
+
+ProbeReadings readings_of(const Calibration& calibration, const Flight& read,
+                          const Flight& flight) {
+  std::vector<std::string> unused;
+  return calibration.probe->read(read, verbs::choice_for(calibration, flight, unused));
+}
+
+Columns correct(const HeldField& held, const ProbeReadings& readings, const Flight& read) {
+  Columns columns{{"x", {}}, {"y", {}}, {"z", {}}};
+  const std::array m{readings.record.column("mx"), readings.record.column("my"),
+                     readings.record.column("mz")};
+  const Flight::Column* const driver = held.column.empty() ? nullptr : read.find(held.column);
+  for (std::size_t row = 0; row < m[0].size(); ++row) {
+    const double x = driver == nullptr ? 0.0 : driver->values[row] * held.unit;
+    const Eigen::Vector3d h =
+        held.W * (Eigen::Vector3d(m[0][row], m[1][row], m[2][row]) - held.n - held.kappa * x);
+    for (std::size_t i = 0; i < 3; ++i) {
+      columns[i].values.push_back(readings.valid[row] ? h[static_cast<Eigen::Index>(i)]
+                                                      : not_a_number);
+    }
+  }
+  return columns;
+}
+
+Columns correct(const HeldAirspeed& held, const ProbeReadings& readings) {
+  Columns columns{{"airspeed", {}}};
+  const auto read = readings.record.column("airspeed");
+  const auto rho = readings.record.column("rho");
+  for (std::size_t row = 0; row < read.size(); ++row) {
+    const double square = read[row] * read[row] - 2.0 * held.offset / rho[row];
+    columns[0].values.push_back(readings.valid[row] ? held.factor * std::sqrt(std::max(0.0, square))
+                                                    : not_a_number);
+  }
+  return columns;
+}
+
+/// Of a field in body axes, turned level by roll and pitch: from magnetic north over east [rad].
+double heading(const Eigen::Vector3d& h, double roll, double pitch) {
+  const double across = std::cos(roll) * h[1] - std::sin(roll) * h[2];
+  const double below = std::sin(roll) * h[1] + std::cos(roll) * h[2];
+  return std::atan2(-across, std::cos(pitch) * h[0] + std::sin(pitch) * below);
+}
+
+void compare_fields(const BothCorrected& both, const Flight& read, bool attitude_is_known,
+                    ExportLoss& loss) {
+  const auto roll = files::read_quantity(read, "roll", files::UnitKind::angle);
+  const auto pitch = files::read_quantity(read, "pitch", files::UnitKind::angle);
+  Spread turned;
+  Spread strength;
+  for (std::size_t row = 0; row < both.rows(); ++row) {
+    if (!both.has(row)) continue;
+    const Eigen::Vector3d full(both.full(0, row), both.full(1, row), both.full(2, row));
+    const Eigen::Vector3d held(both.held(0, row), both.held(1, row), both.held(2, row));
+    strength.add(held.norm() - full.norm());
+    if (!attitude_is_known || roll.empty() || pitch.empty()) continue;
+    if (!std::isfinite(roll[row] + pitch[row])) continue;
+    const double difference =
+        heading(held, roll[row], pitch[row]) - heading(full, roll[row], pitch[row]);
+    turned.add(std::remainder(difference, 2.0 * std::numbers::pi) * degrees);
+  }
+  loss.rows = strength.rows;
+  loss.heading_rms_deg = turned.rms();
+  loss.heading_largest_deg = turned.most();
+  loss.strength_rms_ut = strength.rms();
+}
+
+void compare_airspeeds(const BothCorrected& both, ExportLoss& loss) {
+  Spread airspeed;
+  for (std::size_t row = 0; row < both.rows(); ++row) {
+    if (both.has(row)) airspeed.add(both.held(0, row) - both.full(0, row));
+  }
+  loss.rows = airspeed.rows;
+  loss.airspeed_rms_mps = airspeed.rms();
+  loss.airspeed_largest_mps = airspeed.most();
+}
+
+/// The matrix C of m = C h + n, at the calibration's own parameters.
+Eigen::Matrix3d inverse_matrix(const Calibration& calibration) {
+  ProbeReadings units;
+  units.record.add("mx", {0.0, 1.0, 0.0, 0.0});
+  units.record.add("my", {0.0, 0.0, 1.0, 0.0});
+  units.record.add("mz", {0.0, 0.0, 0.0, 1.0});
+  units.valid.assign(4, true);
+  const Columns h = calibration.probe->correct(units, own_values(calibration), {});
+  Eigen::Matrix3d A;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const std::vector<double>& values = h[static_cast<std::size_t>(i)].values;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      A(i, j) = values[static_cast<std::size_t>(j) + 1] - values[0];
+    }
+  }
+  return A;
+}
+
+}  // namespace
+
+ExportLoss field_loss(const Calibration& full, const Calibration& refitted, const HeldField& held,
+                      const Flight& flight) {
+  ExportLoss loss = residual_loss(full, refitted, flight);
+  const bool rotation_is_known = needs_refit(full);
+  if (rotation_is_known) loss.rotation_deg = polar(inverse_matrix(full)).angle * degrees;
+  const ReadFlight read = read_flight(full, flight);
+  const ProbeReadings readings = readings_of(full, read.flight, flight);
+  compare_fields({apply(full, flight), correct(held, readings, read.flight)}, read.flight,
+                 rotation_is_known, loss);
+  return loss;
+}
+
+ExportLoss airspeed_loss(const Calibration& full, const Calibration& refitted,
+                         const HeldAirspeed& held, const Flight& flight) {
+  ExportLoss loss = residual_loss(full, refitted, flight);
+  const ReadFlight read = read_flight(full, flight);
+  compare_airspeeds({apply(full, flight), correct(held, readings_of(full, read.flight, flight))},
+                    loss);
+  return loss;
+}
+
+ExportLoss refit_loss(const Calibration& full, const Calibration& refitted, const Flight& flight) {
+  ExportLoss loss = residual_loss(full, refitted, flight);
+  Columns held = apply(refitted, flight);
+  held.resize(full.probe->corrected_headers().size());
+  const BothCorrected both(apply(full, flight), std::move(held));
+  if (full.probe->app() == "sepcal-mag") {
+    compare_fields(both, read_flight(full, flight).flight, needs_refit(full), loss);
+  } else {
+    compare_airspeeds(both, loss);
+  }
+  return loss;
+}
+
+}  // namespace sepcal::exporting

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a vehicle's correction lacks of a calibration's, row by row over a flight.
+#pragma once
+
+#include "flight/export/held.hpp"
+
+namespace sepcal::exporting {
+
+/// `full` is the calibration on the flight, `refitted` what the vehicle's is taken from.
+ExportLoss field_loss(const Calibration& full, const Calibration& refitted, const HeldField& held,
+                      const Flight& flight);
+ExportLoss airspeed_loss(const Calibration& full, const Calibration& refitted,
+                         const HeldAirspeed& held, const Flight& flight);
+
+/// Of a header: the two calibrations' corrected columns.
+ExportLoss refit_loss(const Calibration& full, const Calibration& refitted, const Flight& flight);
+
+}  // namespace sepcal::exporting

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/export/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace sepcal::exporting {
+namespace {
+
+std::string residual_of(const Calibration& calibration) {
+  std::string text;
+  for (const OutputValue& one : calibration.fit.rmse) {
+    text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", one.name, one.value);
+  }
+  return fmt::format("{} {}", text, calibration.probe->model().tables().outputs.front().unit);
+}
+
+}  // namespace
+
+std::vector<std::string> provenance(const std::string& what, const Calibration& given,
+                                    const Calibration& held) {
+  std::vector<std::string> lines{fmt::format("{}, made by sepcal {}", what, SEPCAL_VERSION)};
+  if (!given.file.empty()) lines.push_back(fmt::format("calibration: {}", given.file));
+  const FittedFlight& flight = held.flight;
+  if (!flight.file.empty()) {
+    lines.push_back(fmt::format("flight: {}{}{}", flight.file,
+                                flight.sha256.empty() ? "" : ", sha256 ", flight.sha256));
+  }
+  lines.push_back(fmt::format("fit: {}, residuals {} in {} rows", to_string(held.fit.status),
+                              residual_of(held), flight.rows_used));
+  return lines;
+}
+
+std::vector<std::string> loss_lines(const ExportLoss& loss) {
+  std::vector<std::string> lines;
+  for (const std::string& dropped : loss.dropped) lines.push_back("dropped: " + dropped);
+  if (!std::isnan(loss.heading_rms_deg)) {
+    lines.push_back(
+        fmt::format("heading: rms {:.3g} deg, at most {:.3g} deg, off the calibration's",
+                    loss.heading_rms_deg, loss.heading_largest_deg));
+  }
+  if (!std::isnan(loss.strength_rms_ut)) {
+    lines.push_back(
+        fmt::format("field's strength: rms {:.3g} uT off the calibration's", loss.strength_rms_ut));
+  }
+  if (!std::isnan(loss.airspeed_rms_mps)) {
+    lines.push_back(
+        fmt::format("true airspeed: rms {:.3g} m/s, at most {:.3g} m/s, off the calibration's",
+                    loss.airspeed_rms_mps, loss.airspeed_largest_mps));
+  }
+  if (!std::isnan(loss.residual_before)) {
+    lines.push_back(fmt::format("residual: {:.4g} {} before, {:.4g} {} after", loss.residual_before,
+                                loss.residual_unit, loss.residual_after, loss.residual_unit));
+  }
+  return lines;
+}
+
+}  // namespace sepcal::exporting

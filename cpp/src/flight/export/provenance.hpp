@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an exported file says of itself at its head.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sepcal/flight/export.hpp"
+
+namespace sepcal::exporting {
+
+/// A line each: what made the file of which calibration, its flight, and the fit.
+std::vector<std::string> provenance(const std::string& what, const Calibration& given,
+                                    const Calibration& held);
+
+/// What a vehicle's user must know, a line each; `loss` too.
+std::vector<std::string> loss_lines(const ExportLoss& loss);
+
+}  // namespace sepcal::exporting

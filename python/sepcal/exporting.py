@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A calibration as what a vehicle loads: a header in C or C++, or an autopilot's parameters."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from sepcal import _core
+from sepcal.calibration import Calibration, Path
+from sepcal.flight import Flight
+
+Target = Literal["c", "cpp", "px4", "ardupilot"]
+
+
+class Exported(_core.Exported):
+    """What was written, and what the vehicle's correction lacks; print() shows the page."""
+
+    def __str__(self) -> str:
+        return self.page
+
+    def to_json(self) -> str:
+        """The JSON that the app's export prints."""
+        return self.json
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary; None where a number is undefined."""
+        read: dict[str, Any] = json.loads(self.json)
+        return read
+
+
+def export(
+    calibration: Calibration,
+    file: Path,
+    to: Target | str,
+    *,
+    flight: Flight | None = None,
+    sensor: int | None = None,
+    device_id: int | None = None,
+    mounting: Sequence[float] | None = None,
+    in_use: float | None = None,
+    without: Sequence[str] = (),
+    force: bool = False,
+) -> Exported:
+    """Writes what a vehicle loads of a calibration; the file appears whole or not at all.
+
+    An autopilot holds less than a calibration: the best that it holds is fitted to the flight, and
+    `loss` says what that costs.
+
+    Args:
+        calibration: Of a magnetometer, a Pitot-static tube or, for a header, a five-hole probe.
+        file: To write.
+        to: "c" or "cpp", a header with the whole correction; "px4" or "ardupilot", parameters.
+        flight: To fit anew and to compare on [the one that was fitted].
+        sensor: Which, as the autopilot counts [its first]; of a header, its names end so.
+        device_id: Of PX4, the sensor's CAL_MAGn_ID.
+        mounting: Of PX4, roll, pitch, yaw [deg] by which the flight's readings were turned.
+        in_use: Of a logged airspeed, the ARSPD_RATIO or ASPD_SCALE_n that it was read with.
+        without: Effects to leave out; the rest is fitted anew.
+        force: Exports also what did not converge, is not all determined, or is at a bound.
+
+    Raises:
+        Error: A calibration that no vehicle should load, an effect that the vehicle can't follow, a
+            value beyond what the autopilot takes, a flight that is needed and not there.
+    """
+    chosen = flight if flight is not None else calibration.flight
+    turned = None if mounting is None else [float(angle) for angle in mounting]
+    if turned is not None and len(turned) != 3:
+        raise _core.Error("mounting is not three angles; give roll, pitch, yaw in degrees")
+    if isinstance(without, str):
+        raise _core.Error(f"without is the text {without!r}; give a list of effects")
+    written = _core.export_to_file(
+        calibration.core,
+        os.fspath(file),
+        to,
+        None if chosen is None else chosen._core,
+        sensor,
+        device_id,
+        turned,
+        in_use,
+        list(without),
+        force,
+    )
+    return Exported(written)
