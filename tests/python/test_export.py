@@ -103,6 +103,21 @@ def test_every_sensor_gets_the_same_under_its_own_names(
         np.testing.assert_array_equal(found[0], other)
 
 
+def test_what_was_held_stays(magnetometer: Bench) -> None:
+    """Soft iron held at none, as a flight asks for that hardly turns: no free off-diagonals."""
+    held = [word for pair in ("xy", "xz", "yz") for word in ("--fix", f"alpha_{pair}=0")]
+    eta = [word for axis in "xyz" for word in ("--fix", f"eta_{axis}=0")]
+    assert magnetometer.run("fit", "flight.csv", *held, *eta, "-o", "held.json").code in (0, 4)
+    export(magnetometer, "px4", "--force", calibration="held.json")
+    parameters = autopilots.read_px4(magnetometer.folder / "vehicle")
+    raw, field = read_raw(magnetometer.read_log()), true_field(magnetometer.read_log())
+    for axis, name in enumerate("XYZ"):  # each axis a straight line of its own
+        scale, bias = np.polyfit(field[:, axis], raw[:, axis], 1)
+        assert parameters[f"CAL_MAG0_{name}SCALE"] == pytest.approx(1 / scale, rel=1e-6)
+        assert parameters[f"CAL_MAG0_{name}OFF"] == pytest.approx(bias / 100, rel=1e-5)
+        assert parameters[f"CAL_MAG0_{name}ODIAG"] == pytest.approx(0, abs=1e-15)
+
+
 def test_names_and_units(magnetometer: Bench) -> None:
     export(magnetometer, "ardupilot", "--sensor", "2")
     expected = [
@@ -310,13 +325,18 @@ REFUSALS = {
     "an effect that follows time": (
         "bias[time]",
         "ardupilot",
-        ("bias[time] has no home", "--without bias[time]"),
+        ("ArduPilot can't hold bias[time]", "--without bias[time]"),
     ),
-    "a scale": ("scale[temp_degc]", "px4", ("scale[temp_degc] has no home", "--without")),
+    "a scale": ("scale[temp_degc]", "px4", ("PX4 can't hold scale[temp_degc]", "--without")),
     "a second driver": (
         "bias[current_a]+bias[throttle]",
         "px4",
-        ("bias[throttle] has no home", "bias[current_a]"),
+        ("PX4 can't hold bias[throttle]", "bias[current_a] is there already"),
+    ),
+    "two effects": (
+        "bias[temp_degc]+scale[temp_degc]",
+        "px4",
+        ("bias[temp_degc], scale[temp_degc]", "--without bias[temp_degc] --without scale[temp"),
     ),
     "a delay": (
         "bias[delay(current_a)]",

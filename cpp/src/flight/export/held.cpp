@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "flight/catalogue/effect_channels.hpp"
+#include "flight/export/bodies.hpp"
 #include "flight/export/polar.hpp"
 #include "flight/export/symmetric_magnetometer.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -82,6 +83,21 @@ void keep_known(const Tables& model, CalibrationOptions& options) {
   std::erase_if(options.fit.sampling_distribution, is_foreign);
 }
 
+/// What a fit held at a value stays: an entry of the symmetric C for a scale or a soft iron.
+void hold_entries(const Calibration& calibration, std::map<std::string, double>& fixed) {
+  constexpr std::array<std::pair<const char*, const char*>, 6> entries{{{"lambda_x", "c_xx"},
+                                                                        {"lambda_y", "c_yy"},
+                                                                        {"lambda_z", "c_zz"},
+                                                                        {"alpha_xy", "c_xy"},
+                                                                        {"alpha_xz", "c_xz"},
+                                                                        {"alpha_yz", "c_yz"}}};
+  const Eigen::Matrix3d C = polar(field_matrix(calibration).C.inverse()).symmetric.inverse();
+  const std::array values{C(0, 0), C(1, 1), C(2, 2), C(0, 1), C(0, 2), C(1, 2)};
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (fixed.contains(entries[i].first)) fixed[entries[i].second] = values[i];
+  }
+}
+
 /// The pressure in the tube is off by a constant.
 EffectKit::Maker constant_pressure() {
   return [](const BlockModel& model, EffectSetting& setting, Record& record) {
@@ -96,27 +112,34 @@ EffectKit::Maker constant_pressure() {
 }  // namespace
 
 void check_held(const Calibration& calibration, ExportTarget target) {
-  const std::string_view autopilot = target == ExportTarget::px4 ? "PX4" : "ArduPilot";
+  std::vector<std::string> homeless;
   const EffectSetting* motor = nullptr;
   for (const EffectSetting& setting : calibration.options.effects) {
     if (!acts_on_reading(calibration, setting)) continue;
     const bool held = is_magnetometer(calibration) && motor_of(calibration, setting) != nullptr;
     if (held && motor == nullptr) {
       motor = &setting;
-      continue;
+    } else {
+      homeless.push_back(setting.name);
     }
-    const std::string why =
-        held ? fmt::format("{} follows one driver, and {} is there already", autopilot, motor->name)
-        : is_magnetometer(calibration)
-            ? fmt::format(
-                  "{} follows current_a or throttle alone, by bias[current_a] or "
-                  "bias[throttle]",
-                  autopilot)
-            : fmt::format("{} knows a scale and a pressure offset, both constant", autopilot);
-    throw OptionError({fmt::format("{} has no home there: {}; ", setting.name, why),
-                       Option{"without"},
-                       fmt::format(" {} fits the rest anew and says what is lost", setting.name)});
   }
+  if (homeless.empty()) return;
+  std::string holds = "a scale and an offset of the pressure, both constant";
+  if (is_magnetometer(calibration)) {
+    holds = motor == nullptr
+                ? "beside constants bias[current_a] or bias[throttle]"
+                : fmt::format("beside constants one effect, and {} is there already", motor->name);
+  }
+  OptionError::Message message{fmt::format("{} can't hold {}: it holds {};",
+                                           target == ExportTarget::px4 ? "PX4" : "ArduPilot",
+                                           fmt::join(homeless, ", "), holds)};
+  for (const std::string& name : homeless) {
+    message.emplace_back(" ");
+    message.emplace_back(Option{"without"});
+    message.emplace_back(" " + name);
+  }
+  message.emplace_back(" fits the rest anew and says what is lost");
+  throw OptionError(std::move(message));
 }
 
 std::vector<std::string> effects_on_the_world(const Calibration& calibration) {
@@ -148,6 +171,7 @@ Calibration refit_held(const Calibration& calibration, const Flight& flight,
   std::shared_ptr<const Probe> probe = calibration.probe;
   if (is_magnetometer(calibration)) {
     probe = symmetric_magnetometer(probe);
+    hold_entries(calibration, held.fit.fixed);
     keep_known(probe->model().tables(), held);
     held.free.clear();
   } else {

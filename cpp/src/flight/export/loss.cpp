@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/export/loss.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <span>
 
 #include "base/thread_pool.hpp"
+#include "flight/export/bodies.hpp"
 #include "flight/export/polar.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -164,31 +166,13 @@ void compare_airspeeds(const BothCorrected& both, ExportLoss& loss) {
   loss.airspeed_largest_mps = airspeed.most();
 }
 
-/// The matrix C of m = C h + n, at the calibration's own parameters.
-Eigen::Matrix3d inverse_matrix(const Calibration& calibration) {
-  ProbeReadings units;
-  units.record.add("mx", {0.0, 1.0, 0.0, 0.0});
-  units.record.add("my", {0.0, 0.0, 1.0, 0.0});
-  units.record.add("mz", {0.0, 0.0, 0.0, 1.0});
-  units.valid.assign(4, true);
-  const Columns h = calibration.probe->correct(units, own_values(calibration), {});
-  Eigen::Matrix3d A;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const std::vector<double>& values = h[static_cast<std::size_t>(i)].values;
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      A(i, j) = values[static_cast<std::size_t>(j) + 1] - values[0];
-    }
-  }
-  return A;
-}
-
 }  // namespace
 
 ExportLoss field_loss(const Calibration& full, const Calibration& refitted, const HeldField& held,
                       const Flight& flight) {
   ExportLoss loss = residual_loss(full, refitted, flight);
   const bool rotation_is_known = needs_refit(full);
-  if (rotation_is_known) loss.rotation_deg = polar(inverse_matrix(full)).angle * degrees;
+  if (rotation_is_known) loss.rotation_deg = polar(field_matrix(full).C.inverse()).angle * degrees;
   const ReadFlight read = read_flight(full, flight);
   const ProbeReadings readings = readings_of(full, read.flight, flight);
   compare_fields({apply(full, flight), correct(held, readings, read.flight)}, read.flight,

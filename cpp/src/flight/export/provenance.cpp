@@ -35,6 +35,9 @@ std::vector<std::string> provenance(const std::string& what, const Calibration& 
 std::vector<std::string> loss_lines(const ExportLoss& loss) {
   std::vector<std::string> lines;
   for (const std::string& dropped : loss.dropped) lines.push_back("dropped: " + dropped);
+  if (!std::isnan(loss.rotation_deg) && std::isnan(loss.heading_rms_deg)) {
+    lines.emplace_back("heading: not known, as roll and pitch are not logged");
+  }
   if (!std::isnan(loss.heading_rms_deg)) {
     lines.push_back(
         fmt::format("heading: rms {:.3g} deg, at most {:.3g} deg, off the calibration's",

@@ -38,11 +38,12 @@ void note_airspeed(bool as_speed, const ExportOptions& options, std::vector<std:
         px4 ? "an ASPD_SCALE of 1" : fmt::format("an ARSPD_RATIO of {:.4g}", plain_ratio)));
   }
   notes.emplace_back(
-      px4 ? "PX4 keeps the scale where ASPD_SCALE_APPLY is 0; SENS_DPRES_OFF is added to what was "
-            "taken off the logged pressure already, and its own calibration sets it anew"
-          : "ArduPilot keeps the ratio where AUTOCAL is 0 and the offset where SKIP_CAL is 1, else "
-            "it measures it at each start; add it to what was taken off the logged pressure "
-            "already");
+      px4 ? "PX4 keeps the scale where ASPD_SCALE_APPLY is 0; add the offset to what was taken off "
+            "the logged pressure already; from 2026 on PX4 has CAL_DPRESn_OFF for SENS_DPRES_OFF"
+          : "ArduPilot keeps the ratio where AUTOCAL is 0, and the offset where SKIP_CAL is 1, "
+            "else "
+            "it measures that at each start; add the offset to what was taken off the logged "
+            "pressure already");
 }
 
 }  // namespace
