@@ -29,7 +29,18 @@ AIRCRAFT = (
     "simulate",
     "effects",
 )  # its verbs
-VERBS = ("check", "fit", "compare", "intervals", "diagnose", "add", "apply", "simulate", "effects")
+VERBS = (
+    "check",
+    "fit",
+    "compare",
+    "intervals",
+    "diagnose",
+    "add",
+    "apply",
+    "export",
+    "simulate",
+    "effects",
+)
 
 # How many lines of an example a document promises at most.
 PROMISES = {"07_own_model.py": 15, "08_own_effect.py": 6, "09_own_effect.cpp": 11}
