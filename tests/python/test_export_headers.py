@@ -202,6 +202,30 @@ def test_two_sensors_in_one_program(magnetometer: Bench) -> None:
     assert subprocess.run([str(magnetometer.folder / "both")], check=False).returncode == 0
 
 
+def test_the_documented_lines_compile(tmp_path: Path) -> None:
+    """Of docs/export.md, in a program around them."""
+    bench = Bench("sepcal-pitot", tmp_path, (), None)  # type: ignore[arg-type]
+    bench.run("simulate", "--probe", "pitot-static", "-o", "flight.csv", "--rows", "600")
+    fit(bench, ())
+    assert bench.run("export", "e.json", "--to", "c", "-o", "pitot.h").code == 0
+    page = (Path(__file__).parents[2] / "docs/export.md").read_text()
+    shown = re.findall(r"^```c\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    assert len(shown) == 1
+    include, _, lines = shown[0].partition("\n\n")
+    shown_main = f"{include}\nint main(void) {{\n{lines}return airspeed > 0.0 ? 0 : 1;\n}}\n"
+    (tmp_path / "shown.c").write_text(shown_main)
+    command = [headers.compiler_of("c"), "-std=c99", *headers.STRICT, "-Wno-empty-body"]
+    built = subprocess.run(
+        [*command, "shown.c", "-o", "shown", "-lm"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert built.returncode == 0, built.stderr
+    assert subprocess.run([str(tmp_path / "shown")], check=False).returncode == 0
+
+
 def test_a_header_says_where_it_is_from(magnetometer: Bench) -> None:
     fit(magnetometer, ("bias[current_a]", "field_declination"))
     magnetometer.run("export", "e.json", "--to", "c", "-o", "sensor.h", "--force")

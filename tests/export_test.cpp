@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Exports of calibrations whose numbers are plain: the autopilots' parameters by hand, the rotation
+// that a symmetric matrix leaves, refusals, and a file that appears whole or not at all.
+#include "sepcal/flight/export.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <filesystem>
+
+#include "calibrated_flights.hpp"
+#include "flight/export/polar.hpp"
+#include "temporary_folder.hpp"
+
+namespace export_test {
+
+using namespace sepcal;
+using namespace sepcal::test;
+
+namespace {
+
+/// C = diag(1.25, 0.8, 1), n = (10, -20, 30) uT, against the field's strength.
+Calibration make_magnetometer() {
+  return make_calibration(attitude_independent_probe(50.0), {{"lambda_x", 0.25},
+                                                             {"lambda_y", -0.2},
+                                                             {"lambda_z", 0.0},
+                                                             {"alpha_xy", 0.0},
+                                                             {"alpha_xz", 0.0},
+                                                             {"alpha_yz", 0.0},
+                                                             {"n_x", 10.0},
+                                                             {"n_y", -20.0},
+                                                             {"n_z", 30.0}});
+}
+
+double value_of(const Exported& exported, const std::string& name) {
+  const auto found = std::ranges::find(exported.parameters, name, &VehicleParameter::name);
+  REQUIRE(found != exported.parameters.end());
+  return found->value;
+}
+
+ExportOptions to(ExportTarget target) { return {.target = target, .force = true}; }
+
+}  // namespace
+
+TEST_CASE("parameters of ArduPilot: OFS is -n in mG, DIA times SCALE the inverse of C") {
+  const Exported exported =
+      export_calibration(make_magnetometer(), nullptr, to(ExportTarget::ardupilot));
+  CHECK(value_of(exported, "COMPASS_OFS_X") == doctest::Approx(-100.0));
+  CHECK(value_of(exported, "COMPASS_OFS_Y") == doctest::Approx(200.0));
+  CHECK(value_of(exported, "COMPASS_OFS_Z") == doctest::Approx(-300.0));
+  const double scale = value_of(exported, "COMPASS_SCALE");
+  CHECK(scale == doctest::Approx((0.8 + 1.25 + 1.0) / 3.0));
+  CHECK(value_of(exported, "COMPASS_DIA_X") * scale == doctest::Approx(0.8));
+  CHECK(value_of(exported, "COMPASS_DIA_Y") * scale == doctest::Approx(1.25));
+  CHECK(value_of(exported, "COMPASS_DIA_Z") * scale == doctest::Approx(1.0));
+  CHECK(value_of(exported, "COMPASS_ODI_X") == doctest::Approx(0.0));
+  CHECK(value_of(exported, "COMPASS_MOT_X") == 0.0);
+}
+
+TEST_CASE("parameters of PX4: OFF is n in gauss, SCALE the inverse of C") {
+  const Exported exported = export_calibration(make_magnetometer(), nullptr, to(ExportTarget::px4));
+  CHECK(value_of(exported, "CAL_MAG0_XOFF") == doctest::Approx(0.1));
+  CHECK(value_of(exported, "CAL_MAG0_YOFF") == doctest::Approx(-0.2));
+  CHECK(value_of(exported, "CAL_MAG0_ZOFF") == doctest::Approx(0.3));
+  CHECK(value_of(exported, "CAL_MAG0_XSCALE") == doctest::Approx(0.8));
+  CHECK(value_of(exported, "CAL_MAG0_YSCALE") == doctest::Approx(1.25));
+}
+
+TEST_CASE("a matrix is a rotation after a symmetric one") {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d(1.0, 2.0, -2.0) / 3.0).toRotationMatrix();
+  Eigen::Matrix3d S;
+  S << 1.1, 0.05, -0.02, 0.05, 0.9, 0.03, -0.02, 0.03, 1.0;
+  const exporting::Polar parts = exporting::polar(turn * S);
+  CHECK(parts.angle == doctest::Approx(0.3));
+  CHECK((parts.rotation - turn).norm() < 1e-14);
+  CHECK((parts.symmetric - S).norm() < 1e-14);
+}
+
+TEST_CASE("a header says what its names begin with") {
+  ExportOptions options = to(ExportTarget::c);
+  options.sensor = 2;
+  const Exported exported = export_calibration(make_magnetometer(), nullptr, options);
+  CHECK(exported.text.find("static inline int sepcal_magnetometer_2_correct(") !=
+        std::string::npos);
+  CHECK(exported.parameters.empty());
+  CHECK_FALSE(exported.loss.has_value());
+}
+
+TEST_CASE("what is not fit to be used is refused, and no file is left") {
+  const TemporaryFolder folder;
+  const std::string output = (folder.path() / "vehicle.h").string();
+  const auto refuse = [&](ExportOptions options, std::initializer_list<std::string_view> words) {
+    Calibration unsettled = make_magnetometer();
+    unsettled.fit.status = FitStatus::not_converged;
+    check_refused([&] { export_to_file(unsettled, nullptr, options, output); }, words);
+    CHECK_FALSE(std::filesystem::exists(output));
+  };
+  refuse({.target = ExportTarget::c}, {"did not converge", "force"});
+  refuse({.target = ExportTarget::px4, .sensor = 4, .force = true}, {"sensor 4", "0 to 3"});
+  refuse({.target = ExportTarget::c, .without = {"bias[x]"}, .force = true}, {"without bias[x]"});
+  refuse({.target = ExportTarget::ardupilot, .device_id = 3, .force = true}, {"device_id", "PX4"});
+}
+
+}  // namespace export_test
