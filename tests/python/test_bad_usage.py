@@ -5,7 +5,7 @@ import pytest
 
 from apps import Bench, assert_one_line, assert_refused, read_folder
 
-VERBS = ("check", "fit", "compare", "apply", "simulate", "effects", "diagnose", "add")
+VERBS = ("check", "fit", "compare", "apply", "simulate", "effects", "diagnose", "add", "export")
 
 # Options of fit that both apps refuse, with what the line has to say.
 NONSENSE: list[tuple[tuple[str, ...], tuple[str, ...]]] = [

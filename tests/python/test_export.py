@@ -2,6 +2,7 @@
 """Parameters for autopilots: read back and applied by their own formulae, and what they lose."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -177,6 +178,32 @@ def test_the_strength_alone_is_held_whole(magnetometer: Bench) -> None:
             np.linalg.norm(found, axis=1), np.linalg.norm(expected, axis=1), rtol=SINGLE * 10
         )
     assert base["model"] == "magnetometer-norm"
+
+
+def test_a_motor_beside_the_strength(magnetometer: Bench) -> None:
+    log = magnetometer.read_log()
+    for axis, share in zip("xyz", (0.4, -0.2, 0.3), strict=True):
+        log.replace(f"m{axis}_ut", log.column(f"m{axis}_ut") + share * log.column("current_a"))
+    magnetometer.flight.write_text(log.text())
+    effect = ("--effect", "bias[current_a]")
+    fitted = magnetometer.run(
+        "fit", "flight.csv", "--field-strength", "53.2", *effect, "-o", "norm.json"
+    )
+    assert fitted.code == 0, fitted.err
+    assert magnetometer.run("apply", "flight.csv", "norm.json", "-o", "applied.csv").code == 0
+    applied = Log(magnetometer.folder / "applied.csv")
+    expected = np.column_stack([applied.column(f"m{axis}_cal_ut") for axis in "xyz"])
+    for target in READERS:
+        loss = export(magnetometer, target, calibration="norm.json").result["loss"]
+        found = corrected_by(
+            target, magnetometer.folder / "vehicle", read_raw(log), motor=log.column("current_a")
+        )
+        strength = np.linalg.norm(found, axis=1)
+        assert_allclose(strength, np.linalg.norm(expected, axis=1), rtol=SINGLE * 10)
+        assert loss["strength_rms_ut"] == pytest.approx(0, abs=1e-9)
+        assert loss["heading_rms_deg"] is None
+        assert loss["rotation_deg"] is None
+        assert loss["residual_after"] == loss["residual_before"]
 
 
 @pytest.mark.parametrize("target", ["ardupilot", "px4"])
@@ -488,6 +515,55 @@ def test_recorded_tube(tmp_path: Path, target: str) -> None:
     assert loss["airspeed_rms_mps"] == pytest.approx(
         np.sqrt(np.mean((found - full) ** 2)), rel=1e-4
     )
+
+
+def test_a_tube_without_an_effect(tmp_path: Path) -> None:
+    bench = simulate_tube(tmp_path)
+    done = bench.run("fit", "flight.csv", "--effect", "airspeed_scale[throttle]", "-o", "e.json")
+    assert done.code == 0, done.err
+    plain = export(bench, "ardupilot").result
+    command = ("export", "e.json", "--to", "ardupilot")
+    words = ("ArduPilot can't hold airspeed_scale[throttle]", "--without airspeed_scale[throttle]")
+    assert_refused(bench, *command, words=words)
+    found = export(
+        bench, "ardupilot", "--without", "airspeed_scale[throttle]", calibration="e.json"
+    ).result
+    for name, value in plain["parameters"].items():
+        assert found["parameters"][name] == pytest.approx(value, rel=1e-6)
+    assert found["loss"]["residual_before"] < plain["loss"]["residual_before"]
+
+
+def test_a_header_without_an_effect(magnetometer: Bench) -> None:
+    """What is left is the fit that never had it."""
+    done = magnetometer.run("fit", "flight.csv", "--effect", "bias[time]", "-o", "drift.json")
+    assert done.code == 0, done.err
+    export(magnetometer, "c")
+    plain = (magnetometer.folder / "vehicle").read_text()
+    found = export(magnetometer, "c", "--without", "bias[time]", calibration="drift.json").result
+    text = (magnetometer.folder / "vehicle").read_text()
+    numbers = [
+        [
+            float(v)
+            for v in re.findall(r"-?\d+\.\d+(?:e-?\d+)?", one.partition("self_test")[0][600:])
+        ]
+        for one in (plain, text)
+    ]
+    count = min(map(len, numbers))
+    assert_allclose(numbers[0][-count:], numbers[1][-count:], rtol=1e-5, atol=1e-8)
+    assert found["loss"]["dropped"] == ["the effect bias[time]"]
+    assert found["loss"]["heading_rms_deg"] > 0
+
+
+def test_an_effect_of_ones_own_is_refused(magnetometer: Bench) -> None:
+    flight = sepcal.read_csv(magnetometer.flight)
+    motor = sepcal.Effect("motor", lambda log: log["current_a"], port="bias", unit="uT/A")
+    calibration = sepcal.fit(sepcal.Magnetometer(), flight).add(motor)
+    for target, words in (("c", "of your own making"), ("px4", "PX4 can't hold motor")):
+        with pytest.raises(sepcal.Error, match=words):
+            sepcal.export(calibration, magnetometer.folder / "python", target, force=True)
+    calibration.save(magnetometer.folder / "motor.json")
+    words = ("motor can't be exported", "of your own making")
+    assert_refused(magnetometer, "export", "motor.json", "--to", "c", "--force", words=words)
 
 
 def test_python_does_the_same(magnetometer: Bench) -> None:

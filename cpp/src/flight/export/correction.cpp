@@ -242,8 +242,8 @@ class Description {
     }
     const std::vector<std::string> factors(static_cast<std::size_t>(product ? 1 : name.number), d);
     std::string x = fmt::format("{}", fmt::join(factors, " * "));
-    if (setting.mean.value_or(0.0) != 0.0) {
-      x += " - " + constant(fmt::format("mean_{}", number_), {*setting.mean},
+    if (const double mean = setting.mean.value_or(0.0); mean != 0.0) {
+      x += " - " + constant(fmt::format("mean_{}", number_), {mean},
                             setting.name + ": of its driver's power on the flight");
     }
     return local(x, setting.name);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <ranges>
 
 #include "flight/export/fit_for_use.hpp"
@@ -41,11 +42,9 @@ class FlightAtHand {
     if (!std::filesystem::is_regular_file(fitted_.file, unreadable)) return;
     Flight named = read_csv(fitted_.file);
     if (named.sha256() != fitted_.sha256) return;
-    named_ = std::move(named);
-    flight_ = &*named_;
+    named_ = std::make_shared<const Flight>(std::move(named));
+    flight_ = named_.get();
   }
-  FlightAtHand(const FlightAtHand&) = delete;
-  FlightAtHand& operator=(const FlightAtHand&) = delete;
 
   const Flight* find() const { return flight_; }
 
@@ -60,7 +59,7 @@ class FlightAtHand {
 
  private:
   FittedFlight fitted_;
-  std::optional<Flight> named_;
+  std::shared_ptr<const Flight> named_;
   const Flight* flight_;
 };
 
@@ -96,7 +95,7 @@ void check_without(const Calibration& calibration, const std::vector<std::string
   }
 }
 
-std::string instrument(const Calibration& calibration) {
+std::string_view instrument(const Calibration& calibration) {
   const std::string_view name = calibration.probe->name();
   if (name == "five-hole") return "a five-hole probe";
   return name == "pitot-static" ? "a Pitot-static tube" : "a magnetometer";
@@ -116,7 +115,7 @@ void export_header(const Calibration& given, const Calibration& held, const Expo
                    Exported& exported) {
   const Dialect dialect(options.target == ExportTarget::cpp, header_name(held, options));
   std::vector<std::string> comment =
-      provenance("The correction of " + instrument(held), given, held);
+      provenance(fmt::format("The correction of {}", instrument(held)), given, held);
   if (exported.loss) std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
   Header header = header_text(held, dialect, comment);
   exported.text = std::move(header.text);
@@ -191,6 +190,22 @@ void export_parameters(const Calibration& given, const Calibration& base,
   exported.calibration = std::move(held);
 }
 
+/// The calibration without some of its effects: fitted, unless what an autopilot holds will be.
+void leave_out(const Calibration& given, const FlightAtHand& at_hand, const ExportOptions& options,
+               Exported& exported) {
+  const Flight& flight = at_hand.need("a fit without an effect");
+  CalibrationOptions fewer = options_without(given, options.without, options.progress);
+  if (!is_header(options.target) && needs_refit(given)) {
+    exported.calibration.options = std::move(fewer);
+    return;
+  }
+  exported.calibration = verbs::calibrate(given.probe, verbs::prepare(given, flight), fewer);
+  if (!options.force) check_fit_for_use(exported.calibration, "the fit without what is left out");
+  ExportLoss loss = refit_loss(given, exported.calibration, flight);
+  for (const std::string& effect : options.without) loss.dropped.push_back("the effect " + effect);
+  exported.loss = std::move(loss);
+}
+
 }  // namespace
 
 Exported export_calibration(const Calibration& calibration, const Flight* flight,
@@ -203,17 +218,7 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
   const FlightAtHand at_hand(given, flight);
   Exported exported{.target = options.target, .calibration = given};
   if (flight != nullptr) verbs::note_other_flight(given, *flight, exported.notes);
-  if (!options.without.empty()) {
-    const Flight& fitted = at_hand.need("a fit without an effect");
-    exported.calibration =
-        verbs::calibrate(given.probe, verbs::prepare(given, fitted),
-                         options_without(given, options.without, options.progress));
-    if (!options.force) check_fit_for_use(exported.calibration, "the fit without what is left out");
-    exported.loss = refit_loss(given, exported.calibration, fitted);
-    for (const std::string& effect : options.without) {
-      exported.loss->dropped.push_back("the effect " + effect);
-    }
-  }
+  if (!options.without.empty()) leave_out(given, at_hand, options, exported);
   if (is_header(options.target)) {
     const Calibration held = exported.calibration;
     export_header(given, held, options, exported);

@@ -127,8 +127,8 @@ void check_held(const Calibration& calibration, ExportTarget target) {
   std::string holds = "a scale and an offset of the pressure, both constant";
   if (is_magnetometer(calibration)) {
     holds = motor == nullptr
-                ? "beside constants bias[current_a] or bias[throttle]"
-                : fmt::format("beside constants one effect, and {} is there already", motor->name);
+                ? "constants, and beside them bias[current_a] or bias[throttle]"
+                : fmt::format("constants and one effect, and {} is there already", motor->name);
   }
   OptionError::Message message{fmt::format("{} can't hold {}: it holds {};",
                                            target == ExportTarget::px4 ? "PX4" : "ArduPilot",
@@ -172,7 +172,6 @@ Calibration refit_held(const Calibration& calibration, const Flight& flight,
   if (is_magnetometer(calibration)) {
     probe = symmetric_magnetometer(probe);
     hold_entries(calibration, held.fit.fixed);
-    keep_known(probe->model().tables(), held);
     held.free.clear();
   } else {
     held.own_effects[constant_offset] = constant_pressure();
@@ -181,6 +180,7 @@ Calibration refit_held(const Calibration& calibration, const Flight& flight,
     std::erase(held.free, "c_va");
     held.fit.fixed["c_va"] = 0.0;
   }
+  keep_known(probe->model().tables(), held);
   return verbs::calibrate(std::move(probe), verbs::prepare(calibration, flight), held);
 }
 
