@@ -6,11 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <set>
 
 #include "flight/catalogue/effect_channels.hpp"
+#include "flight/export/driver_names.hpp"
 #include "sepcal/natural_spline.hpp"
 #include "sepcal/option_error.hpp"
 
@@ -18,37 +17,6 @@ namespace sepcal::exporting {
 namespace {
 
 using Shape = EffectName::Shape;
-
-/// Quantities that a record has under their own name: the argument, its unit, and what it may be.
-struct Known {
-  std::string_view channel;
-  std::string_view argument;
-  std::string_view unit;
-  std::array<double, 3> trial;
-};
-constexpr std::array known_channels{
-    Known{"p", "p_radps", "rad/s", {0.1, -0.2, 0.3}},
-    Known{"q", "q_radps", "rad/s", {0.05, -0.1, 0.2}},
-    Known{"r", "r_radps", "rad/s", {-0.1, 0.2, 0.05}},
-    Known{"roll", "roll_rad", "rad", {0.1, -0.3, 0.5}},
-    Known{"pitch", "pitch_rad", "rad", {0.05, -0.1, 0.2}},
-    Known{"yaw", "yaw_rad", "rad", {0.5, -1.0, 2.0}},
-    Known{"ps", "ps_pa", "Pa, static pressure", {95000.0, 90000.0, 101000.0}},
-    Known{"dp", "dp_pa", "Pa, differential pressure", {120.0, 250.0, 400.0}},
-    Known{"rho", "rho_kgpm3", "kg/m^3, density of the air", {1.2, 1.1, 1.05}},
-    Known{"temperature", "temp_k", "K, of the air", {280.0, 290.0, 300.0}}};
-
-/// What a correction has already, by probe: readings and what follows from them.
-const std::map<std::string, std::string, std::less<>>& readings_of(std::string_view probe) {
-  static const std::map<std::string, std::string, std::less<>> none;
-  static const std::map<std::string, std::string, std::less<>> field{
-      {"mx", "m_ut[0]"}, {"my", "m_ut[1]"}, {"mz", "m_ut[2]"}};
-  static const std::map<std::string, std::string, std::less<>> ports{
-      {"alpha", "alpha_read"}, {"beta", "beta_read"}, {"pt", "pt_pa"},     {"ps", "ps_pa"},
-      {"dpa", "dpa_pa"},       {"dpb", "dpb_pa"},     {"rho", "rho_kgpm3"}};
-  if (probe == "five-hole") return ports;
-  return probe == "pitot-static" ? none : field;
-}
 
 [[noreturn]] void refuse(const std::string& effect, const std::string& why) {
   throw OptionError({fmt::format("{} can't be exported: {}; ", effect, why), Option{"without"},
@@ -70,38 +38,6 @@ const std::map<std::string, const char*, std::less<>>& stranded() {
       {"pneumatic_lag", of_moments},
       {"eddy_currents", "it needs the rate at which the field changes"}};
   return effects;
-}
-
-bool is_reserved(const std::string& name) {
-  static const std::set<std::string, std::less<>> words{
-      "alignas", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const",
-      "continue", "default", "delete", "do", "double", "else", "enum", "explicit", "export",
-      "extern", "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable",
-      "namespace", "new", "operator", "private", "protected", "public", "register", "restrict",
-      "return", "short", "signed", "sizeof", "static", "struct", "switch", "template", "this",
-      "throw", "true", "try", "typedef", "typename", "union", "unsigned", "using", "virtual",
-      "void", "volatile", "while", "and", "or", "not", "xor", "compl", "bitand", "bitor", "not_eq",
-      "concept", "requires", "nullptr", "noexcept", "decltype",
-      // of the correction itself
-      "A", "J", "F", "constants", "spline", "correct", "self_test", "ok", "bad_input",
-      "no_solution", "h_ut", "m_ut", "alpha_read", "beta_read", "pressure", "read", "met", "i", "j",
-      "step", "det", "change", "largest", "airspeed_mps", "airspeed_cal_mps", "pt_pa", "dpa_pa",
-      "dpb_pa", "alpha_cal_rad", "beta_cal_rad", "u", "v", "w", "y", "z", "pow", "fabs", "sqrt",
-      "sin", "cos", "atan2", "asin", "isfinite", "alpha", "beta", "square", "side", "below", "in",
-      "out", "got", "row"};
-  return words.contains(name) || name.starts_with("x_") || name.starts_with("sepcal");
-}
-
-/// A column's header as an argument of a function.
-std::string identifier(const std::string& header) {
-  std::string name;
-  for (const char c : header) {
-    const auto byte = static_cast<unsigned char>(c);
-    name += std::isalnum(byte) != 0 && byte < 128 ? c : '_';
-  }
-  const bool starts_well = !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0;
-  if (!starts_well || name[0] == '_') name.insert(0, "column_");
-  return is_reserved(name) ? name + "_in" : name;
 }
 
 class Description {
@@ -137,14 +73,14 @@ class Description {
 
   /// The channel as an expression; what isn't at hand becomes an argument.
   std::string channel(const std::string& name, const std::vector<double>& trial = {}) {
-    const auto& readings = readings_of(calibration_.probe->name());
+    const auto& readings = names_of_readings(calibration_.probe->name());
     if (const auto found = readings.find(name); found != readings.end()) return found->second;
     const auto there = std::ranges::find(result_.drivers, name, &Driver::channel);
     if (there != result_.drivers.end()) return there->argument;
-    const auto* const known = std::ranges::find(known_channels, name, &Known::channel);
+    const KnownChannel* const known = find_known(name);
     Driver driver{.channel = name, .argument = identifier(name), .comment = "as it was logged"};
     driver.trial = trial.empty() ? std::vector{0.5, 0.2, 2.0} : trial;
-    if (known != known_channels.end()) {
+    if (known != nullptr) {
       driver.argument = known->argument;
       driver.comment = known->unit;
       driver.is_state = true;

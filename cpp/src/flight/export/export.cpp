@@ -16,9 +16,9 @@
 #include "flight/export/loss.hpp"
 #include "flight/export/parameters.hpp"
 #include "flight/export/provenance.hpp"
+#include "flight/export/refusals.hpp"
 #include "flight/export/vehicle_notes.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/option_error.hpp"
 
@@ -27,10 +27,6 @@ namespace sepcal {
 using namespace exporting;  // this room's own
 
 namespace {
-
-bool is_header(ExportTarget target) {
-  return target == ExportTarget::c || target == ExportTarget::cpp;
-}
 
 /// The flight that is given, or the one that the calibration names, where it is there unchanged.
 class FlightAtHand {
@@ -63,38 +59,6 @@ class FlightAtHand {
   const Flight* flight_;
 };
 
-/// Of a joint calibration what holds of one flight.
-Calibration of_one_flight(const Calibration& calibration, const Flight* flight,
-                          const ExportOptions& options) {
-  const JointSetup* const joint = joint_setup(*calibration.probe);
-  if (joint == nullptr) return calibration;
-  const auto files = joint->flights | std::views::transform(&JoinedFlight::file);
-  if (!is_header(options.target) || !options.without.empty()) {
-    throw Error(fmt::format(
-        "the calibration is of {} flights jointly, and what is fitted anew is of one: fit one of "
-        "them alone and export that: {}",
-        joint->flights.size(), fmt::join(files, ", ")));
-  }
-  const Calibration one = flight == nullptr ? calibration : for_flight(calibration, *flight);
-  if (joint_setup(*one.probe) == nullptr) return one;
-  throw Error(
-      fmt::format("the calibration is of {} flights; give the one whose own values are "
-                  "wanted after it: {}",
-                  joint->flights.size(), fmt::join(files, ", ")));
-}
-
-void check_without(const Calibration& calibration, const std::vector<std::string>& names) {
-  std::vector<std::string> effects;
-  for (const EffectSetting& one : calibration.options.effects) effects.push_back(one.name);
-  for (const std::string& name : names) {
-    if (std::ranges::find(effects, name) != effects.end()) continue;
-    throw OptionError(
-        {Option{"without"},
-         fmt::format(" {}: the calibration has no such effect; it has {}", name,
-                     effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")))});
-  }
-}
-
 std::string_view instrument(const Calibration& calibration) {
   const std::string_view name = calibration.probe->name();
   if (name == "five-hole") return "a five-hole probe";
@@ -122,31 +86,6 @@ void export_header(const Calibration& given, const Calibration& held, const Expo
   exported.left_to_others = std::move(header.left_to_others);
 }
 
-void refuse_five_hole(const Calibration& calibration, const ExportOptions& options) {
-  if (is_header(options.target) || calibration.probe->name() != "five-hole") return;
-  throw OptionError({std::string("a five-hole probe has no home in ") +
-                         (options.target == ExportTarget::px4 ? "PX4" : "ArduPilot") +
-                         ", which knows no flow angles; ",
-                     Option{"to"}, " c or cpp holds all of it"});
-}
-
-void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
-  const bool px4_field =
-      options.target == ExportTarget::px4 && calibration.probe->app() == "sepcal-mag";
-  const bool airspeed = !is_header(options.target) && calibration.probe->name() == "pitot-static";
-  const auto idle = [](const char* option, const std::string& of) {
-    throw OptionError({Option{option}, " is of " + of + "; leave it out"});
-  };
-  if (options.device_id && !px4_field) idle("device_id", "PX4's magnetometers");
-  if (options.mounting && !px4_field) idle("mounting", "PX4's magnetometers");
-  if (options.in_use && !airspeed) idle("in_use", "an autopilot's airspeed");
-  if (options.in_use && !(std::isfinite(*options.in_use) && *options.in_use > 0)) {
-    throw OptionError({Option{"in_use"}, fmt::format(" is {}; give the ratio or the scale, above "
-                                                     "zero",
-                                                     *options.in_use)});
-  }
-}
-
 void write_parameters(const std::vector<std::string>& comment, const ExportOptions& options,
                       Exported& exported) {
   exported.text = options.target == ExportTarget::px4
@@ -154,10 +93,10 @@ void write_parameters(const std::vector<std::string>& comment, const ExportOptio
                       : ardupilot_text(exported.parameters, comment);
 }
 
-/// What the autopilot holds of `base`, and what that loses against `given`.
-void export_parameters(const Calibration& given, const Calibration& base,
-                       const FlightAtHand& flight, const ExportOptions& options,
-                       Exported& exported) {
+/// What the autopilot holds of `base`; returns what that loses against `given`.
+ExportLoss export_parameters(const Calibration& given, const Calibration& base,
+                             const FlightAtHand& flight, const ExportOptions& options,
+                             Exported& exported) {
   check_held(base, options.target);
   const bool refits = needs_refit(base);
   Calibration held = base;
@@ -185,9 +124,9 @@ void export_parameters(const Calibration& given, const Calibration& base,
     drop_bias(base, airspeed, loss);
   }
   for (const std::string& effect : options.without) loss.dropped.push_back("the effect " + effect);
-  exported.loss = std::move(loss);
   exported.left_to_others = effects_on_the_world(base);
   exported.calibration = std::move(held);
+  return loss;
 }
 
 /// The calibration without some of its effects: fitted, unless what an autopilot holds will be.
@@ -225,12 +164,13 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
     return exported;
   }
   const Calibration base = exported.calibration;
-  export_parameters(given, base, at_hand, options, exported);
+  ExportLoss loss = export_parameters(given, base, at_hand, options, exported);
   const std::vector<std::string> told =
       vehicle_notes(exported.calibration, at_hand.find(), options);
   std::vector<std::string> comment =
       provenance(vehicle_title(exported.calibration, options), given, exported.calibration);
-  std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
+  std::ranges::copy(loss_lines(loss), std::back_inserter(comment));
+  exported.loss = std::move(loss);
   std::ranges::copy(told, std::back_inserter(comment));
   std::ranges::copy(told, std::back_inserter(exported.notes));
   write_parameters(comment, options, exported);

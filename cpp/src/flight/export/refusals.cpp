@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/export/refusals.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+
+#include "flight/export/held.hpp"
+#include "sepcal/flight/joint.hpp"
+#include "sepcal/option_error.hpp"
+
+namespace sepcal::exporting {
+
+bool is_header(ExportTarget target) {
+  return target == ExportTarget::c || target == ExportTarget::cpp;
+}
+
+Calibration of_one_flight(const Calibration& calibration, const Flight* flight,
+                          const ExportOptions& options) {
+  const JointSetup* const joint = joint_setup(*calibration.probe);
+  if (joint == nullptr) return calibration;
+  const auto files = joint->flights | std::views::transform(&JoinedFlight::file);
+  const bool fits_anew = !is_header(options.target) && needs_refit(calibration);
+  if (fits_anew || !options.without.empty()) {
+    throw Error(fmt::format(
+        "the calibration is of {} flights jointly, and what is fitted anew is of one: fit one of "
+        "them alone and export that: {}",
+        joint->flights.size(), fmt::join(files, ", ")));
+  }
+  const Calibration one = flight == nullptr ? calibration : for_flight(calibration, *flight);
+  if (joint_setup(*one.probe) == nullptr) return one;
+  throw Error(
+      fmt::format("the calibration is of {} flights; give the one whose own values are "
+                  "wanted after it: {}",
+                  joint->flights.size(), fmt::join(files, ", ")));
+}
+
+void check_without(const Calibration& calibration, const std::vector<std::string>& names) {
+  std::vector<std::string> effects;
+  for (const EffectSetting& one : calibration.options.effects) effects.push_back(one.name);
+  for (const std::string& name : names) {
+    if (std::ranges::find(effects, name) != effects.end()) continue;
+    throw OptionError(
+        {Option{"without"},
+         fmt::format(" {}: the calibration has no such effect; it has {}", name,
+                     effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")))});
+  }
+}
+
+void refuse_five_hole(const Calibration& calibration, const ExportOptions& options) {
+  if (is_header(options.target) || calibration.probe->name() != "five-hole") return;
+  throw OptionError({std::string("a five-hole probe has no home in ") +
+                         (options.target == ExportTarget::px4 ? "PX4" : "ArduPilot") +
+                         ", which knows no flow angles; ",
+                     Option{"to"}, " c or cpp holds all of it"});
+}
+
+void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
+  const bool px4_field =
+      options.target == ExportTarget::px4 && calibration.probe->app() == "sepcal-mag";
+  const bool airspeed = !is_header(options.target) && calibration.probe->name() == "pitot-static";
+  const auto idle = [](const char* option, const std::string& of) {
+    throw OptionError({Option{option}, " is of " + of + "; leave it out"});
+  };
+  if (options.device_id && !px4_field) idle("device_id", "PX4's magnetometers");
+  if (options.mounting && !px4_field) idle("mounting", "PX4's magnetometers");
+  if (options.in_use && !airspeed) idle("in_use", "an autopilot's airspeed");
+  if (options.in_use && !(std::isfinite(*options.in_use) && *options.in_use > 0)) {
+    throw OptionError({Option{"in_use"}, fmt::format(" is {}; give the ratio or the scale, above "
+                                                     "zero",
+                                                     *options.in_use)});
+  }
+}
+
+}  // namespace sepcal::exporting
