@@ -517,6 +517,18 @@ def test_recorded_tube(tmp_path: Path, target: str) -> None:
     )
 
 
+def test_the_winds_effects_stay_in_the_fit(tmp_path: Path) -> None:
+    """They are no part of a correction, and what is fitted anew has them."""
+    bench = simulate_tube(tmp_path, "--hide", "wind[altitude_m]=0.1")
+    done = bench.run("fit", "flight.csv", "--effect", "wind[altitude_m]", "-o", "shear.json")
+    assert done.code == 0, done.err
+    plain = export(bench, "px4").result
+    found = export(bench, "px4", calibration="shear.json").result
+    assert found["left_to_others"] == ["wind[altitude_m]"]
+    assert set(found["parameters"]) == set(plain["parameters"])
+    assert found["loss"]["residual_after"] < 0.9 * plain["loss"]["residual_after"]
+
+
 def test_a_tube_without_an_effect(tmp_path: Path) -> None:
     bench = simulate_tube(tmp_path)
     done = bench.run("fit", "flight.csv", "--effect", "airspeed_scale[throttle]", "-o", "e.json")

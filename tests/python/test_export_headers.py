@@ -39,6 +39,7 @@ FIVE_HOLE = {
     "angles": ("alpha_offset[throttle]", "beta_offset[alpha]", "alpha_offset[spline(beta,4)]"),
     "pressures": ("pressure_offset[throttle]", "pressure_offset[q]"),
     "physics": ("density_error", "compressibility", "upwash", "sidewash"),
+    "its own readings": ("airspeed_scale[rho]", "beta_offset[ps]", "alpha_offset[q]", "upwash"),
     "the wind's": ("wind_shear", "heading_bias", "lever_arm", "mounting_error"),
 }
 TUBE = {
@@ -46,6 +47,8 @@ TUBE = {
     "airspeed": ("airspeed_scale[altitude_m]", "airspeed_bias[throttle]"),
     "pressure": ("pressure_offset[throttle]", "airspeed_scale[q]"),
     "density": ("density_error", "wind[altitude_m]"),
+    "density as a driver": ("pressure_offset[throttle]", "airspeed_scale[rho]"),
+    "its own temperature": ("density_error", "airspeed_bias[temp_k]"),
 }
 
 

@@ -3,6 +3,8 @@
 // with what they add, and the air's direction turned into body axes by C(eps).
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "flight/export/bodies.hpp"
 #include "sepcal/error.hpp"
 
@@ -35,7 +37,12 @@ ProbeBody pitot_static_body(const Calibration& calibration, const Correction& co
       "  double met;\n  if (!(airspeed_mps > 0.0)) return {};\n  met = (airspeed_mps - {}) / {};\n",
       dialect.own("bad_input"), dialect.constant("c_va"), dialect.constant("s_va"));
   if (correction.has("pressure_offset.s")) {
-    body.readings.push_back({"rho_kgpm3", 1, {"rho_kgpm3"}, "kg/m^3, density; 1.225 if not known"});
+    const bool is_driver = std::ranges::find(correction.drivers, "rho_kgpm3", &Driver::argument) !=
+                           correction.drivers.end();
+    if (!is_driver) {
+      body.readings.push_back(
+          {"rho_kgpm3", 1, {"rho_kgpm3"}, "kg/m^3, density; 1.225 if not known"});
+    }
     body.text += fmt::format("  if (!(rho_kgpm3 > 0.0)) return {};\n", dialect.own("bad_input"));
     body.text += fmt::format("  met = met * met + 2.0 * (0.0{}) / rho_kgpm3;\n",
                              correction.added("pressure_offset.s"));

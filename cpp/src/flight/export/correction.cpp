@@ -75,9 +75,11 @@ class Description {
   std::string channel(const std::string& name, const std::vector<double>& trial = {}) {
     const auto& readings = names_of_readings(calibration_.probe->name());
     if (const auto found = readings.find(name); found != readings.end()) return found->second;
-    const auto there = std::ranges::find(result_.drivers, name, &Driver::channel);
-    if (there != result_.drivers.end()) return there->argument;
     const KnownChannel* const known = find_known(name);
+    const auto there = std::ranges::find_if(result_.drivers, [&](const Driver& one) {
+      return one.channel == name || (known != nullptr && one.argument == known->argument);
+    });
+    if (there != result_.drivers.end()) return there->argument;
     Driver driver{.channel = name, .argument = identifier(name), .comment = "as it was logged"};
     driver.trial = trial.empty() ? std::vector{0.5, 0.2, 2.0} : trial;
     if (known != nullptr) {

@@ -43,19 +43,25 @@ bool is_reserved(const std::string& name) {
 }  // namespace
 
 const KnownChannel* find_known(std::string_view channel) {
-  const auto* const found = std::ranges::find(known_channels, channel, &KnownChannel::channel);
+  const auto* const found = std::ranges::find_if(known_channels, [&](const KnownChannel& one) {
+    return one.channel == channel || one.argument == channel;
+  });
   return found == known_channels.end() ? nullptr : found;
 }
 
 const std::map<std::string, std::string, std::less<>>& names_of_readings(std::string_view probe) {
-  static const std::map<std::string, std::string, std::less<>> none;
   static const std::map<std::string, std::string, std::less<>> field{
-      {"mx", "m_ut[0]"}, {"my", "m_ut[1]"}, {"mz", "m_ut[2]"}};
+      {"mx", "m_ut[0]"},    {"my", "m_ut[1]"},    {"mz", "m_ut[2]"},
+      {"mx_ut", "m_ut[0]"}, {"my_ut", "m_ut[1]"}, {"mz_ut", "m_ut[2]"}};
+  static const std::map<std::string, std::string, std::less<>> tube{
+      {"airspeed", "airspeed_mps"}, {"airspeed_mps", "airspeed_mps"}};
   static const std::map<std::string, std::string, std::less<>> ports{
-      {"alpha", "alpha_read"}, {"beta", "beta_read"}, {"pt", "pt_pa"},     {"ps", "ps_pa"},
-      {"dpa", "dpa_pa"},       {"dpb", "dpb_pa"},     {"rho", "rho_kgpm3"}};
+      {"alpha", "alpha_read"}, {"beta", "beta_read"}, {"pt", "pt_pa"},
+      {"ps", "ps_pa"},         {"dpa", "dpa_pa"},     {"dpb", "dpb_pa"},
+      {"rho", "rho_kgpm3"},    {"pt_pa", "pt_pa"},    {"ps_pa", "ps_pa"},
+      {"dpa_pa", "dpa_pa"},    {"dpb_pa", "dpb_pa"},  {"rho_kgpm3", "rho_kgpm3"}};
   if (probe == "five-hole") return ports;
-  return probe == "pitot-static" ? none : field;
+  return probe == "pitot-static" ? tube : field;
 }
 
 std::string identifier(const std::string& header) {

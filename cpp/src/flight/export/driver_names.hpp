@@ -18,7 +18,7 @@ struct KnownChannel {
   std::array<double, 3> trial;
 };
 
-/// nullptr for what is a column of the log.
+/// By its name in a record or as a column in that unit; nullptr for any other column of the log.
 const KnownChannel* find_known(std::string_view channel);
 
 /// Expressions of a correction by channel, for a probe by its Probe::name().

@@ -23,6 +23,6 @@ int sensor_of(const ExportOptions& options, int first, int last, std::string_vie
                      fmt::format(" {}: {} are counted from {} to {}", sensor, what, first, last)});
 }
 
-std::string float_text(double value) { return fmt::format("{}", static_cast<float>(value)); }
+std::string float_text(double value) { return fmt::format("{}", static_cast<float>(value) + 0.0F); }
 
 }  // namespace sepcal::exporting

@@ -35,7 +35,7 @@ void check_range(const VehicleParameter& parameter, double lowest, double highes
 /// The sensor that is asked for, or the first. Throws Error outside [first, last].
 int sensor_of(const ExportOptions& options, int first, int last, std::string_view what);
 
-/// A number as a float holds it.
+/// A number as a float holds it, zero without a sign.
 std::string float_text(double value);
 
 inline constexpr double sea_level_density = 1.225;  // kg/m^3, of both autopilots
