@@ -413,11 +413,20 @@ def test_what_an_autopilot_does_not_take(magnetometer: Bench) -> None:
     magnetometer.flight.write_text(log.text())
     assert magnetometer.run("fit", "flight.csv", "-o", "half.json").code == 0
     command = ("export", "half.json", "--to", "ardupilot")
-    assert_refused(magnetometer, *command, words=("COMPASS_SCALE would be", "0.6667 to 1.5"))
-    export(magnetometer, "px4", calibration="half.json")
-    found = corrected_by("px4", magnetometer.folder / "vehicle", read_raw(log))
+    words = ("COMPASS_SCALE would be", "0.6667 to 1.5", "--force puts it into COMPASS_DIA")
+    assert_refused(magnetometer, *command, words=words)
     C, n, _ = autopilots.fit_symmetric(true_field(log), read_raw(log))
-    assert_allclose(found, (read_raw(log) - n) @ np.linalg.inv(C).T, atol=SINGLE * 200)
+    for target, force in (("px4", ()), ("ardupilot", ("--force",))):
+        export(magnetometer, target, *force, calibration="half.json")
+        found = corrected_by(target, magnetometer.folder / "vehicle", read_raw(log))
+        assert_allclose(found, (read_raw(log) - n) @ np.linalg.inv(C).T, atol=SINGLE * 200)
+    for axis in "xyz":
+        log.replace(f"m{axis}_ut", log.column(f"m{axis}_ut") / 10)
+    magnetometer.flight.write_text(log.text())
+    assert magnetometer.run("fit", "flight.csv", "-o", "tenth.json").code in (0, 4)
+    for target, name in (("px4", "CAL_MAG0_XSCALE"), ("ardupilot", "COMPASS_DIA_X")):
+        command = ("export", "tenth.json", "--to", target, "--force")
+        assert_refused(magnetometer, *command, words=(f"{name} would be", "--to c"))
 
 
 def test_usage(bench: Bench) -> None:

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "flight/export/parameters.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal::exporting {
 namespace {
@@ -26,14 +27,26 @@ void check_last(const std::vector<VehicleParameter>& parameters, double lowest, 
   }
 }
 
+/// COMPASS_SCALE, one where forced beyond its range: the matrix then holds all.
+double scale_of(const HeldField& held, const std::string& number, const ExportOptions& options) {
+  constexpr double farthest = 1.5;  // a COMPASS_SCALE beyond it, or its inverse, is ignored
+  const double scale = held.W.trace() / 3.0;
+  if (scale >= 1.0 / farthest && scale <= farthest) return scale;
+  if (options.force) return 1.0;
+  throw OptionError({fmt::format("COMPASS_SCALE{} would be {:.6g}, and ArduPilot takes {:.4g} to "
+                                 "{:.4g}: the readings are in another unit, the fit is wrong, or "
+                                 "the sensor reads so; ",
+                                 number, scale, 1.0 / farthest, farthest),
+                     Option{"force"}, " puts it into COMPASS_DIA"});
+}
+
 }  // namespace
 
 std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
                                                 const ExportOptions& options) {
-  constexpr double farthest_scale = 1.5;  // a COMPASS_SCALE beyond it, or its inverse, is ignored
   const int sensor = sensor_of(options, 1, 3, "ArduPilot's compasses");
   const std::string number = sensor == 1 ? "" : std::to_string(sensor);
-  const double scale = held.W.trace() / 3.0;
+  const double scale = scale_of(held, number, options);
   const Eigen::Matrix3d M = held.W / scale;
   std::vector<VehicleParameter> parameters;
   add_axes(parameters, "COMPASS_OFS" + number, -milligauss * held.n);
@@ -42,7 +55,6 @@ std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
   add_axes(parameters, "COMPASS_ODI" + number, {M(0, 1), M(0, 2), M(1, 2)});
   check_last(parameters, -1.0, 1.0);
   parameters.push_back({"COMPASS_SCALE" + number, scale});
-  check_range(parameters.back(), 1.0 / farthest_scale, farthest_scale);
   add_axes(parameters, "COMPASS_MOT" + number, -milligauss * (held.W * held.kappa));
   if (held.motor == Motor::none) return parameters;
   parameters.push_back({"COMPASS_MOTCT", held.motor == Motor::current ? 2.0 : 1.0, true});
