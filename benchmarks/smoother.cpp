@@ -66,7 +66,7 @@ Answer smooth(const Problem& problem) {
     pass[k] = {filter.estimate(), step.from(filter.x(), State::Zero())};
     filter.predict(pass[k].next);
   }
-  sepcal::smooth<n, n>(pass, smoothed);
+  sepcal::smooth(pass, smoothed);
   Answer answer;
   for (const auto& one : smoothed) answer.insert(answer.end(), one.x.begin(), one.x.end());
   return answer;

@@ -1,26 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # sepcal::core: headers that need Eigen alone and nothing of an operating system; how they and the
-# package's files for CMake and pkg-config are installed. A header of the core is listed here, with
-# all that it includes: without the engine (SEPCAL_BUILD_ENGINE=OFF) no other is installed.
-set(core_headers
-    eigen
-    states/discretise
-    states/estimate
-    states/extended_filter
-    states/filter
-    states/information_form
-    states/information_root
-    states/iterated_update
-    states/joseph_form
-    states/least_squares
-    states/linearisation
-    states/matrix_exponential
-    states/measured
-    states/product
-    states/recursive_least_squares
-    states/smoother
-    states/square_root_form
-    states/triangle)
+# package's files for CMake and pkg-config are installed. The core's room in rooms.toml lists them:
+# without the engine (SEPCAL_BUILD_ENGINE=OFF) no other is installed.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS rooms.toml)
+file(READ rooms.toml rooms)
+string(REGEX MATCH "\n\\[core\\][^\n]*\n[^\n]*\npublic = \\[([^]]*)\\]" core_room "${rooms}")
+string(REGEX MATCHALL "[a-z_/]+" core_headers "${CMAKE_MATCH_1}")
 list(TRANSFORM core_headers PREPEND include/sepcal/)
 list(TRANSFORM core_headers APPEND .hpp)
 

@@ -42,7 +42,7 @@ int main() {
     times[k] = t;
     t += dt;
   }
-  sepcal::smooth<2, 2>(pass, smoothed);
+  sepcal::smooth(pass, smoothed);
 
   double filtered = 0, later = 0, said = 0;  // mean squares of the climb's error, and what P says
   for (std::size_t k = 0; k < rows; ++k) {

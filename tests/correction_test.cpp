@@ -6,7 +6,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numbers>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
 
 #include "draws.hpp"
 #include "sepcal/effects/air_data.hpp"
@@ -25,6 +27,23 @@ using sepcal::test::Draws;
 namespace effects = sepcal::effects;
 
 namespace {
+
+/// Parameters by their names: corrections' stand in another order than they were added in.
+template <class M>
+Calibrated<M> with(const M& model,
+                   std::initializer_list<std::pair<const char*, double>> parameters) {
+  Calibrated<M> board{model};
+  for (const auto& [name, value] : parameters) CHECK(board.set(name, value));
+  CHECK(board.xi1.allFinite());
+  CHECK(board.xi2.allFinite());
+  return board;
+}
+
+/// An input by its name.
+template <class M>
+double& input(Vec<double, Sizes<M>::n_u>& u, std::string_view name) {
+  return u[sepcal::place_of(name, M::inputs)];
+}
 
 template <class M>
 auto calibrated(const M& model, Vec<double, Sizes<M>::n_1> xi1, Vec<double, Sizes<M>::n_2> xi2) {
@@ -105,10 +124,22 @@ TEST_CASE("a magnetometer by strength with a current, a temperature and a supply
                      effects::strength::Scale<"temp_degc">{.centre = 20.0} +
                      effects::strength::AxisScale<"voltage_v">{.centre = 12.0};
   using M = std::remove_const_t<decltype(model)>;
-  Vec<double, Sizes<M>::n_2> xi2;
-  xi2 << 0.1, -0.05, 0.02, 0.04, -0.02, 0.01, 3.0, -7.0, 12.0,  // C, n
-      0.8, -0.4, 1.1, 1e-3, 2e-3, -1e-3, 5e-4;
-  const auto board = calibrated(model, Vec<double, 0>(), xi2);
+  const auto board = with(model, {{"lambda_x", 0.1},
+                                  {"lambda_y", -0.05},
+                                  {"lambda_z", 0.02},
+                                  {"alpha_xy", 0.04},
+                                  {"alpha_xz", -0.02},
+                                  {"alpha_yz", 0.01},
+                                  {"n_x", 3.0},
+                                  {"n_y", -7.0},
+                                  {"n_z", 12.0},
+                                  {"bias[current_a].x", 0.8},
+                                  {"bias[current_a].y", -0.4},
+                                  {"bias[current_a].z", 1.1},
+                                  {"scale[temp_degc].s", 1e-3},
+                                  {"axis_scale[voltage_v].x", 2e-3},
+                                  {"axis_scale[voltage_v].y", -1e-3},
+                                  {"axis_scale[voltage_v].z", 5e-4}});
   Draws draws(2);
   for (int k = 0; k < 200; ++k) {
     const Vector3d h = 48.0 * Vector3d(draws.normal(), draws.normal(), draws.normal()).normalized();
@@ -121,8 +152,11 @@ TEST_CASE("a magnetometer by strength with a current, a temperature and a supply
     C.diagonal() += (voltage - 12.0) * Vector3d(2e-3, -1e-3, 5e-4) +
                     (temperature - 20.0) * Vector3d::Constant(1e-3);
     const Vector3d m = C * h + Vector3d(3, -7, 12) + (current - 2.0) * Vector3d(0.8, -0.4, 1.1);
-    Vec<double, 11> u;
-    u << m, 0, 0, 0, 0, 0, current, temperature, voltage;
+    Vec<double, 11> u = Vec<double, 11>::Zero();
+    u.head<3>() = m;
+    input<M>(u, "current_a") = current;
+    input<M>(u, "temp_degc") = temperature;
+    input<M>(u, "voltage_v") = voltage;
     const auto corrected = sepcal::correct(board, u);
     REQUIRE(corrected.status == CorrectionStatus::ok);
     CHECK((corrected.h - h).norm() < 1e-12 * 48.0);
@@ -138,9 +172,22 @@ TEST_CASE("a five-hole probe with a pressure's offset, a scale and a vane that f
                      effects::PressureOffset<"current_a">{} + effects::AlphaOffset<"flaps">{} +
                      effects::HeadingBias{};
   using M = std::remove_const_t<decltype(model)>;
-  const Vec<double, 8> xi1{{0.05, -0.3, 4, -2, 0.1, 0.01, 0.02, 2e-3}};
-  const Vec<double, 8> xi2{{0.1, 0.02, -0.1, 0.03, 0.1, 1.5, 0.2, 0.05}};
-  const auto board = calibrated(model, xi1, xi2);
+  const auto board = with(model, {{"lambda_va", 0.05},
+                                  {"b_va", -0.3},
+                                  {"w_n", 4.0},
+                                  {"w_e", -2.0},
+                                  {"w_d", 0.1},
+                                  {"wind[altitude_m].n", 0.01},
+                                  {"wind[altitude_m].e", 0.02},
+                                  {"airspeed_scale[temp_degc].s", 2e-3},
+                                  {"lambda_alpha", 0.1},
+                                  {"b_alpha", 0.02},
+                                  {"lambda_beta", -0.1},
+                                  {"b_beta", 0.03},
+                                  {"eps_phi", 0.1},
+                                  {"pressure_offset[current_a].s", 1.5},
+                                  {"alpha_offset[flaps].s", 0.2},
+                                  {"heading_bias.delta", 0.05}});
   Draws draws(3);
   for (int k = 0; k < 200; ++k) {
     const double speed = draws.uniform(12.0, 40.0);
@@ -157,9 +204,7 @@ TEST_CASE("a five-hole probe with a pressure's offset, a scale and a vane that f
     const double beta_read = (beta - 0.03) / 0.9;
     using Inputs = Vec<double, Sizes<M>::n_u>;
     Inputs u = Inputs::Zero();
-    const auto put = [&](std::string_view name, double value) {
-      u[static_cast<Eigen::Index>(sepcal::composing::find(M::inputs, name))] = value;
-    };
+    const auto put = [&u](std::string_view name, double value) { input<M>(u, name) = value; };
     put("roll", draws.normal());
     put("yaw", draws.normal());
     put("q", draws.normal());
@@ -194,9 +239,14 @@ TEST_CASE("a Pitot-static tube with an offset of its pressure, a scale and a bia
                      effects::tube::AirspeedBias<"temp_degc">{.centre = 15.0} +
                      effects::PressureOffset<"current_a">{};
   using M = std::remove_const_t<decltype(model)>;
-  const Vec<double, 2> xi1{{0.97, 0.4}};
-  const Vec<double, 6> xi2{{3.0, -1.0, 0.0, 0.2, 0.01, 2.0}};
-  const auto board = calibrated(model, xi1, xi2);
+  const auto board = with(model, {{"s_va", 0.97},
+                                  {"c_va", 0.4},
+                                  {"w_n", 3.0},
+                                  {"w_e", -1.0},
+                                  {"w_d", 0.0},
+                                  {"airspeed_scale[alpha].s", 0.2},
+                                  {"airspeed_bias[temp_degc].s", 0.01},
+                                  {"pressure_offset[current_a].s", 2.0}});
   Draws draws(4);
   for (int k = 0; k < 200; ++k) {
     const double V = draws.uniform(10.0, 60.0);
@@ -208,10 +258,10 @@ TEST_CASE("a Pitot-static tube with an offset of its pressure, a scale and a bia
     const double met = std::sqrt(undisturbed * undisturbed - 2.0 * 2.0 * current / rho);
     using Inputs = Vec<double, Sizes<M>::n_u>;
     Inputs u = Inputs::Zero();
-    u[6] = rho;
-    u[7] = alpha;
-    u[8] = temperature;
-    u[9] = current;
+    input<M>(u, "rho") = rho;
+    input<M>(u, "alpha") = alpha;
+    input<M>(u, "temp_degc") = temperature;
+    input<M>(u, "current_a") = current;
     const auto corrected = sepcal::correct(board, 0.97 * met + 0.4, u);
     REQUIRE(corrected.status == CorrectionStatus::ok);
     CHECK(corrected.airspeed == Approx(V).epsilon(1e-12));
@@ -219,6 +269,14 @@ TEST_CASE("a Pitot-static tube with an offset of its pressure, a scale and a bia
                                               u.cast<float>().eval())
                                   .airspeed) == Approx(V).epsilon(1e-5));
   }
+}
+
+TEST_CASE("a parameter that is not set is refused, and one that there isn't is told") {
+  Calibrated<sepcal::Magnetometer> board{};
+  CHECK(board.set("n_x", 1.0));
+  CHECK_FALSE(board.set("n_w", 1.0));
+  const Vector3d h = Vector3d::Zero();
+  CHECK(sepcal::correct(board, Vector3d(20, 5, 40), h).status == CorrectionStatus::refused);
 }
 
 }  // namespace correction_test

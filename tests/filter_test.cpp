@@ -269,9 +269,8 @@ TEST_CASE("sizes that are known at run time give the same filter, smoother and r
   }
   std::vector<sepcal::Smoothed<n, RandomSystem::n_w>> smoothed(pass.size());
   std::vector<sepcal::Smoothed<Dynamic, Dynamic>> free_smoothed(pass.size());
-  sepcal::smooth(std::span<const sepcal::Stage<n, RandomSystem::n_w>>(pass), std::span(smoothed));
-  sepcal::smooth(std::span<const sepcal::Stage<Dynamic, Dynamic>>(free_pass),
-                 std::span(free_smoothed));
+  sepcal::smooth(pass, smoothed);
+  sepcal::smooth(free_pass, free_smoothed);
   for (std::size_t k = 0; k < pass.size(); ++k) {
     CHECK((free_smoothed[k].x - smoothed[k].x).norm() < 1e-12 * (1 + smoothed[k].x.norm()));
     CHECK((free_smoothed[k].P - smoothed[k].P).norm() < 1e-12 * smoothed[k].P.norm());

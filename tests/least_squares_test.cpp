@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <vector>
 
 #include "draws.hpp"
@@ -124,6 +125,16 @@ TEST_CASE("statuses: too few iterations, a parameter that nothing tells of, bad 
         LeastSquaresStatus::refused);  // 0 / 0
   CHECK(iterate_least_squares(decay, 0, Vector2d(2.0, 0.7)).status ==
         LeastSquaresStatus::not_determined);
+}
+
+TEST_CASE("a step to where the model is no number is shortened, not taken for missing rows") {
+  using One = Eigen::Matrix<double, 1, 1>;
+  const auto logarithm = [](int, const One& p) {
+    return LeastSquaresRows<1, 1>{One(-5.0 - std::log(p[0])), One(1.0 / p[0]), One(1.0)};
+  };
+  const auto fit = iterate_least_squares(logarithm, 1, One(0.1));
+  CHECK(fit.status == LeastSquaresStatus::converged);
+  CHECK(fit.p[0] == doctest::Approx(std::exp(-5.0)).epsilon(1e-9));
 }
 
 }  // namespace least_squares_test

@@ -94,7 +94,7 @@ TEST_CASE("multistage smoothing is conditioning on all samples, w(k|N) and Q(k|N
     const Conditioning conditioning(system);
     const auto pass = filter_all(system);
     std::array<Smoothed, samples> smoothed;
-    sepcal::smooth(std::span<const Stage>(pass), std::span<Smoothed>(smoothed));
+    sepcal::smooth(pass, smoothed);
     for (int k = 0; k < samples; ++k) {
       const Smoothed& here = smoothed[static_cast<std::size_t>(k)];
       worst = std::max(worst, distance(here, conditioning, k, samples - 1));
@@ -124,7 +124,7 @@ TEST_CASE("states without noise, also known ones: P(k+1|k) is singular and nothi
   const Conditioning conditioning(system);
   const auto pass = filter_all(system);
   std::array<Smoothed, samples> smoothed;
-  sepcal::smooth(std::span<const Stage>(pass), std::span<Smoothed>(smoothed));
+  sepcal::smooth(pass, smoothed);
   for (int k = 0; k < samples; ++k) {
     CHECK(distance(smoothed[static_cast<std::size_t>(k)], conditioning, k, samples - 1) < 1e-9);
   }
@@ -150,7 +150,7 @@ TEST_CASE("a vague start: smoothed covariances stay positive and true") {
   double information = 1.0;
   for (int k = 1; k < rows; ++k) information = 1.0 + information / (1.0 + information);
   std::array<sepcal::Smoothed<1>, rows> smoothed;
-  sepcal::smooth(std::span<const sepcal::Stage<1>>(pass), std::span<sepcal::Smoothed<1>>(smoothed));
+  sepcal::smooth(pass, smoothed);
   CHECK(smoothed[0].P(0, 0) == doctest::Approx(r * r / information).epsilon(1e-9));
   CHECK(smoothed[0].Q(0, 0) > 0.0);
 }

@@ -84,14 +84,15 @@ stacks: dict[str, int] = {}  # bytes, by program
 
 
 class Checks:
-    """Counts what holds, and says what doesn't."""
+    """What held and what didn't, a line each."""
 
     def __init__(self) -> None:
+        self.lines: list[str] = []
         self.failed = 0
 
     def hold(self, what: str, holds: bool) -> None:
-        """Prints a line, and remembers where it doesn't hold."""
-        print(f"  {'ok    ' if holds else 'FAILED'}  {what}")
+        """Adds a line, and counts it where it doesn't hold."""
+        self.lines.append(f"  {'ok    ' if holds else 'FAILED'}  {what}")
         self.failed += not holds
 
 

@@ -102,7 +102,8 @@ def check_streams(folder: Path, checks: Checks) -> list[str]:
 
     recorded = Path(os.environ.get("SEPCAL_FIXTURES", "")) / "uav_pitot_static_2022_05_07_11.csv"
     if not recorded.is_file():
-        print(f"  skipped: a recorded flight; there is no {recorded.name} in $SEPCAL_FIXTURES")
+        missing = f"there is no {recorded.name} in $SEPCAL_FIXTURES"
+        checks.lines.append(f"  skipped  a recorded flight: {missing}")
         return lines
     uav = sepcal.read_csv(str(recorded))
     columns = ("vn_mps", "ve_mps", "vd_mps", "airspeed_mps")

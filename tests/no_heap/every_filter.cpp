@@ -56,7 +56,7 @@ double run(const Output* y, int count, std::span<Stage> pass, std::span<Smoothed
     cost += sepcal::smooth_by_residual(stage, y[k], Outputs{}(filter.x()), R::Identity().eval())
                 .w.norm();
   }
-  sepcal::smooth(std::span<const Stage>(pass), smoothed);
+  sepcal::smooth(pass, smoothed);
   return cost + filter.covariance().trace();
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recursive least squares over a flight: at a given xi2 the five linear parameters of a five-hole
 // probe, about a nominal xi1, row by row as square-root information, and as both recursions of S
-// 4.12, from a wide start. Out comes the triangle, and what each says of xi1.
+// 4.12, from a wide start. Out comes how many rows each refused, the triangle, and what each says
+// of xi1.
 #include "link.hpp"
 #include "sepcal/core.hpp"
 
@@ -22,7 +23,7 @@ void fly() {
   sepcal::CovarianceRecursion<5, Scalar> covariance(zero, Scalar(1e6) * identity);
   target::Worst of_root;
   target::Worst of_recursion;
-  bool sound = true;
+  int refused[3] = {0, 0, 0};
   for (int rows = target::read_count(); rows > 0; --rows) {
     auto u = target::read_vector<double, 14>();
     u[6] -= u[7];  // pressures as a difference, for float
@@ -30,11 +31,11 @@ void fly() {
     const auto z = target::read_vector<Scalar, 3>();
     const auto row = probe.at(sepcal::Vec<Scalar, 14>(u.cast<Scalar>()), xi2);
     const sepcal::Vec<Scalar, 3> rest = z - row.b - sepcal::states::product(row.A, nominal);
-    sound = of_root.of([&] { return root.absorb<3>(row.A, rest, W); }) && sound;
-    sound = information.absorb<3>(row.A, rest, W) && sound;
-    sound = of_recursion.of([&] { return covariance.absorb<3>(row.A, rest, W); }) && sound;
+    refused[0] += of_root.of([&] { return root.absorb<3>(row.A, rest, W); }) ? 0 : 1;
+    refused[1] += information.absorb<3>(row.A, rest, W) ? 0 : 1;
+    refused[2] += of_recursion.of([&] { return covariance.absorb<3>(row.A, rest, W); }) ? 0 : 1;
   }
-  target::write(sound ? 1.0 : 0.0);
+  for (const int rows : refused) target::write(rows);
   target::write_all(root.matrix());
   target::write_all(root.solution());
   target::write_all(information.solution());

@@ -3,6 +3,7 @@
 // each of a problem whose answer can be written down. Returns how many came out wrong.
 #include <cmath>
 #include <cstdio>
+#include <sepcal/core.hpp>
 #include <sepcal/states/filter.hpp>
 #include <sepcal/states/information_root.hpp>
 #include <sepcal/states/least_squares.hpp>

@@ -22,7 +22,7 @@ struct DiscreteNoise {
 /// only, where its exp(-F dt) is harmless, and doubled s times: Q_d <- Q_d + Phi Q_d Phi', which
 /// adds positive terms. Of F dt balanced: units of states don't count. All NaN where an argument is
 /// not finite.
-template <int NX, class Scalar>
+template <int NX, class Scalar = double>
 DiscreteNoise<NX, Scalar> discretise(
     const Eigen::Matrix<Scalar, NX, NX>& F,
     const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& density,
@@ -63,10 +63,10 @@ struct DiscreteInputs {
 
 /// What inputs do over dt (s), from F (1/s) and B: exp([F dt, B dt, 0; 0 0 I; 0 0 0]). Held inputs
 /// lag linear ones by half a sample.
-template <int NX, int NU, class Scalar>
-DiscreteInputs<NX, NU, Scalar> discretise_inputs(const Eigen::Matrix<Scalar, NX, NX>& F,
-                                                 const Eigen::Matrix<Scalar, NX, NU>& B,
-                                                 std::type_identity_t<Scalar> dt) {
+template <int NX, int NU, class Scalar = double>
+DiscreteInputs<NX, NU, Scalar> discretise_inputs(
+    const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& F,
+    const std::type_identity_t<Eigen::Matrix<Scalar, NX, NU>>& B, std::type_identity_t<Scalar> dt) {
   using Square = Eigen::Matrix<Scalar, NX + 2 * NU, NX + 2 * NU>;
   Square block = Square::Zero();
   block.template topLeftCorner<NX, NX>() = F * dt;

@@ -78,7 +78,7 @@ Transition<NX, NX, Scalar> propagate(
     const Matrix F = system.rate_jacobian(step.middle, t + Scalar(0.5) * dt);
     const Eigen::Matrix<Scalar, NX, NW> G = system.noise_input(step.middle, t + Scalar(0.5) * dt);
     const Matrix density = states::product(G, Q, G.transpose());
-    const DiscreteNoise<NX, Scalar> part = discretise(F, density, dt);
+    const DiscreteNoise<NX, Scalar> part = discretise<NX, Scalar>(F, density, dt);
     whole.Phi = states::product(part.Phi, whole.Phi);
     whole.Q_d = states::product(part.Phi, whole.Q_d, part.Phi.transpose()) + part.Q_d;
     whole.x = step.end;

@@ -90,7 +90,8 @@ LeastSquares<N, Scalar> iterate_least_squares(const Sample& sample, int count,
     bool lower = false;
     for (int half = 0; half <= options.halvings && !lower; ++half, step *= Scalar(0.5)) {
       p = fit.p + step;
-      lower = states::gather(sample, count, p, rows) && (last || states::cost_about(rows) <= most);
+      lower = states::gather(sample, count, p, rows) && rows.count() == fit.rows.count() &&
+              (last || states::cost_about(rows) <= most);
     }
     if (!lower) return fit;
     fit = {fit.status, fit.iterations, p, rows, states::cost_about(rows)};

@@ -54,8 +54,10 @@ class LevenbergMarquardt {
   /// Whether rows are wanted at the next trial(); else status() says how it ended.
   bool step() {
     using enum LeastSquaresStatus;
-    const Scalar cost = sound_ ? cost_of(rows_) : std::numeric_limits<Scalar>::infinity();
     const bool first = !std::isfinite(cost_);
+    // A model that is no number in a row must not pass for one of which that row is missing.
+    sound_ = sound_ && (first || rows_.count() == taken_.count());
+    const Scalar cost = sound_ ? cost_of(rows_) : std::numeric_limits<Scalar>::infinity();
     if (first && !sound_) {
       status_ = refused;
       return false;

@@ -4,7 +4,8 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <iterator>
+#include <ranges>
 
 #include "sepcal/states/estimate.hpp"
 #include "sepcal/states/linearisation.hpp"
@@ -106,13 +107,14 @@ Smoothed<NX, NW, Scalar> smooth_last(const Stage<NX, NW, Scalar>& last) {
           Eigen::Vector<Scalar, NW>::Zero(last.next.Q_d.rows()), last.next.Q_d};
 }
 
-/// All stages, S 2.20 to 2.23: smoothed[k] for k = N ... 0. Both spans have the same length.
-template <int NX, int NW, class Scalar>
-void smooth(std::span<const Stage<NX, NW, Scalar>> pass,
-            std::span<Smoothed<NX, NW, Scalar>> smoothed) {
-  if (pass.empty()) return;
-  smoothed[pass.size() - 1] = smooth_last(pass.back());
-  for (std::size_t k = pass.size() - 1; k-- > 0;) {
+/// All stages, S 2.20 to 2.23: smoothed[k] for k = N ... 0. `pass` and `smoothed` are arrays,
+/// vectors or spans of Stages and of Smoothed, of the same length.
+template <std::ranges::contiguous_range Pass, class Result>
+void smooth(const Pass& pass, Result&& smoothed) {  // NOLINT(cppcoreguidelines-missing-std-forward)
+  const std::size_t length = std::size(pass);
+  if (length == 0) return;
+  smoothed[length - 1] = smooth_last(pass[length - 1]);
+  for (std::size_t k = length - 1; k-- > 0;) {
     smoothed[k] = smooth_stage(pass[k], smoothed[k + 1].x, smoothed[k + 1].P);
   }
 }

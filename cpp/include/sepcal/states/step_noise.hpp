@@ -27,7 +27,8 @@ Eigen::Matrix<Scalar, StateSizes<M>::n_x, StateSizes<M>::n_x> noise_of_step(
     const auto rate = [&]<class T>(const Vec<T, n_x>& at) -> Vec<T, n_x> {
       return model.rate(at, u, Vec<T, StateSizes<M>::n_p>(p.template cast<T>()));
     };
-    return discretise(differentiate(rate, x).jacobian, density, between.duration()).Q_d;
+    return discretise<n_x, Scalar>(differentiate(rate, x).jacobian, density, between.duration())
+        .Q_d;
   }
 }
 

@@ -179,7 +179,7 @@ class TwoStageStart {
   void end_sample() {
     Candidate next{linear_.cost(), Parameters::Zero()};
     next.xi << linear_.solution(), xi2_;
-    if (next.xi.allFinite() && linear_.count() > 0) {
+    if (next.xi.allFinite() && linear_.count() == values_) {  // the model is a number in every row
       for (Candidate& one : candidates_) {
         if (next.cost < one.cost) std::swap(next, one);
       }
