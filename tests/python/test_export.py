@@ -18,7 +18,7 @@ from oracle.model import Array
 from recorded import find_fixture
 
 SINGLE = 3e-7  # relative, of numbers that a float holds, over a few operations
-READERS = {"ardupilot": autopilots.read_ardupilot, "px4": autopilots.read_px4}
+READERS = {"px4": autopilots.read_px4, "ardupilot": autopilots.read_ardupilot}
 
 
 def read_raw(log: Log) -> Array:
@@ -405,27 +405,36 @@ def test_what_is_not_fit_to_fly(magnetometer: Bench) -> None:
         )
 
 
-def test_what_an_autopilot_does_not_take(magnetometer: Bench) -> None:
-    """A sensor that reads half the field: ArduPilot would ignore the scale, PX4 takes it."""
+def test_a_compass_scale_that_ardupilot_would_ignore(magnetometer: Bench) -> None:
+    """A sensor that reads half the field: DIA and ODI hold the scale, the correction is the same."""
+    near = export(magnetometer, "ardupilot")
+    assert "to be scaled by" not in near.err + (magnetometer.folder / "vehicle").read_text()
     log = magnetometer.read_log()
     for axis in "xyz":
         log.replace(f"m{axis}_ut", log.column(f"m{axis}_ut") / 2)
     magnetometer.flight.write_text(log.text())
     assert magnetometer.run("fit", "flight.csv", "-o", "half.json").code == 0
-    command = ("export", "half.json", "--to", "ardupilot")
-    words = ("COMPASS_SCALE would be", "0.6667 to 1.5", "--force puts it into COMPASS_DIA")
-    assert_refused(magnetometer, *command, words=words)
     C, n, _ = autopilots.fit_symmetric(true_field(log), read_raw(log))
-    for target, force in (("px4", ()), ("ardupilot", ("--force",))):
-        export(magnetometer, target, *force, calibration="half.json")
+    W = np.linalg.inv(C)
+    for target in READERS:
+        done = export(magnetometer, target, calibration="half.json")
         found = corrected_by(target, magnetometer.folder / "vehicle", read_raw(log))
-        assert_allclose(found, (read_raw(log) - n) @ np.linalg.inv(C).T, atol=SINGLE * 200)
+        assert_allclose(found, (read_raw(log) - n) @ W.T, atol=SINGLE * 200)
+    said = f"to be scaled by {np.trace(W) / 3:.4g}, and ArduPilot ignores a COMPASS_SCALE outside"
+    for text in (done.err, (magnetometer.folder / "vehicle").read_text()):
+        assert (said in text) == (target == "ardupilot")
+    assert autopilots.read_ardupilot(magnetometer.folder / "vehicle")["COMPASS_SCALE"] == 1
+
+
+def test_what_an_autopilot_does_not_take(magnetometer: Bench) -> None:
+    """A sensor that reads a twentieth of the field."""
+    log = magnetometer.read_log()
     for axis in "xyz":
-        log.replace(f"m{axis}_ut", log.column(f"m{axis}_ut") / 10)
+        log.replace(f"m{axis}_ut", log.column(f"m{axis}_ut") / 20)
     magnetometer.flight.write_text(log.text())
-    assert magnetometer.run("fit", "flight.csv", "-o", "tenth.json").code in (0, 4)
+    assert magnetometer.run("fit", "flight.csv", "-o", "twentieth.json").code in (0, 4)
     for target, name in (("px4", "CAL_MAG0_XSCALE"), ("ardupilot", "COMPASS_DIA_X")):
-        command = ("export", "tenth.json", "--to", target, "--force")
+        command = ("export", "twentieth.json", "--to", target, "--force")
         assert_refused(magnetometer, *command, words=(f"{name} would be", "--to c"))
 
 

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "flight/export/parameters.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal::exporting {
 namespace {
@@ -27,26 +26,18 @@ void check_last(const std::vector<VehicleParameter>& parameters, double lowest, 
   }
 }
 
-/// COMPASS_SCALE, one where forced beyond its range: the matrix then holds all.
-double scale_of(const HeldField& held, const std::string& number, const ExportOptions& options) {
-  constexpr double farthest = 1.5;  // a COMPASS_SCALE beyond it, or its inverse, is ignored
-  const double scale = held.W.trace() / 3.0;
-  if (scale >= 1.0 / farthest && scale <= farthest) return scale;
-  if (options.force) return 1.0;
-  throw OptionError({fmt::format("COMPASS_SCALE{} would be {:.6g}, and ArduPilot takes {:.4g} to "
-                                 "{:.4g}: the readings are in another unit, the fit is wrong, or "
-                                 "the sensor reads so; ",
-                                 number, scale, 1.0 / farthest, farthest),
-                     Option{"force"}, " puts it into COMPASS_DIA"});
-}
-
 }  // namespace
+
+double compass_scale(const HeldField& held) {
+  const double scale = held.W.trace() / 3.0;
+  return scale >= least_compass_scale && scale <= largest_compass_scale ? scale : 1.0;
+}
 
 std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
                                                 const ExportOptions& options) {
   const int sensor = sensor_of(options, 1, 3, "ArduPilot's compasses");
   const std::string number = sensor == 1 ? "" : std::to_string(sensor);
-  const double scale = scale_of(held, number, options);
+  const double scale = compass_scale(held);
   const Eigen::Matrix3d M = held.W / scale;
   std::vector<VehicleParameter> parameters;
   add_axes(parameters, "COMPASS_OFS" + number, -milligauss * held.n);

@@ -9,6 +9,14 @@
 
 namespace sepcal::exporting {
 
+/// A COMPASS_SCALE outside these is ignored by ArduPilot.
+inline constexpr double largest_compass_scale = 1.5;
+inline constexpr double least_compass_scale = 1.0 / largest_compass_scale;
+
+/// COMPASS_SCALE: trace(W) / 3, or one where that would be ignored, and COMPASS_DIA and ODI hold
+/// all of W.
+double compass_scale(const HeldField& held);
+
 /// 1 to 3: COMPASS_OFS_X, COMPASS_OFS2_X, COMPASS_OFS3_X. Throws Error for another sensor.
 std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
                                                 const ExportOptions& options);

@@ -29,6 +29,24 @@ void note_px4_field(const ExportOptions& options, std::vector<std::string>& note
   }
 }
 
+void note_ardupilot_field(const HeldField& held, std::vector<std::string>& notes) {
+  const double scale = held.W.trace() / 3.0;
+  if (compass_scale(held) != scale) {
+    notes.push_back(
+        fmt::format("the sensor is to be scaled by {:.4g}, and ArduPilot ignores a COMPASS_SCALE "
+                    "outside {:.4g} "
+                    "to {:.4g}: DIA and ODI hold all of it, exactly, beside a COMPASS_SCALE of 1",
+                    scale, least_compass_scale, largest_compass_scale));
+  }
+  constexpr double arming_limit = 180.0;  // uT, of COMPASS_OFFS_MAX's default
+  if (held.n.norm() > arming_limit) {
+    notes.push_back(fmt::format(
+        "the offsets come to {:.0f} mG, and ArduPilot does not arm beyond COMPASS_OFFS_MAX, 1800 "
+        "unless it is raised",
+        10.0 * held.n.norm()));
+  }
+}
+
 void note_airspeed(bool as_speed, const ExportOptions& options, std::vector<std::string>& notes) {
   const bool px4 = options.target == ExportTarget::px4;
   if (as_speed && !options.in_use) {
@@ -73,13 +91,10 @@ std::vector<std::string> vehicle_notes(const Calibration& calibration, const Fli
   }
   const HeldField held = held_field(calibration);
   const bool px4 = options.target == ExportTarget::px4;
-  if (px4) note_px4_field(options, notes);
-  constexpr double largest_offset = 180.0;  // uT, of COMPASS_OFFS_MAX's default
-  if (!px4 && held.n.norm() > largest_offset) {
-    notes.push_back(fmt::format(
-        "the offsets come to {:.0f} mG, and ArduPilot does not arm beyond COMPASS_OFFS_MAX, 1800 "
-        "unless it is raised",
-        10.0 * held.n.norm()));
+  if (px4) {
+    note_px4_field(options, notes);
+  } else {
+    note_ardupilot_field(held, notes);
   }
   if (held.motor != Motor::none) {
     notes.push_back(
@@ -94,8 +109,8 @@ std::vector<std::string> vehicle_notes(const Calibration& calibration, const Fli
 void drop_rotation(bool is_known, ExportLoss& loss) {
   if (!is_known) {
     loss.dropped.emplace_back(
-        "nothing: the field's strength, all that was fitted, is held whole; a rotation between "
-        "sensor and body was never seen");
+        "nothing, as the field's strength was all that was fitted; a rotation between sensor and "
+        "body was not seen and is not corrected");
     return;
   }
   loss.dropped.push_back(fmt::format(
