@@ -70,6 +70,15 @@ void use_logged_field(RecordBuilder& builder) {
                    std::size_t row) { return Vector{bn.at(row), be.at(row), bd.at(row)}; });
 }
 
+/// Whether a row's is another strength [uT] than the one given, by more than it is known by.
+bool differs(const LoggedQuantity& logged, std::size_t rows, double field_strength) {
+  constexpr double known_by = 1e-3;
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (std::abs(logged.at(row) - field_strength) > known_by * field_strength) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
@@ -114,9 +123,11 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, double field_stre
                     [=, logged = builder.logged("field_strength")](std::size_t row) {
                       return logged.at(row) - field_strength;
                     });
-    builder.note(
-        fmt::format("field_strength is logged and gives each row's field, not the {} uT given",
-                    field_strength));
+    if (differs(builder.logged("field_strength"), flight.rows(), field_strength)) {
+      builder.note(
+          fmt::format("field_strength is logged and gives each row's field, not the {} uT given",
+                      field_strength));
+    }
   }
   builder.keep_valid();
   builder.check_time();
