@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "calibrated_flights.hpp"
@@ -18,11 +19,12 @@ using namespace sepcal::test;
 
 namespace {
 
-/// C = diag(1.25, 0.8, 1), n = (10, -20, 30) uT, against the field's strength.
-Calibration make_magnetometer() {
-  return make_calibration(attitude_independent_probe(50.0), {{"lambda_x", 0.25},
-                                                             {"lambda_y", -0.2},
-                                                             {"lambda_z", 0.0},
+/// C = diag(1.25, 0.8, 1) unless others are given, n = (10, -20, 30) uT, against the field's
+/// strength.
+Calibration make_magnetometer(const std::array<double, 3>& lambda = {0.25, -0.2, 0.0}) {
+  return make_calibration(attitude_independent_probe(50.0), {{"lambda_x", lambda[0]},
+                                                             {"lambda_y", lambda[1]},
+                                                             {"lambda_z", lambda[2]},
                                                              {"alpha_xy", 0.0},
                                                              {"alpha_xz", 0.0},
                                                              {"alpha_yz", 0.0},
@@ -54,6 +56,17 @@ TEST_CASE("parameters of ArduPilot: OFS is -n in mG, DIA times SCALE the inverse
   CHECK(value_of(exported, "COMPASS_DIA_Z") * scale == doctest::Approx(1.0));
   CHECK(value_of(exported, "COMPASS_ODI_X") == doctest::Approx(0.0));
   CHECK(value_of(exported, "COMPASS_MOT_X") == 0.0);
+}
+
+TEST_CASE("a scale that ArduPilot would ignore is DIA's, with a note") {
+  const Calibration half = make_magnetometer({-0.5, -0.5, -0.5});  // it reads half the field
+  const Exported exported = export_calibration(half, nullptr, to(ExportTarget::ardupilot));
+  CHECK(value_of(exported, "COMPASS_SCALE") == 1.0);
+  CHECK(value_of(exported, "COMPASS_DIA_Z") == doctest::Approx(2.0));
+  CHECK(value_of(exported, "COMPASS_OFS_X") == doctest::Approx(-100.0));
+  REQUIRE(exported.notes.size() == 1);
+  CHECK(exported.notes[0].find("scaled by 2, and ArduPilot ignores") != std::string::npos);
+  CHECK(exported.text.find(exported.notes[0]) != std::string::npos);
 }
 
 TEST_CASE("parameters of PX4: OFF is n in gauss, SCALE the inverse of C") {

@@ -109,7 +109,11 @@ def test_what_was_held_stays(magnetometer: Bench) -> None:
     held = [word for pair in ("xy", "xz", "yz") for word in ("--fix", f"alpha_{pair}=0")]
     eta = [word for axis in "xyz" for word in ("--fix", f"eta_{axis}=0")]
     assert magnetometer.run("fit", "flight.csv", *held, *eta, "-o", "held.json").code in (0, 4)
-    export(magnetometer, "px4", "--force", calibration="held.json")
+    done = export(magnetometer, "px4", "--force", calibration="held.json")
+    loss = done.result["loss"]
+    assert loss["dropped"] == ["nothing, as the calibration does not turn the sensor"]
+    text = (magnetometer.folder / "vehicle").read_text()
+    assert "# heading: the calibration's\n# field's strength: the calibration's\n" in text
     parameters = autopilots.read_px4(magnetometer.folder / "vehicle")
     raw, field = read_raw(magnetometer.read_log()), true_field(magnetometer.read_log())
     for axis, name in enumerate("XYZ"):  # each axis a straight line of its own
@@ -406,7 +410,7 @@ def test_what_is_not_fit_to_fly(magnetometer: Bench) -> None:
 
 
 def test_a_compass_scale_that_ardupilot_would_ignore(magnetometer: Bench) -> None:
-    """A sensor that reads half the field: DIA and ODI hold the scale, the correction is the same."""
+    """A sensor that reads half the field: DIA and ODI hold the scale, and nothing is lost."""
     near = export(magnetometer, "ardupilot")
     assert "to be scaled by" not in near.err + (magnetometer.folder / "vehicle").read_text()
     log = magnetometer.read_log()

@@ -32,9 +32,8 @@ def from_gps(times: Array, weeks: Array, milliseconds: Array, source: str) -> Ut
     time, gps = _match(times[known], seconds)
     moment = GPS_EPOCH + datetime.timedelta(seconds=gps)
     ahead = count_leaps(moment)
-    said = (
-        f"{source}, GPS time less {ahead} leap seconds, which no such log holds (list up to 2017)"
-    )
+    leaps = f"{ahead} leap seconds, by their list up to 2017 as the log has none"
+    said = f"{source}, GPS time less {leaps}"
     return Utc(time, moment - datetime.timedelta(seconds=ahead), said)
 
 

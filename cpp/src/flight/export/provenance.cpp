@@ -16,6 +16,8 @@ std::string residual_of(const Calibration& calibration) {
   return fmt::format("{} {}", text, calibration.probe->model().tables().outputs.front().unit);
 }
 
+constexpr double rounding = 1e-9;  // what is off by less is off by the arithmetic
+
 }  // namespace
 
 std::vector<std::string> provenance(const std::string& what, const Calibration& given,
@@ -38,12 +40,16 @@ std::vector<std::string> loss_lines(const ExportLoss& loss) {
   if (!std::isnan(loss.rotation_deg) && std::isnan(loss.heading_rms_deg)) {
     lines.emplace_back("heading: not known, as roll and pitch are not logged");
   }
-  if (!std::isnan(loss.heading_rms_deg)) {
+  if (loss.heading_largest_deg <= rounding) {
+    lines.emplace_back("heading: the calibration's");
+  } else if (!std::isnan(loss.heading_rms_deg)) {
     lines.push_back(
         fmt::format("heading: rms {:.3g} deg, at most {:.3g} deg, off the calibration's",
                     loss.heading_rms_deg, loss.heading_largest_deg));
   }
-  if (!std::isnan(loss.strength_rms_ut)) {
+  if (loss.strength_rms_ut <= rounding) {
+    lines.emplace_back("field's strength: the calibration's");
+  } else if (!std::isnan(loss.strength_rms_ut)) {
     lines.push_back(
         fmt::format("field's strength: rms {:.3g} uT off the calibration's", loss.strength_rms_ut));
   }

@@ -113,6 +113,10 @@ void drop_rotation(bool is_known, ExportLoss& loss) {
         "body was not seen and is not corrected");
     return;
   }
+  if (loss.rotation_deg == 0.0) {
+    loss.dropped.emplace_back("nothing, as the calibration does not turn the sensor");
+    return;
+  }
   loss.dropped.push_back(fmt::format(
       "the rotation between sensor and body, {:.3g} deg, has no home but the mounting itself",
       loss.rotation_deg));
