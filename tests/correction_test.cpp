@@ -271,6 +271,63 @@ TEST_CASE("a Pitot-static tube with an offset of its pressure, a scale and a bia
   }
 }
 
+TEST_CASE("an angle or a rate may drive an effect, and a bias may leave no airspeed") {
+  const auto model = sepcal::FiveHoleProbe{4.5, 4.5} + effects::AirspeedScale<"pitch">{} +
+                     effects::AirspeedBias<"q">{.centre = 0.5} + effects::LeverArm{};
+  const auto board = with(model, {{"lambda_va", 0.0},
+                                  {"b_va", -5.0},
+                                  {"w_n", 4.0},
+                                  {"w_e", -2.0},
+                                  {"w_d", 0.1},
+                                  {"airspeed_scale[pitch].s", 0.5},
+                                  {"airspeed_bias[q].s", 3.0},
+                                  {"lever_arm.x", 2.0},
+                                  {"lever_arm.y", 1.0},
+                                  {"lever_arm.z", 3.0},
+                                  {"lambda_alpha", 0.0},
+                                  {"b_alpha", 0.1},
+                                  {"lambda_beta", 0.0},
+                                  {"b_beta", 0.0},
+                                  {"eps_phi", 0.0}});
+  Vec<double, 14> u = Vec<double, 14>::Zero();
+  u << 0.2, 0.3, 1.0, 0.1, 0.7, 0.2, 1250.0, 1000.0, 0.0, 0.0, 1.25, 0, 0, 0;  // reads 20 m/s
+  CHECK(sepcal::correct(board, u).airspeed == Approx(20.0 * (1.0 + 0.5 * 0.3) - 5.0 + 3.0 * 0.2));
+  CHECK(sepcal::correct(board, u).alpha == Approx(0.1));
+  u[6] = 1001.0;
+  const double read = std::sqrt(2.0 / 1.25);
+  CHECK(sepcal::correct(board, u).airspeed == Approx(read * 1.15 - 5.0 + 0.6));  // below zero
+  CHECK(sepcal::correct(board, u).alpha == Approx(0.1));
+  u[6] = 990.0;
+  CHECK(sepcal::correct(board, u).status == CorrectionStatus::refused);
+}
+
+/// A driver that is logged 4 A too low.
+struct MeterOffset {
+  static constexpr int corrected = 1;
+  static constexpr std::array inputs{sepcal::Quantity{"current_a", ""}};
+  static constexpr std::array nonlinear{sepcal::Quantity{"meter.zero", "A", -9, 9}};
+  template <class T>
+  Vec<T, 1> correct(const Vec<T, 1>& u, const Vec<T, 1>& xi2) const {
+    return u + xi2;
+  }
+};
+
+TEST_CASE("a driver that is corrected drives a magnetometer's effect as corrected") {
+  const auto model = sepcal::Magnetometer{} + effects::Bias<"current_a">{} + MeterOffset{};
+  auto board =
+      calibrated(model, Vec<double, 9>{{0, 0, 0, 0, 0, 0, 0.5, 0, 0}}, Vec<double, 7>::Zero());
+  CHECK(board.set("meter.zero", 4.0));
+  const auto corrected =
+      sepcal::correct(board, Vector3d(22.0, 0.0, 40.0), Vec<double, 4>{{0, 0, 0, 0}});
+  CHECK(corrected.h[0] == Approx(20.0));
+}
+
+TEST_CASE("a plain tube reads no density") {
+  const auto board = with(sepcal::PitotStatic{},
+                          {{"s_va", 1.1}, {"c_va", 0.5}, {"w_n", 0.0}, {"w_e", 0.0}, {"w_d", 0.0}});
+  CHECK(sepcal::correct(board, 22.5, Vec<double, 7>::Zero().eval()).airspeed == Approx(20.0));
+}
+
 TEST_CASE("a parameter that is not set is refused, and one that there isn't is told") {
   Calibrated<sepcal::Magnetometer> board{};
   CHECK(board.set("n_x", 1.0));

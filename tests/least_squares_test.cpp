@@ -127,6 +127,19 @@ TEST_CASE("statuses: too few iterations, a parameter that nothing tells of, bad 
         LeastSquaresStatus::not_determined);
 }
 
+TEST_CASE("in float it converges to what rounds") {
+  const Decay decay(3);
+  const auto in_float = [&decay](int k, const Eigen::Vector2f& p) {
+    const auto rows = decay(k, p.cast<double>());
+    return LeastSquaresRows<2, 2, float>{rows.z.cast<float>(), rows.H.cast<float>(),
+                                         rows.W.cast<float>()};
+  };
+  const auto fit = iterate_least_squares(decay, 25, Vector2d(1.0, 1.0));
+  const auto coarse = iterate_least_squares(in_float, 25, Eigen::Vector2f(1.0F, 1.0F));
+  CHECK(coarse.status == LeastSquaresStatus::converged);
+  CHECK((coarse.p.cast<double>() - fit.p).norm() < 1e-5);
+}
+
 TEST_CASE("a step to where the model is no number is shortened, not taken for missing rows") {
   using One = Eigen::Matrix<double, 1, 1>;
   const auto logarithm = [](int, const One& p) {

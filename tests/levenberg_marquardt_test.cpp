@@ -59,12 +59,87 @@ TEST_CASE(
   CHECK(outside.p()[1] == Approx(0.25).epsilon(1e-9));
 }
 
+TEST_CASE("parameters that push each other against their bounds end where the gradient says so") {
+  // H = [1 0.8; 0 0.6], z = (1400, 1800), p0 >= 0, p1 <= 1000: the best is (600, 1000) wherever it
+  // begins, a hair beside the second bound too.
+  const auto linear = [](int, const Vector2d& p) {
+    Eigen::Matrix2d H;
+    H << 1.0, 0.8, 0.0, 0.6;
+    const Vector2d z(1400.0, 1800.0);
+    return sepcal::LeastSquaresRows<2, 2>{z - H * p, H, Eigen::Matrix2d::Identity()};
+  };
+  for (const double beside : {0.0, 1e-13, 1e-10, 1e-4, 10.0}) {
+    const auto end = sepcal::refine(linear, 1, Vector2d(0.0, 1000.0 - beside),
+                                    Vector2d(0.0, -infinity), Vector2d(infinity, 1000.0));
+    CAPTURE(beside);
+    CHECK(end.status() == LeastSquaresStatus::converged);
+    CHECK((end.p() - Vector2d(600.0, 1000.0)).norm() < 1e-6);
+    CHECK(end.held(1));
+    CHECK_FALSE(end.held(0));
+  }
+}
+
+TEST_CASE("linear problems with random bounds end where no parameter can gain") {
+  sepcal::test::Draws draws(31);
+  using Vector4d = Eigen::Vector4d;
+  int active = 0;
+  for (int problem = 0; problem < 500; ++problem) {
+    Eigen::Matrix<double, 6, 4> H;
+    Eigen::Vector<double, 6> z;
+    for (double& value : H.reshaped()) value = draws.normal();
+    for (double& value : z) value = 10.0 * draws.normal();
+    Vector4d lower;
+    Vector4d upper;
+    Vector4d start;
+    for (int k = 0; k < 4; ++k) {
+      lower[k] = draws.uniform(-8.0, 2.0);
+      upper[k] = lower[k] + draws.uniform(0.0, 6.0);
+      start[k] = draws.uniform(-10.0, 10.0);
+    }
+    const auto sample = [&](int, const Vector4d& p) {
+      return sepcal::LeastSquaresRows<6, 4>{z - H * p, H, Eigen::Matrix<double, 6, 6>::Identity()};
+    };
+    const auto end = sepcal::refine(sample, 1, start, lower, upper);
+    CHECK(end.status() == LeastSquaresStatus::converged);
+    const Vector4d gradient = H.transpose() * (z - H * end.p());  // up it the cost falls
+    for (int k = 0; k < 4; ++k) {
+      active += end.held(k) ? 1 : 0;
+      if (end.p()[k] > lower[k] + 1e-12) CHECK(gradient[k] > -1e-7);
+      if (end.p()[k] < upper[k] - 1e-12) CHECK(gradient[k] < 1e-7);
+    }
+  }
+  CHECK(active > 500);
+}
+
+TEST_CASE("rows whose squares overflow, and bounds that cross, are refused at once") {
+  const auto large = [](int, const Eigen::Vector<float, 1>& p) {
+    using Single = Eigen::Matrix<float, 1, 1>;
+    return sepcal::LeastSquaresRows<1, 1, float>{Single(1.5e19F - p[0]), Single(1e10F),
+                                                 Single(1.0F)};
+  };
+  using Single = Eigen::Vector<float, 1>;
+  const auto end = sepcal::refine(large, 4, Single(0.0F), Single(-1.0F), Single(1.0F));
+  CHECK(end.status() == LeastSquaresStatus::refused);
+  CHECK(sepcal::refine(valley, 2, Vector2d(0, 0), Vector2d(2.5, -1), Vector2d(1, 1)).status() ==
+        LeastSquaresStatus::refused);
+  CHECK(sepcal::refine(valley, 2, Vector2d(std::nan(""), 0), Vector2d(-1, -1), Vector2d(1, 1))
+            .status() == LeastSquaresStatus::refused);
+}
+
 TEST_CASE("what cannot end well ends in a status") {
   const auto blind = [](int, const Vector2d& p) {  // p[0] + p[1] alone is seen
     return Rows{One(1.0 - p[0] - p[1]), Eigen::RowVector2d(1.0, 1.0), One(1.0)};
   };
   CHECK(sepcal::refine(blind, 3, Vector2d(0, 0), (-unbounded).eval(), unbounded).status() ==
         LeastSquaresStatus::not_determined);
+  // A parameter that nothing tells of stands at a bound, and is no more determined for that.
+  const auto unseen = [](int, const Vector2d& p) {
+    return Rows{One(1.0 - p[0]), Eigen::RowVector2d(1.0, 0.0), One(1.0)};
+  };
+  CHECK(sepcal::refine(unseen, 3, Vector2d(0, 0), Vector2d(-infinity, 0), unbounded).status() ==
+        LeastSquaresStatus::not_determined);
+  CHECK(sepcal::refine(unseen, 3, Vector2d(0, 0), Vector2d(-infinity, 0), Vector2d(infinity, 0))
+            .status() == LeastSquaresStatus::converged);  // but held by equal bounds
   const auto nowhere = [](int, const Vector2d&) {
     return Rows{One(1.0), Eigen::RowVector2d(infinity, 1.0), One(1.0)};
   };

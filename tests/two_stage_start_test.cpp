@@ -148,6 +148,72 @@ TEST_CASE("rows that are no start end in a status, in no more calls than promise
   CHECK(silent.status() == StartStatus::refused);
 }
 
+TEST_CASE("options out of range are brought into it, and its promise of calls holds") {
+  Draws draws(13);
+  for (const int rows_per_call : {0, -5, 7, 1'000'000'000}) {
+    for (const int count : {-30, 0, 1}) {
+      sepcal::TwoStageOptions options;
+      options.samples = count;
+      options.rows_per_call = rows_per_call;
+      options.refinement.iterations = count;
+      TwoStageStart<FiveHoleProbe, 40> start(probe, Outputs::Constant(noise), options);
+      for (int k = 0; k < 40; ++k) {
+        const Sample sample = draw(draws, 1.0);
+        start.add(sample.u, sample.z);
+      }
+      CHECK(run(start) <= start.most_calls());
+    }
+  }
+}
+
+TEST_CASE("rows without noise are a start, and a row that is no reading is not kept") {
+  Draws draws(17);
+  TwoStageStart<FiveHoleProbe, 60> start(probe, Outputs::Constant(noise));
+  while (start.status() == StartStatus::collecting) {
+    Sample sample = draw(draws, 1.0);
+    const auto z = probe.at(sample.u, Vec<double, 5>(truth.tail<5>()));
+    sample.z = z.A * truth.head<5>() + z.b;
+    start.add(sample.u, sample.z);
+    sample.u[6] = sample.u[7] - 1.0;  // total below static pressure
+    CHECK_FALSE(start.add(sample.u, sample.z));
+  }
+  run(start);
+  REQUIRE(start.status() == StartStatus::done);
+  CHECK((start.parameters() - truth).norm() < 1e-9);
+  CHECK(start.noise_ratio() > 0.0);
+  CHECK(start.information_root().allFinite());
+}
+
+/// z = a + b x: two parameters, of which the second may be all that is nonlinear.
+struct Line {
+  static constexpr std::array inputs{sepcal::Quantity{"x", "1"}};
+  static constexpr std::array outputs{sepcal::Quantity{"z", "1"}};
+  static constexpr std::array<sepcal::Quantity, 0> linear{};
+  static constexpr std::array nonlinear{sepcal::Quantity{"a", "1", -9, 9},
+                                        sepcal::Quantity{"b", "1", 0, 9}};
+  template <class U, class X>
+  sepcal::Affine<X, 1, 0> at(const Vec<U, 1>& u, const Vec<X, 2>& xi2) const {
+    sepcal::Affine<X, 1, 0> z;
+    z.b << xi2[0] + xi2[1] * u[0];
+    return z;
+  }
+};
+
+TEST_CASE("a model without linear parameters starts too, and what no row tells is not determined") {
+  using Number = Vec<double, 1>;
+  TwoStageStart<Line, 20> start(Line{}, Number(0.1));
+  TwoStageStart<Line, 20> blind(Line{}, Number(0.1));
+  for (int k = 0; k < 20; ++k) {
+    start.add(Number(k), Number(2.0 + 0.5 * k + (k % 2 == 0 ? 0.1 : -0.1)));
+    blind.add(Number(0.0), Number(2.0 + (k % 2 == 0 ? 0.1 : -0.1)));
+  }
+  run(start);
+  run(blind);
+  REQUIRE(start.status() == StartStatus::done);
+  CHECK(start.parameters()[1] == Approx(0.5).epsilon(0.05));
+  CHECK(blind.status() == StartStatus::not_determined);
+}
+
 TEST_CASE("missing values are left out, and the rows that a call takes don't change the start") {
   constexpr int rows = 60;
   Draws draws(5);

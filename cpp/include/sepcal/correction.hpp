@@ -41,11 +41,11 @@ struct Calibrated {
 
 enum class CorrectionStatus {
   ok,
-  refused,        // a reading or a driver is not a number, or a pressure is below zero
+  refused,        // a number is missing that it takes, or a pressure is not above zero
   not_converged,  // the field was not found, or the sensor's matrix is singular
 };
 
-/// NaN where the status is not ok; `not_converged` has the last step's.
+/// NaN where the status is not ok.
 template <class Scalar>
 struct CorrectedField {
   CorrectionStatus status = CorrectionStatus::refused;
@@ -78,24 +78,34 @@ namespace correcting {
 template <class M, class Base>
 concept Of = std::same_as<typename composing::BaseOf<M>::Type, Base>;
 
-/// The model without its input corrections: xi2 begins with its parameters.
-template <class M>
-const auto& without_corrections(const M& model) {
-  if constexpr (composing::is_corrected<M>) {
-    return without_corrections(model.model);
-  } else {
-    return model;
-  }
-}
-
-/// xi1 without what is the wind's: its components, and what effects add to it.
+/// xi1 without what is not the probe's: the wind and what follows it, an arm.
 template <class M, class Scalar>
-Vec<Scalar, Sizes<M>::n_1> without_wind(Vec<Scalar, Sizes<M>::n_1> xi1) {
+Vec<Scalar, Sizes<M>::n_1> of_probe(Vec<Scalar, Sizes<M>::n_1> xi1) {
   for (int k = 0; k < Sizes<M>::n_1; ++k) {
     const std::string_view name = M::linear[static_cast<std::size_t>(k)].name;
-    if (name.starts_with("w_") || name.starts_with("wind[")) xi1[k] = Scalar(0);
+    if (name.starts_with("w_") || name.starts_with("wind[") || name.starts_with("lever_arm."))
+      xi1[k] = Scalar(0);
   }
   return xi1;
+}
+
+/// A and b of a five-hole probe that is level and doesn't turn, so that its velocity is the air's
+/// in body axes; drivers, an angle or a rate among them, are as they are.
+template <class Scalar>
+Affine<Scalar, 3, 5> level(const FiveHoleProbe& probe, Vec<Scalar, 14> u,
+                           const Vec<Scalar, 5>& xi2) {
+  u.template head<6>().setZero();
+  return probe.at(u, xi2);
+}
+template <class Scalar, class M, class E>
+auto level(const Composed<M, E>& model, const Vec<Scalar, Sizes<Composed<M, E>>::n_u>& u,
+           const Vec<Scalar, Sizes<Composed<M, E>>::n_2>& xi2) {
+  constexpr int own = Sizes<M>::n_2;
+  const Vec<Scalar, own> of_model = xi2.template head<own>();
+  const Vec<Scalar, Sizes<Composed<M, E>>::n_2 - own> of_effect =
+      xi2.template tail<Sizes<Composed<M, E>>::n_2 - own>();
+  return model.template join<Scalar, Scalar>(
+      level<Scalar>(model.model, composing::select<Composed<M, E>, M>(u), of_model), u, of_effect);
 }
 
 }  // namespace correcting
@@ -107,43 +117,44 @@ template <class M, class Scalar>
 CorrectedField<Scalar> correct(const Calibrated<M, Scalar>& calibrated, const Vec<Scalar, 3>& m,
                                const Vec<Scalar, Sizes<M>::n_u>& u,
                                const FieldIteration& options = {}) {
-  using Number = Dual<Scalar, 3>;
-  const auto& model = correcting::without_corrections(calibrated.model);
-  using Inner = std::remove_cvref_t<decltype(model)>;
-  constexpr Scalar digits_lost = 8;
-  constexpr std::array field{place_of("hx", M::inputs), place_of("hy", M::inputs),
-                             place_of("hz", M::inputs)};
-  const Vec<Number, Sizes<Inner>::n_2> xi2 =
-      calibrated.xi2.template head<Sizes<Inner>::n_2>().template cast<Number>();
-  Vec<Scalar, 3> h = Vec<Scalar, 3>::Zero();
-  CorrectedField<Scalar> result;
-  for (result.iterations = 1; result.iterations <= options.iterations; ++result.iterations) {
-    Vec<Number, Sizes<M>::n_u> at = u.template cast<Number>();
-    for (int i = 0; i < 3; ++i) at[field[static_cast<std::size_t>(i)]] = Number(h[i], i);
-    const auto [A, b] = model.at(composing::select<M, Inner>(at), xi2);
-    Vec<Scalar, 3> missing = m;
-    Eigen::Matrix<Scalar, 3, 3> slope;
-    for (int i = 0; i < 3; ++i) {
-      Number z = b[i];
-      for (int k = 0; k < Sizes<Inner>::n_1; ++k) z += A(i, k) * calibrated.xi1[k];
-      missing[i] -= z.value();
-      slope.row(i) = z.slopes().transpose();
+  const auto solve = [&](const auto& model, const auto& drivers, const auto& of_model) {
+    using Inner = std::remove_cvref_t<decltype(model)>;
+    using Number = Dual<Scalar, 3>;
+    constexpr Scalar digits_lost = 8;
+    constexpr std::array field{place_of("hx", Inner::inputs), place_of("hy", Inner::inputs),
+                               place_of("hz", Inner::inputs)};
+    const Vec<Number, Sizes<Inner>::n_2> xi2 = of_model.template cast<Number>();
+    Vec<Number, Sizes<Inner>::n_u> at = drivers.template cast<Number>();
+    Vec<Scalar, 3> h = Vec<Scalar, 3>::Zero();
+    CorrectedField<Scalar> result;
+    while (result.iterations < options.iterations) {
+      ++result.iterations;
+      for (int i = 0; i < 3; ++i) at[field[static_cast<std::size_t>(i)]] = Number(h[i], i);
+      const auto [A, b] = model.at(at, xi2);
+      Vec<Scalar, 3> missing = m;
+      Eigen::Matrix<Scalar, 3, 3> slope;
+      for (int i = 0; i < 3; ++i) {
+        Number z = b[i];
+        for (int k = 0; k < Sizes<Inner>::n_1; ++k) z += A(i, k) * calibrated.xi1[k];
+        missing[i] -= z.value();
+        slope.row(i) = z.slopes().transpose();
+      }
+      if (!missing.allFinite() || !slope.allFinite()) return CorrectedField<Scalar>{};
+      const Vec<Scalar, 3> step = states::solve_square(slope, missing);
+      result.status = CorrectionStatus::not_converged;
+      if (!step.allFinite()) return result;
+      h += step;
+      const Scalar least = static_cast<Scalar>(options.tolerance) +
+                           digits_lost * states::rounding<Scalar> * h.cwiseAbs().maxCoeff();
+      if (step.cwiseAbs().maxCoeff() <= least) {
+        result.status = CorrectionStatus::ok;
+        result.h = h;
+        return result;
+      }
     }
-    if (!missing.allFinite() || !slope.allFinite()) return result;
-    const Vec<Scalar, 3> step = states::solve_square(slope, missing);
-    result.status = CorrectionStatus::not_converged;
-    if (!step.allFinite()) return result;
-    h += step;
-    result.h = h;
-    const Scalar least = static_cast<Scalar>(options.tolerance) +
-                         digits_lost * states::rounding<Scalar> * h.cwiseAbs().maxCoeff();
-    if (step.cwiseAbs().maxCoeff() <= least) {
-      result.status = CorrectionStatus::ok;
-      return result;
-    }
-  }
-  --result.iterations;
-  return result;
+    return result;
+  };
+  return composing::behind_corrections(calibrated.model, u, calibrated.xi2, solve);
 }
 
 /// A magnetometer's that was calibrated by the field's strength alone: h but for a rotation, from
@@ -170,27 +181,32 @@ CorrectedField<Scalar> correct(const Calibrated<M, Scalar>& calibrated,
       });
 }
 
-/// A five-hole probe's, from the pressures and drivers in u; attitude and rates in u are not read.
+/// A five-hole probe's, from the pressures and drivers in u; attitude and rates in u are read only
+/// where they drive an effect.
 template <class M, class Scalar>
   requires correcting::Of<M, FiveHoleProbe>
 CorrectedAir<Scalar> correct(const Calibrated<M, Scalar>& calibrated,
                              const Vec<Scalar, Sizes<M>::n_u>& u) {
   return composing::behind_corrections(
-      calibrated.model, u, calibrated.xi2, [&](const auto& model, auto inner, const auto& xi2) {
+      calibrated.model, u, calibrated.xi2,
+      [&](const auto& model, const auto& seen, const auto& xi2) {
         using Inner = std::remove_cvref_t<decltype(model)>;
         using std::asin;
         using std::atan2;
-        // In still air and level, at rest: what is left is the air, in body axes.
-        for (const char* name : {"roll", "pitch", "yaw", "p", "q", "r"})
-          inner[place_of(name, Inner::inputs)] = Scalar(0);
-        const auto [A, b] = model.at(inner, xi2);
-        const Vec<Scalar, 3> air =
-            b + states::product(A, correcting::without_wind<Inner, Scalar>(calibrated.xi1));
         CorrectedAir<Scalar> result;
+        const Scalar pressure =
+            seen[place_of("pt", Inner::inputs)] - seen[place_of("ps", Inner::inputs)];
+        const Scalar rho = seen[place_of("rho", Inner::inputs)];
+        if (!(pressure > 0) || !(rho > 0) || !std::isfinite(rho)) return result;
+        const auto [A, b] = correcting::level<Scalar>(model, seen, xi2);
+        const Vec<Scalar, 3> air =
+            b + states::product(A, correcting::of_probe<Inner, Scalar>(calibrated.xi1));
         if (!air.allFinite()) return result;
-        result.airspeed = air.norm();
-        result.alpha = atan2(air[2], air[0]);
-        result.beta = result.airspeed > 0 ? asin(air[1] / result.airspeed) : Scalar(0);
+        // The column of b_va is where the air comes from; a bias may make the speed negative.
+        const Scalar sign = air.dot(A.col(1)) < 0 ? Scalar(-1) : Scalar(1);
+        result.airspeed = sign * air.norm();
+        result.alpha = atan2(sign * air[2], sign * air[0]);
+        result.beta = result.airspeed == Scalar(0) ? Scalar(0) : asin(air[1] / result.airspeed);
         result.status = CorrectionStatus::ok;
         return result;
       });
@@ -202,14 +218,18 @@ template <class M, class Scalar>
   requires correcting::Of<M, PitotStatic>
 CorrectedAirspeed<Scalar> correct(const Calibrated<M, Scalar>& calibrated, const Scalar& z,
                                   const Vec<Scalar, Sizes<M>::n_u>& u) {
+  static_assert(Sizes<M>::n_1 == Sizes<PitotStatic>::n_1,
+                "a term on a tube is not undone; let its ports follow a driver");
   return composing::behind_corrections(
       calibrated.model, u, calibrated.xi2, [&](const auto& model, const auto& inner, const auto&) {
         using Inner = std::remove_cvref_t<decltype(model)>;
         using std::isfinite;
         using std::sqrt;
         const Scalar met = (z - calibrated.xi1[1]) / calibrated.xi1[0];
-        const Scalar offset = 2 * inner[place_of("pressure_offset", Inner::inputs)] /
-                              inner[place_of("rho", Inner::inputs)];
+        const Scalar pressure = inner[place_of("pressure_offset", Inner::inputs)];
+        const Scalar offset = pressure == Scalar(0)
+                                  ? Scalar(0)
+                                  : 2 * pressure / inner[place_of("rho", Inner::inputs)];
         const Scalar undisturbed = offset == Scalar(0) ? met : sqrt(met * met + offset);
         const Scalar airspeed =
             undisturbed * (1 + inner[place_of("airspeed_scale", Inner::inputs)]) +

@@ -13,7 +13,8 @@
 
 namespace sepcal {
 
-/// T is double, float, or a dual number itself. Comparisons are those of the values.
+/// T is double, float, or a dual number itself. Values are what T computes, to the last digit;
+/// comparisons are of values.
 template <class T, int N>
 class Dual {
  public:
@@ -53,15 +54,16 @@ class Dual {
     return {x.value_ * y.value_, x.value_ * y.slopes_ + x.slopes_ * y.value_};
   }
   friend Dual operator/(const Dual& x, const Dual& y) {
-    const T inverse = T(1) / y.value_;
-    const T ratio = x.value_ * inverse;
-    return {ratio, (x.slopes_ - ratio * y.slopes_) * inverse};
+    const T ratio = x.value_ / y.value_;
+    return {ratio, (x.slopes_ - ratio * y.slopes_) * (T(1) / y.value_)};
   }
 
   friend Dual operator+(const Dual& x, const T& y) { return {x.value_ + y, x.slopes_}; }
   friend Dual operator-(const Dual& x, const T& y) { return {x.value_ - y, x.slopes_}; }
   friend Dual operator*(const Dual& x, const T& y) { return {x.value_ * y, x.slopes_ * y}; }
-  friend Dual operator/(const Dual& x, const T& y) { return x * (T(1) / y); }
+  friend Dual operator/(const Dual& x, const T& y) {
+    return {x.value_ / y, x.slopes_ * (T(1) / y)};
+  }
   friend Dual operator+(const T& x, const Dual& y) { return y + x; }
   friend Dual operator-(const T& x, const Dual& y) { return {x - y.value_, -y.slopes_}; }
   friend Dual operator*(const T& x, const Dual& y) { return y * x; }
@@ -190,6 +192,7 @@ class Dual {
   /// x to a power that is no variable.
   friend Dual pow(const Dual& x, const Real<T>& power) {
     using std::pow;
+    if (power == Real<T>(0)) return Dual(T(Real<T>(1)));
     return x.to(pow(x.value_, power), T(power) * pow(x.value_, power - Real<T>(1)));
   }
 

@@ -140,7 +140,8 @@ struct Composed {
   static constexpr int n_2m = static_cast<int>(M::nonlinear.size());
   static constexpr int n_2e = static_cast<int>(E::nonlinear.size());
 
-  /// The model's columns and, beside them, the effect's.
+ public:
+  /// The model's columns, as they are given, and beside them the effect's at u.
   template <class U, class X>
   auto join(const Affine<X, Sizes<M>::n_z, Sizes<M>::n_1>& of_model, const Vec<U, n_u>& u,
             const Vec<X, n_2e>& of_effect) const {
@@ -159,6 +160,7 @@ struct Composed {
     return z;
   }
 
+ private:
   template <class Part>
   static constexpr int position(int i) {
     return composing::position<Composed, Part>(i);

@@ -64,7 +64,11 @@ class InformationRoot {
 
   /// p (N), S 4.6 and 4.10. What the rows leave open is zero: see determined().
   Vector solution() const {
-    return states::solve_upper(root(), T_.template topRightCorner<N, 1>(size(), 1));
+    if constexpr (N == 0) {
+      return Vector();
+    } else {
+      return states::solve_upper(root(), T_.template topRightCorner<N, 1>(size(), 1));
+    }
   }
 
   /// E(dp dp') = (H'W^-1 H)^-1, N x N, S 4.7: where W is the errors' covariance. Where it is known

@@ -83,8 +83,12 @@ LeastSquares<N, Scalar> iterate_least_squares(const Sample& sample, int count,
       return fit;
     }
     Eigen::Vector<Scalar, N> step = fit.rows.solution();
+    // What rounds in the step, of the rows' size and of p's, is not asked for.
+    const Scalar rounds =
+        8 * states::rounding<Scalar> *
+        (fit.rows.matrix().col(N).norm() + states::product(fit.rows.root(), fit.p).norm());
     const bool last = fit.rows.matrix().col(N).template head<N>().norm() <=
-                      static_cast<Scalar>(options.tolerance);
+                      static_cast<Scalar>(options.tolerance) + rounds;
     InformationRoot<N, Scalar> rows;
     const Scalar most = fit.cost * (1 + slack);
     bool lower = false;

@@ -3,6 +3,9 @@
 // d(A xi1 + b)/dxi2 by dual numbers. What a batch gathers in its triangular factor, row by row.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "sepcal/dual.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/states/least_squares.hpp"
@@ -29,6 +32,9 @@ LeastSquaresRows<Sizes<M>::n_z, Sizes<M>::n_1 + Sizes<M>::n_2, Scalar> model_row
         rows.H(j, k) = value(A(j, k));
       }
       rows.z[j] -= value(expected);
+      // Measured, but no number by the model: not a row that is missing.
+      if (!std::isnan(z[j]) && std::isnan(rows.z[j]))
+        rows.z[j] = std::numeric_limits<Scalar>::infinity();
       slopes(j, expected);
     }
   };

@@ -28,9 +28,9 @@ enum class StartStatus {
   collecting,      // rows are still wanted
   working,         // call work() again
   done,            // parameters(), information_root() and noise_ratio() are the start's
-  not_converged,   // no start reached a minimum within its iterations
+  not_converged,   // the best start did not reach a minimum within its iterations
   not_determined,  // the rows leave a parameter open
-  refused,         // fewer values than parameters, or nothing finite came of them
+  refused,         // no more values than parameters, or bounds or noises that are unfit
 };
 
 /// Of a model's first `Rows` samples, kept; stage two from the best `Starts` of stage one's points.
@@ -61,14 +61,22 @@ class TwoStageStart {
         upper_(upper),
         options_(options),
         refinement_(Parameters::Zero(), lower, upper, options.refinement) {
+    options_.samples = std::max(options.samples, 0);
+    options_.rows_per_call = std::clamp(options.rows_per_call, 1, Rows);
+    options_.refinement.iterations = std::max(options.refinement.iterations, 0);
     const auto width = (upper - lower).template tail<n_2>();
-    if (!width.allFinite() || !(noise.array() > Scalar(0)).all()) status_ = StartStatus::refused;
+    if (!width.allFinite() || !(lower.array() <= upper.array()).all() ||
+        !(noise.array() > Scalar(0)).all() || !noise.allFinite())
+      status_ = StartStatus::refused;
   }
 
   /// Keeps a sample (z: NaN where missing). When `Rows` are there, work() begins. False where it is
-  /// not kept: inputs that are not finite, or no room.
+  /// not kept: no room, infinite outputs, or inputs of which the model makes no number.
   bool add(const Inputs& u, const Outputs& z) {
-    if (status_ != StartStatus::collecting || !u.allFinite()) return false;
+    if (status_ != StartStatus::collecting || z.array().isInf().any()) return false;
+    const Vec<Scalar, n_2> middle = Scalar(0.5) * (lower_ + upper_).template tail<n_2>();
+    const auto [A, b] = model_.at(u, middle);
+    if (!A.allFinite() || !b.allFinite()) return false;
     u_[static_cast<std::size_t>(rows_)] = u;
     z_[static_cast<std::size_t>(rows_)] = z;
     ++rows_;
@@ -87,7 +95,7 @@ class TwoStageStart {
   /// A bounded piece of work: at most `rows_per_call` rows, and what follows the last of a pass.
   StartStatus work() {
     if (status_ != StartStatus::working) return status_;
-    const int last = std::min(row_ + std::max(options_.rows_per_call, 1), rows_);
+    const int last = std::min(row_ + options_.rows_per_call, rows_);
     for (; row_ < last; ++row_) {
       if (sample_ < options_.samples) {
         absorb_linear(row_);
@@ -110,21 +118,20 @@ class TwoStageStart {
   int rows() const { return rows_; }
   /// xi1, then xi2 (n).
   const Parameters& parameters() const { return best_.p; }
-  /// s, by which the noise is larger than it was said to be: s^2 = SSE / (values - n).
+  /// s, by which the noise is larger than it was said to be: s^2 = SSE / (values - n). Of rows
+  /// without noise what rounds.
   Scalar noise_ratio() const {
-    return std::sqrt(2 * best_.cost / static_cast<Scalar>(std::max(values_ - n, 1)));
+    return std::max(std::sqrt(2 * best_.cost / static_cast<Scalar>(std::max(values_ - n, 1))),
+                    states::rounding<Scalar>);
   }
   /// R (n x n), upper triangular: R'R is the inverse of the covariance of the parameters, the noise
   /// being noise_ratio() times what was said: a filter's `Form::of_information_root()`.
-  Root information_root() const {
-    return best_.R / std::max(noise_ratio(), states::rounding<Scalar>);
-  }
+  Root information_root() const { return best_.R / noise_ratio(); }
   /// Trial steps of the longest start so far.
   int worst_iterations() const { return worst_iterations_; }
   /// No more calls of work() than this end every start.
   int most_calls() const {
-    const int pieces =
-        (Rows + std::max(options_.rows_per_call, 1) - 1) / std::max(options_.rows_per_call, 1);
+    const int pieces = (Rows + options_.rows_per_call - 1) / options_.rows_per_call;
     return pieces * (options_.samples + Starts * (options_.refinement.iterations + 1));
   }
 
@@ -204,7 +211,10 @@ class TwoStageStart {
   void end_start() {
     worst_iterations_ = std::max(worst_iterations_, refinement_.iterations());
     const LeastSquaresStatus ended = refinement_.status();
-    const bool better = refinement_.cost() < best_.cost;
+    // Of starts that ended alike the one that converged, else the least cost.
+    const Scalar alike = std::sqrt(states::rounding<Scalar>) * refinement_.cost();
+    const bool surer = ended == LeastSquaresStatus::converged && ended != of_best_;
+    const bool better = refinement_.cost() < best_.cost + (surer ? alike : -alike);
     if (better && ended != LeastSquaresStatus::refused) {
       best_ = {refinement_.cost(), refinement_.p(), refinement_.rows().root()};
       of_best_ = ended;
