@@ -92,11 +92,10 @@ def test_a_missing_regressor_is_named_and_keeps_its_promise() -> None:
     assert added.history[-1].predicted_drop == pytest.approx(added.history[-1].drop, abs=PROMISE)
 
 
-@pytest.mark.parametrize("method", ["output-error", "filter-error"])
-def test_a_spline_of_the_state_bends_as_the_moment_does(method: str, tmp_path: Path) -> None:
+def test_a_spline_of_the_state_bends_as_the_moment_does(tmp_path: Path) -> None:
     interpolate = pytest.importorskip("scipy.interpolate")
     flight = fly({"Cm[alpha^2]": CURVE / 2})
-    fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), flight, method=method)
+    fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), flight)
     diagnosis = fit.diagnose(only=["Cm[spline(alpha,5)]"])
     assert diagnosis.advice["effect"] == "Cm[spline(alpha,5)]"
     added = fit.add("Cm[spline(alpha,5)]")

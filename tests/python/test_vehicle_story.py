@@ -47,6 +47,7 @@ def type_story(of: str, log: str, folder: Path) -> str:
     printed = ""
     for line in typed.replace("\\\n", "").splitlines():
         codes = next((codes for verb, codes in CODES.items() if verb in line), (0,))
+        line = line.replace("python -m", f"{sys.executable} -m", 1)
         printed += run("bash", "-c", f"{line} 2>&1", cwd=folder, codes=codes)
     return printed
 
