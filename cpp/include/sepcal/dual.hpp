@@ -21,12 +21,12 @@ class Dual {
   using Slopes = Eigen::Matrix<T, N, 1>;
 
   Dual() = default;
-  explicit Dual(const T& value) : value_(value) {}
+  explicit Dual(T value) : value_(std::move(value)) {}
   /// The variable k at `value`; of the value alone where k is none of N.
-  Dual(const T& value, int k) : value_(value) {
+  Dual(T value, int k) : value_(std::move(value)) {
     if (k >= 0 && k < N) slopes_[k] = T(1);
   }
-  Dual(const T& value, Slopes slopes) : value_(value), slopes_(std::move(slopes)) {}
+  Dual(T value, Slopes slopes) : value_(std::move(value)), slopes_(std::move(slopes)) {}
 
   const T& value() const { return value_; }
   const T& slope(int k) const { return slopes_[k]; }  // by variable k

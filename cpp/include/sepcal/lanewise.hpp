@@ -19,7 +19,7 @@ struct RealOf<float> {
   using Type = float;
 };
 template <class T>
-using Real = typename RealOf<T>::Type;
+using Real = RealOf<T>::Type;
 
 /// Of numbers of one kind; specialised where they have lanes (sepcal/lanes.hpp).
 template <class T>

@@ -62,7 +62,7 @@ struct PitotStatic {
   template <class X>
   static X root(const X& square) {
     using std::sqrt;
-    const Real<X> floor = static_cast<Real<X>>(1e-6);  // [m/s]
+    const auto floor = static_cast<Real<X>>(1e-6);  // [m/s]
     const Real<X> zero = 0;
     return where(square < zero, X(floor),
                  X(sqrt(where(square < zero, X(zero), square) + floor * floor)));

@@ -48,7 +48,7 @@ struct Innovation {
 template <int NX, class Form = SquareRootForm<NX>>
 class Filter {
  public:
-  using Scalar = typename Form::Matrix::Scalar;
+  using Scalar = Form::Matrix::Scalar;
   using Vector = Eigen::Vector<Scalar, NX>;
   using Matrix = Eigen::Matrix<Scalar, NX, NX>;
 

@@ -28,7 +28,7 @@ Innovation<NZ, typename Form::Matrix::Scalar> iterated_update(
     Filter<NX, Form>& filter, const Eigen::Vector<typename Form::Matrix::Scalar, NZ>& y,
     const Outputs& outputs, const Eigen::Matrix<typename Form::Matrix::Scalar, NZ, NZ>& R,
     const IterationOptions& options = {}) {
-  using Scalar = typename Form::Matrix::Scalar;
+  using Scalar = Form::Matrix::Scalar;
   using Vector = Eigen::Vector<Scalar, NX>;
   constexpr Scalar digits_lost = 8;
   Filter<NX, Form> latest = filter;

@@ -51,7 +51,7 @@ class JointFilter {
   static constexpr int n_1 = Sized::n_1;
   static constexpr int n_p = Sized::n_p;
   static constexpr int n_w = Sized::n_w;
-  using Scalar = typename Form::Matrix::Scalar;
+  using Scalar = Form::Matrix::Scalar;
   using Vector = Vec<Scalar, n>;
   using Matrix = Eigen::Matrix<Scalar, n, n>;
   using Outputs = Vec<Scalar, n_z>;

@@ -104,7 +104,7 @@ class LevenbergMarquardt {
 
  private:
   using Square = Eigen::Matrix<Scalar, N, N>;
-  using Triangle = typename Root::Triangle;
+  using Triangle = Root::Triangle;
   using Flags = Eigen::Array<bool, N, 1>;
 
   static constexpr Scalar infinite = std::numeric_limits<Scalar>::infinity();

@@ -36,7 +36,7 @@ class Dialect {
   std::string function(std::string_view type, std::string_view name,
                        const std::vector<std::string>& arguments) const;
 
-  std::string status_type() const { return cpp_ ? "Status" : "int"; }
+  std::string_view status_type() const { return cpp_ ? "Status" : "int"; }
 
  private:
   bool cpp_;

@@ -25,9 +25,10 @@ struct SymmetricMagnetometer {
 
   template <class U, class X>
   Affine<X, 3, 9> at(const Vec<U, 3>& h, const Vec<X, 0>& /*xi2*/) const {
-    const X x(h[0]);
-    const X y(h[1]);
-    const X z(h[2]);
+    const Vec<X, 3> columns = h.template cast<X>();
+    const auto& x = columns[0];
+    const auto& y = columns[1];
+    const auto& z = columns[2];
     const X zero(0.0);
     Affine<X, 3, 9> m;
     m.A.template leftCols<6>() << x, zero, zero, y, z, zero,  //
