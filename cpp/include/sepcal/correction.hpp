@@ -4,6 +4,7 @@
 // makes of a log: what acts on the reference alone, the wind or the attitude, is none of them.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -81,10 +82,17 @@ concept Of = std::same_as<typename composing::BaseOf<M>::Type, Base>;
 /// xi1 without what is not the probe's: the wind and what follows it, an arm.
 template <class M, class Scalar>
 Vec<Scalar, Sizes<M>::n_1> of_probe(Vec<Scalar, Sizes<M>::n_1> xi1) {
+  constexpr auto others = [] {
+    std::array<bool, M::linear.size()> found{};
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const std::string_view name = M::linear[k].name;
+      found[k] =
+          name.starts_with("w_") || name.starts_with("wind[") || name.starts_with("lever_arm.");
+    }
+    return found;
+  }();
   for (int k = 0; k < Sizes<M>::n_1; ++k) {
-    const std::string_view name = M::linear[static_cast<std::size_t>(k)].name;
-    if (name.starts_with("w_") || name.starts_with("wind[") || name.starts_with("lever_arm."))
-      xi1[k] = Scalar(0);
+    if (others[static_cast<std::size_t>(k)]) xi1[k] = Scalar(0);
   }
   return xi1;
 }
@@ -194,9 +202,11 @@ CorrectedAir<Scalar> correct(const Calibrated<M, Scalar>& calibrated,
         using std::asin;
         using std::atan2;
         CorrectedAir<Scalar> result;
-        const Scalar pressure =
-            seen[place_of("pt", Inner::inputs)] - seen[place_of("ps", Inner::inputs)];
-        const Scalar rho = seen[place_of("rho", Inner::inputs)];
+        constexpr int pt = place_of("pt", Inner::inputs);
+        constexpr int ps = place_of("ps", Inner::inputs);
+        constexpr int density = place_of("rho", Inner::inputs);
+        const Scalar pressure = seen[pt] - seen[ps];
+        const Scalar rho = seen[density];
         if (!(pressure > 0) || !(rho > 0) || !std::isfinite(rho)) return result;
         const auto [A, b] = correcting::level<Scalar>(model, seen, xi2);
         const Vec<Scalar, 3> air =
@@ -225,15 +235,15 @@ CorrectedAirspeed<Scalar> correct(const Calibrated<M, Scalar>& calibrated, const
         using Inner = std::remove_cvref_t<decltype(model)>;
         using std::isfinite;
         using std::sqrt;
+        constexpr int scale = place_of("airspeed_scale", Inner::inputs);
+        constexpr int bias = place_of("airspeed_bias", Inner::inputs);
+        constexpr int pressure = place_of("pressure_offset", Inner::inputs);
+        constexpr int rho = place_of("rho", Inner::inputs);
         const Scalar met = (z - calibrated.xi1[1]) / calibrated.xi1[0];
-        const Scalar pressure = inner[place_of("pressure_offset", Inner::inputs)];
-        const Scalar offset = pressure == Scalar(0)
-                                  ? Scalar(0)
-                                  : 2 * pressure / inner[place_of("rho", Inner::inputs)];
+        const Scalar offset =
+            inner[pressure] == Scalar(0) ? Scalar(0) : 2 * inner[pressure] / inner[rho];
         const Scalar undisturbed = offset == Scalar(0) ? met : sqrt(met * met + offset);
-        const Scalar airspeed =
-            undisturbed * (1 + inner[place_of("airspeed_scale", Inner::inputs)]) +
-            inner[place_of("airspeed_bias", Inner::inputs)];
+        const Scalar airspeed = undisturbed * (1 + inner[scale]) + inner[bias];
         if (!isfinite(airspeed)) return CorrectedAirspeed<Scalar>{};
         return CorrectedAirspeed<Scalar>{CorrectionStatus::ok, airspeed};
       });
