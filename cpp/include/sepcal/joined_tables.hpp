@@ -70,10 +70,19 @@ constexpr bool same_units() {
   });
 }
 
-/// Where input i of a part stands among those of the whole.
+/// Where the inputs of a part stand among those of the whole: found while compiling.
+template <class Whole, class Part>
+inline constexpr auto positions = [] {
+  std::array<int, Part::inputs.size()> places{};
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = static_cast<int>(find(Whole::inputs, Part::inputs[i].name));
+  return places;
+}();
+
+/// That of input i.
 template <class Whole, class Part>
 constexpr int position(int i) {
-  return static_cast<int>(find(Whole::inputs, Part::inputs[static_cast<std::size_t>(i)].name));
+  return positions<Whole, Part>[static_cast<std::size_t>(i)];
 }
 
 /// A part's inputs out of those of the whole.
