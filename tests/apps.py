@@ -6,6 +6,7 @@ The apps are looked for in $SEPCAL_APPS, by default build/apps in the checkout.
 
 import json
 import os
+import re
 import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -39,14 +40,38 @@ class Outcome:
 
 
 def run(
-    app: str, *arguments: str | Path, folder: Path, before: Callable[[], None] | None = None
+    app: str,
+    *arguments: str | Path,
+    folder: Path,
+    before: Callable[[], None] | None = None,
+    instruction_set: str | None = None,
 ) -> Outcome:
-    """Runs an app in `folder`; `before` is called in the new process first."""
+    """Runs an app in `folder`; `before` is called in the new process first.
+
+    On an instruction set: with SEPCAL_ISA set, else as the tests' own environment has it.
+    """
     command = [str(APPS / app), *map(str, arguments)]
+    chosen = {} if instruction_set is None else {"SEPCAL_ISA": instruction_set}
     done = subprocess.run(
-        command, cwd=folder, capture_output=True, check=False, timeout=120, preexec_fn=before
+        command,
+        cwd=folder,
+        env={**os.environ, **chosen},
+        capture_output=True,
+        check=False,
+        timeout=120,
+        preexec_fn=before,
     )
     return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
+
+
+def list_instruction_sets(app: str, *fit: str | Path, folder: Path) -> list[str]:
+    """Those of this processor, the widest first, as the refusal of an unknown one lists them."""
+    refused = run(app, *fit, folder=folder, instruction_set="abacus")
+    assert refused.code == 2
+    assert len(refused.err.splitlines()) == 1
+    listed = re.search(r"SEPCAL_ISA is abacus; this processor takes (.*)$", refused.err.strip())
+    assert listed
+    return listed.group(1).split(", ")
 
 
 def parse_json(text: str) -> dict[str, Any]:
