@@ -55,6 +55,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         check_options(chosen)
         with progress_bar() as report_progress:
             outcome = study.run(chosen, report_progress)
+        if outcome.page:
+            print(outcome.page)
         for finding in outcome.findings:
             print(in_words(finding))
         outside = [finding for finding in outcome.findings if not finding.holds]

@@ -30,10 +30,14 @@ class Finding:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a study found; `figures` is the sentence that docs/studies.md has of it."""
+    """What a study found; `figures` is the sentence that docs/studies.md has of it.
+
+    `page`, where there is one, is Markdown that is printed before the findings.
+    """
 
     figures: str
     findings: Sequence[Finding] = ()
+    page: str = ""
 
 
 @dataclass(frozen=True)

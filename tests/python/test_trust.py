@@ -1,15 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Verdicts and minima where a flight is not as the method would like it."""
 
+import json
+
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 import sepcal
 from recorded import find_fixture
+from studies import __main__ as command
 from studies.hidden_effects.cases import calibrate
-from studies.trust import minima
+from studies.trust import both_errors, by_key, minima
+from studies.trust.asked import MODELS
 from studies.trust.flights import ATTITUDE, fly
+from studies.trust.part import limits
 from studies.trust.power import BY_LABEL, size_for
+from studies.trust.simulator import bounds
+from studies.trust.simulator.causes import Cause, causes_of
+from studies.trust.simulator.disturbances import DISTURBANCES
+from studies.trust.simulator.flights import fly_log
+from studies.trust.simulator.probes import INSTRUMENTS
 
 
 @pytest.mark.parametrize("size", [4.0, 10.0, 20.0, 30.0])
@@ -212,3 +223,224 @@ def test_an_axis_that_is_turned_over_is_no_calibration():
     fitted = sepcal.fit(sepcal.Magnetometer(), sepcal.Flight(columns))
     assert fitted.status != "converged"
     assert any("lambda_x" in line and "sign" in line for line in fitted.message.split("; "))
+
+
+@pytest.fixture
+def silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Instruments without noise."""
+    monkeypatch.setattr(bounds, "WHITE", dict.fromkeys(INSTRUMENTS, 0.0))
+
+
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize("probe", INSTRUMENTS)
+def test_the_other_simulator_and_the_engine_mean_the_same_parameters(probe: str):
+    """Without noise a fit ends in the truth, to what a log's rounding of nothing leaves."""
+    for seed in range(3):
+        flown = fly_log(probe, "white", seed)
+        fitted = sepcal.fit(MODELS[probe], sepcal.Flight(flown.columns), threads=1)
+        assert max(fitted.rmse.values()) < 1e-6
+        for name, value in flown.truth.items():
+            assert fitted[name].value == pytest.approx(value, abs=1e-4), name
+
+
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize(
+    ("probe", "port"), [(name, port) for name, probe in INSTRUMENTS.items() for port in probe.ports]
+)
+def test_the_other_simulator_and_the_engine_mean_the_same_effects(probe: str, port: str):
+    """A line along the throttle, added to the model, leaves nothing: it is the same physics."""
+    cause = Cause(port, "drift", "throttle")
+    flown = fly_log(probe, "white", 3, [(cause, "loudness", 0.3)])
+    base = sepcal.fit(MODELS[probe], sepcal.Flight(flown.columns), threads=1)
+    assert max(base.rmse.values()) > 0.03
+    assert max(base.add(cause.effect).rmse.values()) < 1e-5
+
+
+@pytest.mark.parametrize("probe", INSTRUMENTS)
+def test_a_fit_holds_the_other_simulators_truth_within_its_errors(probe: str):
+    """Of some 80 parameters in white noise none is five standard errors off, and few are two."""
+    off = []
+    for seed in range(8):
+        flown = fly_log(probe, "white", seed)
+        fitted = sepcal.fit(MODELS[probe], sepcal.Flight(flown.columns), threads=1)
+        assert fitted.status == "converged"
+        off += [
+            abs(fitted[name].value - value) / fitted[name].standard_error
+            for name, value in flown.truth.items()
+        ]
+    assert max(off) < 5.0
+    assert np.mean(np.array(off) > 2.0) < 0.15
+
+
+@pytest.mark.parametrize("probe", INSTRUMENTS)
+@pytest.mark.parametrize("share", [0.3, 0.6])
+def test_what_is_hidden_takes_its_share_by_a_real_fit(probe: str, share: float):
+    """The size is by least squares in NumPy, the share by the engine's folds."""
+    for seed, driver in enumerate(("time", "altitude_m", "throttle")):
+        port = next(iter(INSTRUMENTS[probe].ports))
+        if port == "wind" and driver == "throttle":
+            port = "airspeed_bias"
+        cause = Cause(port, "drift", driver)
+        flown = fly_log(probe, "white", seed, [(cause, "share", share)])
+        base = sepcal.fit(MODELS[probe], sepcal.Flight(flown.columns), threads=1)
+        entry = base.add(cause.effect).history[-1]
+        taken = 1.0 - entry.held_out_after / entry.held_out_before
+        assert taken == pytest.approx(share, abs=0.07)
+
+
+@pytest.mark.parametrize("noise", [n for n in DISTURBANCES if not n.startswith("quantised")])
+def test_noise_is_the_same_whatever_is_hidden(noise: str):
+    """So that a flight with a cause and one without differ by the cause, in their outputs alone."""
+    probe = DISTURBANCES[noise].probes[-1]
+    outputs = INSTRUMENTS[probe].outputs
+    port = "bias" if probe == "magnetometer" else "airspeed_bias"
+    small, large = (
+        fly_log(probe, noise, 4, [(Cause(port, "drift", "time"), "loudness", size)]).columns
+        for size in (0.1, 0.2)
+    )
+    moved = {header for header in small if not np.array_equal(small[header], large[header])}
+    assert moved == set(outputs)
+    assert max(np.std(large[header] - small[header]) for header in outputs) == pytest.approx(
+        0.1, rel=0.02
+    )
+
+
+@pytest.mark.parametrize("noise", [n for n in DISTURBANCES if n.startswith(("Gauss", "random"))])
+def test_an_instrument_wanders_within_what_is_stated(noise: str, monkeypatch: pytest.MonkeyPatch):
+    """Half of the bound and more, in the mean of flights; a short record shows less of it."""
+    monkeypatch.setattr(bounds, "WHITE", dict.fromkeys(INSTRUMENTS, 0.0))
+    for probe, stated in bounds.OF_OUTPUTS.items():
+        output = INSTRUMENTS[probe].outputs[0]
+        squares = []
+        for seed in range(40):
+            quiet, loud = (fly_log(probe, row, seed).columns[output] for row in ("white", noise))
+            squares.append(np.mean((loud - quiet) ** 2))
+        assert 0.4 * stated < np.sqrt(np.mean(squares)) < 1.1 * stated
+
+
+@pytest.mark.parametrize(
+    ("label", "said", "named"),
+    [
+        ("drift of wind along altitude_m", "wind[altitude_m]", True),
+        ("drift of wind along altitude_m", "wind_shear", True),
+        ("drift of wind along altitude_m", "wind[spline(altitude_m,5)]", False),
+        ("drift of wind along altitude_m", "wind[time]", False),
+        ("step of bias along time", "bias_step", True),
+        ("step of bias along time", "bias[spline(time,6)]", True),
+        ("step of bias along time", "bias[time]", False),
+        ("swing of bias along temp_degc", "bias[spline(temp_degc,9)]", True),
+        ("swing of bias along temp_degc", "scale[spline(temp_degc,9)]", False),
+        ("ramp of airspeed_scale along time", "icing_ramp", True),
+        ("ramp of airspeed_scale along time", "airspeed_scale[time^2]", False),
+    ],
+)
+def test_a_cause_is_named_by_its_port_its_driver_and_its_kind_of_curve(
+    label: str, said: str, named: bool
+):
+    cause = Cause.of(label)
+    assert cause.label == label
+    assert cause.is_named_by(said) == named
+
+
+def test_every_cause_is_named_by_its_own_effect():
+    for probe in INSTRUMENTS:
+        causes = list(causes_of(probe))
+        assert len({cause.label for cause in causes}) == len(causes)
+        for cause in causes:
+            assert cause.is_named_by(cause.effect)
+
+
+@pytest.mark.parametrize(("events", "trials"), [(0, 8), (3, 600), (590, 600), (8, 8)])
+def test_the_limits_of_a_rate_are_clopper_and_pearsons(events: int, trials: int):
+    expected = binomtest(events, trials).proportion_ci(0.95, method="exact")
+    assert limits(events, trials) == pytest.approx((expected.low, expected.high), abs=1e-12)
+
+
+def test_a_study_of_few_flights_goes_on_where_it_was_stopped(
+    tmp_path, capsys: pytest.CaptureFixture[str]
+):
+    """What is in the file stays as it is, and a line that was cut is flown anew."""
+    file = tmp_path / "trust.jsonl"
+    typed = ["trust", "--part", "nothing", "hidden", "--noise", "white", "outliers"]
+    typed += ["--flights", "1", "--first-seed", "1", "--processes", "1", "-o", str(file)]
+    command.main(typed)
+    first = [json.loads(line) for line in file.read_text().splitlines()]
+    assert len(first) == 2 * 3  # nothing, 30 % and 60 % in two noises
+    assert {row["key"][2] for row in first} == {"white", "outliers"}
+    assert all(row["hidden"][0]["visibility"] >= 0.15 for row in first if row["key"][3])
+
+    kept, cut = file.read_text().splitlines()[:-1], file.read_text().splitlines()[-1]
+    marked = [line.replace('"sentence": "', '"sentence": "kept: ') for line in kept]
+    file.write_text("\n".join([*marked, cut[: len(cut) // 2]]))
+    capsys.readouterr()
+    command.main(typed)
+    again = file.read_text().splitlines()
+    assert again[:-1] == marked
+    anew, before = json.loads(again[-1]), first[-1]
+    for row in (anew, before):
+        for name in [name for name in row if name.endswith("seconds")]:
+            del row[name]
+    assert anew == before
+    printed = capsys.readouterr().out
+    assert printed.startswith("| noise | nothing hidden: flights | found | slow_change |")
+    assert "| outliers | 1 | " in printed
+    assert "nothing hidden, white: found: " in printed
+
+
+def test_a_line_of_the_study_says_which_flight_it_was(tmp_path):
+    """Written as the programs read it, it is the flight that was asked."""
+    key = ("two", "pitot-static: drift of wind along time and step of airspeed_bias along throttle")
+    key = (*key, "gusts", 0.45, 600, 8)
+    probe, flown = by_key.fly_key(key)
+    assert [hidden.cause.label for hidden in flown.hidden] == [
+        "drift of wind along time",
+        "step of airspeed_bias along throttle",
+    ]
+    file = by_key.write_log(key, tmp_path)
+    read = sepcal.read_csv(file)
+    assert list(read) == list(flown.columns)
+    for header, values in flown.columns.items():
+        np.testing.assert_allclose(read[header], values, rtol=1e-11)
+    fitted = sepcal.fit(MODELS[probe], read, threads=1)
+    assert fitted.rmse["airspeed"] > 0.2
+
+
+def _row(part: str, case: str, noise: str, size: float, **said: object) -> dict[str, object]:
+    row = {"key": [part, case, noise, size, 600, 1], "verdict": "adequate", "set": []}
+    ranked = [{"name": "wind[time]", "status": "not_seen", "beside": "untried"}]
+    row |= {"ranked": ranked, "rmse": 0.1, "floor": 0.1, "nothing_missing": True, "share": 0.31}
+    return row | said
+
+
+def test_the_table_counts_both_errors_and_says_what_fails():
+    case = "pitot-static: drift of wind along time"
+    found = {"verdict": "effect_missing", "set": ["wind[time]"], "nothing_missing": False}
+    rows = [
+        _row("nothing", "pitot-static", "white", 0.0),
+        _row("nothing", "pitot-static", "white", 0.0, **found),
+        _row("hidden", case, "white", 0.3, **found),
+        _row("hidden", case, "white", 0.3),
+        _row("hidden", case, "white", 0.3, share=0.1),  # too small to be counted
+        _row("wander", case, "pink", 2.0, verdict="slow_change"),
+    ]
+    page = both_errors.tabulate(rows)
+    white = next(line for line in page.splitlines() if line.startswith("| white |"))
+    cells = [cell.strip() for cell in white.strip("|").split("|")]
+    assert cells[1:5] == ["2", "50.0 (1.3-98.7)", "0.0 (0.0-84.2)", "0.0 (0.0-84.2)"]
+    assert cells[5:8] == ["-", "1/2", "-"]
+    assert cells[8:13] == ["2 of 3", "50.0 (1.3-98.7)", "50.0 (1.3-98.7)", "1", "0.31"]
+    assert list(both_errors.list_failures(rows)) == [
+        "- 1 x nothing, pitot-static: found wind[time] (white 1)",
+        f"- 1 x 30 %, {case}: adequate, its candidate not_seen (white 1)",
+        f"- 1 x 2 wanders, {case}: slow_change, its candidate not_seen (pink 1)",
+    ]
+
+
+def test_nothing_is_missing_is_not_to_be_said_far_over_the_floor():
+    near = _row("nothing", "pitot-static", "white", 0.0, rmse=0.149)
+    far = _row("nothing", "pitot-static", "AR(0.9)", 0.0, rmse=0.151)
+    told = _row("nothing", "pitot-static", "AR(0.9)", 0.0, rmse=0.151, nothing_missing=False)
+    assert both_errors.judge_words([near, told]).holds
+    judged = both_errors.judge_words([near, far, told])
+    assert not judged.holds
+    assert judged.figure == "1 of 3: pitot-static in AR(0.9) (1)"

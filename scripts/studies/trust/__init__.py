@@ -14,17 +14,30 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from studies.study import Finding, Outcome, Progress, Study, check_folder, seeds
+from studies.trust import both_errors
+from studies.trust.by_key import HIDDEN, NOTHING, SCREENS, SIMPLE, TWO, WANDER, write_log
 from studies.trust.errors import ERRORS
-from studies.trust.flights import NOISES
+from studies.trust.flights import FURTHER, NOISES
 from studies.trust.minima import HARD_PROBLEMS, MINIMA
+from studies.trust.nothing_hidden import NOTHING_HIDDEN
 from studies.trust.pairs import PAIR_SETS
 from studies.trust.part import Key, Part, Row
 from studies.trust.positions import POSITIONS
 from studies.trust.power import POWER
+from studies.trust.screens import REFITS
+from studies.trust.simplest import SIMPLEST, TWO_CAUSES
+from studies.trust.simulator.disturbances import DISTURBANCES
+from studies.trust.something_hidden import SHARES_HIDDEN, WANDERS_HIDDEN
 from studies.trust.unlogged import UNLOGGED
 from studies.trust.verdicts import ALARMS, DECOY_CHANNELS
 
 PARTS: dict[str, Part] = {
+    NOTHING: NOTHING_HIDDEN,
+    HIDDEN: SHARES_HIDDEN,
+    WANDER: WANDERS_HIDDEN,
+    SCREENS: REFITS,
+    SIMPLE: SIMPLEST,
+    TWO: TWO_CAUSES,
     "alarms": ALARMS,
     "decoys": DECOY_CHANNELS,
     "power": POWER,
@@ -38,15 +51,42 @@ PARTS: dict[str, Part] = {
 
 
 def _options(parser: argparse.ArgumentParser) -> None:
-    seeds(10, "flights of each kind, of each probe and noise or of each effect and size")(parser)
+    seeds(10, "of the other parts: flights of each kind, probe and noise, or effect and size")(
+        parser
+    )
     parser.add_argument("--part", choices=tuple(PARTS), nargs="*", default=list(PARTS))
     parser.add_argument("--sigmas", type=float, nargs="*", default=[5.0, 10.0, 30.0, 100.0, 300.0])
-    parser.add_argument("--noise", nargs="*", default=list(NOISES), help="of the null flights")
+    parser.add_argument(
+        "--noise",
+        nargs="*",
+        choices=tuple(dict.fromkeys([*DISTURBANCES, *NOISES, *FURTHER])),
+        metavar="NOISE",
+        help="the rows of the table and the noises of the null flights [all]",
+    )
+    parser.add_argument(
+        "--flights",
+        type=int,
+        default=600,
+        help=f"of {', '.join(both_errors.PARTS)}: so many each noise and size; a sixth of them "
+        f"each noise of {SIMPLE} and {TWO} (default: 600)",
+    )
+    parser.add_argument(
+        "--refitted",
+        type=int,
+        default=50,
+        help="of screens: flights each noise, with every candidate added (default: 50)",
+    )
     parser.add_argument(
         "--rows",
         type=int,
         nargs="*",
         help="of null flights (400), and of those for errors (400, 4000)",
+    )
+    parser.add_argument(
+        "--logs",
+        metavar="FOLDER",
+        type=Path,
+        help="write the flights of the table that fail there, as the programs read them",
     )
     parser.add_argument("-o", "--output", type=Path, default=Path("trust.jsonl"))
 
@@ -60,7 +100,11 @@ def _try(key: Key) -> Row:
 def _read(file: Path) -> dict[Key, Row]:
     if not file.exists():
         return {}
-    rows = [json.loads(line) for line in file.read_text().splitlines()]
+    text = file.read_text()
+    whole = text[: text.rfind("\n") + 1]
+    if whole != text:  # a run was stopped in the middle of a line
+        file.write_text(whole)
+    rows = [json.loads(line) for line in whole.splitlines()]
     return {tuple(row["key"]): row for row in rows}
 
 
@@ -83,13 +127,24 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     findings: list[Finding] = []
     for part, own in keys.items():
         findings += PARTS[part].summarise([done[key] for key in own])
-    return Outcome(f"{len(every)} flights, {hours:.2f} core-hours", findings)
+    simulated = [done[key] for key in every if "nothing_missing" in done[key]]
+    figures = f"{len(every)} flights, {hours:.2f} core-hours"
+    if not simulated:
+        return Outcome(figures, findings)
+    tabled = [row for row in simulated if row["key"][0] in both_errors.PARTS]
+    page = both_errors.tabulate(tabled) if tabled else ""
+    if arguments.logs is not None:
+        arguments.logs.mkdir(parents=True, exist_ok=True)
+        for row in filter(both_errors.failure_of, tabled):
+            write_log(tuple(row["key"]), arguments.logs)
+    return Outcome(figures, [*findings, both_errors.judge_words(simulated)], page)
 
 
 STUDY = Study(
     "trust",
-    "what is called found on noise as instruments have it, whether large effects are, whether fits "
-    "end in the lowest minimum and whether standard errors hold",
+    "both errors of the verdict, on flights of another simulator in noise as instruments have it: "
+    "what is called found of nothing, and what is missed; and whether large effects are found, "
+    "fits end in the lowest minimum and standard errors hold",
     _run,
     _options,
 )

@@ -18,7 +18,7 @@ from sepcal.flight import Flight
 from studies.hidden_effects.cases import PROBES, calibrate
 from studies.study import Finding, seed_range
 from studies.trust.flights import FURTHER, HEADERS, NOISES, SAMPLES_ALONE, fly
-from studies.trust.part import Key, Part, Row
+from studies.trust.part import Key, Part, Row, chosen_noises
 
 WAYS = (
     "standard_error",
@@ -33,8 +33,7 @@ CUT_STRAIGHT = "no standard error tells"  # what a note says of interpolated col
 
 
 def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
-    everything = arguments.noise == list(NOISES)
-    noises = [*NOISES, *FURTHER] if everything else arguments.noise
+    noises = chosen_noises(arguments, [*NOISES, *FURTHER])
     for seed in seed_range(arguments):
         for rows in arguments.rows or LENGTHS:
             for noise in noises:

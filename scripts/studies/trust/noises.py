@@ -18,7 +18,9 @@ def _white(rng: np.random.Generator, time: Array) -> Array:
     return rng.standard_normal(time.size)
 
 
-def _first_order(phi: float) -> Draw:
+def first_order(phi: float) -> Draw:
+    """Autoregressive, of this correlation from row to row."""
+
     def draw(rng: np.random.Generator, time: Array) -> Array:
         innovations = rng.standard_normal(time.size) * np.sqrt(1.0 - phi * phi)
         innovations[0] = rng.standard_normal()
@@ -61,7 +63,7 @@ def _gauss_markov(seconds: float) -> Draw:
 
     def draw(rng: np.random.Generator, time: Array) -> Array:
         phi = float(np.exp(-np.median(np.diff(time)) / seconds))
-        return _white(rng, time) + _first_order(phi)(rng, time)
+        return _white(rng, time) + first_order(phi)(rng, time)
 
     return draw
 
@@ -110,12 +112,12 @@ def _interpolated(rng: np.random.Generator, time: Array) -> Array:
 INTERPOLATED = "interpolated tenfold"
 OUTPUT_NOISES: dict[str, Draw] = {
     "white": _white,
-    "AR(0.9)": _first_order(0.9),
-    "AR(0.99)": _first_order(0.99),
+    "AR(0.9)": first_order(0.9),
+    "AR(0.99)": first_order(0.99),
     "pink": _power_law(1.0),
     "1/f^1.5": _power_law(1.5),
     "bursty": _bursty(_white),
-    "bursty AR": _bursty(_first_order(0.9)),
+    "bursty AR": _bursty(first_order(0.9)),
     "white + GM 10 s": _gauss_markov(10.0),
     "white + GM 60 s": _gauss_markov(60.0),
     "white + GM 300 s": _gauss_markov(300.0),

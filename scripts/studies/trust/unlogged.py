@@ -13,9 +13,9 @@ from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 from studies.hidden_effects.cases import NOISE, PROBES, calibrate
 from studies.study import Finding, seed_range
-from studies.trust.flights import HEADERS, fly
+from studies.trust.flights import HEADERS, NOISES, fly
 from studies.trust.noises import Array
-from studies.trust.part import Key, Part, Row, upper_limit
+from studies.trust.part import Key, Part, Row, chosen_noises, upper_limit
 
 ROWS = 400
 NOTHING, BURST, LINE = "nothing", "burst in two outputs", "line in one output"
@@ -65,12 +65,12 @@ def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
     for seed in seed_range(arguments):
         for rows in arguments.rows or (ROWS,):
             for probe in PROBES:
-                for noise in arguments.noise:
+                for noise in chosen_noises(arguments, NOISES):
                     yield "unlogged", f"{NOTHING}: {probe}", noise, 0.0, rows, seed
                 for cause, outputs in OUTPUTS.items():
                     if len(HEADERS[probe]) < outputs:
                         continue
-                    for noise in (noise for noise in LOUD if noise in arguments.noise):
+                    for noise in chosen_noises(arguments, LOUD):
                         yield "unlogged", f"{cause}: {probe}", noise, SIGMAS[cause], rows, seed
 
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 
 from studies.hidden_effects.cases import PROBES, calibrate
 from studies.study import Finding, seed_range
-from studies.trust.flights import fly
-from studies.trust.part import Key, Part, Row, upper_limit
+from studies.trust.flights import NOISES, fly
+from studies.trust.part import Key, Part, Row, chosen_noises, upper_limit
 
 ROWS = 400
 DECOYS = 5  # channels that drive nothing
@@ -20,7 +20,7 @@ QUIET = ("white", "AR(0.9)", "bursty", "bursty AR")  # that hardly wander
 def _keys(part: str, arguments: argparse.Namespace) -> Iterator[Key]:
     for seed in seed_range(arguments):
         for rows in arguments.rows or (ROWS,):
-            for noise in arguments.noise:
+            for noise in chosen_noises(arguments, NOISES):
                 for probe in PROBES:
                     yield part, probe, noise, 0.0, rows, seed
 
