@@ -17,8 +17,10 @@ from studies.trust.simulator.compass import FIELD
 from studies.trust.simulator.five_hole import SENSITIVITY
 from studies.trust.simulator.ground_track import fly_path
 from studies.trust.simulator.instrument import (
+    AIR_DATA,
     ATTITUDE,
     RATES,
+    READINGS,
     VELOCITY,
     Change,
     Columns,
@@ -128,24 +130,27 @@ def _quantised(times: float) -> Disturb:
     return disturb
 
 
-def _slow_sensor(log: Log) -> tuple[tuple[str, ...], int]:
-    """The columns of a sensor that answers in one row of so many, once a second or oftener."""
-    time = log.motion.time
-    most = max(2, min(5, round(1.0 / (time[1] - time[0]))))
-    columns = VELOCITY if "vn_mps" in log.columns else log.instrument.outputs
-    return columns, int(log.rng.integers(2, most + 1))
+def _rows_an_answer(log: Log) -> int:
+    """Of a sensor that answers in one row of so many, once a second or oftener."""
+    step = float(log.motion.time[1] - log.motion.time[0])
+    return int(log.rng.integers(2, max(2, min(5, round(1.0 / step))) + 1))
 
 
 def _held(log: Log) -> None:
-    columns, rows = _slow_sensor(log)
-    for header in columns:
+    """The columns of which the catalogue can say that they are late: the air's, or the outputs.
+
+    A tube's velocity is held: its airspeed is early beside it.
+    """
+    rows = _rows_an_answer(log)
+    late = {"five-hole": AIR_DATA, "pitot-static": VELOCITY, "magnetometer": READINGS}
+    for header in late[log.instrument.name]:
         log.columns[header] = np.repeat(log.columns[header][::rows], rows)[: log.motion.time.size]
 
 
 def _interpolated(log: Log) -> None:
-    columns, rows = _slow_sensor(log)
-    time = log.motion.time
-    for header in columns:
+    """A receiver's velocity or a compass's readings: their straight lines cut turns."""
+    rows, time = _rows_an_answer(log), log.motion.time
+    for header in READINGS if log.instrument.name == "magnetometer" else VELOCITY:
         log.columns[header] = np.interp(time, time[::rows], log.columns[header][::rows])
 
 

@@ -24,6 +24,7 @@ Change: TypeAlias = Mapping[str, Array]  # by port: (components, N), what is hid
 ATTITUDE = ("roll_rad", "pitch_rad", "yaw_rad")
 RATES = ("p_radps", "q_radps", "r_radps")
 VELOCITY = ("vn_mps", "ve_mps", "vd_mps")
+AIR_DATA = ("pt_pa", "ps_pa", "dpa_pa", "dpb_pa", "rho_kgpm3")
 READINGS = ("mx_ut", "my_ut", "mz_ut")
 SEA_LEVEL = 1.225  # [kg/m^3]
 AIR_PORTS = {
