@@ -331,6 +331,8 @@ def test_an_instrument_wanders_within_what_is_stated(noise: str, monkeypatch: py
         ("swing of bias along temp_degc", "bias[spline(temp_degc,9)]", True),
         ("swing of bias along temp_degc", "scale[spline(temp_degc,9)]", False),
         ("ramp of airspeed_scale along time", "icing_ramp", True),
+        ("ramp of airspeed_scale along time", "airspeed_scale[time]", True),
+        ("ramp of airspeed_scale along time", "airspeed_scale[temp_degc]", False),
         ("ramp of airspeed_scale along time", "airspeed_scale[time^2]", False),
     ],
 )
@@ -422,6 +424,7 @@ def test_the_table_counts_both_errors_and_says_what_fails():
         _row("hidden", case, "white", 0.3),
         _row("hidden", case, "white", 0.3, share=0.1),  # too small to be counted
         _row("wander", case, "pink", 2.0, verdict="slow_change"),
+        _row("wander", case, "pink", 2.0, verdict="refused", sentence="no rows"),
     ]
     page = both_errors.tabulate(rows)
     white = next(line for line in page.splitlines() if line.startswith("| white |"))
@@ -433,6 +436,7 @@ def test_the_table_counts_both_errors_and_says_what_fails():
         "- 1 x nothing, pitot-static: found wind[time] (white 1)",
         f"- 1 x 30 %, {case}: adequate, its candidate not_seen (white 1)",
         f"- 1 x 2 wanders, {case}: slow_change, its candidate not_seen (pink 1)",
+        f"- 1 x {case}: refused: no rows (pink 1)",
     ]
 
 

@@ -126,6 +126,8 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
     hours = sum(done[key]["seconds"] for key in every) / 3600.0
     findings: list[Finding] = []
     for part, own in keys.items():
+        if not own:  # of a noise that it doesn't have
+            continue
         findings += PARTS[part].summarise([done[key] for key in own])
     simulated = [done[key] for key in every if "nothing_missing" in done[key]]
     figures = f"{len(every)} flights, {hours:.2f} core-hours"

@@ -89,7 +89,7 @@ def list_indistinguishable(answer: dict[str, Any], diagnosis: Diagnosis) -> list
 
 
 def _short(effect: dict[str, Any]) -> dict[str, Any]:
-    told = ("name", "status", "beside", "p_adjusted", "held_out_gain", "predicted_drop")
+    told = ("name", "status", "beside", "log10_p", "p_adjusted", "held_out_gain", "predicted_drop")
     return {name: effect[name] for name in told}
 
 

@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Sequence, Set
 
 from studies.study import Finding
-from studies.trust.asked import OVER_THE_FLOOR, first_of, why_missed
+from studies.trust.asked import OVER_THE_FLOOR, REFUSED, first_of, why_missed
 from studies.trust.by_key import HIDDEN, NOTHING, WANDER, parse_case
 from studies.trust.nothing_hidden import is_false
 from studies.trust.part import Row, limits
@@ -103,6 +103,8 @@ def list_failures(rows: Sequence[Row]) -> Iterator[str]:
 def failure_of(row: Row) -> tuple[str, str] | None:
     """What was hidden and what was said of it, where that is wrong."""
     part, case, _, size, *_ = row["key"]
+    if row["verdict"] == REFUSED:
+        return case, f"refused: {row['sentence']}"
     if part == NOTHING:
         return (f"nothing, {case}", f"found {first_of(row)}") if is_false(row) else None
     causes = parse_case(case)[1]

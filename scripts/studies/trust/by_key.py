@@ -18,7 +18,7 @@ from studies.trust.simulator.flights import Flown, fly_log
 NOTHING, HIDDEN, WANDER = "nothing", "hidden", "wander"
 SCREENS, SIMPLE, TWO = "screens", "simplest", "two"
 AND = " and "
-MORE = 0.05  # is asked of the simulator, so that most flights take their share by a real fit
+MORE = 0.08  # is asked of the simulator, so that most flights take their share by a real fit
 
 
 def make_case(probe: str, *causes: Cause) -> str:

@@ -61,18 +61,18 @@ class Cause:
         return 9 if self.shape == "step" else 6
 
     def is_named_by(self, effect: str) -> bool:
-        """Whether the name says this port, this driver and a line or a curve as it is.
+        """Whether the name says this port, this driver and a form that the shape has.
 
-        A spline may stand for a step and a step for a ramp, but no curve for a line, nor a line
-        for a curve.
+        Curves may stand for each other, and a line for a ramp, which is one in part; no curve for a
+        line, and no line for a step or a swing.
         """
         port, _, driver = OWN_NAMES.get(effect, effect).removesuffix("]").partition("[")
         if port != self.port:
             return False
-        if self.shape == "drift":
-            return driver == self.driver
+        if driver == self.driver:
+            return self.shape in ("drift", "ramp")
         curve = CURVE.fullmatch(driver)
-        return curve is not None and curve[1] == self.driver
+        return self.shape != "drift" and curve is not None and curve[1] == self.driver
 
     def draw(self, rng: np.random.Generator, driver: Array) -> Array:
         """(N,) of unit size, about its mean; along a throttle, zero where that is closed or least.
