@@ -35,6 +35,16 @@ void DiagnoseArguments::add_to(CLI::App& diagnose) {
       ->take_all()
       ->allow_extra_args(false);
   diagnose
+      .add_option("--wanders", wanders_,
+                  "how far errors wander at most, in their units, where you know it: "
+                  "velocity=0.3,heading=0.05; the page names them")
+      ->type_name("NAME=SIZE,...")
+      ->delimiter(',');
+  diagnose
+      .add_option("--within", within_,
+                  "answers within so many seconds, and says what it had no time for")
+      ->type_name("SECONDS");
+  diagnose
       .add_option("--pse", pse_,
                   "what bounds the noise in PSE: sidpac, half the variance of what is measured, or "
                   "classic, all of it")
@@ -47,6 +57,19 @@ StepwiseOptions DiagnoseArguments::resolve() const {
   StepwiseOptions options;
   options.most = most_.value_or(options.most);
   options.diagnosis.only = only_;
+  for (const std::string& given : wanders_) {
+    const auto [name, size] = parse_assignment("--wanders", given, "NAME=SIZE");
+    options.diagnosis.wanders[name] = parse_value("--wanders", size);
+    if (!(options.diagnosis.wanders[name] >= 0.0)) {
+      throw Error("--wanders " + given + ": the size must be 0 or more");
+    }
+  }
+  if (!within_.empty()) {
+    options.diagnosis.within = parse_value("--within", within_);
+    if (!(options.diagnosis.within > 0.0)) {
+      throw Error("--within " + within_ + ": give a number of seconds above 0");
+    }
+  }
   options.diagnosis.pse = choice_of<PseBound>("--pse", pse_);
   return options;
 }

@@ -29,6 +29,8 @@ class DiagnoseArguments {
   bool adds_ = false;
   std::optional<std::size_t> most_;
   std::vector<std::string> only_;
+  std::vector<std::string> wanders_;
+  std::string within_;
   std::string pse_ = std::string(to_string(PseBound::sidpac));
 };
 

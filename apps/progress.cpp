@@ -8,14 +8,36 @@ namespace sepcal::app {
 
 using namespace std::chrono_literals;
 
-ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1), next_(Clock::now() + 500ms) {}
+namespace {
+
+constexpr auto between_lines = 10s;  // where nothing can be rewritten
+
+}  // namespace
+
+ProgressLine::ProgressLine()
+    : terminal_(isatty(STDERR_FILENO) == 1),
+      next_(Clock::now() + (terminal_ ? Clock::duration(500ms) : between_lines)) {}
 
 void ProgressLine::show(std::string_view task, double fraction) {
-  if (!terminal_ || Clock::now() < next_) return;
-  next_ = Clock::now() + 100ms;
-  fmt::print(stderr, "\r\033[K{}: {:3.0f} %", task, 100.0 * fraction);
+  const Clock::time_point now = Clock::now();
+  if (task != task_) {
+    task_ = task;
+    begun_ = now;
+  }
+  if (now < next_) return;
+  next_ = now + (terminal_ ? Clock::duration(100ms) : between_lines);
+  std::string line = fmt::format("{}: {:3.0f} %", task, 100.0 * fraction);
+  const double elapsed = std::chrono::duration<double>(now - begun_).count();
+  if (fraction > 0.0 && elapsed > 1.0) {
+    line += fmt::format(", about {:.0f} s left", elapsed * (1.0 - fraction) / fraction);
+  }
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{}", line);
+    shown_ = true;
+  } else {
+    fmt::print(stderr, "{}\n", line);
+  }
   std::fflush(stderr);
-  shown_ = true;
 }
 
 void ProgressLine::clear() {

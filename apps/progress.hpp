@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One line on standard error that says what is being done, where standard error is a terminal.
+// What is being done, how far it is and about how long that will take, on standard error: one line
+// that is rewritten where that is a terminal, else a line every ten seconds.
 #pragma once
 
 #include <chrono>
@@ -18,7 +19,7 @@ class ProgressLine {
   ~ProgressLine() { clear(); }
 
   /// Rewrites the line, at most ten times a second and not before half a second has passed: short
-  /// work shows nothing.
+  /// work shows nothing. `fraction` of the task is done.
   void show(std::string_view task, double fraction);
 
   void clear();
@@ -29,6 +30,8 @@ class ProgressLine {
   bool terminal_;
   bool shown_ = false;
   Clock::time_point next_;
+  std::string task_ = {};  // since begun_
+  Clock::time_point begun_ = {};
 };
 
 /// What a fit reports, shown on the line.

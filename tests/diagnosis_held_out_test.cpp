@@ -307,8 +307,7 @@ TEST_CASE("real fits and one step agree for a linear model on any selection of r
   const double shape = candidate.shape.values.front();
   const diagnosis::HeldOut by_steps =
       diagnosis::hold_out(room.fit(), room.columns(candidate, shape).whole, folds);
-  const diagnosis::HeldOut by_fits =
-      diagnosis::hold_out_by_refits(room, candidate, shape, folds, pool);
+  const diagnosis::HeldOut by_fits = diagnosis::Refits(room).hold_out(candidate, shape, folds);
   REQUIRE(by_fits.judged);
   CHECK(by_fits.before == Approx(by_steps.before).epsilon(1e-7));
   CHECK(by_fits.after == Approx(by_steps.after).epsilon(1e-7));

@@ -20,6 +20,7 @@ __all__: list[str] = [
     "Departure",
     "Derived",
     "Diagnosed",
+    "DiagnosisOptions",
     "Disturbance",
     "EffectSetting",
     "Error",
@@ -1842,6 +1843,18 @@ class FlightDeparture:
     @property
     def standard_error(self) -> float: ...
 
+class DiagnosisOptions:
+    def __init__(
+        self,
+        *,
+        simulations: typing.SupportsInt | typing.SupportsIndex,
+        seed: typing.SupportsInt | typing.SupportsIndex,
+        pse: str,
+        only: collections.abc.Sequence[str],
+        wanders: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        within: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
 class Calibration:
     def add(
         self,
@@ -1864,20 +1877,14 @@ class Calibration:
         arg1: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
         arg2: tuple[str, collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]]
         | None,
-        arg3: typing.SupportsInt | typing.SupportsIndex,
-        arg4: typing.SupportsInt | typing.SupportsIndex,
-        arg5: str,
-        arg6: collections.abc.Sequence[str],
+        arg3: DiagnosisOptions,
     ) -> Diagnosed: ...
     def diagnose_stepwise(
         self,
         arg0: Flight,
         arg1: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
         arg2: typing.SupportsInt | typing.SupportsIndex | None,
-        arg3: typing.SupportsInt | typing.SupportsIndex,
-        arg4: typing.SupportsInt | typing.SupportsIndex,
-        arg5: str,
-        arg6: collections.abc.Sequence[str],
+        arg3: DiagnosisOptions,
     ) -> SteppedCalibration: ...
     def intervals(
         self,

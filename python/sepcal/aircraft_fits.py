@@ -15,13 +15,13 @@ from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight, to_flight
 from sepcal.geometry import Aircraft
-from sepcal.options import FitOptions, spelled_out, to_core, to_names
+from sepcal.options import FitOptions, spelled_out, to_core
 from sepcal.own_effect import name_effects
 from sepcal.pages import Page
 from sepcal.results import Fit
 from sepcal.smoothing import Smoothed
 from sepcal.states_module import states_module
-from sepcal.stepwise import Stepwise, check_choices
+from sepcal.stepwise import Stepwise, diagnosis_options
 from sepcal.tracking import Track
 from sepcal.trajectories import FlightPath
 
@@ -114,6 +114,8 @@ class AircraftFit(Fit):
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        wanders: Mapping[str, float] | None = None,
+        within: float | None = None,
     ) -> Diagnosis: ...
 
     @overload
@@ -127,6 +129,8 @@ class AircraftFit(Fit):
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        wanders: Mapping[str, float] | None = None,
+        within: float | None = None,
     ) -> Stepwise[AircraftFit]: ...
 
     def diagnose(
@@ -139,6 +143,8 @@ class AircraftFit(Fit):
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        wanders: Mapping[str, float] | None = None,
+        within: float | None = None,
     ) -> Diagnosis | Stepwise[AircraftFit]:
         """Which effect or regressor does it lack on a flight?
 
@@ -155,6 +161,10 @@ class AircraftFit(Fit):
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
+            wanders: How far errors wander at most, in their units, where you know it, by the names
+                that `Diagnosis.wanders` has.
+            within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
+                there was no time for.
 
         Returns:
             A Diagnosis; with auto a Stepwise, whose `fitted` has what was added.
@@ -164,11 +174,19 @@ class AircraftFit(Fit):
                 name in only that is no regressor.
         """
         chosen = self._or_fitted(flight, "diagnose(")
-        check_choices(simulations, seed, auto=auto, most=most)
-        names = to_names("only", only)
+        asked = diagnosis_options(
+            auto=auto,
+            most=most,
+            only=only,
+            simulations=simulations,
+            seed=seed,
+            pse=pse,
+            wanders=wanders,
+            within=within,
+        )
         if not auto:
-            return Diagnosis._of(self.core.diagnose(chosen._core, simulations, seed, pse, names))
-        stepped = self.core.diagnose_stepwise(chosen._core, most, simulations, seed, pse, names)
+            return Diagnosis._of(self.core.diagnose(chosen._core, asked))
+        stepped = self.core.diagnose_stepwise(chosen._core, most, asked)
         return Stepwise(AircraftFit(stepped.fitted, chosen), stepped)
 
     def add(self, effect: str, flight: Flight | None = None) -> AircraftFit:

@@ -21,7 +21,7 @@ from sepcal.intervals import Intervals, Prediction
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit
-from sepcal.stepwise import Stepwise, check_choices
+from sepcal.stepwise import Stepwise, diagnosis_options
 
 Path = str | os.PathLike[str]
 
@@ -129,6 +129,8 @@ class Calibration(Fit):
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        wanders: Mapping[str, float] | None = None,
+        within: float | None = None,
     ) -> Diagnosis: ...
 
     @overload
@@ -143,6 +145,8 @@ class Calibration(Fit):
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        wanders: Mapping[str, float] | None = None,
+        within: float | None = None,
     ) -> Stepwise[Calibration]: ...
 
     def diagnose(
@@ -157,6 +161,8 @@ class Calibration(Fit):
         simulations: int = 80,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        wanders: Mapping[str, float] | None = None,
+        within: float | None = None,
     ) -> Diagnosis | Stepwise[Calibration]:
         """Which physical effect is missing on a flight, by default the fitted one?
 
@@ -172,6 +178,10 @@ class Calibration(Fit):
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
+            wanders: How far errors wander at most, in their units, where you know it, by the names
+                that `Diagnosis.wanders` has.
+            within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
+                there was no time for.
 
         Returns:
             A Diagnosis; with auto a Stepwise, whose `fitted` has what was added.
@@ -186,16 +196,22 @@ class Calibration(Fit):
             raise _core.Error("inject takes one effect at a time")
         if hidden and auto:
             raise _core.Error("inject and auto exclude each other: it is not in the flight")
-        check_choices(simulations, seed, auto=auto, most=most)
-        names = to_names("only", only)
+        asked = diagnosis_options(
+            auto=auto,
+            most=most,
+            only=only,
+            simulations=simulations,
+            seed=seed,
+            pse=pse,
+            wanders=wanders,
+            within=within,
+        )
         own = to_core_effects(effects)
         if not auto:
             injected = hidden[0] if hidden else None
-            found = self.core.diagnose(chosen._core, own, injected, simulations, seed, pse, names)
+            found = self.core.diagnose(chosen._core, own, injected, asked)
             return Diagnosis._of(found)
-        stepped = self.core.diagnose_stepwise(
-            chosen._core, own, most, simulations, seed, pse, names
-        )
+        stepped = self.core.diagnose_stepwise(chosen._core, own, most, asked)
         return Stepwise(Calibration(stepped.fitted, chosen, [*self.own_effects, *effects]), stepped)
 
     def add(

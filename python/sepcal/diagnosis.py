@@ -26,6 +26,9 @@ COLUMNS = (  # of the table, one number a candidate
 )
 
 
+STANDS_OUT = ("found", "slow_change", "undecided")
+
+
 @dataclass(frozen=True)
 class EffectFinding:
     """What a flight says about one candidate; None where a number is undefined."""
@@ -33,8 +36,9 @@ class EffectFinding:
     name: str  # what add() takes
     sentence: str  # in plain words
     drivers: list[str]  # channels
-    estimate: dict[str, float | None]  # by coefficient, as one step from the fit has it
-    standard_error: dict[str, float | None]  # in the noise model with the effect
+    estimate: dict[str, float | None]  # by coefficient, of one step from the fit, or of a fit
+    standard_error: dict[str, float | None]  # in the noise model with the effect, or the fit's
+    is_fitted: bool  # they are those of a fit with the effect
     unit: dict[str, str]
     shapes: dict[str, float]  # of a scan: {"bias_step.t0": 41.2}
     p_value: float  # for itself, corrected for its scan
@@ -56,9 +60,11 @@ class EffectFinding:
     held_out_passed: bool  # the mean gain of a block exceeds its standard error
     share_after_selection: float  # of the estimates, allowing for the effect's choice
     held_out_interleaved: bool  # blocks in between, not whole segments, were left out
+    held_out_refitted: bool  # by real fits with it and without, not by one step
+    excuse: float | None  # how many times too far noise would have to wander to look like it
     visibility: float  # below 0.05 the flight can't show at least a part of it
     absorbed_by: dict[str, float]  # how far ignoring it shifts each parameter
-    status: str  # "found", "slow_change", "not_seen", "cannot_be_seen"
+    status: str  # "found", "slow_change", "undecided", "not_seen", "cannot_be_seen"
     beside: str  # the first found: "equivalent", "fades", "counts"; "untried" of others
 
     @property
@@ -66,9 +72,12 @@ class EffectFinding:
         """The status as tables show it; "not held out" is significant and yet refused."""
         if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
             return "not held out"
-        return {"found": "found", "slow_change": "slow change", "not_seen": "not seen"}.get(
-            self.status, "can't be seen"
-        )
+        return {
+            "found": "found",
+            "slow_change": "slow change",
+            "undecided": "undecided",
+            "not_seen": "not seen",
+        }.get(self.status, "can't be seen")
 
     @property
     def beside_in_words(self) -> str:
@@ -105,6 +114,10 @@ class Diagnosis(Page):
     sentence: str  # the verdict in one sentence
     rmse: float | None  # over all outputs, in their unit
     noise_floor: float | None  # innovations alone
+    correlation_time: float  # over which the residual goes together [s]
+    wanders: dict[str, dict[str, Any]]  # how far errors were let wander: size, unit
+    work: dict[str, int]  # candidates screened, tested, calibrated; models refitted
+    left_undone: list[str]  # steps for which there was no time
     pse: str  # what bounds the noise of the effects' pse: "sidpac" var(z)/2, "classic" var(z)
     effects: list[EffectFinding]  # best first
     residual: dict[str, dict[str, Any]]  # by output: rmse, lag_one, ljung_box_p, noise, floor
@@ -144,8 +157,8 @@ class Diagnosis(Page):
 
     @property
     def explanations(self) -> list[str]:
-        """The first found and what would do as well instead; none where nothing was found."""
-        first = [effect.name for effect in self.found[:1]]
+        """What stands first and what would do as well instead; none where nothing stands out."""
+        first = [e.name for e in self.effects[:1] if e.status in STANDS_OUT]
         return [*first, *self.list_beside("equivalent")]
 
     def list_beside(self, beside: str) -> list[str]:

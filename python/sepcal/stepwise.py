@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from sepcal import _core
 from sepcal.diagnosis import Diagnosis
+from sepcal.options import to_names
 from sepcal.pages import Page, Row
 
 if TYPE_CHECKING:
@@ -94,7 +97,17 @@ class Stepwise(Page, Generic[Fitted]):
         return [{"name": step.effect, **asdict(step)} for step in self.steps]
 
 
-def check_choices(simulations: int, seed: int, *, auto: bool, most: int | None) -> None:
+def diagnosis_options(
+    *,
+    auto: bool,
+    most: int | None,
+    only: Sequence[str],
+    simulations: int,
+    seed: int,
+    pse: str,
+    wanders: Mapping[str, float] | None,
+    within: float | None,
+) -> _core.DiagnosisOptions:
     """Raises Error for choices of diagnose() that can't be, or not together."""
     if simulations < 2 or seed < 0:
         raise _core.Error("simulations must be at least 2, and seed not negative")
@@ -102,3 +115,17 @@ def check_choices(simulations: int, seed: int, *, auto: bool, most: int | None) 
         raise _core.Error("most is of auto=True; give both, or leave it out")
     if most is not None and most < 0:
         raise _core.Error(f"most {most} is negative; give at least 1, or leave it out for no limit")
+    if within is not None and not within > 0:
+        raise _core.Error(f"within {within} is no number of seconds above 0")
+    sizes = {str(name): float(size) for name, size in (wanders or {}).items()}
+    for name, size in sizes.items():
+        if not 0.0 <= size < math.inf:
+            raise _core.Error(f"wanders: the size of '{name}' is {size}; it must be 0 or more")
+    return _core.DiagnosisOptions(
+        simulations=simulations,
+        seed=seed,
+        pse=pse,
+        only=to_names("only", only),
+        wanders=sizes,
+        within=math.inf if within is None else within,
+    )

@@ -25,6 +25,7 @@ KEYS = {
     ),
     *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "unlogged"),
     *("limits", "missing_channels", "pse"),
+    *("correlation_time", "wanders", "work", "left_undone"),
 }
 EFFECT_KEYS = {
     *("name", "sentence", "drivers", "estimate", "standard_error", "unit", "shapes", "p_value"),
@@ -33,6 +34,7 @@ EFFECT_KEYS = {
     "share_after_selection",
     *("held_out_after", "held_out_passed", "held_out_interleaved", "visibility", "absorbed_by"),
     *("status", "beside"),
+    *("held_out_refitted", "is_fitted", "excuse"),
 }
 
 
@@ -112,14 +114,15 @@ def test_an_effect_is_missing(bent_bench: Bench, missing: Outcome):
 
 def test_structure_that_nothing_explains(magnetometer: Bench):
     shift_by_maneuver(magnetometer)
-    diagnosed = magnetometer.run("diagnose", "odd.csv", "odd.json", "--json")
+    alone = ("--only", "cubic_nonlinearity")
+    diagnosed = magnetometer.run("diagnose", "odd.csv", "odd.json", "--json", *alone)
     assert (diagnosed.code, diagnosed.err) == (6, "")
     assert diagnosed.result["verdict"] == "unexplained"
     unexplained = diagnosed.result["unexplained"]
     assert unexplained["p_adjusted"] < 0.01
     assert unexplained["significant"] is True
     assert len(unexplained["windows"]) >= 4
-    table = magnetometer.run("diagnose", "odd.csv", "odd.json")
+    table = magnetometer.run("diagnose", "odd.csv", "odd.json", *alone)
     assert table.code == 6
     assert "Something is missing that no candidate explains" in table.out
     assert "by window, in standard errors" in table.out
@@ -156,7 +159,7 @@ def test_keys(bent_bench: Bench, missing: Outcome):
 def check_effect(effect: dict[str, Any], parameters: set[str]) -> None:
     assert set(effect) == EFFECT_KEYS
     assert effect["beside"] in ("untried", "equivalent", "fades", "counts")
-    assert effect["status"] in ("found", "not_seen", "cannot_be_seen")
+    assert effect["status"] in ("found", "slow_change", "not_seen", "cannot_be_seen")
     assert set(effect["estimate"]) == set(effect["standard_error"]) == set(effect["unit"])
     owners = effect["name"].split("+")
     assert all(name.rsplit(".", 1)[0] in owners for name in effect["estimate"])

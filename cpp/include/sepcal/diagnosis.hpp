@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which physical effect does a fitted model lack? Every candidate is tried at the fit, by its
-// derivative at zero and without fitting again: screened by the score test, tested by a likelihood
-// ratio whose noise model is estimated anew on either side, judged by how much of the error falls
-// on rows that were held out. docs/diagnosis.md has the statistics.
+// derivative at zero: screened by the score test, tested in noise of free size and in noise as
+// instruments have it, judged by how much of the error falls on rows that were held out. The few
+// that pass are fitted for real. docs/diagnosis.md has the statistics.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@
 namespace sepcal {
 
 enum class Verdict {
-  adequate,        // nothing is missing that this record can show
+  adequate,        // no candidate was found, and none takes a fifth of the error
   effect_missing,  // at least one candidate was found
   slow_change,     // a slow effect, or noise that wanders: one record can't tell
-  unexplained      // something is missing, and no candidate explains it
+  unexplained      // something is missing, and no candidate surely explains it
 };
 
 /// "adequate", "effect_missing", "slow_change", "unexplained".
@@ -36,12 +36,14 @@ std::string_view to_string(Verdict verdict);
 
 enum class FindingStatus {
   found,          // significant after Holm's correction, and the held-out error falls
-  slow_change,    // the same of a slow driver, were it known that the noise does not wander
+  slow_change,    // the same of a slow driver, were it known that the noise does not wander; or it
+                  // takes a fifth of the held-out error by a real fit, and noise could too
+  undecided,      // the same of what is not slow; or it was found, and no fit takes it
   not_seen,       // nothing of it in the residuals
   cannot_be_seen  // the record can't tell it from what the model has
 };
 
-/// "found", "slow_change", "not_seen", "cannot_be_seen".
+/// "found", "slow_change", "undecided", "not_seen", "cannot_be_seen".
 std::string_view to_string(FindingStatus status);
 
 /// What becomes of an effect once the first of those found is added, by real fits.
@@ -55,12 +57,12 @@ enum class Beside {
 /// "untried", "equivalent", "fades", "counts".
 std::string_view to_string(Beside beside);
 
-/// A coefficient of an effect as one step from the fit estimates it.
+/// A coefficient of an effect as one step from the fit estimates it, or a fit with the effect.
 struct Coefficient {
   std::string name;  // "wind[altitude_m].n"
   std::string unit;
   double estimate = 0.0;
-  double standard_error = 0.0;  // in the noise model with the effect
+  double standard_error = 0.0;  // in the noise model with the effect, or the fit's
 };
 
 /// What bounds the noise of a predicted square error: sidpac half the variance of what is measured
@@ -90,6 +92,7 @@ struct EffectFinding {
   std::vector<std::string> drivers =
       {};  // channels; none where the effect has a physics of its own
   std::vector<Coefficient> coefficients = {};
+  bool is_fitted = false;                     // they are those of a fit with the effect
   std::map<std::string, double> shapes = {};  // of a scan: "bias_step.t0", where it explains most
 
   double log10_p = 0.0;     // of p_value, which may be too small for a double
@@ -109,6 +112,11 @@ struct EffectFinding {
   double held_out_gain = 0.0;             // 1 - after / before
   bool held_out_passed = false;           // the mean gain of a block exceeds its standard error
   bool held_out_interleaved = false;      // blocks in between, not whole segments, were left out
+  bool held_out_refitted = false;         // by real fits with it and without, not by one step
+
+  /// How many times as far as instruments of the kind do errors would have to wander to look like
+  /// it; infinite where they can't, NaN where it was not asked.
+  double excuse = not_a_number;
 
   Structure structure = {};
   double visibility = 0.0;  // sine of the smallest angle to the model's own tangent
@@ -173,6 +181,17 @@ struct Advice {
   std::vector<std::string> withheld = {};  // why not what was found before it: a sentence each
 };
 
+/// What a diagnosis did.
+struct DiagnosisWork {
+  std::size_t screened = 0;            // candidates
+  std::size_t tested = 0;              // by likelihood ratios, their noise estimated anew
+  std::size_t calibrated = 0;          // by draws of the noise
+  std::size_t refitted = 0;            // models with a candidate that were fitted
+  std::size_t tried_on_some_rows = 0;  // the same to 400 rows, where a fit is far off
+
+  DiagnosisWork& operator+=(const DiagnosisWork& other);
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   Advice advice = {};
@@ -185,11 +204,26 @@ struct Diagnosis {
   Omnibus omnibus;
   std::vector<UnloggedCause> unlogged = {};  // that are significant, the surest first
   std::vector<DetectionLimit> limits = {};
-  double rmse = 0.0;      // over all outputs
-  double floor = 0.0;     // innovations alone, over all outputs
+  double rmse = 0.0;   // over all outputs
+  double floor = 0.0;  // innovations alone, over all outputs
+  /// Over what time the most correlated output's residual goes together (its integrated correlation
+  /// time) [s]; rows where the record has no time.
+  double correlation_time = 0.0;
+  bool has_time = false;
   std::string unit = {};  // of both; empty where the outputs have different ones: shares of each
                           // output's own
+  std::vector<WanderBound> wanders = {};  // how far errors were let wander
+  DiagnosisWork work = {};
+  std::vector<std::string> left_undone = {};  // steps for which there was no time
 };
+
+/// From which ratio of the RMSE to what noise alone would leave on nobody may say that nothing is
+/// missing: noise that goes together, as an autoregression of 0.9 does, leaves 2.3.
+inline constexpr double well_above_floor = 1.5;
+
+/// From which share of the error on rows held out on a candidate, fitted for real, speaks against
+/// an adequate model.
+inline constexpr double objects_from = 0.2;
 
 /// The names of those that stand so beside the first, in their order.
 std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside);
@@ -211,6 +245,9 @@ struct DiagnosisOptions {
   /// can't make is an error and not left out.
   std::vector<std::string> only = {};
   std::size_t others = 0;  // candidates that are asked elsewhere at once: Holm counts them
+  /// How far errors wander at most, by their names (EffectKit::wanders), where it is known.
+  std::map<std::string, double> wanders = {};
+  double within = infinity;  // [s]: what is not done by then is left undone, and said
   std::uint64_t seed = 0;
   int threads = 0;
   FitProgress progress = {};

@@ -55,6 +55,18 @@ struct Port {
   std::vector<std::string> lines = {};
 };
 
+/// An error that wanders, a Gauss-Markov process, and how far instruments of the kind let it: what
+/// exceeds that is no noise of theirs, and diagnose() does not take it for one.
+struct WanderBound {
+  std::string name;                       // "velocity": what options call it
+  std::string unit;                       // of what it is an error of
+  double size = 0.0;                      // standard deviation of each component, at most [unit]
+  double time_s = 0.0;                    // its correlation time; 0: any
+  std::string port = {};                  // where it comes in, in each component, or
+  std::vector<std::string> outputs = {};  // in each of these, or
+  std::vector<int> corrections = {};      // as these of the kit's `wandering`
+};
+
 /// What a model's effects can be made of.
 struct EffectKit {
   using Maker =
@@ -65,6 +77,8 @@ struct EffectKit {
   /// Corrections whose size need not be constant: noise of the inputs, as an attitude's error that
   /// its filter lets wander. diagnose() takes nothing for found that they explain.
   std::vector<Maker> wandering = {};
+  /// Errors that wander within bounds; none: each output's, by twice its white noise.
+  std::vector<WanderBound> wanders = {};
   std::map<std::string, std::function<std::string(const Record&)>> aliases;  // to whole names
 };
 

@@ -116,26 +116,22 @@ std::pair<Tracked, std::vector<std::string>> track_on(
   return {std::move(result), std::move(tracked.notes)};
 }
 
-DiagnosisOptions options_of(const AircraftFit& fitted, int simulations, std::uint64_t seed,
-                            const std::string& pse, const std::vector<std::string>& only) {
-  return diagnosis_options(fitted.options.calibration.fit.threads, simulations, seed, pse, only);
+DiagnosisOptions with_threads_of(const AircraftFit& fitted, const DiagnosisOptions& asked) {
+  return with_threads(asked, fitted.options.calibration.fit.threads);
 }
 
-Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight, int simulations,
-                      std::uint64_t seed, const std::string& pse,
-                      const std::vector<std::string>& only) {
+Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight,
+                      const DiagnosisOptions& asked) {
   const Released released;
-  return diagnosed(
-      diagnose_aircraft(fitted, flight, options_of(fitted, simulations, seed, pse, only)));
+  return diagnosed(diagnose_aircraft(fitted, flight, with_threads_of(fitted, asked)));
 }
 
 Stepped<AircraftFit> diagnose_stepwise_on(const AircraftFit& fitted, const Flight& flight,
-                                          std::optional<std::size_t> most, int simulations,
-                                          std::uint64_t seed, const std::string& pse,
-                                          const std::vector<std::string>& only) {
+                                          std::optional<std::size_t> most,
+                                          const DiagnosisOptions& asked) {
   const Released released;
   StepwiseAircraft result = diagnose_aircraft_stepwise(
-      fitted, flight, stepwise_options(most, options_of(fitted, simulations, seed, pse, only)));
+      fitted, flight, stepwise_options(most, with_threads_of(fitted, asked)));
   std::string json = to_json(result);
   Page page = page_of(result);
   return {std::move(result.fitted), diagnosed(result.course.last), std::move(json),

@@ -111,11 +111,9 @@ Compared compare_flight(const Calibration& calibration, const Flight& flight,
 Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
                       const std::vector<PythonEffect>& own,
                       const std::optional<std::pair<std::string, std::vector<double>>>& injected,
-                      int simulations, std::uint64_t seed, const std::string& pse,
-                      const std::vector<std::string>& only) {
+                      const DiagnosisOptions& asked) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
-  const DiagnosisOptions options =
-      diagnosis_options(calibration.options.fit.threads, simulations, seed, pse, only);
+  const DiagnosisOptions options = with_threads(asked, calibration.options.fit.threads);
   const Released released;
   need_own_effects(calibration);
   return diagnosed(injected ? diagnose_with({injected->first, injected->second}, calibration,
@@ -125,12 +123,11 @@ Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
 
 Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const Flight& flight,
                                           const std::vector<PythonEffect>& own,
-                                          std::optional<std::size_t> most, int simulations,
-                                          std::uint64_t seed, const std::string& pse,
-                                          const std::vector<std::string>& only) {
+                                          std::optional<std::size_t> most,
+                                          const DiagnosisOptions& asked) {
   const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
-  const StepwiseOptions options = stepwise_options(
-      most, diagnosis_options(calibration.options.fit.threads, simulations, seed, pse, only));
+  const StepwiseOptions options =
+      stepwise_options(most, with_threads(asked, calibration.options.fit.threads));
   const Released released;
   need_own_effects(calibration);
   StepwiseCalibration result = diagnose_stepwise(calibration, flight, makers, options);
@@ -420,6 +417,20 @@ void define_calibration(py::module_& module) {
       .field("difference", &FlightDeparture::difference,
              "The flight's own estimate less that of the others.")
       .field("standard_error", &FlightDeparture::standard_error, "");
+  py::class_<DiagnosisOptions>(module, "DiagnosisOptions")
+      .def(py::init([](int simulations, std::uint64_t seed, const std::string& pse,
+                       std::vector<std::string> only, std::map<std::string, double> wanders,
+                       double within) {
+             DiagnosisOptions options;
+             options.simulations = simulations;
+             options.seed = seed;
+             options.pse = choice_of<PseBound>("pse", pse);
+             options.only = std::move(only);
+             options.wanders = std::move(wanders);
+             options.within = within;
+             return options;
+           }),
+           py::kw_only(), "simulations"_a, "seed"_a, "pse"_a, "only"_a, "wanders"_a, "within"_a);
   py::class_<Calibration> calibration(module, "Calibration");
   define_stepped<Calibration>(module, "SteppedCalibration");
   calibration.def_property_readonly("fit", &fit_of)

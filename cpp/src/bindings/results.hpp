@@ -94,15 +94,9 @@ inline Diagnosed diagnosed(const FlightDiagnosis& diagnosis) {
   return {diagnosis.notes, to_json(diagnosis), page_of(diagnosis)};
 }
 
-/// The engine's options from those that the front takes.
-inline DiagnosisOptions diagnosis_options(int threads, int simulations, std::uint64_t seed,
-                                          const std::string& pse, std::vector<std::string> only) {
-  DiagnosisOptions options;
+/// With as many threads as the fit had.
+inline DiagnosisOptions with_threads(DiagnosisOptions options, int threads) {
   options.threads = threads;
-  options.simulations = simulations;
-  options.seed = seed;
-  options.pse = choice_of<PseBound>("pse", pse);
-  options.only = std::move(only);
   return options;
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "diagnosis/refits.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::diagnosis {
@@ -72,8 +71,8 @@ std::string objection_to_fit(const Fit& before, const EffectFinding& finding, co
 
 }  // namespace
 
-Objection find_objection(CandidateRoom& room, const EffectFinding& finding, double least_visibility,
-                         base::ThreadPool& pool) {
+Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFinding& finding,
+                         double least_visibility) {
   Objection objection;
   if (!(finding.visibility >= room.visible_from(least_visibility))) {
     objection.reason = fmt::format(
@@ -84,15 +83,19 @@ Objection find_objection(CandidateRoom& room, const EffectFinding& finding, doub
   const Candidate candidate = room.make(finding.name);
   const double shape = shape_of(finding);
   try {
-    const Fit fitted = refit_with(room, candidate, shape);
+    const Fit& fitted = refits.with(candidate, shape);
     if (room.follows_path()) objection.drop = drop_of_adding(room, candidate, fitted);
     if (!objection.reason.empty()) return objection;
-    const bool keeps_promise = objection.drop >= finding.predicted_drop;
+    const bool keeps_promise =
+        room.follows_path()
+            ? objection.drop >= finding.predicted_drop
+            : finding.held_out_refitted && finding.held_out_passed &&
+                  finding.held_out_gain >= std::max(objects_from, finding.predicted_drop);
     objection.reason = objection_to_fit(room.fitted(), finding, fitted, keeps_promise);
     objection.is_to_fit = !objection.reason.empty();
     if (objection.is_to_fit) return objection;
     const Folds folds = few_folds(room.fit(), room.columns(candidate, shape).whole);
-    const HeldOut held_out = hold_out_by_refits(room, candidate, shape, folds, pool);
+    const HeldOut held_out = refits.hold_out(candidate, shape, folds);
     if (held_out.judged && !(held_out.gain > 0.0)) {
       objection.reason =
           fmt::format("real fits without some rows predict them no better ({:.1f} % more error)",

@@ -4,13 +4,16 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/thread_pool.hpp"
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/instrument_noise.hpp"
 #include "diagnosis/null_hypothesis.hpp"
+#include "diagnosis/refits.hpp"
 #include "diagnosis/trial.hpp"
 #include "sepcal/diagnosis.hpp"
 
@@ -42,7 +45,14 @@ class Bench {
   const CandidateRoom& room() const { return room_; }
   const NullHypothesis& null() const { return null_; }
   base::ThreadPool& pool() const { return pool_; }
+  Refits& refits() const { return *refits_; }
+  /// None of a model with a state, whose noise remembers.
+  const InstrumentNoise* instruments() const { return instruments_.get(); }
   const DiagnosisOptions& options() const { return options_; }
+
+  /// What was done so far; count() adds what was done elsewhere.
+  DiagnosisWork work() const;
+  void count(const DiagnosisWork& elsewhere) const { work_ += elsewhere; }
 
   void report_progress(std::string_view task, double fraction) const;
 
@@ -57,6 +67,7 @@ class Bench {
   /// Tests the best `most` of either screen.
   void test_best(Trials& trials, std::size_t most) const;
 
+  /// Rows are held out of those tested, and of others that are significant or promise much.
   void hold_out_significant(Trials& trials) const;
 
   /// Corrects the tails of what would be significant; what was only screened is no surer than the
@@ -68,11 +79,16 @@ class Bench {
   void confirm_best(Trials& trials, double threshold) const;
 
  private:
+  void bound_tested(Trials& trials) const;
+
   const DiagnosedFit& fitted_;
   const DiagnosisOptions& options_;
   base::ThreadPool& pool_;
   CandidateRoom room_;
   NullHypothesis null_;
+  std::unique_ptr<Refits> refits_;
+  std::unique_ptr<InstrumentNoise> instruments_ = {};
+  mutable DiagnosisWork work_ = {};
 };
 
 }  // namespace sepcal::diagnosis

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/refits.hpp"
@@ -11,8 +12,9 @@
 namespace sepcal::diagnosis {
 namespace {
 
-constexpr double far_off = 2.0;            // the RMSE over what noise leaves
-constexpr std::size_t rows_to_try = 2000;  // of a first fit
+constexpr double far_off = 3.0;           // the RMSE over what noise leaves
+constexpr std::size_t rows_to_try = 400;  // of a first fit
+constexpr std::size_t most_tried = 4;
 
 using Eigen::Index;
 using Findings = std::vector<EffectFinding>;
@@ -37,41 +39,19 @@ double criterion_of_some(const Bench& bench, const Contender& contender) {
   }
 }
 
-/// Those whose fits to some rows are better than any of the contest's.
-std::vector<Contender> find_better(Bench& bench, const Contest& contest, const Findings& findings) {
-  std::vector<Contender> all = contest.contenders;
-  for (const EffectFinding& finding : findings) {
-    const auto known = [&](const Contender& one) { return one.candidate.name == finding.name; };
-    if (finding.status == FindingStatus::cannot_be_seen || split_effects(finding.name).size() > 1 ||
-        std::ranges::any_of(contest.contenders, known)) {
-      continue;
-    }
-    all.push_back({bench.room().make(finding.name), shape_of(finding)});
-  }
-  std::vector<double> criteria(all.size());
-  bench.pool().for_each(all.size(),
-                        [&](std::size_t i) { criteria[i] = criterion_of_some(bench, all[i]); });
-  const auto known = static_cast<std::ptrdiff_t>(contest.contenders.size());
-  const double least = *std::min_element(criteria.begin(), criteria.begin() + known);
-  std::vector<Contender> better;
-  for (std::size_t i = contest.contenders.size(); i < all.size(); ++i) {
-    if (criteria[i] < least) better.push_back(std::move(all[i]));
-  }
-  return better;
-}
-
 /// Whether real fits without some rows predict them better; the finding is told so.
 bool predicts(Bench& bench, const Contender& contender, EffectFinding& finding) {
   const CandidateRoom& room = bench.room();
   const Columns G = room.columns(contender.candidate, contender.shape).whole;
-  const HeldOut held_out = hold_out_by_refits(room, contender.candidate, contender.shape,
-                                              few_folds(room.fit(), G), bench.pool());
+  const HeldOut held_out =
+      bench.refits().hold_out(contender.candidate, contender.shape, few_folds(room.fit(), G));
   if (!held_out.judged || !held_out.passed) return false;
   finding.held_out_before = held_out.before;
   finding.held_out_after = held_out.after;
   finding.held_out_gain = held_out.gain;
   finding.held_out_passed = true;
   finding.held_out_interleaved = true;
+  finding.held_out_refitted = true;
   return true;
 }
 
@@ -96,10 +76,39 @@ void tell_by_fit(const Contender& contender, double rmse_before, const EffectFin
 
 }  // namespace
 
+bool is_far_off(const Bench& bench, double floor) {
+  const LinearisedFit& fit = bench.room().fit();
+  return total_rmse(fit.layout, fit.residual) > far_off * floor;
+}
+
+std::vector<Contender> try_on_some_rows(Bench& bench, const Findings& findings,
+                                        const std::vector<Contender>& known) {
+  std::vector<Contender> all;
+  for (const EffectFinding& finding : findings) {
+    const auto is_this = [&](const Contender& one) { return one.candidate.name == finding.name; };
+    if (finding.status == FindingStatus::cannot_be_seen || split_effects(finding.name).size() > 1 ||
+        finding.name.find("spline(") != std::string::npos || std::ranges::any_of(known, is_this)) {
+      continue;
+    }
+    all.push_back({bench.room().make(finding.name), shape_of(finding)});
+  }
+  std::vector<std::pair<double, std::size_t>> criteria(all.size());
+  bench.pool().for_each(
+      all.size(), [&](std::size_t i) { criteria[i] = {criterion_of_some(bench, all[i]), i}; });
+  bench.count({.tried_on_some_rows = all.size()});
+  std::ranges::sort(criteria);
+  std::vector<Contender> best;
+  for (const auto& [criterion, i] : criteria) {
+    if (best.size() == most_tried || std::isinf(criterion)) break;
+    best.push_back(std::move(all[i]));
+  }
+  return best;
+}
+
 void admit_bent(Bench& bench, Contest& contest, Findings& findings) {
   const CandidateRoom& room = bench.room();
   const double rmse = total_rmse(room.fit().layout, room.fit().residual);
-  if (contest.contenders.empty() || rmse < far_off * bench.null().test->floor(contest.noise)) {
+  if (contest.contenders.empty() || !is_far_off(bench, bench.null().test->floor(contest.noise))) {
     return;
   }
   double least = infinity;
@@ -111,16 +120,17 @@ void admit_bent(Bench& bench, Contest& contest, Findings& findings) {
     if (!surest || finding.log10_p < surest->log10_p) surest = &finding;
   }
   if (!surest) return;
-  std::vector<Contender> better = find_better(bench, contest, findings);
-  fit_all(bench, contest.noise, better);
-  for (Contender& contender : better) {
+  std::vector<Contender> others = try_on_some_rows(bench, findings, contest.contenders);
+  fit_all(bench, contest.noise, others);
+  std::ranges::move(others, std::back_inserter(contest.contenders));
+  for (const Contender& contender : contest.contenders) {
     EffectFinding& finding = finding_of(findings, contender);
-    if (!(contender.criterion < least - as_likely)) continue;
-    if (contender.fit.status != FitStatus::converged || !predicts(bench, contender, finding)) {
-      continue;
+    const bool is_better = finding.status != FindingStatus::found &&
+                           contender.criterion < least - as_likely &&
+                           contender.fit.status == FitStatus::converged;
+    if (is_better && predicts(bench, contender, finding)) {
+      tell_by_fit(contender, rmse, *surest, finding);
     }
-    tell_by_fit(contender, rmse, *surest, finding);
-    contest.contenders.push_back(std::move(contender));
   }
 }
 

@@ -9,9 +9,17 @@
 
 namespace sepcal::diagnosis {
 
-/// Where the residuals are several times what noise leaves, every visible candidate that is not in
-/// the contest is fitted. One that is likelier than all that were found joins them, as sure as the
-/// surest, with the estimates of its fit, if real fits without some rows predict these better.
+/// Whether the RMSE is several times what noise leaves.
+bool is_far_off(const Bench& bench, double floor);
+
+/// The few that are the best by fits to some rows, of those that can be seen, are no functions of
+/// any form and are not known already.
+std::vector<Contender> try_on_some_rows(Bench& bench, const std::vector<EffectFinding>& findings,
+                                        const std::vector<Contender>& known);
+
+/// Far off, the best of those that are not in the contest are fitted. One that is likelier than all
+/// that were found joins them, as sure as the surest, with the estimates of its fit, if real fits
+/// without some rows predict these better.
 void admit_bent(Bench& bench, Contest& contest, std::vector<EffectFinding>& findings);
 
 }  // namespace sepcal::diagnosis

@@ -107,6 +107,25 @@ bool is_driven(const Effect& effect, const EffectKit& kit) {
 
 }  // namespace
 
+std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candidate) {
+  int form = 0;
+  for (const EffectSetting& setting : candidate.settings) {
+    const EffectName name = parse_effect_name(setting.name);
+    int own = 0;
+    if (name.shape == EffectName::Shape::spline || name.base == "maneuver") {
+      own = 3;
+    } else if (name.shape == EffectName::Shape::product ||
+               (name.shape == EffectName::Shape::power && name.number > 1)) {
+      own = 1;
+    } else if (name.shape == EffectName::Shape::exponent) {
+      own = 2;
+    }
+    form = std::max(form, own);
+  }
+  if (form < 2 && !candidate.shape.parameter.empty()) form = 2;
+  return {candidate.settings.size(), form, candidate.coefficients.size()};
+}
+
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
     : CandidateRoom(fitted, {}, pool) {}
 
@@ -463,9 +482,9 @@ Columns CandidateRoom::drive(const Port& port, const MatrixXd& phi) const {
           }};
 }
 
-CandidateColumns CandidateRoom::driven_columns(const Effect& effect, double shape) const {
+MatrixXd CandidateRoom::functions_of(const Effect& effect, double shape) const {
   const RowLayout& layout = linearisation_.layout;
-  MatrixXd phi = effects::drive(*effect.driver, shape, record_);
+  MatrixXd phi = effects::drive(*effect.driver, effect.driver->shape() ? shape : 0.0, record_);
   for (std::size_t i = 0; i < layout.segments.size(); ++i) {  // none lies behind its rows there
     const Segment& from = fitted_.rows[i];
     const auto length = static_cast<Index>(from.rows());
@@ -477,6 +496,11 @@ CandidateColumns CandidateRoom::driven_columns(const Effect& effect, double shap
     }
   }
   if (phi.rows() != layout.rows) phi.conservativeResize(layout.rows, Eigen::NoChange);
+  return phi;
+}
+
+CandidateColumns CandidateRoom::driven_columns(const Effect& effect, double shape) const {
+  const MatrixXd phi = functions_of(effect, shape);
   const Port& port = port_of(effect);
   return {drive(port, phi), drive(port, phi.rowwise() - phi.colwise().mean().eval())};
 }
@@ -489,7 +513,7 @@ CandidateColumns CandidateRoom::effect_columns(const Candidate& candidate, std::
   const auto released = released_.find(candidate.settings[place].name);
   if (released != released_.end()) return released->second;
   if (is_driven(effect, fitted_.kit)) {
-    return driven_columns(effect, effect.driver->shape() ? shape : 0.0);
+    return driven_columns(effect, shape);
   }
   std::vector<std::string> names;
   for (const Variable& coefficient : coefficients) names.push_back(coefficient.name);

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/parameter_values.hpp"
@@ -41,6 +42,11 @@ struct Candidate {
   std::string stepping_port = {};  // of a single effect that is a step in time
 };
 
+/// How much a candidate asks to be believed, least first: how many effects it is of; whether it has
+/// a physics of its own or follows a channel as it is, a power or a product, a shape that was
+/// scanned, or a function of any form; how many coefficients it has.
+std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candidate);
+
 /// A candidate's columns, as many as coefficients.
 struct CandidateColumns {
   Columns whole;
@@ -69,6 +75,7 @@ class CandidateRoom {
   const Record& record() const { return record_; }
   const std::vector<Segment>& rows() const { return fitted_.rows; }
   const Fit& fitted() const { return fitted_.fit; }
+  const DiagnosedFit& diagnosed() const { return fitted_; }
 
   /// The model of the fit, and with more effects.
   std::shared_ptr<const BlockModel> model() const;
@@ -98,6 +105,10 @@ class CandidateRoom {
 
   /// The time of each of the N rows [s].
   std::vector<double> times() const;
+
+  /// The functions of an effect's driver (N x functions) at a shape, where it has one; 0 where they
+  /// are no number.
+  Eigen::MatrixXd functions_of(const Effect& effect, double shape) const;
 
   /// The room must outlive them.
   CandidateColumns columns(const Candidate& candidate, double shape) const;

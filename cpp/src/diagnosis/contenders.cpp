@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
-#include <span>
+#include <functional>
+#include <tuple>
 #include <utility>
 
+#include "diagnosis/finding.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/refits.hpp"
 #include "sepcal/error.hpp"
@@ -17,10 +18,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::size_t most_fitted = 8;
-constexpr std::size_t most_pairs = 12;
+constexpr std::size_t most_fitted = 6;
 constexpr double worth_a_fit = 0.01;     // p, of what was not found
-constexpr double hardly_worse = 2.0;     // in the criterion
+constexpr double hardly_more = 1.1;      // of the error on rows held out
 constexpr std::size_t most_beside = 12;  // asked beside the first
 constexpr double counts_below = 0.01;    // p beside the first, over their number
 
@@ -29,6 +29,25 @@ using Findings = std::vector<EffectFinding>;
 bool may_stand_first(const EffectFinding& finding) {
   return finding.status == FindingStatus::found ||
          (finding.status != FindingStatus::cannot_be_seen && finding.p_value < worth_a_fit);
+}
+
+/// In turn the surest, and those that take most of the error on rows held out: noise may make much
+/// of what explains little.
+std::vector<const EffectFinding*> choose_contenders(const Findings& findings) {
+  std::vector<const EffectFinding*> by_order;
+  for (const EffectFinding& finding : findings) {
+    if (may_stand_first(finding)) by_order.push_back(&finding);
+  }
+  std::vector<const EffectFinding*> by_gain = by_order;
+  std::ranges::stable_sort(by_gain, {}, [](const EffectFinding* one) { return left_out(*one); });
+  std::vector<const EffectFinding*> chosen;
+  for (std::size_t i = 0; i < by_order.size(); ++i) {
+    for (const EffectFinding* next : {by_gain[i], by_order[i]}) {
+      if (chosen.size() == most_fitted) return chosen;
+      if (std::ranges::find(chosen, next) == chosen.end()) chosen.push_back(next);
+    }
+  }
+  return chosen;
 }
 
 /// Of what was found: the first, what would do as well, what counts beside it, the untried, the
@@ -55,14 +74,6 @@ void order_by_beside(Findings& findings) {
   for (auto& [at, finding] : placed) findings.push_back(std::move(finding));
 }
 
-/// Whether it takes slow noise for its own, as functions of time of any form do.
-bool is_flexible_in_time(const Candidate& candidate) {
-  return std::ranges::any_of(candidate.effects, [](const Effect& effect) {
-    return effect.driver && effect.driver->functions() > 1 && effect.driver->input() &&
-           effect.driver->input()->name == "time";
-  });
-}
-
 /// The noise that is left beside all of them at once, by one step: what is judged in it must not
 /// bring a noise that swallows what it leaves. Of short records that beside the first.
 NoiseMembers noise_beside(const Bench& bench, const std::vector<Contender>& asked) {
@@ -79,12 +90,17 @@ NoiseMembers noise_beside(const Bench& bench, const std::vector<Contender>& aske
   return bench.null().test->compare(span_beyond(bench.null().basis, columns)).with.noise;
 }
 
-/// -2 ln L in a noise that is known, but for a constant, one step from a fit; minus infinity where
-/// that leaves nothing of an output.
+/// -2 ln L in a noise that is known, but for a constant, one step from a fit: as instruments have
+/// it, or where the log's is none of these, the one given; minus infinity where that leaves nothing
+/// of an output.
 double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
                                 const DiagnosedFit& fitted) {
   base::ThreadPool alone(1);
   const CandidateRoom room(fitted, alone);
+  const InstrumentNoise* instruments = bench.instruments();
+  if (instruments && instruments->knows_the_noise()) {
+    return instruments->minus_two_log_likelihood(room.fit());
+  }
   const RowLayout& layout = room.fit().layout;
   const RowLayout& known = bench.room().fit().layout;
   if (layout.outputs.size() != known.outputs.size()) return -infinity;
@@ -102,8 +118,19 @@ double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
   return products_beyond(products, tangent.rank())(0, 0);
 }
 
-auto named(const std::string& name) {
-  return [&name](const Contender& contender) { return contender.candidate.name == name; };
+/// The most that what comes first may leave of the error on rows held out, beside what others
+/// leave: noise remembers, and rows that are far apart do not. Functions of time of any form
+/// foretell noise that wanders as well, and count where they leave less than half.
+double most_left_out(const std::vector<const Contender*>& found,
+                     const std::function<double(const Contender*)>& error_left) {
+  constexpr double clearly_less = 0.8;
+  constexpr double less_than_half = 0.45;
+  double most = infinity;
+  for (const Contender* contender : found) {
+    const double share = is_flexible_in_time(contender->candidate) ? less_than_half : clearly_less;
+    most = std::min(most, error_left(contender) / share);
+  }
+  return most;
 }
 
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
@@ -111,13 +138,6 @@ EffectFinding& finding_of(Findings& findings, const std::string& name) {
 }
 
 }  // namespace
-
-DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit) {
-  DiagnosedFit next = fitted;
-  next.effects.insert(next.effects.end(), candidate.settings.begin(), candidate.settings.end());
-  next.fit = std::move(fit);
-  return next;
-}
 
 double schwarz_penalty(const Candidate& candidate, Index measurements) {
   return static_cast<double>(candidate.coefficients.size()) *
@@ -129,7 +149,7 @@ void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contende
   bench.pool().for_each(asked.size(), [&](std::size_t i) {
     Contender& contender = asked[i];
     try {
-      contender.fit = refit_nearly(bench.room(), contender.candidate, contender.shape, enough_rows);
+      contender.fit = bench.refits().with(contender.candidate, contender.shape);
       contender.minus_two_log_likelihood = minus_two_log_likelihood(
           bench, noise, with_candidate(bench.fitted(), contender.candidate, contender.fit));
       contender.criterion = contender.minus_two_log_likelihood +
@@ -142,62 +162,40 @@ void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contende
 
 Contest fit_contenders(Bench& bench, const Findings& findings) {
   Contest contest;
-  for (const EffectFinding& finding : findings) {
-    if (contest.contenders.size() == most_fitted) break;
-    if (!may_stand_first(finding)) continue;
-    contest.contenders.push_back({bench.room().make(finding.name), shape_of(finding)});
+  for (const EffectFinding* finding : choose_contenders(findings)) {
+    contest.contenders.push_back({bench.room().make(finding->name), shape_of(*finding)});
   }
   contest.noise = noise_beside(bench, contest.contenders);
   fit_all(bench, contest.noise, contest.contenders);
   return contest;
 }
 
-std::vector<std::string> keep_as_likely(Bench& bench, const Contest& contest,
-                                        const std::vector<Pair>& pairs) {
-  std::vector<Contender> fitted;
-  for (const Pair& pair : pairs) {
-    if (fitted.size() == most_pairs) break;
-    try {
-      fitted.push_back({bench.room().make(pair.name), pair.shape});
-    } catch (const Error&) {
-      continue;  // the two can't stand in one model
-    }
-  }
-  fit_all(bench, contest.noise, fitted);
-  double least = infinity;
-  for (const std::span<const Contender> all :
-       {std::span(contest.contenders), std::span(std::as_const(fitted))}) {
-    for (const Contender& contender : all) least = std::min(least, contender.criterion);
-  }
-  const auto alone = [&](const std::string& name) {
-    const auto single = std::ranges::find_if(contest.contenders, named(name));
-    return single == contest.contenders.end() ? infinity : single->criterion;
-  };
-  std::vector<std::string> kept;
-  for (const Contender& pair : fitted) {
-    const std::vector<std::string> members = split_effects(pair.candidate.name);
-    const double single = std::ranges::min(members | std::views::transform(alone));
-    if (pair.criterion < std::min(least + as_likely, single)) kept.push_back(pair.candidate.name);
-  }
-  return kept;
-}
-
 const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
                            Findings& findings) {
-  const Contender* first = nullptr;
-  const auto offer = [&](const Contender& contender, double margin) {
-    if (finding_of(findings, contender.candidate.name).status != FindingStatus::found) return;
-    const double least = first ? first->criterion + margin : infinity;
-    if (contender.criterion < least) first = &contender;
-  };
-  for (const Contender& contender : contest.contenders) offer(contender, 0.0);
-  if (!first) return nullptr;
-  const auto is_preferred = [&](const std::string& name) {
-    return std::ranges::find(preferred, name) != preferred.end();
-  };
+  std::vector<const Contender*> found;
   for (const Contender& contender : contest.contenders) {
-    if (is_preferred(first->candidate.name)) break;
-    if (is_preferred(contender.candidate.name)) offer(contender, hardly_worse);
+    if (!std::isfinite(contender.criterion)) continue;
+    if (finding_of(findings, contender.candidate.name).status == FindingStatus::found) {
+      found.push_back(&contender);
+    }
+  }
+  if (found.empty()) return nullptr;
+  const auto error_left = [&](const Contender* contender) {
+    return left_out(finding_of(findings, contender->candidate.name));
+  };
+  const double most = most_left_out(found, error_left);
+  std::erase_if(found, [&](const Contender* one) { return !(error_left(one) <= most); });
+  const Contender* first = *std::ranges::min_element(found, {}, &Contender::criterion);
+  const auto belief = [&](const Contender* contender) {
+    const std::string& name = contender->candidate.name;
+    const bool is_preferred = std::ranges::find(preferred, name) != preferred.end();
+    return std::tuple(complexity_of(contender->candidate), !is_preferred, contender->criterion);
+  };
+  const double likely = first->criterion + as_likely;
+  const double left = hardly_more * error_left(first);
+  for (const Contender* contender : found) {
+    const bool is_as_good = contender->criterion < likely && error_left(contender) <= left;
+    if (is_as_good && belief(contender) < belief(first)) first = contender;
   }
   for (const Contender& contender : contest.contenders) {
     const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
@@ -228,7 +226,7 @@ const Objection& object(Bench& bench, Contest& contest, const EffectFinding& fin
   const auto known = contest.objections.find(finding.name);
   if (known != contest.objections.end()) return known->second;
   Objection objection =
-      find_objection(bench.room(), finding, bench.options().least_visibility, bench.pool());
+      find_objection(bench.room(), bench.refits(), finding, bench.options().least_visibility);
   return contest.objections.emplace(finding.name, std::move(objection)).first->second;
 }
 
@@ -251,6 +249,7 @@ void test_beside(Bench& bench, const Contender& first, Findings& findings) {
   beside.test_best(trials, trials.size());
   beside.hold_out_significant(trials);
   beside.calibrate_significant(trials, threshold);
+  bench.count(beside.work());
   for (const Trial& trial : trials) {
     const bool counts = trial.visible && trial.log10_p < threshold && trial.held_out.judged &&
                         trial.held_out.passed;

@@ -9,7 +9,6 @@
 
 #include "diagnosis/advice.hpp"
 #include "diagnosis/bench.hpp"
-#include "diagnosis/pair_set.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -34,26 +33,19 @@ struct Contest {
 /// find_objection(), once an effect.
 const Objection& object(Bench& bench, Contest& contest, const EffectFinding& finding);
 
-/// The fit with the candidate's effects as its last.
-DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit);
-
 /// Schwarz's penalty for a candidate's coefficients and for the number of shapes tried.
 double schwarz_penalty(const Candidate& candidate, Eigen::Index measurements);
 
 /// Fits all to the record and judges them in that noise.
 void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contender>& asked);
 
-/// Fits the first of the findings that may stand for what is missing, in their order.
+/// Fits the best of the findings that may stand for what is missing.
 Contest fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings);
 
-/// Of pairs those whose fits are about as likely as anything, by Schwarz's criterion, and likelier
-/// than either member alone.
-std::vector<std::string> keep_as_likely(Bench& bench, const Contest& contest,
-                                        const std::vector<Pair>& pairs);
-
-/// Of those found the one whose fit has the least criterion comes first, or one that is preferred
-/// and hardly worse. What would do as well in its place is marked equivalent and comes next.
-/// Returns the first's contender; null where none could be fitted.
+/// Of those found the one whose fit has the least criterion comes first, or the simplest of those
+/// that data can't tell from it, the preferred before others that are as simple. What would do as
+/// well in its place is marked equivalent and comes next. Returns the first's contender; null where
+/// none could be fitted.
 const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
                            std::vector<EffectFinding>& findings);
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The recipe in order: make the candidates, screen all of them, test those near the top, calibrate
 // what slow noise could imitate, hold rows out, correct for their number; where no single one
-// passes those that a path has bent to, then pairs; and where nothing does, whether anything is
-// there.
+// passes those that a path has bent to, then pairs; fit the few that pass; and where nothing does,
+// ask whether a real fit of anything speaks against the model, and whether anything is there.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "diagnosis/bench.hpp"
 #include "diagnosis/bent_effects.hpp"
 #include "diagnosis/contenders.hpp"
@@ -21,12 +24,15 @@
 #include "diagnosis/unlogged.hpp"
 #include "numerics/selection.hpp"
 #include "numerics/tails.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 
 using namespace diagnosis;  // this room's own
 
 namespace {
+
+using Eigen::Index;
 
 constexpr std::size_t most_tested = 12;  // of either screen's best
 constexpr std::size_t most_paired = 10;
@@ -40,8 +46,121 @@ void rank(std::vector<EffectFinding>& findings) {
   });
 }
 
+/// What is not found and may take much of the error, as one step has it: the best few, and the best
+/// few of those that are no functions of any form.
+std::vector<EffectFinding*> choose_to_weigh(std::vector<EffectFinding>& findings) {
+  constexpr double worth_a_fit = 0.6 * objects_from;
+  constexpr std::ptrdiff_t most_of_any = 2;
+  constexpr std::ptrdiff_t most_of_simple = 4;
+  std::vector<EffectFinding*> order;
+  for (EffectFinding& finding : findings) {
+    const bool is_open =
+        finding.status == FindingStatus::not_seen || finding.status == FindingStatus::slow_change;
+    if (is_open && finding.held_out_gain > worth_a_fit) order.push_back(&finding);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), &EffectFinding::held_out_gain);
+  const auto is_simple_one = [](const EffectFinding& finding) {
+    return finding.name.find("spline(") == std::string::npos &&
+           split_effects(finding.name).size() == 1;
+  };
+  std::vector<EffectFinding*> chosen;
+  std::ptrdiff_t of_any = 0;
+  std::ptrdiff_t of_simple = 0;
+  for (EffectFinding* finding : order) {
+    const bool is_simple = is_simple_one(*finding);
+    if (of_any < most_of_any) {
+      ++of_any;
+    } else if (!is_simple || of_simple == most_of_simple) {
+      continue;
+    }
+    of_simple += is_simple ? 1 : 0;
+    chosen.push_back(finding);
+  }
+  return chosen;
+}
+
+/// The tail of a trial by its fit: one step may see little in what bends the model.
+void bound_by_fit(const Bench& bench, Trial& trial) {
+  if (!bench.instruments()) return;
+  try {
+    const LinearisedFit with = bench.refits().linearise(trial.candidate, trial.shape);
+    const auto coefficients = static_cast<Index>(trial.candidate.coefficients.size());
+    const InstrumentTail tail = bench.instruments()->tail_of_fit(with, coefficients);
+    const bool is_surer =
+        !trial.bounded || tail.log10_p + log10_scan(trial) < trial.bounded->log10_p;
+    if (!trial.tested) trial.slow = is_slow(bench.room(), trial.candidate, trial.shape);
+    if (is_surer) bound(tail, trial);
+  } catch (const Error&) {
+    return;  // no fit takes it
+  }
+}
+
+/// Of what is not found and yet takes much, the simplest of those that leave about as little of the
+/// error on rows held out stands first, the others of these next, as equivalent. Functions of time
+/// of any form foretell noise that wanders too: they have to leave clearly less.
+void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& findings) {
+  constexpr double about = 1.05;
+  constexpr double clearly = 1.2;
+  struct Place {
+    int of_status;
+    bool is_as_good = false;
+    std::tuple<std::size_t, int, std::size_t> complexity = {};
+  };
+  const auto of_status = [](const EffectFinding& finding) {
+    return finding.status == FindingStatus::slow_change ? 0
+           : finding.status == FindingStatus::undecided ? 1
+                                                        : 2;
+  };
+  int first = 2;
+  for (const EffectFinding& finding : findings) first = std::min(first, of_status(finding));
+  if (first == 2) return;
+  const auto is_flexible = [&](const EffectFinding& finding) {
+    return is_flexible_in_time(room.make(finding.name));
+  };
+  double of_flexible = infinity;  // the least that is left
+  double of_others = infinity;
+  for (const EffectFinding& finding : findings) {
+    if (of_status(finding) != first) continue;
+    double& least = is_flexible(finding) ? of_flexible : of_others;
+    least = std::min(least, left_out(finding));
+  }
+  const bool others_do = of_others <= clearly * of_flexible;
+  std::vector<std::pair<Place, EffectFinding>> placed;
+  for (EffectFinding& finding : findings) {
+    Place place{of_status(finding)};
+    if (place.of_status == first) {
+      place.is_as_good = others_do ? !is_flexible(finding) && left_out(finding) <= about * of_others
+                                   : left_out(finding) <= about * std::min(of_flexible, of_others);
+      place.complexity = complexity_of(room.make(finding.name));
+    }
+    placed.emplace_back(place, std::move(finding));
+  }
+  std::ranges::stable_sort(placed, [](const auto& a, const auto& b) {
+    const auto key = [](const auto& one) {
+      const double left = one.first.of_status == 2 ? 0.0 : left_out(one.second);
+      return std::tuple(one.first.of_status, !one.first.is_as_good, one.first.complexity, left);
+    };
+    return key(a) < key(b);
+  });
+  findings.clear();
+  for (auto& [place, finding] : placed) {
+    if (place.is_as_good && !findings.empty()) finding.beside = Beside::equivalent;
+    findings.push_back(std::move(finding));
+  }
+}
+
 double count_visible(const Trials& trials) {
   return static_cast<double>(std::ranges::count(trials, true, &Trial::visible));
+}
+
+/// The median time from row to row.
+double typical_interval(const std::vector<double>& times) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  if (intervals.empty()) return 1.0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  return *middle;
 }
 
 /// Of an effect found among `number` that could have been.
@@ -64,28 +183,61 @@ class Recipe {
   Diagnosis run(const std::vector<std::string>& names);
 
  private:
+  /// Does a step as far as the time allows.
+  void in_time(const std::string& step, const std::function<void()>& work);
   std::vector<EffectFinding> collect(const Trials& trials, double tests) const;
   /// `tests`: how many could have been chosen.
   std::vector<EffectFinding> judge(Trials& trials, double tests) const;
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
   bool has(FindingStatus status) const;
+  Trials::iterator find_trial(const std::string& name);
   double tests() const;
   void look_from_own_fits();
   void try_pairs();
+  void confirm_contenders();
   void settle();
   Objection object_to(const EffectFinding& finding);
+  void tell_fitted(EffectFinding& finding);
   void advise();
+  void withdraw();
+  void weigh_held_out();
+  void explain_away();
+  void conclude();
+
+  using Clock = std::chrono::steady_clock;
 
   const DiagnosedFit& fitted_;
   const DiagnosisOptions& options_;
+  Clock::time_point begun_ = Clock::now();
   base::ThreadPool pool_;
   Bench bench_;
   Trials trials_;
   std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
   Contest contest_;
+  std::vector<std::string> withdrawn_;  // were found, but no fit bears them out
   Diagnosis result_;
 };
+
+void Recipe::in_time(const std::string& step, const std::function<void()>& work) {
+  if (std::isinf(options_.within)) return work();
+  struct OutOfTime {};
+  base::Stop* const outer = base::heeded_stop();
+  const auto ask = [&] {
+    const base::HeedStop as_asked(outer);
+    base::heed_stop();
+    if (std::chrono::duration<double>(Clock::now() - begun_).count() > options_.within) {
+      throw OutOfTime();
+    }
+  };
+  try {
+    ask();
+    const StopScope scope(ask);
+    work();
+  } catch (const OutOfTime&) {
+    result_.left_undone.push_back(step);
+  }
+}
 
 const Bench& Recipe::bench_of(const Trial& trial) const {
   const auto own = own_fits_.find(trial.candidate.name);
@@ -95,6 +247,11 @@ const Bench& Recipe::bench_of(const Trial& trial) const {
 bool Recipe::has(FindingStatus status) const {
   return std::ranges::find(result_.effects, status, &EffectFinding::status) !=
          result_.effects.end();
+}
+
+Trials::iterator Recipe::find_trial(const std::string& name) {
+  return std::ranges::find_if(trials_,
+                              [&](const Trial& trial) { return trial.candidate.name == name; });
 }
 
 /// How many effects could have been chosen.
@@ -191,15 +348,28 @@ void Recipe::try_pairs() {
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
 }
 
+/// What rows held out say of contenders, by their fits in place of one step.
+void Recipe::confirm_contenders() {
+  for (const Contender& contender : contest_.contenders) {
+    const auto trial = find_trial(contender.candidate.name);
+    if (trial == trials_.end() || !std::isfinite(contender.criterion)) continue;
+    if (trial->folds.count == 0) hold_out(bench_.room(), bench_.null(), *trial);
+    confirm(bench_.refits(), *trial);
+    tell_held_out(*trial, *std::ranges::find(result_.effects, contender.candidate.name,
+                                             &EffectFinding::name));
+  }
+}
+
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
   bench_.report_progress("fitting what was found", 0.0);
   contest_ = fit_contenders(bench_, result_.effects);
+  confirm_contenders();
   admit_bent(bench_, contest_, result_.effects);
   const Contender* first = put_first(contest_, options_.preferred, result_.effects);
   promise_by_fits(bench_, contest_, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
-  result_.pairs = keep_as_likely(bench_, contest_, find_pair_set(bench_, trials_, contest_.noise));
+  result_.pairs = find_pair_set(bench_, trials_, contest_.noise);
   for (const Trial& trial : trials_) {
     if (trial.candidate.name == result_.effects.front().name) {
       result_.floor = std::min(result_.floor, trial.floor);
@@ -211,8 +381,29 @@ Objection Recipe::object_to(const EffectFinding& finding) {
   Objection objection = object(bench_, contest_, finding);
   if (objection.reason.empty()) {
     objection.reason = find_rival(bench_, contest_, finding, result_.effects);
+    objection.is_of_rival = !objection.reason.empty();
   }
   return objection;
+}
+
+/// Its size by a fit with it: one step's errors are none where the model is bent.
+void Recipe::tell_fitted(EffectFinding& finding) {
+  const Candidate& candidate = bench_.room().make(finding.name);
+  const double shape = shape_of(finding);
+  try {
+    const Fit fitted = bench_.room().follows_path()
+                           ? bench_.refits().with(candidate, shape)
+                           : refit_nearly(bench_.room(), candidate, shape, enough_rows, true);
+    bench_.count({.refitted = bench_.room().follows_path() ? 0U : 1U});
+    for (Coefficient& coefficient : finding.coefficients) {
+      const Parameter& parameter = fitted[coefficient.name];
+      coefficient.estimate = parameter.value;
+      coefficient.standard_error = parameter.standard_error;
+    }
+    finding.is_fitted = true;
+  } catch (const Error&) {
+    return;  // the step's estimate stands
+  }
 }
 
 /// The best of what was found that a real fit bears out and no other contradicts.
@@ -232,11 +423,106 @@ void Recipe::advise() {
     }
     if (objection.reason.empty()) {
       result_.advice.effect = finding.name;
+      tell_fitted(finding);
       return;
     }
     if (fitted == 0) first_stands = objection.is_to_fit;
     ++fitted;
     result_.advice.withheld.push_back(finding.name + ": " + objection.reason);
+    if (!objection.is_of_rival) withdrawn_.push_back(finding.name);
+  }
+}
+
+/// What was found and no fit bears out is no finding, where nothing else was found that a fit does.
+void Recipe::withdraw() {
+  if (!result_.advice.effect.empty()) return;
+  for (EffectFinding& finding : result_.effects) {
+    const bool is_withdrawn = std::ranges::find(withdrawn_, finding.name) != withdrawn_.end() ||
+                              (!withdrawn_.empty() && finding.beside == Beside::fades);
+    if (finding.status != FindingStatus::found || !is_withdrawn) continue;
+    const auto trial = find_trial(finding.name);
+    const bool takes_much = finding.held_out_passed && finding.held_out_gain >= objects_from;
+    if (!takes_much) {
+      finding.status = FindingStatus::not_seen;
+    } else {
+      finding.status = trial != trials_.end() && trial->slow ? FindingStatus::slow_change
+                                                             : FindingStatus::undecided;
+    }
+  }
+  std::ranges::stable_sort(result_.effects, {}, &EffectFinding::status);
+}
+
+/// What takes much of the error on rows held out by a real fit is said, whatever noise could do:
+/// rows that lie further apart than noise remembers do not care about its model.
+void Recipe::weigh_held_out() {
+  const double significant = std::log10(options_.significance / std::max(1.0, tests()));
+  std::vector<EffectFinding*> chosen = choose_to_weigh(result_.effects);
+  if (is_far_off(bench_, result_.floor)) {  // one step may see little in what explains everything
+    for (const Contender& bent : try_on_some_rows(bench_, result_.effects, {})) {
+      EffectFinding& finding =
+          *std::ranges::find(result_.effects, bent.candidate.name, &EffectFinding::name);
+      if (std::ranges::find(chosen, &finding) == chosen.end()) chosen.push_back(&finding);
+    }
+  }
+  for (EffectFinding* finding : chosen) {
+    bench_.report_progress("fitting what takes much of the error", 0.0);
+    const auto at = find_trial(finding->name);
+    if (at == trials_.end()) continue;  // a pair, whose members are asked
+    Trial& trial = *at;
+    if (trial.folds.count == 0) hold_out(bench_.room(), bench_.null(), trial);
+    confirm(bench_.refits(), trial);
+    tell_held_out(trial, *finding);
+    if (!trial.held_out.passed || !(finding->held_out_gain >= objects_from)) continue;
+    bound_by_fit(bench_, trial);
+    if (trial.log10_p < significant) {
+      finding->status = FindingStatus::found;
+      finding->log10_p = trial.log10_p;
+      finding->p_value = std::pow(10.0, trial.log10_p);
+      finding->p_adjusted = std::min(1.0, finding->p_value * std::max(1.0, tests()));
+      finding->p_listed = finding->p_adjusted;
+    } else {
+      finding->status = trial.slow ? FindingStatus::slow_change : FindingStatus::undecided;
+    }
+  }
+  if (has(FindingStatus::found)) {
+    rank(result_.effects);
+  } else {
+    put_simplest_first(bench_.room(), result_.effects);
+  }
+}
+
+/// How far errors would have to wander to look like the slow effect that stands first.
+void Recipe::explain_away() {
+  EffectFinding& first = result_.effects.front();
+  const auto trial = find_trial(first.name);
+  if (!bench_.instruments() || trial == trials_.end() || !trial->slow) return;
+  const double wanted =
+      std::log10(options_.significance / std::max(1.0, tests())) - log10_scan(*trial);
+  first.excuse = bench_.instruments()->excuse(
+      project_trial(bench_.room(), bench_.null(), *trial, trial->shape).basis, wanted,
+      first.status == FindingStatus::found ? 2.0 : 1.0);
+}
+
+/// The verdict: one function of all that is known of the candidates.
+void Recipe::conclude() {
+  if (has(FindingStatus::found)) {
+    result_.verdict = Verdict::effect_missing;
+    in_time("excuses", [&] { explain_away(); });
+    return;
+  }
+  in_time("looking for structure", [&] {
+    bench_.report_progress("looking for structure", 0.0);
+    result_.omnibus = test_for_structure(bench_.room(), fitted_.kit, bench_.null(),
+                                         bench_.instruments(), options_, pool_);
+    result_.unlogged = find_unlogged(bench_.room(), bench_.null(), options_.seed);
+  });
+  correct_together(options_.unexplained_below, result_.omnibus, result_.unlogged);
+  if (has(FindingStatus::slow_change)) {
+    result_.verdict = Verdict::slow_change;
+    in_time("excuses", [&] { explain_away(); });
+  } else if (result_.omnibus.significant || !result_.unlogged.empty() ||
+             has(FindingStatus::undecided)) {
+    result_.verdict = Verdict::unexplained;
   }
 }
 
@@ -244,37 +530,41 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   result_.pse = options_.pse;
   if (bench_.is_exact()) return result_;  // nothing is left to explain
   const CandidateRoom& room = bench_.room();
+  const RowLayout& layout = room.fit().layout;
   result_.residual = describe_residual(bench_.null());
-  result_.rmse = total_rmse(room.fit().layout, room.fit().residual);
-  result_.unit = common_unit(room.fit().layout);
-  result_.floor = noise_floor(room.fit().layout, bench_.null().best.noise);
+  result_.rmse = total_rmse(layout, room.fit().residual);
+  result_.unit = common_unit(layout);
+  result_.floor = noise_floor(layout, bench_.null().best.noise);
+  result_.correlation_time =
+      correlation_rows(layout, room.fit().residual) * typical_interval(room.times());
+  result_.has_time = room.record().has("time");
+  if (bench_.instruments()) result_.wanders = bench_.instruments()->bounds();
   if (!options_.only.empty()) {
     for (const std::string& name : names) bench_.room().make(name);  // or the reason is thrown
   }
   trials_ = bench_.make(names);
-  bench_.screen_all(trials_);
-  bench_.test_best(trials_, most_tested);
-  result_.effects = judge(trials_, tests());
-  if (!has(FindingStatus::found) && room.follows_path()) look_from_own_fits();
-  if (!has(FindingStatus::found)) try_pairs();
-  if (has(FindingStatus::found)) {
-    result_.verdict = Verdict::effect_missing;
-    settle();
-    advise();
-  } else {
-    bench_.report_progress("looking for structure", 0.0);
-    result_.omnibus =
-        test_for_structure(bench_.room(), fitted_.kit, bench_.null(), options_, pool_);
-    result_.unlogged = find_unlogged(room, bench_.null(), options_.seed);
-    correct_together(options_.unexplained_below, result_.omnibus, result_.unlogged);
-    if (result_.omnibus.significant || !result_.unlogged.empty()) {
-      result_.verdict = Verdict::unexplained;
-    } else if (has(FindingStatus::slow_change)) {
-      result_.verdict = Verdict::slow_change;
-    }
+  in_time("screening effects", [&] { bench_.screen_all(trials_); });
+  in_time("testing effects", [&] { bench_.test_best(trials_, most_tested); });
+  in_time("holding rows out", [&] { result_.effects = judge(trials_, tests()); });
+  if (result_.effects.empty()) result_.effects = collect(trials_, tests());
+  if (!has(FindingStatus::found) && room.follows_path()) {
+    in_time("fitting what may be hidden", [&] { look_from_own_fits(); });
   }
-  result_.limits =
-      find_limits(bench_.room(), fitted_.kit, bench_.null(), options_.significance, trials_.size());
+  if (!has(FindingStatus::found)) in_time("trying pairs", [&] { try_pairs(); });
+  if (!has(FindingStatus::found)) {
+    in_time("fitting what takes much of the error", [&] { weigh_held_out(); });
+  }
+  if (has(FindingStatus::found)) {
+    in_time("fitting what was found", [&] { settle(); });
+    in_time("fitting what is advised", [&] { advise(); });
+    withdraw();
+  }
+  conclude();
+  in_time("limits", [&] {
+    result_.limits = find_limits(bench_.room(), fitted_.kit, bench_.null(), bench_.instruments(),
+                                 options_.significance, trials_.size());
+  });
+  result_.work = bench_.work();
   return result_;
 }
 

@@ -31,6 +31,8 @@ std::string_view to_string(FindingStatus status) {
       return "found";
     case FindingStatus::slow_change:
       return "slow_change";
+    case FindingStatus::undecided:
+      return "undecided";
     case FindingStatus::not_seen:
       return "not_seen";
     default:
@@ -53,6 +55,15 @@ std::string_view to_string(Beside beside) {
     default:
       return "untried";
   }
+}
+
+DiagnosisWork& DiagnosisWork::operator+=(const DiagnosisWork& other) {
+  screened += other.screened;
+  tested += other.tested;
+  calibrated += other.calibrated;
+  refitted += other.refitted;
+  tried_on_some_rows += other.tried_on_some_rows;
+  return *this;
 }
 
 std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside) {
@@ -88,19 +99,27 @@ EffectFinding diagnosis::describe(const CandidateRoom& room, const Trial& trial)
   if (!trial.candidate.shape.parameter.empty()) {
     finding.shapes[trial.candidate.shape.parameter] = trial.shape;
   }
-  if (trial.held_out.judged) {
-    finding.held_out_before = trial.held_out.before;
-    finding.held_out_after = trial.held_out.after;
-    finding.held_out_gain = trial.held_out.gain;
-    finding.held_out_passed = trial.held_out.passed;
-    finding.held_out_interleaved = trial.folds.interleaved;
-  }
+  tell_held_out(trial, finding);
   if (trial.tested) {
     for (Index k = 0; k < trial.absorbed.size(); ++k) {
       finding.absorbed_by[room.fit().parameters[static_cast<std::size_t>(k)]] = trial.absorbed[k];
     }
   }
   return finding;
+}
+
+void diagnosis::tell_held_out(const Trial& trial, EffectFinding& finding) {
+  if (!trial.held_out.judged) return;
+  finding.held_out_before = trial.held_out.before;
+  finding.held_out_after = trial.held_out.after;
+  finding.held_out_gain = trial.held_out.gain;
+  finding.held_out_passed = trial.held_out.passed;
+  finding.held_out_interleaved = trial.folds.interleaved;
+  finding.held_out_refitted = trial.refitted;
+}
+
+double diagnosis::left_out(const EffectFinding& finding) {
+  return std::isnan(finding.held_out_gain) ? 1.0 : 1.0 - finding.held_out_gain;
 }
 
 Structure diagnosis::structure_of(const NullHypothesis& null, const Trial& trial, PseBound bound) {

@@ -11,6 +11,12 @@ namespace sepcal::diagnosis {
 /// the first.
 EffectFinding describe(const CandidateRoom& room, const Trial& trial);
 
+/// What rows held out say of it.
+void tell_held_out(const Trial& trial, EffectFinding& finding);
+
+/// The share of the error on rows held out that is left; all of it where they were not asked.
+double left_out(const EffectFinding& finding);
+
 /// At the shape where a screened trial explains most.
 Structure structure_of(const NullHypothesis& null, const Trial& trial, PseBound bound);
 

@@ -90,21 +90,58 @@ VectorXd estimate_without(const LinearisedFit& fit, const std::vector<Triangular
 }
 
 /// Squared errors of a block over all outputs, of estimates (a column each) for [J G e].
-VectorXd squares_of(const RowLayout& layout, const Columns& columns, const MatrixXd& estimates,
-                    const HeldOutBlock& block) {
+VectorXd squares_of(const RowLayout& layout, const std::vector<double>& weights,
+                    const Columns& columns, const MatrixXd& estimates, const HeldOutBlock& block) {
   VectorXd squares = VectorXd::Zero(estimates.cols());
   const Index n = estimates.rows();
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-    const double weight = layout.outputs[j].weight;
     for (Index row = block.first; row < block.last; row += panel_rows) {
       const MatrixXd panel =
           columns.rows(layout.first(j) + row, std::min(panel_rows, block.last - row));
       MatrixXd errors = panel.col(n).replicate(1, estimates.cols());
       numerics::add_product(panel.leftCols(n), -estimates, errors);
-      squares += weight * weight * errors.colwise().squaredNorm().transpose();
+      squares += weights[j] * weights[j] * errors.colwise().squaredNorm().transpose();
     }
   }
   return squares;
+}
+
+/// The same of every block that is judged, by the estimates without its fold.
+std::vector<VectorXd> predict_blocks(const RowLayout& layout, const std::vector<double>& weights,
+                                     const Columns& columns, const std::vector<MatrixXd>& estimates,
+                                     const Folds& folds) {
+  std::vector<VectorXd> squares;
+  for (const HeldOutBlock& block : folds.blocks) {
+    if (!block.judged) continue;
+    const auto f = static_cast<std::size_t>(block.fold);
+    squares.push_back(squares_of(layout, weights, columns, estimates[f], block));
+  }
+  return squares;
+}
+
+std::vector<double> own_weights(const RowLayout& layout) {
+  std::vector<double> weights;
+  for (const UsedOutput& output : layout.outputs) weights.push_back(output.weight);
+  return weights;
+}
+
+/// Of the outputs of `own`, what makes their rows count as those of `layout` do.
+std::vector<double> weights_as_of(const RowLayout& layout, const RowLayout& own) {
+  std::vector<double> weights;
+  for (const UsedOutput& output : own.outputs) {
+    const auto as = std::ranges::find(layout.outputs, output.index, &UsedOutput::index);
+    weights.push_back(as == layout.outputs.end() ? 0.0 : as->weight * output.scale / as->scale);
+  }
+  return weights;
+}
+
+/// The readings of the blocks that are judged.
+double count_judged(const RowLayout& layout, const Folds& folds) {
+  double rows = 0.0;
+  for (const HeldOutBlock& block : folds.blocks) {
+    if (block.judged) rows += static_cast<double>(block.last - block.first);
+  }
+  return rows * static_cast<double>(layout.outputs.size());
 }
 
 /// The least and the largest value of each column in each block (blocks x columns).
@@ -240,9 +277,8 @@ HeldOut summarise(const std::vector<double>& before, const std::vector<double>& 
 }
 
 HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds) {
-  const RowLayout& layout = fit.layout;
   const Columns columns = join(join(view(fit.tangent), G), view(fit.residual));
-  const auto factors_with = factor_by_fold(layout, columns, folds);
+  const auto factors_with = factor_by_fold(fit.layout, columns, folds);
   std::vector<TriangularFactor> factors_without;
   for (const TriangularFactor& factor : factors_with) {
     factors_without.push_back(leave_out(factor, G.cols()));
@@ -254,18 +290,31 @@ HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds)
     both.col(1) = estimate_without(fit, factors_with, f);
     estimates.push_back(std::move(both));
   }
+  const std::vector<VectorXd> squares =
+      predict_blocks(fit.layout, own_weights(fit.layout), columns, estimates, folds);
   std::vector<double> before;
   std::vector<double> after;
-  double rows = 0.0;
-  for (const HeldOutBlock& block : folds.blocks) {
-    if (!block.judged) continue;
-    const auto f = static_cast<std::size_t>(block.fold);
-    const VectorXd squares = squares_of(layout, columns, estimates[f], block);
-    before.push_back(squares[0]);
-    after.push_back(squares[1]);
-    rows += static_cast<double>(block.last - block.first);
+  for (const VectorXd& both : squares) {
+    before.push_back(both[0]);
+    after.push_back(both[1]);
   }
-  return summarise(before, after, rows * static_cast<double>(layout.outputs.size()));
+  return summarise(before, after, count_judged(fit.layout, folds));
+}
+
+HeldOut hold_out(const LinearisedFit& without, const LinearisedFit& with, const Folds& folds) {
+  const auto errors_of = [&](const LinearisedFit& fit) {
+    const Columns columns = join(view(fit.tangent), view(fit.residual));
+    const auto factors = factor_by_fold(fit.layout, columns, folds);
+    std::vector<MatrixXd> estimates;
+    for (int f = 0; f < folds.count; ++f) estimates.push_back(estimate_without(fit, factors, f));
+    const std::vector<double> weights = weights_as_of(without.layout, fit.layout);
+    std::vector<double> errors;
+    for (const VectorXd& square : predict_blocks(fit.layout, weights, columns, estimates, folds)) {
+      errors.push_back(square[0]);
+    }
+    return errors;
+  };
+  return summarise(errors_of(without), errors_of(with), count_judged(without.layout, folds));
 }
 
 Folds few_folds(const LinearisedFit& fit, const Columns& G) {

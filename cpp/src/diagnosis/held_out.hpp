@@ -58,6 +58,10 @@ HeldOut summarise(const std::vector<double>& before, const std::vector<double>& 
 /// `G`: the candidate's columns.
 HeldOut hold_out(const LinearisedFit& fit, const Columns& G, const Folds& folds);
 
+/// The same of two fits, without and with an effect, each by one step from itself: as good as real
+/// fits to the other folds, where an effect bends the model too. `with`: of the same rows.
+HeldOut hold_out(const LinearisedFit& without, const LinearisedFit& with, const Folds& folds);
+
 /// RMSE over all outputs, in their unit, of a residual whose outputs are scaled; where they have
 /// different units, in units of each one's own.
 double total_rmse(const RowLayout& layout, const Eigen::VectorXd& residual);

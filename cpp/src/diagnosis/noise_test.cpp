@@ -6,6 +6,7 @@
 #include <random>
 
 #include "diagnosis/projection.hpp"
+#include "diagnosis/reduced_rows.hpp"
 #include "diagnosis/sign_flips.hpp"
 #include "numerics/tails.hpp"
 
@@ -29,40 +30,6 @@ void whiten_outputs(const NoiseFamilies& families, const RowLayout& layout,
 const FamilyFit& likeliest(const std::array<FamilyFit, 2>& fits) {
   return *std::ranges::min_element(fits, {}, &FamilyFit::minus_two_log_likelihood);
 }
-
-/// Fewer rows: means of `stride` that follow each other in a run, or one in `stride`.
-struct Reduction {
-  RowLayout layout = {};
-  Index stride = 1;
-  bool average = false;
-
-  Reduction(const RowLayout& full, Index most, bool averaged)
-      : stride((full.rows + most - 1) / most), average(averaged) {
-    layout.outputs = full.outputs;
-    for (const Segment& run : full.runs) {
-      const auto first = static_cast<std::size_t>(layout.rows);
-      layout.rows += (static_cast<Index>(run.rows()) + stride - 1) / stride;
-      layout.runs.push_back({run.label, first, static_cast<std::size_t>(layout.rows)});
-    }
-  }
-
-  MatrixXd apply(const RowLayout& full, const Columns& columns) const {
-    if (stride == 1) return columns.dense(full);
-    MatrixXd reduced(layout.count(), columns.cols());
-    Index at = 0;
-    for (std::size_t j = 0; j < full.outputs.size(); ++j) {
-      for (const Segment& run : full.runs) {
-        for (std::size_t row = run.first; row < run.last; row += static_cast<std::size_t>(stride)) {
-          const Index first = full.first(j) + static_cast<Index>(row);
-          const Index count = std::min(stride, static_cast<Index>(run.last - row));
-          reduced.row(at++) = average ? columns.rows(first, count).colwise().mean().eval()
-                                      : columns.rows(first, 1).row(0).eval();
-        }
-      }
-    }
-    return reduced;
-  }
-};
 
 double median(VectorXd values) {
   const Index middle = values.size() / 2;
@@ -160,7 +127,7 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
   constexpr Index most_rows = 600;
   const RowLayout& layout = fit_.layout;
   const Columns columns = join(basis_, added);
-  const Reduction reduction(layout, most_rows, smooth);
+  const ReducedRows reduction(layout, most_rows, smooth);
   const bool whole = reduction.stride == 1;
   MatrixXd basis = reduction.apply(layout, basis_);
   MatrixXd reduced_added = reduction.apply(layout, added);

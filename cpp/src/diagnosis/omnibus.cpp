@@ -141,6 +141,15 @@ std::vector<std::pair<std::string, double>> describe_windows(
   return described;
 }
 
+/// The norm of what is measured about its means, in the layout's units.
+double all_that_varies(const RowLayout& layout) {
+  double sum = 0.0;
+  for (const UsedOutput& output : layout.outputs) {
+    sum += static_cast<double>(layout.rows) * output.variance / (output.scale * output.scale);
+  }
+  return std::sqrt(sum);
+}
+
 /// The point that a standard normal variable exceeds with that probability.
 double upper_normal_point(double probability) {
   double low = -10.0;
@@ -155,31 +164,47 @@ double upper_normal_point(double probability) {
 }  // namespace
 
 Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
-                           const DiagnosisOptions& options, base::ThreadPool& pool) {
+                           const InstrumentNoise* instruments, const DiagnosisOptions& options,
+                           base::ThreadPool& pool) {
   const RowLayout& layout = room.fit().layout;
   const std::vector<base::Part> windows =
       cut_windows(room, correlation_rows(layout, null.residual));
   const std::vector<Offsets> sets = find_offsets(room, kit, null, windows);
-  std::vector<NoiseTest::Ratios> ratios(sets.size());
-  pool.for_each(sets.size(), [&](std::size_t i) { ratios[i] = null.test->compare(sets[i].basis); });
-  Omnibus result;
   const double correction = std::log10(static_cast<double>(std::max<std::size_t>(1, sets.size())));
+  const double significant = std::log10(options.unexplained_below);
+  std::vector<double> log10_p(sets.size(), 0.0);  // of each set
+  if (instruments != nullptr) {
+    std::vector<Columns> bases;
+    for (const Offsets& set : sets) bases.push_back(set.basis);
+    const std::vector<InstrumentTail> tails = instruments->tails(bases);
+    for (std::size_t i = 0; i < sets.size(); ++i) log10_p[i] = correction + tails[i].log10_p;
+  }
+  if (instruments == nullptr || !instruments->knows_the_noise()) {
+    pool.for_each(sets.size(), [&](std::size_t i) {
+      if (instruments != nullptr && log10_p[i] > significant) return;
+      const NoiseTest::Ratios ratios = null.test->compare(sets[i].basis);
+      const auto freedom = static_cast<int>(sets[i].basis.cols());
+      double free = correction + NoiseTest::tails(ratios, freedom).log10_p();
+      if (free < significant) {
+        constexpr bool offsets_are_slow = true;
+        base::ThreadPool alone(1);
+        free = correction + null.test
+                                ->calibrate(ratios, sets[i].basis, offsets_are_slow,
+                                            options.simulations, options.seed + i, alone)
+                                .log10_p();
+      }
+      log10_p[i] = instruments == nullptr ? free : std::max(log10_p[i], free);
+    });
+  }
+  Omnibus result;
   double least = 0.0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    const auto freedom = static_cast<int>(sets[i].basis.cols());
-    double log10_p = correction + NoiseTest::tails(ratios[i], freedom).log10_p();
-    if (log10_p < std::log10(options.unexplained_below)) {
-      constexpr bool offsets_are_slow = true;
-      log10_p = correction + null.test
-                                 ->calibrate(ratios[i], sets[i].basis, offsets_are_slow,
-                                             options.simulations, options.seed + i, pool)
-                                 .log10_p();
+    if (room.follows_path() && log10_p[i] < least) {  // noise is common to all outputs there
+      const double doubted = log10_block_tail(null, sets[i].basis.dense(layout));
+      log10_p[i] = std::max(log10_p[i], correction + doubted);
     }
-    if (room.follows_path() && log10_p < least) {  // noise is common to all outputs there
-      log10_p = std::max(log10_p, correction + log10_block_tail(null, sets[i].basis.dense(layout)));
-    }
-    if (!(log10_p < least)) continue;
-    least = log10_p;
+    if (!(log10_p[i] < least)) continue;
+    least = log10_p[i];
     result.where = sets[i].where;
     result.windows = describe_windows(layout, null, sets[i], windows);
   }
@@ -188,7 +213,8 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
 }
 
 std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& kit,
-                                        const NullHypothesis& null, double significance,
+                                        const NullHypothesis& null,
+                                        const InstrumentNoise* instruments, double significance,
                                         std::size_t candidates) {
   std::vector<DetectionLimit> limits;
   if (!room.record().has("time")) return limits;
@@ -210,14 +236,22 @@ std::vector<DetectionLimit> find_limits(CandidateRoom& room, const EffectKit& ki
     } catch (const Error&) {
       continue;
     }
-    MatrixXd columns = room.drive(port, ramp).dense(layout);
-    null.whiten(columns);
-    const MatrixXd beyond = remove_span(null.white_basis, columns);
+    const MatrixXd columns = room.drive(port, ramp).dense(layout);
+    VectorXd seen;  // standard errors of a line of size 1, in each component
+    if (instruments != nullptr) {
+      seen = instruments->sigmas(remove_tangent(null.basis, columns));
+    } else {
+      MatrixXd white = columns;
+      null.whiten(white);
+      seen = remove_span(null.white_basis, white).colwise().norm();
+    }
     constexpr double unseen = 1e-6;  // of a column: rounding
     double size = 0.0;
     for (Index k = 0; k < columns.cols(); ++k) {
-      const double left = beyond.col(k).norm();
-      size = std::max(size, left > unseen * columns.col(k).norm() ? sigmas / left : infinity);
+      const double norm = columns.col(k).norm();
+      double own = seen[k] > unseen * norm ? sigmas / seen[k] : infinity;
+      if (own * norm > all_that_varies(layout)) own = infinity;
+      size = std::max(size, own);
     }
     limits.push_back({port.name, port.unit, size});
   }

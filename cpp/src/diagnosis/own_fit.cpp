@@ -5,7 +5,6 @@
 #include <functional>
 #include <utility>
 
-#include "diagnosis/contenders.hpp"
 #include "diagnosis/refits.hpp"
 #include "sepcal/error.hpp"
 
@@ -39,7 +38,6 @@ Trial OwnFit::test(double threshold) {
   Trials alone(1);
   alone.front().candidate = candidate_;
   if (!candidate_.shape.parameter.empty()) alone.front().candidate.shape.values = {shape_};
-  alone.front().slow = is_slow(bench_.room(), candidate_);
   bench_.screen_all(alone);
   if (!alone.front().visible) return std::move(alone.front());
   bench_.test_best(alone, 1);
@@ -60,7 +58,7 @@ std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trial
   bench.pool().for_each(fits.size(), [&](std::size_t i) {
     auto& [trial, fit, drop] = fits[i];
     try {
-      fit = refit_with(bench.room(), trial->candidate, trial->shape);
+      fit = bench.refits().with(trial->candidate, trial->shape);
     } catch (const Error&) {
       return;
     }

@@ -14,7 +14,7 @@ namespace sepcal::diagnosis {
 /// The candidate of a trial at its own fit.
 class OwnFit {
  public:
-  /// `fit`: refit_with()'s at that shape. `bench`: of the fit without it.
+  /// `fit`: of Refits, at that shape. `bench`: of the fit without it.
   OwnFit(const Bench& bench, const Candidate& candidate, double shape, Fit fit);
   OwnFit(const OwnFit&) = delete;  // the bench refers to the fit
   OwnFit& operator=(const OwnFit&) = delete;

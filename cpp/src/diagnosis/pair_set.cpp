@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t most_paired = 10;
+constexpr std::size_t most_pairs = 12;
 constexpr double within = 9.2;  // of the least criterion
 
 /// One trial, or two, and Schwarz's criterion of what they explain.
@@ -97,23 +98,24 @@ std::vector<Combination> rank_pairs(const Explained& explained, const Causes& ca
 
 }  // namespace
 
-std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials,
-                                const NoiseMembers& noise) {
+std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials,
+                                       const NoiseMembers& noise) {
   const Causes causes = choose_causes(bench, trials);
-  const std::size_t count = causes.trials.size();
   const Explained explained(bench, causes, noise);
   const auto ranked = rank_pairs(explained, causes);
   if (ranked.empty()) return {};
-  double least = ranked.front().criterion;
-  for (std::size_t a = 0; a < count; ++a) {
-    least = std::min(least, explained.combine({a}).criterion);
+  std::vector<double> alone;
+  for (std::size_t a = 0; a < causes.trials.size(); ++a) {
+    alone.push_back(explained.combine({a}).criterion);
   }
-  std::vector<Pair> pairs;
+  const double least = std::min(ranked.front().criterion, std::ranges::min(alone));
+  std::vector<std::string> pairs;
   for (const Combination& pair : ranked) {
-    if (!(pair.criterion < least + within)) break;
-    const Trial& a = *causes.trials[pair.members[0]];
-    const Trial& b = *causes.trials[pair.members[1]];
-    pairs.push_back({a.candidate.name + "+" + b.candidate.name, (is_scanned(a) ? a : b).shape});
+    if (!(pair.criterion < least + within) || pairs.size() == most_pairs) break;
+    const std::size_t a = pair.members[0];
+    const std::size_t b = pair.members[1];
+    if (!(pair.criterion < std::min(alone[a], alone[b]))) continue;
+    pairs.push_back(causes.trials[a]->candidate.name + "+" + causes.trials[b]->candidate.name);
   }
   return pairs;
 }

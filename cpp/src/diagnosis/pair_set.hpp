@@ -10,15 +10,10 @@
 
 namespace sepcal::diagnosis {
 
-/// Two effects as one candidate: "wind[time]+bias_step".
-struct Pair {
-  std::string name;
-  double shape = not_a_number;  // where one of the two was scanned
-};
-
-/// Pairs of the surest trials, best first, whose Schwarz criterion is within 9.2 of the least that
-/// a single trial or a pair has in this noise; by one step from the fit.
-std::vector<Pair> find_pair_set(const Bench& bench, const Trials& trials,
-                                const NoiseMembers& noise);
+/// Pairs of the surest trials, "wind[time]+bias_step", best first and a dozen at most: those whose
+/// Schwarz criterion is within 9.2 of the least that a single trial or a pair has in this noise,
+/// and below those of its members; by one step from the fit.
+std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials,
+                                       const NoiseMembers& noise);
 
 }  // namespace sepcal::diagnosis

@@ -56,12 +56,13 @@ Promise promise(const DiagnosedFit& fitted, const std::string& effect,
     return promised;
   }
   estimate_plainly(fit.layout, added, fit.residual, trial);
-  const Objection objection = find_objection(room, describe(room, trial), visible_from, pool);
+  Refits refits(room);
+  const Objection objection = find_objection(room, refits, describe(room, trial), visible_from);
   promised.against = objection.reason;
   promised.predicted_drop =
       std::isnan(objection.drop) ? predict_drop(null, added.basis) : objection.drop;
   hold_out(room, null, trial);
-  confirm(room, pool, trial);
+  confirm(refits, trial);
   if (!trial.held_out.judged) return promised;
   promised.held_out_before = trial.held_out.before;
   promised.held_out_after = trial.held_out.after;

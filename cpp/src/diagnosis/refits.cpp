@@ -1,32 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/refits.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "model/measurements.hpp"
-#include "model/sweep.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::diagnosis {
 namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-/// Rows [first, last) of the layout as segments of the record.
-void append_rows(const CandidateRoom& room, Index first, Index last, std::vector<Segment>& rows) {
-  const std::vector<Segment>& layout = room.fit().layout.segments;
-  for (std::size_t i = 0; i < layout.size(); ++i) {
-    const auto begin = std::max(static_cast<std::size_t>(first), layout[i].first);
-    const auto end = std::min(static_cast<std::size_t>(last), layout[i].last);
-    if (begin >= end) continue;
-    const Segment& whole = room.rows()[i];
-    const std::size_t shift = whole.first - layout[i].first;
-    rows.push_back({whole.label, begin + shift, end + shift});
-  }
-}
 
 /// About so many rows in blocks that lie evenly over every segment; all where there are no more.
 std::vector<Segment> spread(const std::vector<Segment>& segments, std::size_t most) {
@@ -70,8 +54,8 @@ FitOptions options_from(const Fit& fit) {
 }
 
 /// The same for the model with the candidate, which begins at zero; its shape is held.
-FitOptions with_candidate(FitOptions options, const Tables& tables, const Candidate& candidate,
-                          double shape) {
+FitOptions options_with(FitOptions options, const Tables& tables, const Candidate& candidate,
+                        double shape) {
   if (!candidate.shape.parameter.empty()) options.fixed[candidate.shape.parameter] = shape;
   for (const Variable& coefficient : candidate.coefficients) {
     if (std::ranges::find(tables.nonlinear, coefficient.name, &Variable::name) !=
@@ -95,47 +79,10 @@ FitOptions with_noise_as_asked(FitOptions options, const Fit& fit) {
   return options;
 }
 
-/// The same starts at the estimates of a fit to all rows.
-FitOptions start_from(FitOptions options, const Fit& fit) {
-  for (auto& [name, start] : options.start) start = fit[name].value;
-  return options;
-}
-
-/// Squared error of each block of one fold, in the outputs' unit.
-VectorXd errors(const BlockModel& model, const CandidateRoom& room, const FitOptions& options,
-                const Folds& folds, int fold) {
-  std::vector<Segment> others;
-  std::vector<std::vector<Segment>> left_out;
-  for (const HeldOutBlock& block : folds.blocks) {
-    if (block.fold == fold) {
-      if (block.judged) append_rows(room, block.first, block.last, left_out.emplace_back());
-    } else {
-      append_rows(room, block.first, block.last, others);
-    }
-  }
-  Record rows = room.record();
-  rows.cut(spread(others, enough_rows));
-  const Fit fitted = fit(model, rows, options);
-  base::ThreadPool alone(1);
-  VectorXd squares(static_cast<Index>(left_out.size()));
-  for (std::size_t b = 0; b < left_out.size(); ++b) {
-    rows.cut(left_out[b]);
-    const model::Measurements measurements(model, rows);
-    squares[static_cast<Index>(b)] = model::Sweep(model, measurements, alone)
-                                         .squared_residuals(fitted.xi1(), fitted.xi2())
-                                         .sum();
-  }
-  return squares;
-}
-
 }  // namespace
 
 double shape_of(const EffectFinding& finding) {
   return finding.shapes.empty() ? not_a_number : finding.shapes.begin()->second;
-}
-
-Fit refit_with(const CandidateRoom& room, const Candidate& candidate, double shape) {
-  return refit_nearly(room, candidate, shape, room.record().length());
 }
 
 Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double shape,
@@ -143,8 +90,7 @@ Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double s
   const auto with = room.model_with(candidate.effects);
   Record rows = room.record();
   rows.cut(room.follows_path() ? room.rows() : spread(room.rows(), most_rows));
-  FitOptions options =
-      with_candidate(options_from(room.fitted()), with->tables(), candidate, shape);
+  FitOptions options = options_with(options_from(room.fitted()), with->tables(), candidate, shape);
   options.coloured_errors = coloured_errors;
   const std::string& of_shape = candidate.shape.parameter;
   if (!of_shape.empty() && candidate.stepping_port.empty()) {  // a step's row is exact
@@ -174,44 +120,51 @@ double drop_of_adding(const CandidateRoom& room, const Candidate& candidate, con
   }
 }
 
-HeldOut hold_out_by_refits(const CandidateRoom& room, const Candidate& candidate, double shape,
-                           const Folds& folds, base::ThreadPool& pool) {
-  if (room.follows_path()) return {};  // no row of one is left out of the others' path
-  const auto without = room.model();
-  const auto with = room.model_with(candidate.effects);
-  constexpr int most_iterations = 30;  // a fold's fit begins at that to all rows
-  FitOptions base = options_from(room.fitted());
-  base.iterations = most_iterations;
-  FitOptions extended = with_candidate(base, with->tables(), candidate, shape);
-  const auto count = static_cast<std::size_t>(folds.count);
-  std::vector<VectorXd> before(count);
-  std::vector<VectorXd> after(count);
+DiagnosedFit with_candidate(const DiagnosedFit& fitted, const Candidate& candidate, Fit fit) {
+  DiagnosedFit next = fitted;
+  next.effects.insert(next.effects.end(), candidate.settings.begin(), candidate.settings.end());
+  next.fit = std::move(fit);
+  return next;
+}
+
+const Fit& Refits::with(const Candidate& candidate, double shape) {
+  const std::string key = fmt::format("{} {}", candidate.name, shape);
+  {
+    const std::lock_guard lock(making_);
+    const auto known = made_.find(key);
+    if (known != made_.end() && known->second.error.empty()) return known->second.fit;
+    if (known != made_.end()) throw Error(known->second.error);
+  }
+  Made made;
   try {
-    Record rows = room.record();
-    rows.cut(spread(room.rows(), enough_rows));
-    extended = start_from(extended, fit(*with, rows, extended));
-    pool.for_each(2 * count, [&](std::size_t task) {
-      const std::size_t f = task / 2;
-      if (task % 2 == 0) {
-        before[f] = errors(*without, room, base, folds, static_cast<int>(f));
-      } else {
-        after[f] = errors(*with, room, extended, folds, static_cast<int>(f));
-      }
-    });
+    made.fit = refit_nearly(room_, candidate, shape, enough_rows);
+  } catch (const Error& error) {
+    made.error = error.what();
+  }
+  const std::lock_guard lock(making_);
+  const Made& kept = made_.try_emplace(key, std::move(made)).first->second;
+  if (!kept.error.empty()) throw Error(kept.error);
+  return kept.fit;
+}
+
+HeldOut Refits::hold_out(const Candidate& candidate, double shape, const Folds& folds) {
+  if (room_.follows_path()) return {};
+  try {
+    return diagnosis::hold_out(room_.fit(), linearise(candidate, shape), folds);
   } catch (const Error&) {
     return {};
   }
-  std::vector<double> old;
-  std::vector<double> now;
-  double rows = 0.0;
-  for (std::size_t f = 0; f < count; ++f) {
-    old.insert(old.end(), before[f].begin(), before[f].end());
-    now.insert(now.end(), after[f].begin(), after[f].end());
-  }
-  for (const HeldOutBlock& block : folds.blocks) {
-    if (block.judged) rows += static_cast<double>(block.last - block.first);
-  }
-  return summarise(old, now, rows * static_cast<double>(without->tables().n_z()));
+}
+
+LinearisedFit Refits::linearise(const Candidate& candidate, double shape) {
+  const DiagnosedFit with_it = with_candidate(room_.diagnosed(), candidate, with(candidate, shape));
+  base::ThreadPool alone(1);
+  return CandidateRoom(with_it, alone).fit();
+}
+
+std::size_t Refits::count() const {
+  const std::lock_guard lock(making_);
+  return made_.size();
 }
 
 }  // namespace sepcal::diagnosis

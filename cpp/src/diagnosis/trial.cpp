@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "diagnosis/block_jackknife.hpp"
-#include "diagnosis/refits.hpp"
 #include "numerics/tails.hpp"
 #include "numerics/tall_products.hpp"
 #include "sepcal/triangular_factor.hpp"
@@ -153,7 +152,7 @@ void keep_estimate(const MatrixXd& to_effect, const MatrixXd& absorbed, const Ve
 void set_tails(const NoiseTails& tails, Trial& trial) {
   const double scan = log10_scan(trial);
   trial.tails = {std::min(0.0, scan + tails.either), std::min(0.0, scan + tails.beside)};
-  trial.log10_p = trial.tails.log10_p();
+  combine_tails(trial);
 }
 
 }  // namespace
@@ -217,7 +216,6 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   const auto by_plain = std::ranges::min_element(trial.scores, {}, &ShapeScore::plain);
   std::vector<double> shapes{by_white->shape};
   if (by_plain != by_white) shapes.push_back(by_plain->shape);
-  trial.tested = true;
   NoiseTails least{infinity, infinity};
   for (const double shape : shapes) {
     Projection added = project_trial(room, null, trial, shape);
@@ -234,7 +232,27 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
                   ratios.with.covariance.bottomRightCorner(q, q), trial);
     trial.predicted_drop = predict_drop(null, added.basis);
   }
+  trial.slow = is_slow(room, trial.candidate, trial.shape);
+  trial.tested = true;
   set_tails(least, trial);
+}
+
+void combine_tails(Trial& trial) {
+  constexpr double well_seen = 0.5;
+  trial.log10_p = trial.tails.log10_p();
+  if (!trial.bounded || trial.bounded->share_seen < well_seen) return;
+  trial.log10_p = is_decided_by_bounds(trial) ? trial.bounded->log10_p
+                                              : std::max(trial.log10_p, trial.bounded->log10_p);
+}
+
+bool is_decided_by_bounds(const Trial& trial) {
+  return trial.bounded && trial.slow && trial.bounded->left < most_left;
+}
+
+void bound(const InstrumentTail& tail, Trial& trial) {
+  trial.bounded = tail;
+  trial.bounded->log10_p = std::min(0.0, tail.log10_p + log10_scan(trial));
+  combine_tails(trial);
 }
 
 bool is_smooth(const RowLayout& layout, const Columns& columns) {
@@ -263,21 +281,21 @@ void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws,
   set_tails(tails, trial);
 }
 
-bool is_slow(const CandidateRoom& room, const Candidate& candidate) {
-  constexpr double monotone = 0.95;  // correlation with time
-  for (const Effect& effect : candidate.effects) {
-    if (!effect.driver || !effect.driver->input()) return false;
-    const std::string& channel = effect.driver->input()->name;
-    if (channel == "time") continue;
-    const std::vector<double> times = room.times();
-    const Eigen::Map<const Eigen::ArrayXd> t(times.data(), static_cast<Index>(times.size()));
-    const Eigen::ArrayXd d = gather_rows(room.record().column(channel), room.rows());
-    const Eigen::ArrayXd from_t = t - t.mean();
-    const Eigen::ArrayXd from_d = d - d.mean();
-    const double spread = std::sqrt(from_t.square().sum() * from_d.square().sum());
-    if (!(std::abs((from_t * from_d).sum()) > monotone * spread)) return false;
-  }
-  return true;
+bool is_slow(const CandidateRoom& room, const Candidate& candidate, double shape) {
+  const RowLayout& layout = room.fit().layout;
+  RowLayout of_drivers = layout;
+  of_drivers.outputs.resize(1);
+  return std::ranges::all_of(candidate.effects, [&](const Effect& effect) {
+    return effect.driver ? is_smooth(of_drivers, room.functions_of(effect, shape))
+                         : is_smooth(layout, room.columns(candidate, shape).whole);
+  });
+}
+
+bool is_flexible_in_time(const Candidate& candidate) {
+  return std::ranges::any_of(candidate.effects, [](const Effect& effect) {
+    return effect.driver && effect.driver->functions() > 1 && effect.driver->input() &&
+           effect.driver->input()->name == "time";
+  });
 }
 
 void doubt(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
@@ -286,7 +304,7 @@ void doubt(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) 
   const double tail = log10_block_tail(null, added.basis.dense(room.fit().layout));
   const double corrected = std::min(0.0, log10_scan(trial) + tail);
   trial.tails = {std::max(trial.tails.either, corrected), std::max(trial.tails.beside, corrected)};
-  trial.log10_p = std::max(trial.log10_p, corrected);
+  combine_tails(trial);
 }
 
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
@@ -317,10 +335,11 @@ void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& tria
   trial.held_out = hold_out(fit, G, trial.folds);
 }
 
-void confirm(const CandidateRoom& room, base::ThreadPool& pool, Trial& trial) {
-  const HeldOut confirmed =
-      hold_out_by_refits(room, trial.candidate, trial.shape, trial.folds, pool);
-  if (confirmed.judged) trial.held_out = confirmed;
+void confirm(Refits& refits, Trial& trial) {
+  const HeldOut confirmed = refits.hold_out(trial.candidate, trial.shape, trial.folds);
+  if (!confirmed.judged) return;
+  trial.held_out = confirmed;
+  trial.refitted = true;
 }
 
 }  // namespace sepcal::diagnosis

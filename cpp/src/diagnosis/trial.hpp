@@ -5,13 +5,16 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/held_out.hpp"
+#include "diagnosis/instrument_noise.hpp"
 #include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/projection.hpp"
+#include "diagnosis/refits.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -41,9 +44,11 @@ struct Trial {
   Eigen::VectorXd estimate = {};
   Eigen::MatrixXd covariance = {};
   NoiseTails tails = {};  // of the ratios, corrected for the scan as log10_p is
-  bool slow = false;      // its driver changes as slowly as noise may wander
+  std::optional<InstrumentTail> bounded = {};  // likewise, in noise as instruments have it
+  bool slow = false;                           // its driver changes as slowly as noise may wander
   double predicted_drop = 0.0;
   HeldOut held_out = {};
+  bool refitted = false;  // held_out is that of real fits
   Folds folds = {};
   Eigen::VectorXd absorbed = {};  // shift of each column of the tangent
 };
@@ -65,12 +70,26 @@ void estimate_plainly(const RowLayout& layout, const Projection& added,
 /// The likelihood ratio at the shapes that score best, with the estimate there.
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
-/// Whether all that drives it is time or a channel that goes with time.
-bool is_slow(const CandidateRoom& room, const Candidate& candidate);
-
 /// Whether the columns hardly change within a hundredth of the record: noise that is as slow
 /// imitates them.
 bool is_smooth(const RowLayout& layout, const Columns& columns);
+
+/// Whether it takes slow noise for its own, as functions of time of any form do.
+bool is_flexible_in_time(const Candidate& candidate);
+
+/// Whether that holds of all that drives it, or of its columns where nothing does.
+bool is_slow(const CandidateRoom& room, const Candidate& candidate, double shape);
+
+/// Whether noise as instruments have it decides alone: the effect is slow, so that noise of free
+/// size would take it for its own, and what is left is within what these noises allow.
+bool is_decided_by_bounds(const Trial& trial);
+
+/// log10_p from the tails. Noise of free size tells what changes fast from noise, and takes what is
+/// slow for its own; noise within an instrument's bounds tells both, where the log's noise is such.
+void combine_tails(Trial& trial);
+
+/// Takes what noise as instruments have it makes of the trial into its log10_p.
+void bound(const InstrumentTail& tail, Trial& trial);
 
 /// Corrects the test's tail for what draws of the noise do to the ratios.
 void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
@@ -84,6 +103,6 @@ void doubt(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 void hold_out(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
 /// The same by real fits, which replace the steps.
-void confirm(const CandidateRoom& room, base::ThreadPool& pool, Trial& trial);
+void confirm(Refits& refits, Trial& trial);
 
 }  // namespace sepcal::diagnosis

@@ -127,6 +127,10 @@ Diagnosis join(std::vector<Diagnosis> parts) {
     append(all.residual, part.residual);
     append(all.unlogged, part.unlogged);
     append(all.limits, part.limits);
+    append(all.wanders, part.wanders);
+    append(all.advice.withheld, part.advice.withheld);
+    all.correlation_time = std::max(all.correlation_time, part.correlation_time);
+    all.work += part.work;
     if (part.omnibus.p_adjusted < all.omnibus.p_adjusted) all.omnibus = part.omnibus;
   }
   all.rmse = std::sqrt(square / static_cast<double>(parts.size()));
@@ -136,7 +140,8 @@ Diagnosis join(std::vector<Diagnosis> parts) {
     return effect.status == FindingStatus::found;
   });
   std::ranges::stable_sort(rest, {}, [](const EffectFinding& effect) {
-    return std::pair(effect.status, effect.log10_p);
+    const bool is_seen = effect.status < FindingStatus::not_seen;
+    return std::pair(effect.status, is_seen ? -effect.held_out_gain : effect.log10_p);
   });
   return all;
 }

@@ -57,6 +57,7 @@ EffectKit catalogue::kit_of(const EffectTable& table) {
     kit.aliases[row.name] = [&row](const Record& record) { return resolve(row, record); };
   }
   kit.wandering = table.wandering;
+  kit.wanders = table.wanders;
   return kit;
 }
 

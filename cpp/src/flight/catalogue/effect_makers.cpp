@@ -24,4 +24,12 @@ EffectKit::Maker wandering_angle(const std::string& input) {
   };
 }
 
+WanderBound tilt_bound() {
+  return {.name = "tilt", .unit = "rad", .size = 0.005, .corrections = {0, 1}};
+}
+
+WanderBound heading_bound() {
+  return {.name = "heading", .unit = "rad", .size = 0.0175, .corrections = {2}};
+}
+
 }  // namespace sepcal::catalogue

@@ -24,4 +24,9 @@ EffectKit::Maker in_time(Delay::Kind kind, double bound,
 /// The error of an angle among the model's inputs.
 EffectKit::Maker wandering_angle(const std::string& input);
 
+/// How far an attitude's filter lets roll and pitch wander, and the heading: a third of a degree, a
+/// degree. A table's `wandering` has the three in this order.
+WanderBound tilt_bound();
+WanderBound heading_bound();
+
 }  // namespace sepcal::catalogue

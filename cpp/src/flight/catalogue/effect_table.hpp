@@ -74,7 +74,8 @@ struct EffectTable {
   std::vector<EffectRow> effects;
   std::vector<AliasRow> aliases;
   std::vector<Channel> channels;
-  std::vector<EffectKit::Maker> wandering = {};  // errors of the attitude
+  std::vector<EffectKit::Maker> wandering = {};  // errors of the attitude: roll, pitch, yaw
+  std::vector<WanderBound> wanders = {};         // as sensors of the kind let them
 
   /// nullptr where there is none of that name.
   const PortRow* find_port(const std::string& name) const;

@@ -175,6 +175,9 @@ EffectTable five_hole_effects() {
   table.aliases = air_data_aliases("throttle");
   table.channels = air_data_channels();
   table.wandering = {wandering_angle("roll"), wandering_angle("pitch"), wandering_angle("yaw")};
+  table.wanders = {velocity_bound(), gust_bound(), airspeed_bound(), tilt_bound(), heading_bound()};
+  table.wanders[0].outputs = table.wanders[1].outputs = {"vn", "ve", "vd"};
+  table.wanders[2].port = "airspeed_bias";
   return table;
 }
 

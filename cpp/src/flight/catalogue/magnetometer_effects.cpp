@@ -129,6 +129,7 @@ EffectTable magnetometer_effects() {
   table.aliases = magnetic_aliases();
   table.channels = magnetic_channels();
   table.wandering = {maker_of(AngleErrors{})};
+  table.wanders = {field_bound({"mx", "my", "mz"}), tilt_bound(), heading_bound()};
   return table;
 }
 

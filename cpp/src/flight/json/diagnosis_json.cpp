@@ -49,6 +49,9 @@ Json write_effect(const EffectFinding& effect, const std::string& sentence) {
           {"held_out_after", number(effect.held_out_after)},
           {"held_out_passed", effect.held_out_passed},
           {"held_out_interleaved", effect.held_out_interleaved},
+          {"held_out_refitted", effect.held_out_refitted},
+          {"is_fitted", effect.is_fitted},
+          {"excuse", number(effect.excuse)},
           {"visibility", number(effect.visibility)},
           {"absorbed_by", write_values(effect.absorbed_by)},
           {"status", to_string(effect.status)},
@@ -112,6 +115,17 @@ std::string to_json(const FlightDiagnosis& result) {
   root["pairs"] = diagnosis.pairs;
   root["rmse"] = number(diagnosis.rmse);
   root["noise_floor"] = number(diagnosis.floor);
+  root["correlation_time"] = number(diagnosis.correlation_time);
+  root["wanders"] = Json::object();
+  for (const WanderBound& bound : diagnosis.wanders) {
+    root["wanders"][bound.name] = {{"size", number(bound.size)}, {"unit", bound.unit}};
+  }
+  root["work"] = {{"screened", diagnosis.work.screened},
+                  {"tested", diagnosis.work.tested},
+                  {"calibrated", diagnosis.work.calibrated},
+                  {"refitted", diagnosis.work.refitted},
+                  {"tried_on_some_rows", diagnosis.work.tried_on_some_rows}};
+  root["left_undone"] = diagnosis.left_undone;
   root["where"] = Json::array();
   for (const Misfit& misfit : result.where) root["where"].push_back(write_misfit(misfit));
   root["residual"] = Json::object();

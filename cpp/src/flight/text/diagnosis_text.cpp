@@ -37,6 +37,7 @@ std::string probability(const EffectFinding& effect) {
 std::string_view in_words(const EffectFinding& effect) {
   if (effect.status == FindingStatus::found) return "FOUND";
   if (effect.status == FindingStatus::slow_change) return "slow change";
+  if (effect.status == FindingStatus::undecided) return "undecided";
   return is_refused(effect) ? "not held out" : "not seen";
 }
 
@@ -46,8 +47,10 @@ std::string estimates(const EffectFinding& effect) {
   for (std::size_t k = 0; k < std::min(most, effect.coefficients.size()); ++k) {
     const Coefficient& coefficient = effect.coefficients[k];
     const std::string component = coefficient.name.substr(coefficient.name.rfind('.') + 1);
-    text += fmt::format("{}{} {:.3g} +- {:.1g}", k == 0 ? "" : ", ", component,
-                        coefficient.estimate, coefficient.standard_error);
+    text += effect.is_fitted ? fmt::format("{}{} {:.3g} +- {:.1g}", k == 0 ? "" : ", ", component,
+                                           coefficient.estimate, coefficient.standard_error)
+                             : fmt::format("{}{} about {:.2g}", k == 0 ? "" : ", ", component,
+                                           coefficient.estimate);
     const bool is_last = k + 1 == std::min(most, effect.coefficients.size());
     const bool unit_changes = !is_last && effect.coefficients[k + 1].unit != coefficient.unit;
     if ((is_last || unit_changes) && coefficient.unit != "1") text += " " + coefficient.unit;
@@ -70,27 +73,31 @@ std::string change(double from, double to) {
   return std::isfinite(change) ? fmt::format("{:+.1f} %", change) : "-";
 }
 
-/// As the verdict has it, then as stepwise regression has it.
-std::string effect_row(const EffectFinding& effect, std::size_t width) {
+/// As the verdict has it; then, where all is told, as stepwise regression has it.
+std::string effect_row(const EffectFinding& effect, std::size_t width, Detail detail) {
+  const std::string row =
+      fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}", effect.name, width,
+                  in_words(effect), probability(effect), percent(effect.predicted_drop),
+                  percent(effect.held_out_gain), effect.visibility);
+  if (detail == Detail::brief) return row + '\n';
   const Structure& structure = effect.structure;
   const std::string partial_f =
       std::isfinite(structure.partial_f) ? fmt::format("{:.3g}", structure.partial_f) : "-";
-  return fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f} {:>9} {:>9} {:>9}\n",
-                     effect.name, width, in_words(effect), probability(effect),
-                     percent(effect.predicted_drop), percent(effect.held_out_gain),
-                     effect.visibility, partial_f, change(structure.pse_without, structure.pse),
-                     change(structure.sse, structure.sse - structure.sse_reduction));
+  return row + fmt::format(" {:>9} {:>9} {:>9}\n", partial_f,
+                           change(structure.pse_without, structure.pse),
+                           change(structure.sse, structure.sse - structure.sse_reduction));
 }
 
-std::string effect_rows(const FlightDiagnosis& result) {
+std::string effect_rows(const FlightDiagnosis& result, Detail detail) {
   const std::vector<EffectFinding>& effects = result.diagnosis.effects;
   std::size_t width = 6;
   for (std::size_t i = 0; i < std::min(most_shown, effects.size()); ++i) {
     width = std::max(width, effects[i].name.size());
   }
-  std::string text =
-      fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10} {:>9} {:>9} {:>9}\n", "effect", width,
-                  "status", "p", "predicted", "held out", "visibility", "F", "PSE", "SSE");
+  std::string text = fmt::format("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10}", "effect", width,
+                                 "status", "p", "predicted", "held out", "visibility");
+  if (detail != Detail::brief) text += fmt::format(" {:>9} {:>9} {:>9}", "F", "PSE", "SSE");
+  text += '\n';
   std::size_t shown = 0;
   std::size_t refused = 0;
   std::size_t unseen = 0;
@@ -100,7 +107,7 @@ std::string effect_rows(const FlightDiagnosis& result) {
       break;
     }
     if (is_refused(effect)) ++refused;
-    text += effect_row(effect, width);
+    text += effect_row(effect, width, detail);
     ++shown;
   }
   const auto hidden =
@@ -143,6 +150,26 @@ std::string beside_rows(const Diagnosis& diagnosis) {
                    diagnosis.pairs, ", ");
 }
 
+/// What noise would have to be to look like the effect that stands first.
+std::string excuse_row(const Diagnosis& diagnosis) {
+  const double excuse = diagnosis.effects.front().excuse;
+  if (std::isnan(excuse) || diagnosis.wanders.empty()) return {};
+  std::vector<std::string> bounds;
+  for (const WanderBound& bound : diagnosis.wanders) {
+    bounds.push_back(fmt::format("{} {:.2g} {}", bound.name, bound.size, bound.unit));
+  }
+  const std::string usual = fmt::format("{}", fmt::join(bounds, ", "));
+  if (std::isinf(excuse)) return fmt::format("  no noise that wanders looks like it ({})\n", usual);
+  return excuse > 1.0 ? fmt::format(
+                            "  noise looks like it if it wanders {:.0f} times as far as such "
+                            "sensors let it ({})\n",
+                            excuse, usual)
+                      : fmt::format(
+                            "  noise that wanders as far as such sensors let it looks like "
+                            "it ({})\n",
+                            usual);
+}
+
 /// A flight's file as the shell takes it, or those of flights that were joined, "a.csv + b.csv".
 std::string file_words(std::string files) {
   constexpr std::string_view between = " + ";
@@ -161,6 +188,7 @@ std::string best_effect(const FlightDiagnosis& result) {
   const EffectFinding& best = result.diagnosis.effects.front();
   std::string text =
       fmt::format("\n{}: {}\n  {}\n", best.name, result.sentences.front(), estimates(best));
+  text += excuse_row(result.diagnosis);
   text += beside_rows(result.diagnosis);
   if (result.injection) return text;  // there is nothing to add: it isn't in the log
   text += '\n';
@@ -189,23 +217,41 @@ std::string to_text(const FlightDiagnosis& result, Detail detail) {
   std::string page =
       fmt::format("{}: {} of {} rows of {}\n{}\n", result.model, result.flight.rows_used,
                   result.flight.rows, result.flight.file, verdict_sentence(result));
+  if (!diagnosis.left_undone.empty()) {
+    page += fmt::format("there was no time for: {}\n", fmt::join(diagnosis.left_undone, ", "));
+  }
   for (const UnloggedCause& cause : diagnosis.unlogged) page += describe(cause) + '\n';
   page += '\n';
   if (result.status != FitStatus::converged) {
     page += fmt::format("of a fit whose status is {}\n{}\n", to_string(result.status),
                         text::sentence_lines(result.message, detail));
   }
-  page += effect_rows(result);
+  page += effect_rows(result, detail);
   if (diagnosis.verdict == Verdict::effect_missing) page += best_effect(result);
+  if (diagnosis.verdict == Verdict::slow_change) {
+    page += '\n' + excuse_row(diagnosis) +
+            name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent), ", ");
+  }
+  if (diagnosis.verdict != Verdict::effect_missing) {
+    for (const std::string& reason : diagnosis.advice.withheld) {
+      page += "not to be added: " + reason + '\n';
+    }
+  }
   if (diagnosis.omnibus.significant) page += unexplained_rows(diagnosis.omnibus);
   if (diagnosis.verdict != Verdict::effect_missing && !diagnosis.limits.empty()) {
-    page += "\na slow change over the flight would have shown from:";
+    std::string shown;
+    std::string hidden;
     for (const DetectionLimit& limit : diagnosis.limits) {
       if (std::isfinite(limit.size)) {
-        page += fmt::format("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
+        shown += fmt::format("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
+      } else {
+        hidden += "  " + limit.port;
       }
     }
     page += '\n';
+    if (!shown.empty())
+      page += "a slow change over the flight would have shown from:" + shown + '\n';
+    if (!hidden.empty()) page += "a slow change that this flight can't show:" + hidden + '\n';
   }
   if (diagnosis.verdict != Verdict::effect_missing && !result.missing_channels.empty()) {
     page += "not logged, and could explain more:";

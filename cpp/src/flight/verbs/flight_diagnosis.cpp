@@ -271,6 +271,15 @@ ErrorLeft error_of(const Diagnosis& found, const std::vector<std::string>& outpu
   return left;
 }
 
+bool is_well_above_floor(const Diagnosis& found) {
+  return found.rmse >= well_above_floor * found.floor;
+}
+
+/// Of the mean square error what a noise model foretells from the rows before.
+double correlated_share(const Diagnosis& found) {
+  return 1.0 - std::pow(found.floor / found.rmse, 2);
+}
+
 /// Why what stands first is not advised.
 std::string reason_against(const Diagnosis& found, const std::string& name) {
   for (const std::string& withheld : found.advice.withheld) {
@@ -286,23 +295,43 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
       diagnosis.injection ? fmt::format("with {} injected, ", diagnosis.injection->effect) : "";
   const ErrorLeft all = error_of(found);
   const std::string left = injected + all.in_words();
-  if (found.verdict == Verdict::unexplained && !found.omnibus.significant) {
-    return fmt::format(
-        "Something is missing that no candidate explains: {}; it follows no channel of the log "
-        "(p = {:.1g}).",
-        left, found.unlogged.front().p_adjusted);
-  }
-  if (found.verdict == Verdict::unexplained) {
+  if (found.verdict == Verdict::unexplained && found.omnibus.significant) {
     return fmt::format(
         "Something is missing that no candidate explains: {}; it shows as offsets of {} from "
         "window to window (p = {:.1g}).",
         left, found.omnibus.where, found.omnibus.p_adjusted);
+  }
+  if (found.verdict == Verdict::unexplained && !found.unlogged.empty()) {
+    return fmt::format(
+        "Something is missing that no candidate explains: {}; no channel of the log follows it "
+        "(p = {:.1g}).",
+        left, found.unlogged.front().p_adjusted);
+  }
+  if (found.verdict == Verdict::unexplained) {
+    const EffectFinding& first = found.effects.front();
+    return fmt::format(
+        "{} ({}) would take {:.0f} % of the error on rows held out, and it is not certain: {}. "
+        "Noise of that colour could do the same; fly it again, so that {} does something else.",
+        first.name, diagnosis.sentences.front(), 100.0 * first.held_out_gain, left,
+        first.drivers.empty() ? "the flight" : first.drivers.front());
   }
   if (found.verdict == Verdict::adequate && diagnosis.status == FitStatus::not_identifiable) {
     return fmt::format(
         "This flight does not tell the model's own parameters, and shows nothing that is missing: "
         "{}.",
         left);
+  }
+  if (found.verdict == Verdict::adequate && !found.left_undone.empty()) {
+    return fmt::format("Nothing was found in the time that there was, and not all was tried: {}.",
+                       left);
+  }
+  if (found.verdict == Verdict::adequate && is_well_above_floor(found)) {
+    return fmt::format(
+        "No effect and no channel of the log explains what is left: {}. {:.0f} % of the error goes "
+        "together over some {:.2g} {}: noise of that colour looks so, and so does a cause that "
+        "nobody logged.",
+        left, 100.0 * correlated_share(found), found.correlation_time,
+        found.has_time ? "s" : "rows");
   }
   if (found.verdict == Verdict::adequate) {
     return fmt::format("Nothing is missing that this flight can show: {}.", left);
@@ -311,9 +340,14 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
     const EffectFinding& slow = found.effects.front();
     const bool by_time = slow.drivers.empty() || slow.drivers.front() == "time";
     return fmt::format(
-        "A slow change fits {} ({}): {}. Noise that wanders does this too, and one flight can't "
+        "A slow change fits {} ({}){}: {}. Noise that wanders does this too, and one flight can't "
         "tell: repeat it with {}.",
-        slow.name, diagnosis.sentences.front(), left,
+        slow.name, diagnosis.sentences.front(),
+        slow.held_out_gain > 0.0
+            ? fmt::format(", which would take {:.0f} % of the error on rows held out",
+                          100.0 * slow.held_out_gain)
+            : "",
+        left,
         by_time ? "the maneuvers in another order" : slow.drivers.front() + " going the other way");
   }
   const EffectFinding& best = found.effects.front();

@@ -62,7 +62,7 @@ const EffectFinding* verbs::next_effect(Stepwise& course, std::size_t most) {
   if (found.verdict == Verdict::effect_missing && !advised.empty() && course.steps.size() < most) {
     return &*std::ranges::find(found.effects, advised, &EffectFinding::name);
   }
-  if (found.verdict == Verdict::effect_missing && advised.empty()) {
+  if (advised.empty() && !found.advice.withheld.empty()) {
     finish(
         course, StepwiseEnd::withheld,
         fmt::format("what passes is not to be added: {}", fmt::join(found.advice.withheld, "; ")));

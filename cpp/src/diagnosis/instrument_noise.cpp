@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/instrument_noise.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "diagnosis/projection.hpp"
+#include "numerics/tails.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using ByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr Index most_rows = 800;
+constexpr std::array correlation_times{10.0, 60.0, 300.0, 1500.0};  // [s]
+constexpr double least_white = 1e-3;                                // of the RMSE
+constexpr double of_white = 2.0;  // how far an output wanders of which nothing is known
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of noise that neighbouring rows do not share, by second differences, which hardly see what is
+/// slow; no single one counts for more than four robust standard deviations.
+double white_variance(const std::vector<Segment>& runs, const Eigen::Ref<const VectorXd>& e) {
+  constexpr double robust = 1.4826;
+  constexpr double of_differences = 6.0;  // 1 + 4 + 1
+  std::vector<double> sizes;
+  for (const Segment& run : runs) {
+    for (std::size_t row = run.first + 1; row + 1 < run.last; ++row) {
+      const auto at = static_cast<Index>(row);
+      sizes.push_back(std::abs(e[at - 1] - 2.0 * e[at] + e[at + 1]));
+    }
+  }
+  const double least = least_white * least_white * e.squaredNorm() / static_cast<double>(e.size());
+  if (sizes.empty()) return least;
+  const double largest = 4.0 * robust * median_of(sizes);
+  double sum = 0.0;
+  for (const double size : sizes) {
+    const double counted = largest > 0.0 ? std::min(size, largest) : size;
+    sum += counted * counted;
+  }
+  return std::max(least, sum / (of_differences * static_cast<double>(sizes.size())));
+}
+
+/// Half the mean square by which rows so far apart differ.
+double half_square_apart(const std::vector<Segment>& runs, const VectorXd& e, Index lag) {
+  double sum = 0.0;
+  double pairs = 0.0;
+  for (const Segment& run : runs) {
+    const Index count = static_cast<Index>(run.rows()) - lag;
+    if (count <= 0) continue;
+    const auto first = static_cast<Index>(run.first);
+    sum += (e.segment(first + lag, count) - e.segment(first, count)).squaredNorm();
+    pairs += static_cast<double>(count);
+  }
+  return pairs > 0.0 ? 0.5 * sum / pairs : not_a_number;
+}
+
+/// The mean time of each of the reduced rows.
+std::vector<double> reduce_times(const RowLayout& full, const ReducedRows& rows,
+                                 const std::vector<double>& times) {
+  std::vector<double> reduced;
+  for (const Segment& run : full.runs) {
+    for (std::size_t row = run.first; row < run.last;
+         row += static_cast<std::size_t>(rows.stride)) {
+      const std::size_t last = std::min(row + static_cast<std::size_t>(rows.stride), run.last);
+      double sum = 0.0;
+      for (std::size_t i = row; i < last; ++i) sum += times[i];
+      reduced.push_back(sum / static_cast<double>(last - row));
+    }
+  }
+  return reduced;
+}
+
+}  // namespace
+
+/// Half the squares apart are white + variance (1 - exp(-lag / rows)): least squares in the two for
+/// each of some times.
+ShortNoise short_noise(const std::vector<Segment>& runs, const VectorXd& e) {
+  constexpr std::array<Index, 9> lags{1, 2, 3, 5, 8, 13, 21, 34, 55};
+  constexpr std::array times{1.5, 3.0, 6.0, 12.0, 24.0};  // rows
+  constexpr double of_record = 1.0 / 40.0;                // the longest of both
+  const double longest = of_record * static_cast<double>(e.size());
+  std::vector<double> squares;
+  for (const Index lag : lags) {
+    if (static_cast<double>(lag) > std::max(3.0, longest)) break;
+    const double square = half_square_apart(runs, e, lag);
+    if (std::isfinite(square)) squares.push_back(square);
+  }
+  ShortNoise best{.white = white_variance(runs, e)};
+  if (squares.size() < 3) return best;
+  const auto count = static_cast<Index>(squares.size());
+  const Eigen::Map<const VectorXd> measured(squares.data(), count);
+  const auto off = [&](const VectorXd& fitted) {  // as shares of what is measured
+    return ((fitted - measured).array() / measured.array()).square().sum();
+  };
+  constexpr double worth_it = 0.5;  // of what white noise alone leaves
+  double least = worth_it * off(VectorXd::Constant(count, best.white));
+  for (const double time : times) {
+    if (time > longest) break;
+    MatrixXd columns(count, 2);
+    for (Index k = 0; k < count; ++k) {
+      const auto lag = static_cast<double>(lags[static_cast<std::size_t>(k)]);
+      columns.row(k) << 1.0, 1.0 - std::exp(-lag / time);
+    }
+    const MatrixXd weighted = columns.array().colwise() / measured.array();
+    Eigen::Vector2d fitted = weighted.colPivHouseholderQr().solve(VectorXd::Ones(count));
+    if (fitted[0] < 0.0) {  // all of it goes together
+      fitted[0] = 0.0;
+      fitted[1] = weighted.col(1).sum() / weighted.col(1).squaredNorm();
+    }
+    if (!(fitted[1] > 0.0) || !(off(columns * fitted) < least)) continue;
+    least = off(columns * fitted);
+    best = {fitted[0], fitted[1], time};
+  }
+  const double floor = least_white * least_white * e.squaredNorm() / static_cast<double>(e.size());
+  best.white = std::max(best.white, floor);
+  return best;
+}
+
+/// A component of an error that wanders: what a unit of it does to each output of each row.
+struct InstrumentNoise::Source {
+  std::size_t bound = 0;
+  VectorXd slopes = {};  // output after output
+};
+
+/// Noise from row to row beside wandering of known sizes, as a Kalman filter: its gains do not
+/// depend on what is filtered. Rows stand by time, the outputs of each side by side.
+struct InstrumentNoise::Noise {
+  MatrixXd decay = {};     // of each state from the row before (states x n)
+  ByRow slopes = {};       // of the states (m n x states)
+  ByRow gains = {};        // (m n x states)
+  VectorXd roots = {};     // one over the innovations' standard deviation (m n)
+  MatrixXd basis = {};     // orthonormal, of the whitened tangent
+  VectorXd residual = {};  // whitened and orthogonal to it
+  double left = infinity;  // the variance beside all candidates
+
+  MatrixXd whiten(const MatrixXd& columns) const;
+
+  /// Whitened, and orthogonal to the tangent.
+  MatrixXd whiten_beyond(const MatrixXd& columns) const {
+    return remove_span(basis, whiten(columns));
+  }
+
+  /// The sum of squares of the residual, the last of the columns, whitened and beyond the others.
+  double sum_left(const MatrixXd& columns) const {
+    const MatrixXd white = whiten(columns);
+    const MatrixXd others = orthonormal_basis(white.leftCols(white.cols() - 1));
+    return remove_span(others, white.rightCols<1>()).squaredNorm();
+  }
+
+  double freedom_beside(Index columns) const {
+    return static_cast<double>(residual.size() - basis.cols() - columns);
+  }
+
+  /// The variance that is left beside columns, whitened, orthonormal and orthogonal to the tangent.
+  double left_beside(const MatrixXd& columns) const {
+    const double sum = residual.squaredNorm() - (columns.transpose() * residual).squaredNorm();
+    return sum / std::max(1.0, freedom_beside(columns.cols()));
+  }
+
+  /// log10 of the tail of what such columns explain, where noise has that variance but no less than
+  /// 1.
+  double log10_tail(const MatrixXd& columns, double variance) const {
+    const auto q = static_cast<double>(columns.cols());
+    const double freedom = freedom_beside(columns.cols());
+    if (q == 0.0 || !(freedom > 0.0)) return 0.0;
+    const double explained = (columns.transpose() * residual).squaredNorm();
+    return numerics::log10_f_tail(explained / q / std::max(1.0, variance), q, freedom);
+  }
+};
+
+MatrixXd InstrumentNoise::Noise::whiten(const MatrixXd& columns) const {
+  const Index n = decay.cols();
+  const Index outputs = roots.size() / n;
+  const Index states = decay.rows();
+  ByRow state = ByRow::Zero(states, columns.cols());
+  ByRow white(roots.size(), columns.cols());
+  Eigen::RowVectorXd innovation(columns.cols());
+  for (Index t = 0; t < n; ++t) {
+    for (Index k = 0; k < states; ++k) state.row(k) *= decay(k, t);
+    for (Index j = 0; j < outputs; ++j) {
+      const Index at = t * outputs + j;
+      innovation = columns.row(j * n + t);
+      for (Index k = 0; k < states; ++k) {
+        if (slopes(at, k) != 0.0) innovation -= slopes(at, k) * state.row(k);
+      }
+      for (Index k = 0; k < states; ++k) {
+        if (gains(at, k) != 0.0) state.row(k) += gains(at, k) * innovation;
+      }
+      white.row(at) = roots[at] * innovation;
+    }
+  }
+  return white;
+}
+
+InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
+                                 const NullHypothesis& null,
+                                 const std::map<std::string, double>& sizes)
+    : null_(null), rows_(null.fit().layout, most_rows, true), bounds_(kit.wanders) {
+  const RowLayout& layout = null.fit().layout;
+  times_ = reduce_times(layout, rows_, room.times());
+  known_ = MatrixXd(rows_.layout.count(), null.basis.rank() + 1);
+  known_ << reduce(null.basis.columns()), reduce(view(null.residual));
+  if (bounds_.empty()) {
+    for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+      const UsedOutput& output = layout.outputs[j];
+      const double white =
+          white_variance(layout.runs, null.residual.segment(layout.first(j), layout.rows));
+      bounds_.push_back({.name = output.name,
+                         .unit = output.unit,
+                         .size = of_white * std::sqrt(white) * output.scale,
+                         .outputs = {output.name}});
+    }
+  }
+  for (const auto& [name, size] : sizes) {
+    const auto known = std::ranges::find(bounds_, name, &WanderBound::name);
+    if (known == bounds_.end()) {
+      std::vector<std::string> names;
+      for (const WanderBound& bound : bounds_) names.push_back(bound.name);
+      throw Error(
+          fmt::format("nothing called '{}' wanders; there is: {}", name, fmt::join(names, ", ")));
+    }
+    known->size = size;
+  }
+  add_sources(room, kit);
+  find_short_noise(known_.rightCols<1>());
+}
+
+void InstrumentNoise::find_short_noise(const VectorXd& residual) {
+  short_.clear();
+  for (std::size_t j = 0; j < rows_.layout.outputs.size(); ++j) {
+    short_.push_back(
+        short_noise(rows_.layout.runs, residual.segment(rows_.layout.first(j), rows_.layout.rows)));
+  }
+  noises_ = make_noises({1.0, 0.5});
+}
+
+InstrumentNoise::~InstrumentNoise() = default;
+
+MatrixXd InstrumentNoise::reduce(const Columns& columns) const {
+  return rows_.apply(null_.fit().layout, columns);
+}
+
+void InstrumentNoise::add_sources(CandidateRoom& room, const EffectKit& kit) {
+  const LinearisedFit& fit = null_.fit();
+  const auto add = [&](std::size_t bound, const MatrixXd& columns) {
+    for (const auto column : columns.colwise()) sources_.push_back({bound, column});
+  };
+  for (std::size_t b = 0; b < bounds_.size(); ++b) {
+    const WanderBound& bound = bounds_[b];
+    for (std::size_t j = 0; j < fit.layout.outputs.size(); ++j) {
+      const UsedOutput& output = fit.layout.outputs[j];
+      if (std::ranges::find(bound.outputs, output.name) == bound.outputs.end()) continue;
+      VectorXd column = VectorXd::Zero(rows_.layout.count());
+      column.segment(rows_.layout.first(j), rows_.layout.rows).setConstant(1.0 / output.scale);
+      add(b, column);
+    }
+    for (const int place : bound.corrections) {
+      if (place < fit.wandering.cols()) add(b, reduce(view(fit.wandering.col(place))));
+    }
+    const auto port = std::ranges::find(kit.ports, bound.port, &Port::name);
+    if (port == kit.ports.end()) continue;
+    room.open(*port);
+    const MatrixXd* columns = room.columns_of(bound.port);
+    if (columns != nullptr) add(b, reduce(view(*columns)));
+  }
+}
+
+/// The noise from row to row alone, and beside it the errors, all or without those that have a
+/// correlation time of their own or these alone, at shares of their bounds.
+std::vector<InstrumentNoise::Noise> InstrumentNoise::make_noises(
+    const std::vector<double>& shares) const {
+  const auto sized = [&](double of_slow, double of_timed) {
+    std::vector<double> sizes;
+    for (const Source& source : sources_) {
+      const WanderBound& bound = bounds_[source.bound];
+      sizes.push_back(bound.size * (bound.time_s > 0.0 ? of_timed : of_slow));
+    }
+    return sizes;
+  };
+  const bool has_timed =
+      std::ranges::any_of(bounds_, [](const WanderBound& bound) { return bound.time_s > 0.0; });
+  std::vector<Noise> noises;
+  noises.push_back(filter(sized(0.0, 0.0), 0.0));
+  for (const double share : shares) {
+    if (has_timed) noises.push_back(filter(sized(0.0, share), 0.0));
+    for (const double time : correlation_times) noises.push_back(filter(sized(share, share), time));
+  }
+  if (!has_timed) return noises;
+  for (const double time : correlation_times) noises.push_back(filter(sized(1.0, 0.0), time));
+  return noises;
+}
+
+InstrumentNoise::Noise InstrumentNoise::filter(const std::vector<double>& sizes,
+                                               double time_s) const {
+  const Index n = rows_.layout.rows;
+  const auto outputs = static_cast<Index>(short_.size());
+  struct State {
+    double variance;
+    double time;             // [s], or
+    double rows;             // where that is not 0
+    const VectorXd* slopes;  // of a source, or those of an output
+    Index output;
+  };
+  std::vector<State> states;
+  for (std::size_t s = 0; s < sizes.size(); ++s) {
+    if (!(sizes[s] > 0.0)) continue;
+    const double own = bounds_[sources_[s].bound].time_s;
+    states.push_back({sizes[s] * sizes[s], own > 0.0 ? own : time_s, 0.0, &sources_[s].slopes, 0});
+  }
+  for (Index j = 0; j < outputs; ++j) {
+    const ShortNoise& own = short_[static_cast<std::size_t>(j)];
+    if (own.variance > 0.0) states.push_back({own.variance, 0.0, own.rows, nullptr, j});
+  }
+  const auto count = static_cast<Index>(states.size());
+  Noise noise{.decay = MatrixXd::Zero(count, n),
+              .slopes = ByRow::Zero(n * outputs, count),
+              .gains = ByRow(n * outputs, count),
+              .roots = VectorXd(n * outputs)};
+  VectorXd variances(count);
+  for (Index k = 0; k < count; ++k) {
+    const State& state = states[static_cast<std::size_t>(k)];
+    variances[k] = state.variance;
+    for (Index j = 0; j < outputs; ++j) {
+      for (Index t = 0; t < n; ++t) {
+        if (state.slopes != nullptr) {
+          noise.slopes(t * outputs + j, k) = (*state.slopes)[j * n + t];
+        } else if (j == state.output) {
+          noise.slopes(t * outputs + j, k) = 1.0;
+        }
+      }
+    }
+  }
+  MatrixXd P = variances.asDiagonal();
+  VectorXd decay(count);
+  for (Index t = 0; t < n; ++t) {
+    if (t > 0) {
+      const auto row = static_cast<std::size_t>(t);
+      const double elapsed = std::max(0.0, times_[row] - times_[row - 1]);
+      for (Index k = 0; k < count; ++k) {
+        const State& state = states[static_cast<std::size_t>(k)];
+        decay[k] = std::exp(state.rows > 0.0 ? -1.0 / state.rows : -elapsed / state.time);
+      }
+      noise.decay.col(t) = decay;
+      P = decay.asDiagonal() * P * decay.asDiagonal();
+      P.diagonal().array() += variances.array() * (1.0 - decay.array().square());
+    }
+    for (Index j = 0; j < outputs; ++j) {
+      const Index at = t * outputs + j;
+      const VectorXd carried = P * noise.slopes.row(at).transpose();
+      const double innovation =
+          short_[static_cast<std::size_t>(j)].white + noise.slopes.row(at).dot(carried);
+      noise.roots[at] = 1.0 / std::sqrt(innovation);
+      noise.gains.row(at) = carried.transpose() / innovation;
+      P -= carried * carried.transpose() / innovation;
+    }
+  }
+  const MatrixXd white = noise.whiten(known_);
+  noise.basis = orthonormal_basis(white.leftCols(white.cols() - 1));
+  noise.residual = remove_span(noise.basis, white.rightCols<1>());
+  return noise;
+}
+
+void InstrumentNoise::set_beside(const Columns& columns) {
+  const MatrixXd reduced = reduce(columns);
+  MatrixXd all(known_.rows(), known_.cols() - 1 + reduced.cols());
+  all << known_.leftCols(known_.cols() - 1), reduced;
+  find_short_noise(remove_span(orthonormal_basis(std::move(all)), known_.rightCols<1>()));
+  for (Noise& noise : noises_) {
+    const MatrixXd beside = orthonormal_basis(noise.whiten_beyond(reduced));
+    noise.left = noise.left_beside(beside);
+  }
+}
+
+std::vector<InstrumentTail> InstrumentNoise::tails(const std::vector<Columns>& candidates) const {
+  std::vector<InstrumentTail> found(candidates.size());
+  Columns all;
+  for (const Columns& candidate : candidates) all = join(all, candidate);
+  const MatrixXd reduced = reduce(all);
+  const auto averaged = static_cast<double>(rows_.stride);
+  const auto for_each = [&](const auto& visit) {
+    Index first = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Index q = candidates[i].cols();
+      if (q > 0) visit(found[i], first, q);
+      first += q;
+    }
+  };
+  for_each([&](InstrumentTail& tail, Index first, Index q) {
+    const double seen = averaged * reduced.middleCols(first, q).squaredNorm();
+    tail = {-infinity, infinity, seen / static_cast<double>(q)};
+  });
+  for (const Noise& noise : noises_) {
+    const MatrixXd white = noise.whiten_beyond(reduced);
+    for_each([&](InstrumentTail& tail, Index first, Index q) {
+      const MatrixXd basis = orthonormal_basis(white.middleCols(first, q));
+      const double left = std::min(noise.left, noise.left_beside(basis));
+      tail.log10_p = std::max(tail.log10_p, noise.log10_tail(basis, left));
+      tail.left = std::min(tail.left, left);
+    });
+  }
+  return found;
+}
+
+bool InstrumentNoise::knows_the_noise() const {
+  return std::ranges::any_of(noises_, [](const Noise& noise) { return noise.left < most_left; });
+}
+
+MatrixXd InstrumentNoise::reduce(const LinearisedFit& fit) const {
+  const RowLayout& layout = fit.layout;
+  const RowLayout& known = null_.fit().layout;
+  if (layout.outputs.size() != known.outputs.size()) return {};
+  MatrixXd columns(rows_.layout.count(), fit.tangent.cols() + 1);
+  columns << rows_.apply(layout, view(fit.tangent)), rows_.apply(layout, view(fit.residual));
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    columns.middleRows(rows_.layout.first(j), rows_.layout.rows) *=
+        layout.outputs[j].scale / known.outputs[j].scale;
+  }
+  return columns;
+}
+
+double InstrumentNoise::minus_two_log_likelihood(const LinearisedFit& fit) const {
+  const MatrixXd columns = reduce(fit);
+  if (columns.size() == 0) return -infinity;
+  double least = infinity;
+  for (const Noise& noise : noises_) {
+    const double sum = noise.sum_left(columns) / std::max(1.0, noise.left);
+    least = std::min(least, sum - 2.0 * noise.roots.array().log().sum());
+  }
+  return least;
+}
+
+InstrumentTail InstrumentNoise::tail_of_fit(const LinearisedFit& with, Index coefficients) const {
+  const MatrixXd columns = reduce(with);
+  if (columns.size() == 0) return {};
+  InstrumentTail found{-infinity, infinity, 1.0};
+  const auto q = static_cast<double>(coefficients);
+  for (const Noise& noise : noises_) {
+    const double freedom = noise.freedom_beside(coefficients);
+    if (!(freedom > 0.0)) return {};
+    const double sum = noise.sum_left(columns);
+    const double left = std::min(noise.left, sum / freedom);
+    const double explained = std::max(0.0, noise.residual.squaredNorm() - sum);
+    const double F = explained / q / std::max(1.0, left);
+    found.log10_p = std::max(found.log10_p, numerics::log10_f_tail(F, q, freedom));
+    found.left = std::min(found.left, left);
+  }
+  return found;
+}
+
+double InstrumentNoise::excuse(const Columns& candidate, double log10_wanted, double least) const {
+  constexpr double most = 64.0;
+  const MatrixXd reduced = reduce(candidate);
+  for (double times = least; times <= most; times *= 2.0) {
+    for (const Noise& noise : make_noises({times})) {
+      const MatrixXd basis = orthonormal_basis(noise.whiten_beyond(reduced));
+      if (noise.log10_tail(basis, noise.left_beside(basis)) > log10_wanted) return times;
+    }
+  }
+  return infinity;
+}
+
+VectorXd InstrumentNoise::sigmas(const Columns& columns) const {
+  const MatrixXd reduced = reduce(columns);
+  VectorXd least = VectorXd::Constant(reduced.cols(), infinity);
+  for (const Noise& noise : noises_) {
+    const MatrixXd white = noise.whiten_beyond(reduced);
+    const VectorXd sizes = white.colwise().norm().transpose();
+    least = least.cwiseMin(sizes / std::sqrt(std::max(1.0, noise.left)));
+  }
+  return least;
+}
+
+}  // namespace sepcal::diagnosis
