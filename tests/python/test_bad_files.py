@@ -234,14 +234,22 @@ def test_drop_invalid_drops_and_counts(bench: Bench):
 
 
 def test_text_in_a_column_that_nothing_needs(bench: Bench):
-    """It only removes the column as a driver, with a note."""
+    """An effect takes the value between its neighbours; where it is in many rows there is none."""
     log = bench.read_log()
     log.put(9, "current_a", "n/a")
     (bench.folder / "spare.csv").write_text(log.text())
     fitted = bench.fit(flight="spare.csv")
     assert fitted.code == 0
     assert fitted.err == (
+        f"note: spare.csv: column 'current_a' has no reading in 1 of {len(log.rows)} rows, "
+        "first at line 9 (1 without a number): an effect takes the value between its neighbours "
+        "there\n"
+    )
+    assert fitted.result["parameters"] == bench.base["parameters"]
+    for line in range(10, 70):
+        log.put(line, "current_a", "n/a")
+    (bench.folder / "spare.csv").write_text(log.text())
+    assert bench.fit(flight="spare.csv").err == (
         "note: spare.csv: column 'current_a' can't drive an effect: "
         "at spare.csv line 9 it holds 'n/a'\n"
     )
-    assert fitted.result["parameters"] == bench.base["parameters"]

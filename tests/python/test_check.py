@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The verb check: what it says of a log, clean, spoilt or refused by a fit; what fit repeats."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -249,3 +251,19 @@ def test_the_air_data_of_a_small_aircraft_is_slower_than_its_log(tmp_path) -> No
     result = run("sepcal-pitot", "check", file, "--json", folder=tmp_path).result
     held = {tuple(n["columns"]): n["found"] for n in result["notes"] if n["kind"] == "held"}
     assert "one row in 5 (10 Hz in a log of 50 Hz)" in held[("airspeed_mps",)]
+
+
+def test_a_hover_covers_little_of_the_sphere(tmp_path: Path) -> None:
+    """The middle of what readings within a few degrees lie on is off their patch."""
+    draw = np.random.default_rng(1)
+    tilt = draw.normal(0, 0.04, (2000, 2))
+    field = np.column_stack([20 - 45 * tilt[:, 0], 45 * tilt[:, 1], 45 + 20 * tilt[:, 0]])
+    readings = field + np.array([10, -20, 5]) + draw.normal(0, 0.3, (2000, 3))
+    table = np.column_stack([0.02 * np.arange(2000), readings])
+    header = "time_s,mx_ut,my_ut,mz_ut"
+    np.savetxt(tmp_path / "f.csv", table, "%.6f", ",", header=header, comments="")
+    options = ("--field-strength", "49.24", "--json")
+    checked = run("sepcal-mag", "check", "f.csv", *options, folder=tmp_path).result
+    (note,) = [note for note in checked["notes"] if note["kind"] == "sphere"]
+    covered = float(note["found"].split(" % of all")[0].split()[-1])
+    assert covered < 10

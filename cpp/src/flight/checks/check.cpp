@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "flight/checks/clipping.hpp"
 #include "flight/checks/clock.hpp"
 #include "flight/checks/cross_checks.hpp"
 #include "flight/checks/excitation.hpp"
 #include "flight/checks/samples.hpp"
-#include "flight/checks/spikes.hpp"
-#include "flight/probes/quantities.hpp"
+#include "flight/checks/suspect_notes.hpp"
+#include "flight/checks/taken_rows.hpp"
+#include "flight/files/headers.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/read_as.hpp"
 #include "sepcal/option_error.hpp"
@@ -48,29 +49,13 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
   return described;
 }
 
-/// The flight without what `where` and the times leave out: such rows keep their time alone.
-struct TakenRows {
-  Flight flight;
-  std::size_t left_out = 0;
-};
-
-TakenRows take_rows(const Probe& probe, const Flight& flight, const LogChoice& choice) {
-  const logs::RowTruth is_taken = probes::rows_taken(probe.name(), flight, choice);
-  TakenRows taken{flight};
-  if (!is_taken) return taken;
-  std::vector<std::size_t> left_out;
-  for (std::size_t row = 0; row < flight.rows(); ++row) {
-    if (!is_taken(row)) left_out.push_back(row);
+/// All rows where the choice can't be followed, of which `refused` tells.
+TakenRows take_what_can_be(const Probe& probe, const Flight& flight, const LogChoice& choice) {
+  try {
+    return take_rows(probe.name(), flight, choice);
+  } catch (const Error&) {
+    return {flight};
   }
-  taken.left_out = left_out.size();
-  const auto time = files::find_quantity(flight, "time", files::UnitKind::time);
-  for (const Flight::Column& column : flight.columns()) {
-    if (time && time->column->header == column.header) continue;
-    std::vector<double> values(column.values.begin(), column.values.end());
-    for (const std::size_t row : left_out) values[row] = std::numeric_limits<double>::quiet_NaN();
-    taken.flight.replace(column.header, std::move(values));
-  }
-  return taken;
 }
 
 /// What a fit would make of the flight.
@@ -100,8 +85,7 @@ FlightCheck check(const Probe& probe, const Flight& logged, const LogChoice& cho
                     .sha256 = flight.sha256(),
                     .rows = flight.rows()};
   describe_use(probe, flight, choice, spell, check);
-  const TakenRows taken =
-      check.refused.empty() ? take_rows(probe, flight, choice) : TakenRows{flight};
+  const TakenRows taken = take_what_can_be(probe, flight, choice);
   const Log log(probe.name(), taken.flight);
   check.rate = 1 / log.interval();
   if (std::isfinite(check.rate)) {
@@ -114,14 +98,17 @@ FlightCheck check(const Probe& probe, const Flight& logged, const LogChoice& cho
   for (const Flight::Column& column : taken.flight.columns()) {
     check.columns.push_back(describe_column(column, log));
     std::size_t& missing = check.columns.back().missing;
-    missing -= std::min(missing, check.columns.back().quantity == "time" ? 0 : taken.left_out);
+    missing -=
+        std::min(missing, check.columns.back().quantity == "time" ? 0 : taken.left_out.size());
   }
   const Settings settings = probe.settings();
   check_across(log, settings, check.notes);
   check_excitation(log, settings, check.notes);
   check_samples(log, check.notes);
   check_clock(log, check.notes);
-  check_spikes(log, check.notes);
+  check_clipping(log, check.notes);
+  check_constants(log, check.notes);
+  check_suspects(log, find_suspects(log), choice, check.notes);
   for (const std::string& note : read.notes) {
     check.notes.push_back({.kind = "read",
                            .concern = Concern::slight,

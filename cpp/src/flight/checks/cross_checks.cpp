@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "flight/checks/axes.hpp"
+#include "flight/checks/excitation.hpp"
+#include "flight/checks/suspect_rows.hpp"
 #include "flight/probes/plausible_readings.hpp"
 
 namespace sepcal::checks {
@@ -40,6 +44,35 @@ std::string renamed(const std::string& header, const Unit& unit) {
   return header.substr(0, header.rfind('_') + 1) + std::string(unit.suffix);
 }
 
+/// The airspeed in units of the speed through the air that the tracks over the ground tell,
+/// whatever the wind: |v - W|^2 = a z^2 + b is linear in W, a and b - |W|^2. NaN where they don't
+/// turn about W.
+double find_ratio_in_wind(const std::vector<double>& north, const std::vector<double>& east,
+                          const std::vector<double>& airspeed) {
+  Eigen::MatrixX4d columns(static_cast<Eigen::Index>(north.size()), 4);
+  Eigen::VectorXd squares(columns.rows());
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < north.size(); ++i) {
+    if (!std::isfinite(north[i] + east[i] + airspeed[i])) continue;
+    columns.row(rows) << 2 * north[i], 2 * east[i], 1, airspeed[i] * airspeed[i];
+    squares[rows++] = north[i] * north[i] + east[i] * east[i];
+  }
+  if (rows < 20) return not_a_number;
+  const Eigen::VectorXd x =
+      columns.topRows(rows).completeOrthogonalDecomposition().solve(squares.head(rows));
+  const double square =
+      (columns.topRows(rows).rightCols<2>() * x.tail<2>()).mean() + x.head<2>().squaredNorm();
+  std::vector<double> headings;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    headings.push_back(std::atan2(columns(i, 1) / 2 - x[1], columns(i, 0) / 2 - x[0]));
+  }
+  constexpr double enough = 200 * std::numbers::pi / 180;
+  if (!(square > 0) || covered_arc(std::move(headings)) < enough) return not_a_number;
+  return std::sqrt(columns.topRows(rows).col(3).mean() / square);
+}
+
+bool is_likely(double ratio) { return ratio >= least_ratio && ratio <= largest_ratio; }
+
 void note_speeds(const Log& log, std::vector<LogNote>& notes) {
   const std::vector<double> ground = find_ground_speed(log);
   const auto airspeed = find_airspeed(log);
@@ -50,7 +83,10 @@ void note_speeds(const Log& log, std::vector<LogNote>& notes) {
     if (std::isfinite(ratio)) ratios.push_back(ratio);
   }
   const double ratio = median(std::move(ratios));
-  if (std::isnan(ratio) || (ratio >= least_ratio && ratio <= largest_ratio)) return;
+  if (std::isnan(ratio) || is_likely(ratio) || is_constant(airspeed->values)) return;
+  const double in_wind =
+      find_ratio_in_wind(log.find("vn")->values, log.find("ve")->values, airspeed->values);
+  if (is_likely(in_wind)) return;
   const LoggedColumn* read = log.find("airspeed");
   const LoggedColumn* north = log.find("vn");
   const Unit* reads = read == nullptr ? nullptr : guess_unit(*read->logged.unit, ratio);

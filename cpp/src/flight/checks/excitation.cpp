@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/short_number.hpp"
+#include "flight/checks/column_name.hpp"
+#include "flight/checks/suspect_rows.hpp"
 #include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
@@ -19,6 +22,11 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr double degrees = 180 / pi;
+
+// A vehicle that is faster than one of these shares of what it does in flight moves: on the ground
+// a tube reads the wind.
+constexpr double ground_share = 0.04;
+constexpr double air_share = 0.5;
 
 /// Tracks over the ground in the rows that move.
 void note_headings(const Log& log, const std::vector<double>& speed, std::vector<LogNote>& notes) {
@@ -39,6 +47,7 @@ void note_headings(const Log& log, const std::vector<double>& speed, std::vector
 }
 
 void note_airspeeds(const Log& log, const Airspeed& airspeed, std::vector<LogNote>& notes) {
+  if (is_constant(airspeed.values)) return;  // which is told as what it is
   std::vector<double> speeds;
   for (const std::size_t row : find_moving_rows(airspeed.values, 0.3)) {
     speeds.push_back(airspeed.values[row]);
@@ -57,13 +66,42 @@ void note_airspeeds(const Log& log, const Airspeed& airspeed, std::vector<LogNot
   notes.push_back(std::move(note));
 }
 
-/// Slow over the ground and in the air: each against what it usually is, so that units don't
+/// The speed of flight, where most of the log may stand: the middle one of those that are faster
+/// than half of the fastest.
+double flight_speed(const std::vector<double>& speed) {
+  std::vector<double> values;
+  std::ranges::copy_if(speed, std::back_inserter(values),
+                       [](double value) { return std::isfinite(value); });
+  if (values.empty()) return not_a_number;
+  const double slow = 0.5 * numerics::select_quantile(values, 0.99);
+  std::erase_if(values, [slow](double value) { return value < slow; });
+  return median(std::move(values));
+}
+
+/// Slower than this over the ground and in the air, each in m/s, it stands.
+struct RestSpeeds {
+  double ground;
+  double air;
+
+  std::string in_words(const Log& log) const {
+    const LoggedColumn& north = *log.find("vn");
+    const double v = ground / north.logged.unit->convert(1.0);
+    std::string moves = fmt::format("{0} * {0} + {1} * {1} > {2:.3g}", quote(north.header()),
+                                    quote(log.find("ve")->header()), v * v);
+    if (const LoggedColumn* read = log.find("airspeed")) {
+      moves += fmt::format(" or {} > {:.3g}", quote(read->header()),
+                           air / read->logged.unit->convert(1.0));
+    }
+    return fmt::format("--where \"{}\"", moves);
+  }
+};
+
+/// Slow over the ground and in the air: each against what it does in flight, so that units don't
 /// matter.
 void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed& airspeed,
                std::vector<LogNote>& notes) {
-  std::vector<bool> moves(speed.size(), false);
-  for (const std::size_t row : find_moving_rows(speed, 0.15)) moves[row] = true;
-  for (const std::size_t row : find_moving_rows(airspeed.values, 0.3)) moves[row] = true;
+  const RestSpeeds slow{ground_share * flight_speed(speed),
+                        air_share * flight_speed(airspeed.values)};
   std::vector<std::size_t> rest;
   std::size_t first = speed.size();
   std::size_t last = 0;
@@ -71,7 +109,7 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
   for (std::size_t row = 0; row < speed.size(); ++row) {
     if (!std::isfinite(speed[row]) || !std::isfinite(airspeed.values[row])) continue;
     ++read;
-    if (!moves[row]) {
+    if (speed[row] <= slow.ground && airspeed.values[row] <= slow.air) {
       rest.push_back(row);
     } else {
       first = std::min(first, row);
@@ -86,18 +124,40 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
   note.found = fmt::format("{} of {} rows stand on the ground: no speed in {}", rest.size(), read,
                            list_headers(note.columns));
   note.effect =
-      "the tube reads what its zero is there, not the air of the flight: the bias and the "
+      "the tube reads its zero or the wind there, not the air of the flight: the bias and the "
       "wind are pulled";
   note.advice = "leave them out";
-  if (!log.time().empty()) {
+  const bool between =
+      std::ranges::any_of(rest, [&](std::size_t row) { return row > first && row < last; });
+  if (between) {
+    note.advice += ": " + slow.in_words(log);
+  } else if (!log.time().empty()) {
     note.advice += fmt::format(": --stage-one {0}:{1} --stage-two {0}:{1}",
                                base::stamp(log.time()[first]), base::stamp(log.time()[last]));
   }
   notes.push_back(std::move(note));
 }
 
+/// Whether readings of a field that is that strong (NaN: as the Earth's at least) are a patch of
+/// what they lie on: nearer to their mean than half of it.
+bool is_patch(const Matrix3Xd& read, double least) {
+  const Matrix3Xd about = read.colwise() - read.rowwise().mean();
+  return about.colwise().norm().maxCoeff() < least;
+}
+
+/// The middle of a sphere on which a patch of readings lies: off the patch, across it.
+Vector3d centre_of_patch(const Matrix3Xd& read, double radius) {
+  const Vector3d mean = read.rowwise().mean();
+  const Matrix3Xd about = read.colwise() - mean;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(about * about.transpose());
+  return mean + radius * axes.eigenvectors().col(0);
+}
+
 /// About the middle of the ellipsoid or sphere that the readings lie on, or else of their box.
-Vector3d find_centre(const Matrix3Xd& read) {
+Vector3d find_centre(const Matrix3Xd& read, double strength) {
+  constexpr double weakest = 22;  // [uT], of the Earth's fields
+  const double radius = strength > 0 ? strength : weakest;
+  if (is_patch(read, 0.6 * radius)) return centre_of_patch(read, radius);
   const Eigen::MatrixX3d columns = read.transpose();
   const probes::Points points = points_of(columns);
   if (const auto ellipsoid = probes::fit_ellipsoid(points)) {
@@ -111,7 +171,8 @@ void note_sphere(const Log& log, const FieldRows& field, std::vector<LogNote>& n
   if (field.read.cols() == 0) return;
   const bool attitude = field.truth.cols() > 0;
   const double covered = covered_sphere(
-      attitude ? field.truth : Matrix3Xd(field.read.colwise() - find_centre(field.read)));
+      attitude ? field.truth
+               : Matrix3Xd(field.read.colwise() - find_centre(field.read, field.strength)));
   constexpr double enough = 0.5;
   if (covered >= enough) return;
   LogNote note = note_on(log, "sphere", Concern::matters, field.headers);

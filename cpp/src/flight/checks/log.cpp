@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "flight/checks/turns.hpp"
 #include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
@@ -15,33 +16,16 @@ namespace {
 
 using files::UnitKind;
 
-/// Jumps of a whole turn taken out; what is no number stays where it is.
-void unwrap(std::vector<double>& angles) {
-  double before = not_a_number;
-  for (double& angle : angles) {
-    if (!std::isfinite(angle)) continue;
-    if (std::isfinite(before)) {
-      const double turns = std::round((angle - before) / (2 * std::numbers::pi));
-      angle -= turns * 2 * std::numbers::pi;  // nothing, bit for bit, where there is no jump
-    }
-    before = angle;
-  }
-}
-
-/// Whether a fit of the model takes the quantity: a tube needs no attitude, a field's strength
-/// alone none and no true field, and no magnetometer body rates.
+/// Whether a fit of the model takes the quantity: a field's strength alone takes no attitude and no
+/// true field.
 bool is_used(std::string_view model, const probes::ProbeQuantity& quantity) {
   if (model == "magnetometer-norm") return quantity.name.starts_with('m');
-  if (model == "magnetometer") return quantity.kind != UnitKind::rate;
-  if (model == "pitot-static") {
-    return quantity.kind != UnitKind::rate && quantity.kind != UnitKind::angle;
-  }
-  return true;
+  return !quantity.is_extra;
 }
 
 }  // namespace
 
-Log::Log(std::string_view model, const Flight& flight) : flight_(flight) {
+Log::Log(std::string_view model, const Flight& flight) : model_(model), flight_(flight) {
   time_ = files::read_quantity(flight, "time", UnitKind::time);
   stretches_ = probes::find_stretches(time_, flight.maneuvers());
   for (const probes::ProbeQuantity& quantity : probes::quantities_of(model)) {
@@ -49,7 +33,7 @@ Log::Log(std::string_view model, const Flight& flight) : flight_(flight) {
     const auto logged = files::find_quantity(flight, quantity.name, quantity.kind);
     if (!logged) continue;
     LoggedColumn column{quantity.name, *logged, logged->values(), {}, true};
-    if (quantity.kind == UnitKind::angle) unwrap(column.values);
+    if (quantity.kind == UnitKind::angle) unwrap(column.values, 2 * std::numbers::pi);
     column.sequence = probes::find_sequence(logged->column->values, stretches_);
     column.used = is_used(model, quantity);
     columns_.push_back(std::move(column));

@@ -33,6 +33,7 @@ class Log {
   /// Throws Error for a model that there is none of.
   Log(std::string_view model, const Flight& flight);
 
+  std::string_view model() const { return model_; }
   const Flight& flight() const { return flight_; }
   const std::vector<LoggedColumn>& columns() const { return columns_; }
 
@@ -53,6 +54,7 @@ class Log {
   std::vector<const LoggedColumn*> find_all(std::initializer_list<std::string_view> names) const;
 
  private:
+  std::string model_;
   const Flight& flight_;
   std::vector<double> time_;
   std::vector<Segment> stretches_;

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "flight/probes/ellipsoid.hpp"
+
 namespace sepcal::probes {
 namespace {
 
@@ -81,6 +83,18 @@ void check_range(const QuantityRange& entry, const FindReading& find,
                    suggest_units(*reading, entry.range, smallest, largest))});
 }
 
+/// Of the ellipsoid that the readings lie on all round, which hard iron does not touch; NaN where
+/// they lie on none.
+double radius_of(const std::array<Reading, 3>& field) {
+  const Points points{field[0].values, field[1].values, field[2].values};
+  const auto ellipsoid = fit_ellipsoid(points);
+  if (!ellipsoid) return std::nan("");
+  const Coverage coverage = judge_coverage(points, *ellipsoid);
+  const bool all_round =
+      coverage.roughness < 0.2 && coverage.one_sided < 0.5 && coverage.thinnest > 0.05;
+  return all_round ? ellipsoid->radius() : std::nan("");
+}
+
 /// Returns whether the three columns are there.
 bool check_field(const Field& names, const Range& range, const FindReading& find,
                  std::vector<Implausible>& found) {
@@ -96,6 +110,7 @@ bool check_field(const Field& names, const Range& range, const FindReading& find
   }
   const double strength = median(std::move(strengths));
   if (range.contains(strength)) return true;
+  if (names == read_field && range.contains(radius_of(field))) return true;
   const bool given = names == true_field_in_navigation && field[0].header == names[0];
   const std::string whose = given ? "given is"
                                   : fmt::format("of {}, {}, {} is usually", field[0].header,

@@ -15,6 +15,7 @@ struct ProbeQuantity {
   std::string_view name;
   files::UnitKind kind;
   bool is_driver = false;  // may drive effects too, then under its whole header
+  bool is_extra = false;   // no fit needs it: effects may
 };
 
 /// Of the model by that name, needed or not. Throws Error where there is no such model.

@@ -97,6 +97,10 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
       note(fmt::format("column '{}' is not read as {}, which '{}' logs: its unit is unknown",
                        unknown->header, quantity.name, found.column->header));
     }
+  } else if (unknown != nullptr && quantity.is_extra) {
+    if (unknown->header == quantity.name) return;  // take_drivers() says so
+    note(fmt::format("column '{}' is not read as {}, which no fit needs: its unit is unknown",
+                     unknown->header, quantity.name));
   } else if (unknown != nullptr) {
     throw Error(
         fmt::format("{}: column '{}' has no known unit; {} may be logged as: {}", flight_.name(),
@@ -378,6 +382,12 @@ bool RecordBuilder::is_quantity(const Flight::Column& column) const {
   });
 }
 
+/// A rate without a unit under a rate's name would be taken for one in rad/s.
+bool RecordBuilder::is_named_like_quantity(std::string_view header) const {
+  const auto found = std::ranges::find(quantities_, header, &ProbeQuantity::name);
+  return found != quantities_.end() && found->is_extra;
+}
+
 void RecordBuilder::take_drivers() {
   std::vector<std::string> refused;
   for (const Flight::Column& column : flight_.columns()) {
@@ -386,6 +396,11 @@ void RecordBuilder::take_drivers() {
     if (const auto row = rows_.find_if_not(is_valid)) {
       refused.push_back(fmt::format("column '{}' can't drive an effect: at {} it {}", column.header,
                                     flight_.locate(*row), files::describe_cell(column, *row)));
+    } else if (is_named_like_quantity(column.header)) {
+      refused.push_back(
+          fmt::format("column '{}' is not used: it is named like a quantity, and its unit is "
+                      "unknown; rename it",
+                      column.header));
     } else if (record_.has(column.header)) {
       refused.push_back(
           fmt::format("column '{}' can't drive an effect: it is named like a quantity "

@@ -96,6 +96,7 @@ class RecordBuilder {
   std::vector<std::string> other_headers() const;
   [[noreturn]] void fail_missing(std::span<const std::string_view> names) const;
   bool is_quantity(const Flight::Column& column) const;
+  bool is_named_like_quantity(std::string_view header) const;
   std::optional<Reading> find_reading(std::string_view name) const;
   void note_implausible();
   void add(std::string name, const RowValue& value);

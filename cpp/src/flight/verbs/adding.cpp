@@ -93,11 +93,21 @@ Calibration add_to(const Calibration& base, const PreparedFlight& prepared,
 
 Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
                 const OwnEffects& own, const FitProgress& progress) {
-  const PreparedFlight prepared = prepare(base, flight);
-  if (!is_other_flight(base, flight)) return add_to(base, prepared, effect, own, progress);
-  const Calibration here = refit_to(base, prepared, own, progress);
+  PreparedFlight prepared = prepare(base, flight);
+  Calibration here = base;
+  std::vector<std::string> notes;
+  if (is_other_flight(base, flight)) {
+    here = refit_to(base, prepared, own, progress);
+    notes = here.notes;
+  }
+  const std::string suspected = prepared.all.columns;
+  if (const auto left = without_suspects(here, prepared, own, progress)) {
+    here = *left;
+    notes.push_back(say_left_out(here, prepared, suspected));
+  }
+  note_mended(prepared);
   Calibration next = add_to(here, prepared, effect, own, progress);
-  next.notes.insert(next.notes.begin(), here.notes.begin(), here.notes.end());
+  next.notes.insert(next.notes.begin(), notes.begin(), notes.end());
   return next;
 }
 

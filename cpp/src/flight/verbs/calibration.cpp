@@ -14,6 +14,7 @@
 #include "base/parameter_values.hpp"
 #include "base/sentences.hpp"
 #include "estimation/step_times.hpp"
+#include "flight/checks/suspect_notes.hpp"
 #include "flight/probes/sampled_rows.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -156,7 +157,9 @@ void check_streamed(const CalibrationOptions& options) {
 /// Whether these options do what the note asks for; `rows`: those of the flight that are fitted.
 bool is_followed(const LogNote& note, const CalibrationOptions& options, const Flight& flight,
                  const std::vector<std::size_t>& rows) {
-  if (note.kind == "outliers") return options.fit.loss != Loss::squares;
+  if (note.kind == "outliers" || note.kind == "glitches") {
+    return options.fit.loss != Loss::squares;
+  }
   if (note.kind == "at_rest") return !options.fit.stage_two_segments.empty();
   if (options.log.drop_repeats.empty()) return false;
   if (note.kind == "held") {  // few of the rows that are left repeat the one before
@@ -176,7 +179,7 @@ bool is_followed(const LogNote& note, const CalibrationOptions& options, const F
 /// Adds what check() says that is worth a word before a fit.
 void note_check(const Probe& probe, const PreparedFlight& prepared,
                 const CalibrationOptions& options, std::vector<std::string>& notes) {
-  const Flight& flight = prepared.flight;
+  const Flight& flight = prepared.logged;
   if (flight.is_mapped() && flight.rows() > base::excerpt_rows) {
     notes.push_back(fmt::format(
         "{}: not checked, since a check takes whole columns into memory: check a part of the log",
@@ -184,13 +187,65 @@ void note_check(const Probe& probe, const PreparedFlight& prepared,
     return;
   }
   FlightCheck seen = check(probe, flight,
-                           {.where = options.log.where,
+                           {.drop_invalid = options.log.drop_invalid,
+                            .where = options.log.where,
                             .from_time = options.log.from_time,
                             .to_time = options.log.to_time});
   std::erase_if(seen.notes, [&](const LogNote& note) {
     return is_followed(note, options, flight, prepared.readings.flight_rows);
   });
   std::ranges::move(brief_notes(seen), std::back_inserter(notes));
+}
+
+/// A status other than converged where it can't be done.
+Fit refit_where_possible(const Calibration& calibration, const PreparedFlight& prepared,
+                         const CalibrationOptions& options) {
+  try {
+    if (options.log == calibration.options.log) {
+      return verbs::calibrate(calibration.probe, prepared, options).fit;
+    }
+    const PreparedFlight fewer = prepare(*calibration.probe, prepared.logged, options.log);
+    return verbs::calibrate(calibration.probe, fewer, options).fit;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// What the rows that are no readings do to the answer: one more fit tells, with a loss that
+/// forgets them, or without them where they are too many in a row for a loss.
+void note_pull(Calibration& calibration, const PreparedFlight& prepared,
+               const CalibrationOptions& options) {
+  if (prepared.measured.condition.empty() || options.fit.loss != Loss::squares) return;
+  CalibrationOptions other = options;
+  const std::string where =
+      checks::join_conditions(options.log.where, {prepared.measured.condition});
+  if (prepared.loss_helps) {
+    other.fit.loss = Loss::cauchy;
+  } else {
+    other.log.where = where;
+  }
+  const Fit fit = refit_where_possible(calibration, prepared, other);
+  const Parameter* farthest = nullptr;
+  double most = 0.0;
+  for (const Parameter& parameter : calibration.fit.parameters) {
+    if (fit.status != FitStatus::converged) break;
+    const double shift = (fit[parameter.name].value - parameter.value) / parameter.standard_error;
+    if (!(std::abs(shift) > most)) continue;
+    farthest = &parameter;
+    most = std::abs(shift);
+  }
+  constexpr double little = 0.1;  // standard errors: rows that the fit dropped anyway
+  if (fit.status == FitStatus::converged && most < little) return;
+  const std::string way = prepared.loss_helps ? "with --loss cauchy" : "without them";
+  const std::string moved =
+      farthest == nullptr
+          ? fmt::format("a fit {} tells by how much", way)
+          : fmt::format("{} {} is {:.4g} and not {:.4g}, {:.2g} standard errors away", way,
+                        farthest->name, fit[farthest->name].value, farthest->value, most);
+  calibration.notes.push_back(fmt::format(
+      "{}: rows in which {} can't be a reading pull the fit: {}; fit again {}--where \"{}\"",
+      prepared.logged.name(), prepared.measured.columns, moved,
+      prepared.loss_helps ? "with --loss cauchy, or without them: " : "with ", where));
 }
 
 /// What a delay's reach takes from the segments' ends, where that is much.
@@ -215,7 +270,9 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
   std::vector<std::string> notes;
   note_check(*probe, prepared, options, notes);
   Calibration calibration = calibrate(std::move(probe), prepared, options);
+  std::ranges::copy(prepared.filled, std::back_inserter(calibration.notes));
   std::ranges::move(notes, std::back_inserter(calibration.notes));
+  note_pull(calibration, prepared, options);
   return calibration;
 }
 

@@ -83,6 +83,17 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   return result;
 }
 
+/// The calibration of the rows that are readings; what was left out and mended is noted.
+Calibration believe(const Calibration& calibration, PreparedFlight& prepared, const OwnEffects& own,
+                    const DiagnosisOptions& options) {
+  const std::string suspected = prepared.all.columns;
+  const auto left = without_suspects(calibration, prepared, own, options.progress);
+  note_mended(prepared);
+  if (!left) return calibration;
+  prepared.readings.notes.push_back(say_left_out(*left, prepared, suspected));
+  return *left;
+}
+
 /// Errors name the flight, as those of bringing it to the model do by themselves.
 template <class Task>
 FlightDiagnosis name_errors(const Flight& flight, Task task) {
@@ -172,9 +183,11 @@ Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
 
 FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
                          const OwnEffects& own, const DiagnosisOptions& options) {
-  const PreparedFlight prepared = prepare(calibration, flight);
-  return name_errors(
-      flight, [&] { return run(calibration, prepared, all_own(calibration, own), options); });
+  PreparedFlight prepared = prepare(calibration, flight);
+  return name_errors(flight, [&] {
+    const OwnEffects all = all_own(calibration, own);
+    return run(believe(calibration, prepared, all, options), prepared, all, options);
+  });
 }
 
 namespace {
@@ -219,8 +232,10 @@ FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& ca
                               const Flight& flight, const OwnEffects& own,
                               const DiagnosisOptions& options) {
   PreparedFlight prepared = prepare(calibration, flight);
-  return name_errors(
-      flight, [&] { return inject(injected, calibration, std::move(prepared), own, options); });
+  return name_errors(flight, [&] {
+    const Calibration believed = believe(calibration, prepared, all_own(calibration, own), options);
+    return inject(injected, believed, std::move(prepared), own, options);
+  });
 }
 
 std::string describe(const UnloggedCause& cause) {

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "flight/checks/suspect_notes.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/read_as.hpp"
@@ -14,9 +16,12 @@ namespace sepcal::verbs {
 
 PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice& log) {
   ReadFlight read = read_as(flight, log);
-  ProbeRecord readings = probe.prepare(read.flight, log);
+  MendedFlight mended = mend(probe.name(), read.flight, log);
+  ProbeRecord readings = probe.prepare(mended.flight, log);
   readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());
-  return {std::move(read.flight), std::move(readings)};
+  return {std::move(mended.flight),  std::move(readings),      std::move(read.flight),
+          std::move(mended.bridged), std::move(mended.filled), std::move(mended.measured),
+          std::move(mended.all),     mended.loss_helps};
 }
 
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
@@ -112,6 +117,41 @@ CalibrationOptions options_from(const Calibration& base, const OwnEffects& own,
   options.fit.start = base.fit.nonlinear_estimates();
   for (const auto& [name, maker] : own) options.own_effects[name] = maker;
   return options;
+}
+
+void note_mended(PreparedFlight& prepared) {
+  std::ranges::copy(prepared.bridged, std::back_inserter(prepared.readings.notes));
+  std::ranges::copy(prepared.filled, std::back_inserter(prepared.readings.notes));
+}
+
+std::optional<Calibration> without_suspects(const Calibration& base, PreparedFlight& prepared,
+                                            const OwnEffects& own, const FitProgress& progress) {
+  if (prepared.all.condition.empty()) return std::nullopt;
+  const Flight& flight = prepared.logged;
+  Calibration left = base;
+  std::string& where = left.options.log.where;
+  where = checks::join_conditions(where, {prepared.all.condition});
+  try {
+    PreparedFlight again = prepare(left, flight);
+    CalibrationOptions options = options_from(left, own, progress);
+    options.fit.start = base.options.fit.start;  // what the others led to is no place to begin
+    left = calibrate(base.probe, again, options);
+    prepared = std::move(again);
+  } catch (const Error&) {
+    return std::nullopt;  // what is left is no flight
+  }
+  left.file = base.file;
+  left.history = base.history;
+  left.notes = {};
+  return left;
+}
+
+std::string say_left_out(const Calibration& left, const PreparedFlight& prepared,
+                         const std::string& suspected) {
+  return fmt::format(
+      "{}: rows in which {} can't be a reading are left out, and the calibration is fitted again "
+      "without them, as fit does with --where \"{}\"",
+      prepared.logged.name(), suspected, left.options.log.where);
 }
 
 Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/thread_pool.hpp"
+#include "flight/verbs/mended_flight.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/probe_effects.hpp"
@@ -15,8 +17,16 @@
 namespace sepcal::verbs {
 
 struct PreparedFlight {
-  Flight flight;         // as read_as() gives it
+  Flight flight;         // as read_as() gives it, its drivers mended
   ProbeRecord readings;  // before effects in time cut its edges
+  Flight logged;         // as read_as() gives it
+
+  // What mend() found.
+  std::vector<std::string> bridged = {};
+  std::vector<std::string> filled = {};
+  RowsToLeave measured = {};
+  RowsToLeave all = {};
+  bool loss_helps = true;
 };
 
 /// Throws Error as read_as() and Probe::prepare() do.
@@ -36,6 +46,18 @@ EffectiveFlight with_effects_of(const Calibration& calibration, const PreparedFl
 /// z - model (rows() x n_z) in the rows of that flight's segments, at the calibration's estimates.
 Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlight& effective,
                              base::ThreadPool& pool);
+
+/// Adds what was mended to the notes of the readings.
+void note_mended(PreparedFlight& prepared);
+
+/// The base as it would be of the rows that are readings; `prepared` is then of these. Nothing
+/// where all rows seem to be, or where the others can't be fitted.
+std::optional<Calibration> without_suspects(const Calibration& base, PreparedFlight& prepared,
+                                            const OwnEffects& own, const FitProgress& progress);
+
+/// What a person is told of that. `suspected`: the columns.
+std::string say_left_out(const Calibration& left, const PreparedFlight& prepared,
+                         const std::string& suspected);
 
 /// As the public calibrate().
 Calibration calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,

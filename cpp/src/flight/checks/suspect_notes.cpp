@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/checks/suspect_notes.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sepcal::checks {
+namespace {
+
+constexpr const char* not_followed =
+    "no effect follows it there: the value between its neighbours stands in";
+
+std::string say_size(double size, const std::string& unit) {
+  return fmt::format("{:.3g}{}{}", size, unit.empty() ? "" : " ", unit);
+}
+
+std::string say_rows(const RowList& rows) {
+  return rows.size() == 1 ? "1 row" : fmt::format("{} rows", rows.size());
+}
+
+/// A condition to type, where few enough of them do; else nothing.
+std::string way_out(const LogChoice& choice, const std::vector<std::string>& conditions) {
+  constexpr std::size_t most = 8;
+  if (conditions.empty() || conditions.size() > most) return "";
+  return fmt::format("--where \"{}\"", join_conditions(choice.where, conditions));
+}
+
+std::string advise(const SuspectColumn& column, const std::string& condition,
+                   std::string_view loss) {
+  if (!column.is_measured) {
+    return condition.empty() ? "nothing more, or mend the log"
+                             : "nothing more, or leave these rows out: " + condition;
+  }
+  const std::string leave = condition.empty() ? "take them out" : "leave them out: " + condition;
+  return loss.empty() ? leave : fmt::format("{}, or fit with --loss {}", leave, loss);
+}
+
+void note_sentinels(const Log& log, const SuspectColumn& column, const LogChoice& choice,
+                    std::vector<LogNote>& notes) {
+  const RowList& rows = column.rows.sentinels;
+  if (rows.empty()) return;
+  LogNote note = note_on(log, "sentinels", Concern::matters, {column.header}, rows);
+  note.found = fmt::format("{}: {} hold{} {}, a code and no reading, first at {}", column.header,
+                           say_rows(rows), rows.size() == 1 ? "s" : "",
+                           fmt::join(column.rows.codes, " or "), name_row(log, rows.front()));
+  note.effect =
+      column.is_measured ? "a fit takes it for a reading, diagnose and add don't" : not_followed;
+  SuspectColumn codes{column.header, column.unit, column.is_measured, column.manner, {}};
+  codes.rows.codes = column.rows.codes;
+  note.advice = advise(column, way_out(choice, leave_out(log, codes)), "");
+  notes.push_back(std::move(note));
+}
+
+void note_spikes(const Log& log, const SuspectColumn& column, const LogChoice& choice,
+                 std::vector<LogNote>& notes) {
+  const RowList& rows = column.rows.spikes;
+  if (rows.empty()) return;
+  const double share = column.rows.spike_share;
+  const bool heavy = is_heavy(column.rows);
+  LogNote note =
+      note_on(log, "outliers", heavy ? Concern::matters : Concern::slight, {column.header}, rows);
+  note.found =
+      fmt::format("{} jumps for {} single reading{}, by up to {}, first at {}", column.header,
+                  rows.size(), rows.size() == 1 ? "" : "s",
+                  say_size(column.rows.farthest_spike, column.unit), name_row(log, rows.front()));
+  if (!column.is_measured) {
+    note.effect = not_followed;
+  } else if (heavy) {
+    note.effect = fmt::format(
+        "they are {:.0f} % of all that neighbouring readings differ by, in squares: estimates move "
+        "and standard errors grow; diagnose and add leave them out",
+        100 * share);
+  } else {
+    note.effect = "each pulls the estimates a little";
+  }
+  note.advice = advise(column, way_out(choice, leave_out(log, rows)), "huber");
+  notes.push_back(std::move(note));
+}
+
+/// Bursts of the same rows in two columns are one: a receiver that was wrong in both.
+void note_bursts(const Log& log, const SuspectColumn& column, const LogChoice& choice,
+                 std::vector<LogNote>& notes) {
+  const RowList& rows = column.rows.bursts;
+  if (rows.empty()) return;
+  const std::size_t count = find_runs_of(rows).size();
+  LogNote note = note_on(log, "glitches", Concern::matters, {column.header}, rows);
+  const auto before = std::ranges::find_if(notes, [&](const LogNote& other) {
+    return other.kind == note.kind && other.rows == note.rows && other.first_s == note.first_s &&
+           other.last_s == note.last_s && other.concern == note.concern;
+  });
+  if (before != notes.end()) {
+    before->columns.push_back(column.header);
+    before->found = list_headers(before->columns) + before->found.substr(before->found.find(':'));
+    return;
+  }
+  note.found =
+      fmt::format("{}: {} jump away and come back, in {} burst{}, by up to {}, first at {}",
+                  column.header, say_rows(rows), count, count == 1 ? "" : "s",
+                  say_size(column.rows.farthest_burst, column.unit), name_row(log, rows.front()));
+  note.effect = column.is_measured
+                    ? "a fit takes them for readings and is pulled, diagnose and add don't"
+                    : not_followed;
+  note.advice = advise(column, way_out(choice, leave_out(log, rows)), "cauchy");
+  notes.push_back(std::move(note));
+}
+
+void note_frozen(const Log& log, const SuspectColumn& column, const LogChoice& choice,
+                 std::vector<LogNote>& notes) {
+  const RowList& rows = column.rows.frozen;
+  if (rows.empty()) return;
+  LogNote note = note_on(log, "frozen", Concern::matters, {column.header}, rows);
+  note.found = fmt::format(
+      "{}: {} stand still at {}, where others change, first at {}", column.header, say_rows(rows),
+      say_size(log.flight().find(column.header)->values[rows.front()], column.unit),
+      name_row(log, rows.front()));
+  note.effect = column.is_measured
+                    ? "a fit takes them for readings and is pulled, diagnose and add don't"
+                    : not_followed;
+  note.advice = advise(column, way_out(choice, leave_out(log, rows)), "");
+  notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+std::string join_conditions(const std::string& where, std::vector<std::string> conditions) {
+  if (!where.empty()) conditions.insert(conditions.begin(), "(" + where + ")");
+  return fmt::format("{}", fmt::join(conditions, " and "));
+}
+
+void check_suspects(const Log& log, const std::vector<SuspectColumn>& suspects,
+                    const LogChoice& choice, std::vector<LogNote>& notes) {
+  for (const SuspectColumn& column : suspects) {
+    note_sentinels(log, column, choice, notes);
+    note_spikes(log, column, choice, notes);
+    note_bursts(log, column, choice, notes);
+    note_frozen(log, column, choice, notes);
+  }
+}
+
+void check_constants(const Log& log, std::vector<LogNote>& notes) {
+  constexpr std::array readings{"mx", "my", "mz", "airspeed", "dp", "pt", "dpa", "dpb"};
+  for (const LoggedColumn& column : log.columns()) {
+    const bool reads = std::ranges::find(readings, column.quantity) != readings.end();
+    const std::span<const double> values = column.logged.column->values;
+    if (!reads || !column.used || !is_constant(values)) continue;
+    LogNote note = note_on(log, "frozen", Concern::wrong, {column.header()});
+    note.found = fmt::format("{} reads {} in every row", column.header(),
+                             say_size(values.front(), std::string(column.logged.unit->suffix)));
+    note.effect = "what never changes can't be calibrated: it is blocked, or not connected";
+    note.advice = "mend the sensor or the logging, and fly again";
+    notes.push_back(std::move(note));
+  }
+  const LoggedColumn* north = log.find("vn");
+  const LoggedColumn* east = log.find("ve");
+  if (north == nullptr || east == nullptr) return;
+  const bool still = is_constant(north->logged.column->values);
+  const LoggedColumn& one = still ? *north : *east;
+  const LoggedColumn& other = still ? *east : *north;
+  const double value = one.logged.column->values.empty() ? 0.0 : one.logged.column->values.front();
+  if (value == 0 || !is_constant(one.logged.column->values) ||
+      is_constant(other.logged.column->values)) {
+    return;
+  }
+  LogNote note = note_on(log, "frozen", Concern::wrong, {one.header()});
+  note.found = fmt::format("{} reads {} in every row, while {} changes", one.header(),
+                           say_size(value, std::string(one.logged.unit->suffix)), other.header());
+  note.effect = "half of the velocity is missing: the wind and the scale come out wrong";
+  note.advice = "mend the receiver or the logging, and fly again";
+  notes.push_back(std::move(note));
+}
+
+}  // namespace sepcal::checks

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/checks/suspects.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "flight/checks/column_name.hpp"
+
+namespace sepcal::checks {
+namespace {
+
+using files::UnitKind;
+
+constexpr std::size_t near = 3;  // rows, within which two columns tell of one motion
+
+bool is_near(std::size_t row, const RowList& rows) {
+  const auto after = std::ranges::lower_bound(rows, row < near ? 0 : row - near);
+  return after != rows.end() && *after <= row + near;
+}
+
+/// Whether all of them stand by jumps of the other columns.
+bool is_motion(const RowList& rows, const RowList& moved) {
+  return std::ranges::all_of(rows, [&](std::size_t row) { return is_near(row, moved); });
+}
+
+/// What jumps where the attitude does is the vehicle, which turns faster than it was logged.
+void forget_motion(SuspectColumn& column, const RowList& moved) {
+  if (is_motion(column.rows.spikes, moved)) column.rows.spikes.clear();
+  if (is_motion(column.rows.bursts, moved)) column.rows.bursts.clear();
+}
+
+bool tells_attitude(const LoggedColumn& column) {
+  return column.kind() == UnitKind::angle || column.kind() == UnitKind::rate;
+}
+
+bool is_axis(std::string_view quantity) {
+  return quantity == "mx" || quantity == "my" || quantity == "mz";
+}
+
+/// The columns of the probe's quantities, in the log's order of quantities.
+std::vector<SuspectColumn> find_in_quantities(const Log& log) {
+  std::vector<SuspectColumn> columns;
+  RowList of_attitude;
+  RowList of_others;
+  std::array<RowList, 3> axes;
+  for (const LoggedColumn& column : log.columns()) {
+    const Manner manner = manner_of(column.quantity, *column.logged.unit);
+    SuspectColumn suspect{column.header(), std::string(column.logged.unit->suffix),
+                          is_measured(log, column), manner,
+                          find_suspect_rows(column.logged.column->values, log.stretches(), manner)};
+    const RowList jumps = join(suspect.rows.spikes, suspect.rows.bursts);
+    RowList& all = tells_attitude(column) ? of_attitude : of_others;
+    all = join(all, jumps);
+    if (is_axis(column.quantity)) axes[static_cast<std::size_t>(column.quantity[1] - 'x')] = jumps;
+    columns.push_back(std::move(suspect));
+  }
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const LoggedColumn& column = log.columns()[i];
+    forget_motion(columns[i], tells_attitude(column) ? of_others : of_attitude);
+    if (tells_attitude(column)) columns[i].rows.spikes.clear();  // it may turn as fast
+    if (!is_axis(column.quantity)) continue;
+    const auto own = static_cast<std::size_t>(column.quantity[1] - 'x');
+    forget_motion(columns[i], join(axes[(own + 1) % 3], axes[(own + 2) % 3]));
+  }
+  return columns;
+}
+
+bool is_quantity(const Log& log, const std::string& header) {
+  const auto time = files::find_quantity(log.flight(), "time", UnitKind::time);
+  return (time && time->column->header == header) ||
+         std::ranges::find(log.columns(), header, &LoggedColumn::header) != log.columns().end();
+}
+
+std::string unit_of_channel(const std::string& header) {
+  const std::size_t split = header.rfind('_');
+  return split == std::string::npos ? "" : header.substr(split + 1);
+}
+
+}  // namespace
+
+bool is_measured(const Log& log, const LoggedColumn& column) {
+  if (!column.used) return false;
+  const bool tube = log.model() == "pitot-static";
+  const bool needs_density = !tube || log.find("airspeed") == nullptr;
+  if (column.quantity == "rho") return needs_density;
+  if (column.quantity == "temp") return needs_density && log.find("rho") == nullptr;
+  if (column.quantity == "ps" && tube) return needs_density && log.find("rho") == nullptr;
+  constexpr std::array slow{"bn", "be", "bd", "field_strength"};
+  return std::ranges::find(slow, column.quantity) == slow.end();
+}
+
+std::vector<SuspectColumn> find_suspects(const Log& log) {
+  std::vector<SuspectColumn> columns = find_in_quantities(log);
+  for (const Flight::Column& channel : log.flight().columns()) {
+    if (is_quantity(log, channel.header)) continue;
+    const Manner manner = manner_of_channel(channel.header);
+    columns.push_back({channel.header, unit_of_channel(channel.header), false, manner,
+                       find_suspect_rows(channel.values, log.stretches(), manner)});
+  }
+  std::erase_if(columns, [](const SuspectColumn& column) { return column.rows.empty(); });
+  return columns;
+}
+
+std::vector<std::string> leave_out(const Log& log, const RowList& rows) {
+  const auto time = files::find_quantity(log.flight(), "time", UnitKind::time);
+  std::vector<std::string> conditions;
+  if (!time) return conditions;
+  const std::string name = quote(time->column->header);
+  for (const Segment& run : find_runs_of(rows)) {
+    const double first = time->column->values[run.first];
+    const double last = time->column->values[run.last - 1];
+    conditions.push_back(run.rows() == 1 ? fmt::format("{} != {}", name, first)
+                                         : fmt::format("not ({} <= {} <= {})", first, name, last));
+  }
+  return conditions;
+}
+
+std::vector<std::string> leave_out(const Log& log, const SuspectColumn& column) {
+  std::vector<std::string> conditions;
+  for (const double code : column.rows.codes) {
+    conditions.push_back(fmt::format("{} != {}", quote(column.header), code));
+  }
+  const RowList rest = join(join(column.rows.spikes, column.rows.bursts), column.rows.frozen);
+  std::ranges::move(leave_out(log, rest), std::back_inserter(conditions));
+  return conditions;
+}
+
+}  // namespace sepcal::checks

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The flight without what a choice of rows leaves out.
+#pragma once
+
+#include <string_view>
+
+#include "sepcal/flight/flight.hpp"
+#include "sepcal/flight/log_choice.hpp"
+
+namespace sepcal::checks {
+
+/// Rows that are not taken keep their time alone.
+struct TakenRows {
+  Flight flight;
+  std::vector<std::size_t> left_out = {};
+};
+
+/// Throws Error as probes::rows_taken().
+TakenRows take_rows(std::string_view model, const Flight& flight, const LogChoice& choice);
+
+}  // namespace sepcal::checks
