@@ -16,6 +16,7 @@
 #include "estimation/step_times.hpp"
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/probes/sampled_rows.hpp"
+#include "flight/verbs/default_bounds.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
@@ -261,6 +262,52 @@ void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOpt
       lost, whole.rows(), reach(flight.effects, options.bounds)));
 }
 
+/// The fit within the bounds that the options give and the model has by default.
+Calibration calibrate_within(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
+                             const CalibrationOptions& options) {
+  const Flight& flight = prepared.flight;
+  CalibrationOptions held = hold(*probe, options);
+  const EffectiveFlight effective = with_effects(*probe, flight, prepared.readings, held.effects,
+                                                 options.own_effects, options.fit.bounds);
+  const Record& record = effective.prepared.record;
+  count_rows(record, options.fit.stage_one_segments, flight, "stage one", {"stage_one"});
+  check_rows(
+      *effective.model, held, flight,
+      count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
+  Calibration calibration =
+      calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0}, std::move(probe),
+                   std::move(held));
+  note_edges(prepared.readings.record, effective, options.fit, calibration.notes);
+  return calibration;
+}
+
+/// The fit with the probe's parameters let beyond default bounds where one of them ended, if the
+/// data determine it there; of an effect's parameters, and where a strength or a unit looks wrong,
+/// only what to give.
+Calibration try_beyond(Calibration within, const std::shared_ptr<const Probe>& probe,
+                       const PreparedFlight& prepared, const CalibrationOptions& options) {
+  const Bounds tried = find_bounds_beyond(within.fit, options.fit.bounds);
+  if (tried.empty()) return within;
+  CalibrationOptions wider = options;
+  wider.fit.bounds.insert(tried.begin(), tried.end());
+  std::optional<Calibration> beyond;
+  try {
+    beyond = calibrate_within(probe, prepared, wider);
+  } catch (const Error&) {  // too few rows within a longer delay's reach, say
+    return within;
+  }
+  if (!is_regular_beyond(tried, within.fit, beyond->fit)) return within;
+  const std::vector<Variable> own = probe->model().tables().parameters();
+  const bool adopted =
+      has_plausible_scales(beyond->fit) && std::ranges::all_of(tried, [&](const auto& bound) {
+        return std::ranges::find(own, bound.first, &Variable::name) != own.end();
+      });
+  const std::string sentence = describe_beyond(tried, within.fit, beyond->fit, adopted);
+  Calibration& kept = adopted ? *beyond : within;
+  kept.fit.message = base::join_sentences({sentence, kept.fit.message});
+  return std::move(kept);
+}
+
 }  // namespace
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
@@ -278,20 +325,7 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
 
 Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
                              const CalibrationOptions& options) {
-  const Flight& flight = prepared.flight;
-  CalibrationOptions held = hold(*probe, options);
-  const EffectiveFlight effective = with_effects(*probe, flight, prepared.readings, held.effects,
-                                                 options.own_effects, options.fit.bounds);
-  const Record& record = effective.prepared.record;
-  count_rows(record, options.fit.stage_one_segments, flight, "stage one", {"stage_one"});
-  check_rows(
-      *effective.model, held, flight,
-      count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
-  Calibration calibration =
-      calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0}, std::move(probe),
-                   std::move(held));
-  note_edges(prepared.readings.record, effective, options.fit, calibration.notes);
-  return calibration;
+  return try_beyond(calibrate_within(probe, prepared, options), probe, prepared, options);
 }
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
