@@ -8,6 +8,7 @@ import pytest
 
 CHECKOUT = Path(__file__).parents[1]
 FIXTURES = Path(os.environ.get("SEPCAL_FIXTURES", CHECKOUT.parent / "shared" / "data"))
+CASES = FIXTURES.parent / "cases" / "verdicts"
 
 
 def find_fixture(name: str) -> Path:
@@ -15,4 +16,12 @@ def find_fixture(name: str) -> Path:
     file = FIXTURES / name
     if not file.is_file():
         pytest.skip(f"no recorded flight {file}; set SEPCAL_FIXTURES to its folder")
+    return file.resolve()
+
+
+def find_case(name: str) -> Path:
+    """One of the reduced logs beside the recorded flights, skipped likewise."""
+    file = CASES / name
+    if not file.is_file():
+        pytest.skip(f"no reduced log {file}; set SEPCAL_FIXTURES to the folder beside its cases")
     return file.resolve()

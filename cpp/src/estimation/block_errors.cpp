@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "numerics/decompositions.hpp"
+#include <utility>
 
 namespace sepcal::estimation {
 namespace {
@@ -15,23 +14,20 @@ using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-/// A block in coordinates in which the information of all rows and the prior is I: its own, and the
-/// factor of what the others have.
-struct Share {
-  MatrixXd own;       // k x k, J_b'J_b
-  VectorXd gradient;  // k, J_b'r_b
-  Eigen::LLT<MatrixXd> others;
-
-  /// The step of the estimates when the block is left out, but for its sign.
-  VectorXd step() const { return others.solve(gradient); }
-};
-
-Share share_of(const TriangularFactor& block, const MatrixXd& R) {
+/// The factor of a block's [J | r] over R, all information.
+BlockShare share_of(const TriangularFactor& block, const MatrixXd& R) {
   const Index k = R.cols();
   MatrixXd rows = block.matrix();
   Ref<MatrixXd> J = rows.leftCols(k);
   R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(J);
-  Share share{.own = J.transpose() * J, .gradient = J.transpose() * rows.col(k), .others = {}};
+  return make_block_share(J.transpose() * J, J.transpose() * rows.col(k));
+}
+
+}  // namespace
+
+BlockShare make_block_share(MatrixXd own, VectorXd gradient) {
+  BlockShare share{.own = std::move(own), .gradient = std::move(gradient), .others = {}};
+  const Index k = share.own.cols();
   // The least information that the others may be said to have; more where rounding asks for it.
   double least = 1e-12;
   do {
@@ -41,10 +37,7 @@ Share share_of(const TriangularFactor& block, const MatrixXd& R) {
   return share;
 }
 
-/// Satterthwaite's degrees of freedom of sum_b (y_b'r)^2, r the residual of white noise: y_b, in
-/// the rows of block b, takes the step of a combination when b is left out. Of each combination
-/// that is a column of `l` (k x k).
-VectorXd degrees_of_freedom(const std::vector<Share>& shares, const MatrixXd& l) {
+VectorXd degrees_of_freedom(const std::vector<BlockShare>& shares, const MatrixXd& l) {
   const auto blocks = static_cast<Index>(shares.size());
   const Index k = l.cols();
   std::vector<MatrixXd> taken(shares.size());  // J_b'y_b
@@ -63,8 +56,6 @@ VectorXd degrees_of_freedom(const std::vector<Share>& shares, const MatrixXd& l)
   }
   return freedom;
 }
-
-}  // namespace
 
 Memory::Memory(Index outputs) : outputs_(outputs) {}
 
@@ -122,9 +113,8 @@ std::vector<Index> cut_blocks(Index rows, int blocks) {
 }
 
 BlockErrors find_block_errors(const std::vector<TriangularFactor>& blocks, const MatrixXd& R) {
-  constexpr double least_freedom = 4.0;  // a variance known to 70 %
   const Index k = R.cols();
-  std::vector<Share> shares;
+  std::vector<BlockShare> shares;
   MatrixXd steps = MatrixXd::Zero(k, k);
   for (const TriangularFactor& block : blocks) {
     shares.push_back(share_of(block, R));

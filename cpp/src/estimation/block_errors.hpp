@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "numerics/decompositions.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
@@ -50,6 +51,27 @@ int choose_blocks(Eigen::Index rows, double memory);
 
 /// The first row of each block, and behind them `rows`: blocks as long as each other, to a row.
 std::vector<Eigen::Index> cut_blocks(Eigen::Index rows, int blocks);
+
+/// A block in coordinates in which the information of all rows and the prior is I: its own, and the
+/// factor of what the others have.
+struct BlockShare {
+  Eigen::MatrixXd own;       // k x k, J_b'J_b
+  Eigen::VectorXd gradient;  // k, J_b'r_b
+  Eigen::LLT<Eigen::MatrixXd> others;
+
+  /// The step of the estimates when the block is left out, but for its sign.
+  Eigen::VectorXd step() const { return others.solve(gradient); }
+};
+
+BlockShare make_block_share(Eigen::MatrixXd own, Eigen::VectorXd gradient);
+
+/// Satterthwaite's degrees of freedom of sum_b (y_b'r)^2, r the residual of white noise: y_b, in
+/// the rows of block b, takes the step of a combination when b is left out. Of each combination
+/// that is a column of `l` (k x k).
+Eigen::VectorXd degrees_of_freedom(const std::vector<BlockShare>& shares, const Eigen::MatrixXd& l);
+
+/// Of blocks, below which a variance is not told: known to 70 %.
+inline constexpr double least_freedom = 4.0;
 
 struct BlockErrors {
   Eigen::MatrixXd covariance;  // k x k; NaN in the rows of parameters that few blocks determine

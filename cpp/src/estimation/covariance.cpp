@@ -85,14 +85,31 @@ VectorXd judge_noise(const Problem& problem, const StageTwo& two, double rows, d
 
 MatrixXd symmetric(const MatrixXd& square) { return 0.5 * (square + square.transpose()); }
 
-/// The sandwich, and H^-1.
+/// The sandwich, H^-1, and what blocks show of the noise in its middle.
 struct Slices {
   MatrixXd covariance;
   MatrixXd inverse_hessian;
+  BlockEvidence evidence;
 };
+
+/// Whether blocks speak against a noise model and for that of the residual by itself: they show
+/// clearly less than the first says, and are far likelier under the second.
+bool refutes(const BlockEvidence& restricted, const BlockEvidence& by_itself) {
+  constexpr double far_likelier = 30.0;  // in -2 ln L
+  return restricted.minus_two_log_likelihood - by_itself.minus_two_log_likelihood > far_likelier;
+}
+
+/// Whether they show so little that it is worth asking.
+bool doubts(const BlockEvidence& evidence) {
+  constexpr double little = 0.7;
+  return evidence.mean() < little;
+}
 
 /// The sandwich, between factors that nearly are its bread: with Q = J R^-1, all is near to one.
 class Sandwich {
+  static constexpr Index most_blocks = 20;
+  static constexpr Index fewest_rows = 100;
+
  public:
   /// `judged` (n_z): the noise behind R (k x k) of all rows and K of the sampled ones. `ratio`:
   /// M / (M - p).
@@ -106,7 +123,8 @@ class Sandwich {
         K_(std::move(K)),
         judged_(std::move(judged)),
         ratio_(ratio),
-        residuals_(sweep_.residuals(xi1(), xi2())) {
+        residuals_(sweep_.residuals(xi1(), xi2())),
+        blocks_(residuals_.rows() >= fewest_rows ? most_blocks : 1) {
     const FitOptions& options = problem.options();
     if (options.loss != Loss::squares) loss_.emplace(options.loss, options.loss_width);
     if (loss_) {
@@ -132,6 +150,17 @@ class Sandwich {
     });
   }
 
+  /// Gives each coloured output the noise of its residual by itself.
+  void leave_columns_out(const std::vector<Index>& inside) {
+    const std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
+    for (std::size_t j = 0; j < colours_.size(); ++j) {
+      if (!colours_[j] || is_white(*colours_[j])) continue;
+      colours_[j] =
+          find_noise_by_itself(residuals_.col(static_cast<Index>(j)),
+                               tangents[j](Eigen::all, inside), sweep_.measurements().runs());
+    }
+  }
+
   const std::vector<std::optional<OutputNoise>>& noise() const { return colours_; }
 
   /// The covariance (k x k); with a loss, of white residuals before find_colours() was asked.
@@ -139,29 +168,52 @@ class Sandwich {
     const Index k = R_.cols();
     MatrixXd bread = MatrixXd::Identity(k, k);
     MatrixXd middle = MatrixXd::Zero(k, k);
-    std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
-    if (loss_) {
-      weigh_each_row(std::move(tangents), inside, bread, middle);
-    } else {
-      const ScoreNoise noise{judged_, colours_, sweep_.measurements().runs()};
-      middle = find_score_covariance(std::move(tangents), noise, inside, K_, sweep_.pool());
-    }
+    MatrixXd known = MatrixXd::Zero(k, k);  // the prior's information
     for (const Prior& prior : problem_.prior()) {
       MatrixXd W = (prior.weight(inside) / std::sqrt(shares_)).asDiagonal();
       K_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(W);
-      middle += W.transpose() * W;
-      if (loss_) bread += W.transpose() * W;
+      known += W.transpose() * W;
     }
+    std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
+    BlockEvidence evidence;
+    if (loss_) {
+      weigh_each_row(std::move(tangents), inside, bread, middle);
+      bread += known;
+    } else {
+      const BlockScores scores = find_scores(std::move(tangents), inside);
+      middle = scores.score_covariance();
+      if (blocks_ > 1) evidence = scores.weigh(known, K_);
+    }
+    middle += known;
     const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(MatrixXd(bread.inverse()));
     const MatrixXd outer =
         R_.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
     return {symmetric(inverse * middle * inverse.transpose()),
-            symmetric(inverse * outer.transpose())};
+            symmetric(inverse * outer.transpose()), std::move(evidence)};
   }
 
  private:
   VectorXd xi1() const { return two_.x.head(sweep_.tables().n_1()); }
   VectorXd xi2() const { return two_.x.tail(sweep_.tables().n_2()); }
+
+  /// The scores of blocks, in the coordinates of K.
+  BlockScores find_scores(std::vector<MatrixXd> tangents, const std::vector<Index>& inside) const {
+    const Index k = K_.cols();
+    std::vector<BlockScores> parts(tangents.size(), BlockScores(blocks_, k));
+    sweep_.pool().for_each(tangents.size(), [&](std::size_t j) {
+      const double deviation = judged_[static_cast<Index>(j)];
+      MatrixXd Q = tangents[j](Eigen::all, inside) / deviation;
+      tangents[j].resize(0, 0);
+      K_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(Q);
+      std::optional<OutputNoise> colour;
+      if (!colours_.empty()) colour = colours_[j];
+      parts[j].add(Q, residuals_.col(static_cast<Index>(j)) / deviation, colour, deviation,
+                   sweep_.measurements().runs());
+    });
+    BlockScores sum(blocks_, k);
+    for (const BlockScores& part : parts) sum.add(part);
+    return sum;
+  }
 
   /// With a loss each row has its own slope of psi, and white rows their own square.
   void weigh_each_row(std::vector<MatrixXd> tangents, const std::vector<Index>& inside,
@@ -201,6 +253,7 @@ class Sandwich {
   VectorXd judged_;
   double ratio_;
   MatrixXd residuals_;  // rows x n_z; with a loss, noise_j psi(r / noise_j)
+  Index blocks_;        // that the noise is held against; 1 of a record too short for them
   std::optional<model::RobustLoss> loss_;
   std::vector<std::optional<OutputNoise>> colours_;
 };
@@ -234,6 +287,7 @@ Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
   const double count = rows * sweep.tables().n_z();
   const double freedom = count - count_spent(problem, two, result.inside);
   const double ratio = freedom > 0.0 ? count / freedom : undefined;
+  result.freedom = freedom;
 
   const VectorXd judged = judge_noise(problem, two, rows, freedom > 0.0 ? ratio : 1.0);
   result.tangent = whiten(problem, two, judged);
@@ -263,8 +317,17 @@ Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
   const bool coloured_noise = sandwich.find_colours(result.inside);
   result.noise = sandwich.noise();
   if (!coloured_noise && !noise_given) return result;
-  const MatrixXd coloured = sandwich.covariance(result.inside).covariance;
-  if (coloured.allFinite()) result.noise_model = coloured;
+  Slices slices = sandwich.covariance(result.inside);
+  if (coloured_noise && doubts(slices.evidence)) {
+    sandwich.leave_columns_out(result.inside);
+    Slices others = sandwich.covariance(result.inside);
+    if (refutes(slices.evidence, others.evidence)) {
+      slices = std::move(others);
+      result.noise = sandwich.noise();
+    }
+  }
+  if (coloured_noise) result.evidence = std::move(slices.evidence);
+  if (slices.covariance.allFinite()) result.noise_model = std::move(slices.covariance);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "estimation/block_evidence.hpp"
 #include "estimation/residual_colour.hpp"
 #include "estimation/stage_two.hpp"
 #include "model/sweep.hpp"
@@ -31,16 +32,20 @@ struct Covariances {
   /// to have, and those of the prior.
   Eigen::MatrixXd tangent;
   Eigen::VectorXd judged;           // n_z, that noise
+  double freedom = 0.0;             // measurements less the parameters that they paid for
   bool sample_falls_short = false;  // the sampled rows leave open what all rows determine
   /// n_z, or none where nobody asked: behind noise_model.
   std::vector<std::optional<OutputNoise>> noise = {};
+  /// What blocks show of that noise; empty where all of it is white, and of too few rows.
+  BlockEvidence evidence = {};
 };
 
 /// Where R was estimated, variances are M / (M - p) times what R-hat = SSE / N gives: M
 /// measurements, p parameters less what their prior paid. `noise_model` is `white` where
 /// every output is white at an estimated R, without FitOptions::coloured_errors, and where
 /// something is not finite. Of an excerpt it is taken how much more its score varies than that of
-/// white noise would, and of all rows how much they determine.
+/// white noise would, and of all rows how much they determine. A noise model that the blocks of the
+/// record refute gives way to that of the residual by itself.
 Covariances find_covariances(const Problem& problem, const model::Sweep& sweep,
                              const SampledRows& sampled, const StageTwo& two);
 

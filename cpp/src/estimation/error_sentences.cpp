@@ -21,14 +21,22 @@ std::string times(const std::vector<double>& ratios) {
 
 /// Where noise model and blocks disagree: who is believed, and why.
 std::vector<std::string> describe_disagreement(const Names& parameters, const VectorXd& noise_model,
-                                               const VectorXd& blocks) {
+                                               const VectorXd& blocks,
+                                               const BlockEvidence& evidence) {
+  constexpr double clearly = 1.5;
   Names larger;
   Names smaller;
+  Names refuted;
   std::vector<double> above;
   std::vector<double> below;
+  std::vector<double> said;
   for (Index k = 0; k < blocks.size(); ++k) {
     const double ratio = blocks[k] / noise_model[k];
-    if (ratio > far_apart) {
+    const double allowed = evidence.allowed(k);
+    if (allowed * clearly < 1.0) {
+      refuted.push_back(parameters[static_cast<std::size_t>(k)]);
+      said.push_back(1.0 / evidence.shown[k]);
+    } else if (ratio > far_apart) {
       larger.push_back(parameters[static_cast<std::size_t>(k)]);
       above.push_back(ratio);
     } else if (ratio * far_apart < 1.0) {
@@ -46,6 +54,12 @@ std::vector<std::string> describe_disagreement(const Names& parameters, const Ve
     sentences.push_back("standard error of " + base::list_names(smaller) +
                         " is by the noise model, up to " + times(below) +
                         " that of blocks: the noise is slow, and blocks of the record miss that");
+  }
+  if (!refuted.empty()) {
+    sentences.push_back("standard error of " + base::list_names(refuted) +
+                        " is what blocks of the record allow: the noise model says they should "
+                        "vary up to " +
+                        times(said) + " as much as they do");
   }
   return sentences;
 }
@@ -142,7 +156,8 @@ std::string describe_sample(const Covariances& covariances, const model::Sweep& 
 std::vector<std::string> describe_errors(const Names& parameters, const Covariances& covariances,
                                          const VectorXd& blocks, const model::Sweep& sweep) {
   const VectorXd noise_model = covariances.noise_model.diagonal().cwiseSqrt();
-  std::vector<std::string> sentences = describe_disagreement(parameters, noise_model, blocks);
+  std::vector<std::string> sentences =
+      describe_disagreement(parameters, noise_model, blocks, covariances.evidence);
   for (const std::string& sentence :
        {describe_memory(covariances, sweep), describe_strides(covariances, sweep),
         describe_moving(covariances, sweep), describe_rows(sweep)}) {

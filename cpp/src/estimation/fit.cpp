@@ -51,6 +51,17 @@ class Sample {
   std::optional<model::Measurements> excerpt_;
 };
 
+/// Where as many parameters as measurements are free, nothing is left that would tell of the noise:
+/// any readings fit exactly. Empty where some are left, and where the noise was given.
+std::string describe_no_freedom(const Problem& problem, const Covariances& covariances,
+                                std::size_t measurements) {
+  if (problem.noise().size() > 0 || covariances.freedom > 0.0) return "";
+  return std::to_string(measurements) + " measurements for " +
+         std::to_string(problem.parameters().size()) +
+         " parameters leave nothing to judge the fit by: any readings would fit as well (log more, "
+         "or fix parameters)";
+}
+
 void describe(Fit& result, const BlockModel& model, const Problem& problem,
               const model::Measurements& measurements, const StageTwo& two,
               base::ThreadPool& pool) {
@@ -88,6 +99,9 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   result.rows = measurements.rows();
   result.stage_two_passes = two.passes;
   std::vector<std::string> sentences = two.sentences;
+  const std::string no_freedom = describe_no_freedom(
+      problem, covariances, measurements.rows() * problem.model().tables().outputs.size());
+  sentences.push_back(no_freedom);
   sentences.push_back(result.identifiability.message());
   sentences.push_back(describe_other_minima(problem, result.stage_one.minima));
   const bool are_asked_for = problem.options().coloured_errors;  // standard errors
@@ -99,9 +113,10 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
                     std::back_inserter(sentences));
   result.message = base::join_sentences(sentences);
   result.last_passes = sweep.passes();
-  result.status = !result.identifiability.unobservable.empty() ? FitStatus::not_identifiable
-                  : two.converged()                            ? FitStatus::converged
-                                                               : FitStatus::not_converged;
+  const bool is_open = !result.identifiability.unobservable.empty() || !no_freedom.empty();
+  result.status = is_open           ? FitStatus::not_identifiable
+                  : two.converged() ? FitStatus::converged
+                                    : FitStatus::not_converged;
 }
 
 Fit fit_output_error(const BlockModel& model, const Record& record, const FitOptions& given) {

@@ -203,14 +203,18 @@ double correlation_rows(const OutputNoise& noise) {
   return infinity;
 }
 
-std::optional<OutputNoise> find_restricted_noise(const VectorXd& e, const MatrixXd& X,
-                                                 const std::vector<Segment>& runs) {
+namespace {
+
+/// The noise of sums of as many rows as X and e allow; `find(e, X, runs)` finds it.
+template <class Find>
+std::optional<OutputNoise> find_noise_of_sums(const VectorXd& e, const MatrixXd& X,
+                                              const std::vector<Segment>& runs, const Find& find) {
   const Index held = find_held_rows(e, runs);
   const Index stride = std::max(held, find_slow_rows(X, runs));
-  if (stride == 1) return find_noise_of_rows(e, X, runs);
+  if (stride == 1) return find(e, X, runs);
   const SummedRows sums(e, runs, stride);
   std::optional<OutputNoise> noise =
-      find_noise_of_rows(sums.columns, SummedRows(X, runs, stride).columns, sums.runs);
+      find(sums.columns, SummedRows(X, runs, stride).columns, sums.runs);
   if (!noise) return noise;
   if (held == 1 && is_white(*noise) && is_as_large(sums.columns, e)) {
     return white_noise(std::sqrt(e.squaredNorm() / static_cast<double>(e.size() - X.cols())));
@@ -218,6 +222,30 @@ std::optional<OutputNoise> find_restricted_noise(const VectorXd& e, const Matrix
   noise->stride = stride;
   noise->held = held;
   return noise;
+}
+
+}  // namespace
+
+std::optional<OutputNoise> find_restricted_noise(const VectorXd& e, const MatrixXd& X,
+                                                 const std::vector<Segment>& runs) {
+  return find_noise_of_sums(e, X, runs, find_noise_of_rows);
+}
+
+std::optional<OutputNoise> find_noise_by_itself(const VectorXd& e, const MatrixXd& X,
+                                                const std::vector<Segment>& runs) {
+  return find_noise_of_sums(
+      e, X, runs,
+      [](const VectorXd& rows, const MatrixXd& columns, const std::vector<Segment>& of_rows) {
+        std::optional<OutputNoise> noise =
+            find_noise_of_rows(rows, MatrixXd(rows.size(), 0), of_rows);
+        if (noise) {
+          noise->moves_with_columns = true;
+          const auto count = static_cast<double>(rows.size());
+          const double left = std::max(1.0, count - static_cast<double>(columns.cols()));
+          std::visit([&](auto& model) { model.sigma *= std::sqrt(count / left); }, noise->model);
+        }
+        return noise;
+      });
 }
 
 std::vector<std::optional<OutputNoise>> find_output_noise(const std::vector<MatrixXd>& tangents,

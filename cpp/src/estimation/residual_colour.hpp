@@ -48,6 +48,10 @@ bool is_white(const OutputNoise& noise);
 std::optional<OutputNoise> find_restricted_noise(const Eigen::VectorXd& e, const Eigen::MatrixXd& X,
                                                  const std::vector<Segment>& runs);
 
+/// The same from the residual by itself: X says no more than how many rows may be summed.
+std::optional<OutputNoise> find_noise_by_itself(const Eigen::VectorXd& e, const Eigen::MatrixXd& X,
+                                                const std::vector<Segment>& runs);
+
 /// That of every output, `columns` of its tangent [A | D | r] and its column of `residuals`; none
 /// where that column's root mean square is below `rounding` (n_z).
 std::vector<std::optional<OutputNoise>> find_output_noise(

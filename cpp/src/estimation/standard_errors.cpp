@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/standard_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -97,14 +98,16 @@ MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, con
   return covariance;
 }
 
-/// The noise model's covariance, but with the blocks' errors where these are more than `from` times
-/// as large: what a noise model can't say makes its errors too small; blocks that don't see slow
-/// noise make theirs too small.
-MatrixXd believe(const MatrixXd& noise_model, const VectorXd& blocks, double from) {
-  VectorXd scale = VectorXd::Ones(blocks.size());
+/// The noise model's covariance, with each error as near to it as the blocks' evidence allows, and
+/// the blocks' errors where these are more than `from` times as large: what a noise model can't say
+/// makes its errors too small.
+MatrixXd believe(const Covariances& covariances, const VectorXd& blocks, double from) {
+  const MatrixXd& noise_model = covariances.noise_model;
+  VectorXd scale(blocks.size());
   for (Index k = 0; k < blocks.size(); ++k) {
+    scale[k] = covariances.evidence.allowed(k);
     const double ratio = blocks[k] / std::sqrt(noise_model(k, k));
-    if (ratio > from) scale[k] = ratio;
+    if (ratio > from) scale[k] = std::max(scale[k], ratio);
   }
   return scale.asDiagonal() * noise_model * scale.asDiagonal();
 }
@@ -123,7 +126,7 @@ StandardErrors find_standard_errors(const Problem& problem, const model::Sweep& 
   if (!defined || !problem.options().coloured_errors) return errors;
   errors.blocks = block_covariance(problem, sweep, two, covariances);
   const VectorXd blocks = errors.blocks.diagonal().cwiseSqrt();
-  errors.believed = believe(covariances.noise_model, blocks, believed_from(covariances));
+  errors.believed = believe(covariances, blocks, believed_from(covariances));
   std::vector<std::string> names;
   for (const Index at : covariances.inside) {
     names.push_back(problem.parameters()[static_cast<std::size_t>(at)].name);

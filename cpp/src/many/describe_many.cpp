@@ -140,6 +140,13 @@ class Description {
                             " other flights");
       }
     }
+    if (std::isnan(covariance_.ratio)) {
+      open = true;
+      sentences.emplace_back(
+          "the flights have no more measurements than parameters, which leaves nothing to judge "
+          "the "
+          "fit by (log more, or fix parameters)");
+    }
     result_.status = open                 ? FitStatus::not_identifiable
                      : stage_.converged() ? FitStatus::converged
                                           : FitStatus::not_converged;

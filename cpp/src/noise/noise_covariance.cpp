@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What follows from a noise model: draws of it, and X' Sigma X. Where the level is free the noise
-// is zero n rows before a segment of n rows; with V(h) the variance of its change over h rows,
-//   cov(e_s, e_t) = [V(s + n) + V(t + n) - V(|t - s|)] / 2.
+// What follows from a noise model: draws of it, and X' Sigma X.
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "noise/arfima_factor.hpp"
-#include "noise/noise_autocovariance.hpp"
 #include "noise/noise_room.hpp"
-#include "numerics/toeplitz.hpp"
+#include "noise/stationary_lags.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -32,17 +30,6 @@ void draw_normals(std::mt19937_64& generator, Ref<VectorXd> out) {
     out[i] = radius * std::cos(angle);
     if (i + 1 < out.size()) out[i + 1] = radius * std::sin(angle);
   }
-}
-
-/// V(0), ..., V(most) of differences with autocovariance gamma (most of them or more).
-VectorXd find_variogram(const VectorXd& gamma, Index most) {
-  VectorXd variogram = VectorXd::Zero(most + 1);
-  double slope = gamma[0];
-  for (Index h = 0; h < most; ++h) {
-    if (h > 0) slope += 2.0 * gamma[h];
-    variogram[h + 1] = variogram[h] + slope;
-  }
-  return variogram;
 }
 
 /// The sizes of `innovations` with the signs of `x`; x where they are zero.
@@ -96,36 +83,20 @@ MatrixXd covariance_product(const NoiseModel& model, const std::vector<Segment>&
                             const Ref<const MatrixXd>& X) {
   check_noise_model(model);
   const std::vector<Index> lengths = find_lengths(segments);
-  Index rows = 0;
-  Index longest = 0;
-  for (const Index length : lengths) {
-    rows += length;
-    longest = std::max(longest, length);
-  }
+  const Index rows = std::accumulate(lengths.begin(), lengths.end(), Index{0});
   if (X.rows() != rows) {
     throw Error("X has " + std::to_string(X.rows()) + " rows; the segments have " +
                 std::to_string(rows));
   }
-  const bool free = model.level_is_free();
-  const VectorXd gamma =
-      find_moments(model.d - (free ? 1.0 : 0.0), model.phi, 2 * longest).autocovariance;
-  const VectorXd variogram = free ? find_variogram(gamma, 2 * longest) : VectorXd();
+  const StationaryLags lags(model, lengths);
   MatrixXd product = MatrixXd::Zero(X.cols(), X.cols());
   Index first = 0;
   for (const Index n : lengths) {
     const auto part = X.middleRows(first, n);
     first += n;
-    if (free) {
-      // The first row follows n - 1 steps after a row at zero: 2n - 1 changes reach the last row.
-      const MatrixXd since = part.transpose() * variogram.segment(n, n);
-      const MatrixXd both = since * part.colwise().sum();
-      product += 0.5 * (both + both.transpose()) -
-                 0.5 * part.transpose() * numerics::multiply_toeplitz(variogram, part);
-    } else {
-      product += part.transpose() * numerics::multiply_toeplitz(gamma, part);
-    }
+    product += part.transpose() * lags.multiply(part, n, 0);
   }
-  return model.sigma * model.sigma * 0.5 * (product + product.transpose());
+  return 0.5 * (product + product.transpose());
 }
 
 }  // namespace sepcal

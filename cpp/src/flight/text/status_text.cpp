@@ -22,7 +22,7 @@ constexpr int serious = 1;  // a sentence that isn't listed
 
 /// How bad it is, least is worst: what nothing determines, what failed, what is poorly determined,
 /// what was done about it.
-constexpr std::array<std::pair<std::string_view, int>, 11> ranks{{
+constexpr std::array<std::pair<std::string_view, int>, 12> ranks{{
     {" can't be told apart", 0},
     {" can't be determined", 0},
     {" is not determined", 0},
@@ -30,6 +30,7 @@ constexpr std::array<std::pair<std::string_view, int>, 11> ranks{{
     {" fell back to joint", 3},
     {"standard errors are a lower bound", 3},
     {" is by blocks of the record", 3},
+    {" is what blocks of the record allow", 3},
     {" is by the noise model", 3},
     {" rows count as one", 3},
     {"gaps cut the record", 3},
