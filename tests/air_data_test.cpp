@@ -100,24 +100,38 @@ TEST_CASE("airspeed_scale[d^2] and airspeed_bias[d]: V + s phi v and V + s phi, 
                    row_by_row("b_va", "throttle", [](double d) { return 2.0 * d; })) < 1e-11);
 }
 
-TEST_CASE("pressure_offset[d]: the airspeed of (pt - ps) + s phi, the angles as they were read") {
-  const auto expected = [](const NamedValues& values) {
+namespace {
+
+/// A total pressure that is higher by `more` of the driver; the flow angles stay.
+template <class More>
+auto with_pressure(const char* driver, const More& more) {
+  return [=](const NamedValues& values) {
     auto pt = column("pt");
     auto dpa = column("dpa");
     auto dpb = column("dpb");
     const auto ps = column("ps");
-    const auto throttle = column("throttle");
+    const auto d = column(driver);
     for (std::size_t k = 0; k < pt.size(); ++k) {
       const double before = pt[k] - ps[k];
-      pt[k] += 40.0 * (throttle[k] - 0.2);
+      pt[k] += more(d[k]);
       dpa[k] *= (pt[k] - ps[k]) / before;
       dpb[k] *= (pt[k] - ps[k]) / before;
     }
     const Record changed = with_column(with_column(record, "pt", pt), "dpa", dpa);
     return predict_host(with_column(changed, "dpb", dpb), values);
   };
+}
+
+}  // namespace
+
+TEST_CASE("pressure_offset[d]: the airspeed of (pt - ps) + s phi, the angles as they were read") {
   CHECK(difference(PressureOffset<"throttle">{0.2}, {{"pressure_offset[throttle].s", 40.0}},
-                   expected) < 1e-10);
+                   with_pressure("throttle", [](double d) { return 40.0 * (d - 0.2); })) < 1e-10);
+}
+
+TEST_CASE("pressure_offset: the same by a constant") {
+  CHECK(difference(PressureZero{}, {{"pressure_offset.s", 25.0}},
+                   with_pressure("throttle", [](double) { return 25.0; })) < 1e-10);
 }
 
 TEST_CASE("alpha_offset[d] and beta_offset[d]: the angle as read + s phi") {

@@ -57,10 +57,10 @@ TEST_CASE("the ports and effects that every user relies on are there") {
     return std::ranges::any_of(effect_catalogue(model),
                                [&](const auto& effect) { return effect.name == name; });
   };
-  for (const char* name :
-       {"wind[DRIVER]", "airspeed_scale[DRIVER]", "airspeed_bias[DRIVER]",
-        "pressure_offset[DRIVER]", "alpha_offset[DRIVER]", "beta_offset[DRIVER]", "heading_bias",
-        "time_offset", "pneumatic_lag", "lever_arm", "wind_shear", "wind_drift", "propwash"}) {
+  for (const char* name : {"wind[DRIVER]", "airspeed_scale[DRIVER]", "airspeed_bias[DRIVER]",
+                           "pressure_offset[DRIVER]", "pressure_offset", "alpha_offset[DRIVER]",
+                           "beta_offset[DRIVER]", "heading_bias", "time_offset", "pneumatic_lag",
+                           "lever_arm", "wind_shear", "wind_drift", "propwash"}) {
     CAPTURE(name);
     CHECK(has("five-hole", name));
   }

@@ -31,7 +31,7 @@ TEST_CASE("an effect means the same on every probe that has it") {
       CAPTURE(row.port.name);
       const auto sentence = describe_effect(table, row.port.name + "[throttle]");
       CHECK(sentence.ends_with(" with throttle"));
-      CHECK(sentences.try_emplace(row.port.name, sentence).first->second == sentence);
+      CHECK(sentences.try_emplace(row.port.name + "[]", sentence).first->second == sentence);
     }
   }
 }
@@ -39,6 +39,9 @@ TEST_CASE("an effect means the same on every probe that has it") {
 TEST_CASE("a sentence says what changes, and with what") {
   const EffectTable& air = effect_table("five-hole");
   CHECK(describe_effect(air, "wind[altitude_m]") == "the wind changes with altitude_m");
+  CHECK(describe_effect(air, "pressure_offset") == "the zero of the pressure difference is off");
+  CHECK(describe_effect(air, "pressure_offset[q]") ==
+        "the pressure difference is off, changing with q");
   CHECK(describe_effect(air, "wind[maneuver]") == "the wind is another one in every maneuver");
   CHECK(describe_effect(air, "wind[time^2]+time_offset") ==
         "the wind changes with time^2, and the sensor's time is late");

@@ -170,7 +170,7 @@ TEST_CASE("what an effect needs and the flight doesn't log is named") {
   refused("alpha_offset[q]", {"effect alpha_offset[q]", "'q' is constant"});
   refused("wind[flaps]", {"effect wind[flaps]", "no channel 'flaps'", "the record has: time, "});
   refused("lift", {"there is no effect 'lift'; known: wind[driver], ", "upwash", "wind_shear"});
-  refused("wind", {"there is no effect 'wind'"});
+  refused("wind", {"effect 'wind' needs a driver: write wind[time] or wind[COLUMN]"});
 }
 
 TEST_CASE("effects in time leave out the rows that they would have to guess at") {

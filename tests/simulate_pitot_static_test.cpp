@@ -78,6 +78,8 @@ TEST_CASE("effects act at the tube") {
                   t.offset = 12.0 * values(flight, "throttle");
                   t.scale = 0.1 * values(flight, "q_radps");
                 });
+  check_effects({{"pressure_offset", {9.0}}},
+                [](const SimulatedFlight&, Tube& t) { t.offset += 9.0; });
   check_effects({{"icing_ramp", {-5e-4}}}, [](const SimulatedFlight& flight, Tube& t) {
     t.scale = -5e-4 * since_third(flight).max(0.0);
   });

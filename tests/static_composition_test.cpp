@@ -77,6 +77,14 @@ const Twin airspeed_bias{
 const Twin pressure_offset{
     PressureOffset<"throttle", 3>{0.2},
     driven("pressure_offset[throttle^3]", {"throttle", ""}, 0.2, 3, "pressure_offset", "Pa")};
+const Twin pressure_zero{
+    PressureZero{}, [] {
+      Effect effect{.name = "pressure_offset"};
+      effect.corrections.push_back(sepcal::driven_inputs(
+          "pressure_offset", sepcal::constant_driver(),
+          {{"s", Variable(sepcal::port("pressure_offset", "Pa"))}}, "Pa", 30.0));
+      return effect;
+    }()};
 const Twin alpha_offset{AlphaOffset<"flap">{},
                         driven("alpha_offset[flap]", {"flap", ""}, 0, 1, "alpha_offset", "rad")};
 const Twin beta_offset{BetaOffset<"q">{},
@@ -150,6 +158,7 @@ TEST_CASE("five-hole: pairs in both orders, of terms, of corrections and of one 
   const Record record = five_hole_record();
   check_pair(five_holes, record, wind, airspeed_scale);
   check_pair(five_holes, record, pressure_offset, heading_bias);
+  check_pair(five_holes, record, pressure_zero, pressure_offset);
   check_pair(five_holes, record, lever_arm, heading_bias);  // the term sees the corrected yaw
 }
 

@@ -48,6 +48,8 @@ CASES = [
     ),
     Case("five-hole", "pressure_offset[current_a^n]", 4.0),
     Case("five-hole", "compressibility", 1.0),
+    Case("five-hole", "pressure_offset", 20.0),
+    Case("pitot-static", "pressure_offset", 30.0),
     Case("pitot-static", "wind[spline(time,4)]", (1, 0.5, -1, 0.3, -0.4, 0.8)),
     Case("magnetometer", "bias[spline(time,4)]", 1.0),
     Case("magnetometer-norm", "bias[current_a]", (0.3, -0.2, 0.25)),

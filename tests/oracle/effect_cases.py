@@ -154,6 +154,7 @@ ON_AIRSPEED = (
     driven("airspeed_scale[throttle]", ICING, about_zero("throttle"), 0.08),
     driven("airspeed_bias[current_a]", {"s": "airspeed_bias"}, about_zero("current_a"), 0.06),
     driven("pressure_offset[throttle]", {"s": "pressure_offset"}, about_zero("throttle"), 30.0),
+    plain("pressure_offset", {"s": "pressure_offset"}, 20.0),
     driven("icing_ramp", ICING, lambda _: drivers.ramp(), -0.006, 20.0),
     stepped("water_blockage", ICING, -0.06),
     plain("density_error", {"s": "temperature_error"}, 20.0),

@@ -88,7 +88,8 @@ struct Delay {
 
 struct Effect {
   std::string name;
-  // Of an effect `port[driver]`: where it enters, and the coefficients' components.
+  // Of an effect `port[driver]`: where it enters, and the coefficients' components; of a constant
+  // on a port no driver.
   std::string port = {};
   DriverPointer driver = {};
   std::vector<std::string> components = {};

@@ -95,7 +95,8 @@ VectorXd port_total(const std::vector<Effect>& effects, const std::string& port,
   for (const Effect& effect : effects) {
     if (effect.port != port) continue;
     if (std::ranges::find(effect.components, component) == effect.components.end()) continue;
-    const Driver& driver = *effect.driver;
+    const DriverPointer known = effect.driver ? effect.driver : constant_driver();
+    const Driver& driver = *known;
     const double shape =
         driver.shape() ? base::value_of(values, effect.name + "." + driver.shape()->name) : 0.0;
     VectorXd s(driver.functions());

@@ -41,7 +41,11 @@ Effect make_effect(const EffectKit& kit, const BlockModel& model, EffectSetting&
   const auto own = kit.own.find(name.text);
   if (own != kit.own.end()) return own->second(model, setting, record);
   const auto port = std::ranges::find(kit.ports, name.port, &Port::name);
-  if (port == kit.ports.end() || name.shape == EffectName::Shape::none) {
+  if (port != kit.ports.end() && name.shape == EffectName::Shape::none) {
+    throw Error("effect '" + name.text + "' needs a driver: write " + name.text + "[time] or " +
+                name.text + "[COLUMN]");
+  }
+  if (port == kit.ports.end()) {
     if (setting.known) {
       throw Error("effect '" + name.text +
                   "' is not in the catalogue; if it is one of your own, it can be used only where "

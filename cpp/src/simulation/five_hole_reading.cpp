@@ -19,6 +19,7 @@ constexpr KnownEffect effects[] = {
     {"airspeed_scale", "airspeed_scale", "*", "s"},
     {"airspeed_bias", "airspeed_bias", "*", "s"},
     {"pressure_offset", "pressure_offset", "*", "s"},
+    {"pressure_offset", "pressure_offset", "", "s"},
     {"alpha_offset", "alpha_offset", "*", "s"},
     {"beta_offset", "beta_offset", "*", "s"},
     {"heading_bias", "heading_bias", "", "delta"},

@@ -22,6 +22,7 @@ constexpr KnownEffect tube_effects[] = {
     {"airspeed_scale", "airspeed_scale", "*", "s"},
     {"airspeed_bias", "airspeed_bias", "*", "s"},
     {"pressure_offset", "pressure_offset", "*", "s"},
+    {"pressure_offset", "pressure_offset", "", "s"},
     {"time_offset", "time_offset", "", "tau"},
     {"pneumatic_lag", "pneumatic_lag", "", "tau"},
     {"density_error", "density_error", "", "s"},

@@ -27,6 +27,9 @@ using AirspeedBias = Follows<"airspeed_bias", driver, power, "m/s", Component<"s
 template <Text driver, int power = 1>
 using PressureOffset = Shifts<"pressure_offset", driver, power, "Pa">;
 
+/// (pt - ps) + s [Pa] there: the zero of the pressure difference is off.
+using PressureZero = ShiftsAlways<"pressure_offset", "Pa">;
+
 /// alpha + s phi, alpha as read [rad].
 template <Text driver, int power = 1>
 using AlphaOffset = Shifts<"alpha_offset", driver, power, "rad">;
@@ -91,7 +94,7 @@ struct MountingError {
 }  // namespace sepcal::effects
 
 /// Effects on a Pitot-static tube (PitotStatic): what the tube makes of the air. Its pressure's
-/// offset is PressureOffset.
+/// offset is PressureOffset, a constant one PressureZero.
 namespace sepcal::effects::tube {
 
 /// V = (1 + s phi) V_met + ...

@@ -98,6 +98,19 @@ struct Shifts {
   }
 };
 
+/// An input that is off by a constant: u + s.
+template <Text port, Text unit>
+struct ShiftsAlways {
+  static constexpr int corrected = 1;
+  static constexpr std::array inputs{sepcal::port(port.view(), unit.view())};
+  static constexpr std::array nonlinear{Quantity{Joined<port, ".s">::view, unit.view()}};
+
+  template <class T>
+  Vec<T, 1> correct(const Vec<T, 1>& u, const Vec<T, 1>& xi2) const {
+    return u + xi2;
+  }
+};
+
 /// Several inputs that follow a driver, each with a coefficient of its own: u_i + sign s_i phi.
 template <Text name, Text driver, int power, Text unit, int sign, class... Components>
 struct ShiftsEach {

@@ -36,13 +36,38 @@ PortRow airspeed_bias_row(const Port& port, const std::vector<Form>& forms) {
   return {.port = port, .sentence = "the airspeed's bias changes", .forms = forms};
 }
 
-PortRow pressure_offset_row(const std::vector<Form>& forms) {
+namespace {
+
+Port pressure_offset() {
   Port port = on_input("pressure_offset", "Pa", 1000.0);
   port.constant_is_own = false;  // the models have a constant error of airspeed, not of pressure
-  return {.port = std::move(port),
+  return port;
+}
+
+/// A constant has no driver whose mean could be taken away: all of it is the effect.
+EffectKit::Maker without_driver(const EffectKit::Maker& maker) {
+  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
+    Effect effect = maker(model, setting, record);
+    effect.driver = nullptr;
+    return effect;
+  };
+}
+
+}  // namespace
+
+PortRow pressure_offset_row(const std::vector<Form>& forms) {
+  return {.port = pressure_offset(),
           .sentence = "the pressure difference is off, changing",
           .forms = forms,
           .channels = {"rho"}};
+}
+
+EffectRow pressure_zero_row(const std::string& equation) {
+  const Port port = pressure_offset();
+  return {.entry = {port.name, equation, "density", port.unit},
+          .sentence = "the zero of the pressure difference is off",
+          .maker = without_driver(constant_on(port)),
+          .better_with = {"rho"}};
 }
 
 EffectRow icing_ramp_row(const std::string& equation, const Port& airspeed_scale) {

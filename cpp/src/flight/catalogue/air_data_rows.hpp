@@ -17,6 +17,9 @@ PortRow airspeed_scale_row(const Port& port, const std::vector<Form>& forms);
 PortRow airspeed_bias_row(const Port& port, const std::vector<Form>& forms);
 PortRow pressure_offset_row(const std::vector<Form>& forms);
 
+/// The pressure's zero is off: a constant on that port.
+EffectRow pressure_zero_row(const std::string& equation);
+
 EffectRow icing_ramp_row(const std::string& equation, const Port& airspeed_scale);
 EffectRow water_blockage_row(const std::string& equation, const Port& airspeed_scale);
 

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/catalogue/effect_makers.hpp"
 
+#include "sepcal/error.hpp"
+
 namespace sepcal::catalogue {
 
 EffectKit::Maker renamed(const std::string& means, const Port& port) {
   return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
     return make_named(setting.name, parse_effect_name(means), port, model, setting, record);
+  };
+}
+
+EffectKit::Maker constant_on(const Port& port) {
+  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
+    return make_driven(setting.name, port, constant_driver(), port.unit, model, record);
   };
 }
 

@@ -17,6 +17,9 @@ inline constexpr double largest_scale = 0.5;       // of what is scaled
 /// An effect that is another one under its own name: `means` is "bias[step(time)]", `port` bias.
 EffectKit::Maker renamed(const std::string& means, const Port& port);
 
+/// A constant on a port where the model has none.
+EffectKit::Maker constant_on(const Port& port);
+
 /// An effect in time with the one parameter tau, within +-bound [s].
 EffectKit::Maker in_time(Delay::Kind kind, double bound,
                          const std::vector<std::string>& inputs = {});

@@ -165,6 +165,7 @@ EffectTable five_hole_effects() {
        .sentence = "the roll rate turns the flow at the probe",
        .channels = {"p", "rho"},
        .maker = by_rate(beta_offset, "p")},
+      pressure_zero_row("v from (pt - ps) + s, angles as read"),
       icing_ramp_row("V + s (t - t0)+ v, t0 fitted", airspeed_scale),
       water_blockage_row("V + s v from t0 on, t0 by a scan", airspeed_scale),
       {.entry = {"mounting_error", "C_b^n R_z(yaw) R_y(pitch): b_alpha, b_beta absorb it",

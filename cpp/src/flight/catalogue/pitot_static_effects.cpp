@@ -44,6 +44,7 @@ EffectTable pitot_static_effects() {
        .sentence = "the temperature behind the density is off",
        .channels = {"temperature"},
        .maker = temperature_error(airspeed_scale)},
+      pressure_zero_row("rho V^2 / 2 = rho V_met^2 / 2 + s"),
       icing_ramp_row("V = V_met + s (t - t0)+ V_met, t0 fitted", airspeed_scale),
       water_blockage_row("V = V_met + s V_met from t0 on, t0 by a scan", airspeed_scale)};
   table.aliases = air_data_aliases("throttle, density");

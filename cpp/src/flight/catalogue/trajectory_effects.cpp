@@ -24,13 +24,6 @@ constexpr std::array<const char*, 3> body_axes{"x", "y", "z"};
 const std::vector<std::string> force_inputs{"ax", "ay", "az"};
 const std::vector<std::string> rate_inputs{"p", "q", "r"};
 
-/// A constant on a port.
-EffectKit::Maker constant_on(const Port& port) {
-  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
-    return make_driven(setting.name, port, constant_driver(), port.unit, model, record);
-  };
-}
-
 Port scales(const std::string& name, const std::vector<std::string>& inputs) {
   Port port{.name = name,
             .unit = "1",

@@ -112,7 +112,7 @@ class Description {
     sum += (sum.empty() ? "" : " + ") + expression;
   }
 
-  /// Coefficients of a driver of one function, on every component of a port.
+  /// Coefficients of a driver of one function, on every component of a port; without `x` constants.
   void add_coefficients(const EffectSetting& setting, const std::string& port,
                         const std::vector<std::string>& components, const std::string& x) {
     std::vector<double> values;
@@ -127,7 +127,7 @@ class Description {
         fmt::format("{}, {}{}", setting.name, unit, components.size() > 1 ? ", x y z" : ""));
     for (std::size_t i = 0; i < components.size(); ++i) {
       const std::string element = components.size() > 1 ? fmt::format("{}[{}]", s, i) : s;
-      share(port + "." + components[i], fmt::format("{} * {}", element, x));
+      share(port + "." + components[i], x.empty() ? element : fmt::format("{} * {}", element, x));
     }
   }
 
@@ -230,6 +230,8 @@ class Description {
     if (setting.name == "cubic_nonlinearity") {
       result_.is_cubic = true;
       add_cubic();
+    } else if (setting.name == "pressure_offset") {
+      add_coefficients(setting, setting.name, {"s"}, "");
     } else if (setting.name == "density_error") {
       const std::string x = local(fmt::format("0.5 / {}", channel("temperature")), setting.name);
       add_coefficients(setting, five_hole ? "reading_scale" : "airspeed_scale", {"s"}, x);

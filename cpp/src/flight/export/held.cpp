@@ -21,8 +21,7 @@
 namespace sepcal::exporting {
 namespace {
 
-constexpr const char* constant_offset = "pressure_offset";  // Pa, of the refit alone
-constexpr double largest_offset = 1000.0;                   // Pa
+constexpr const char* constant_offset = "pressure_offset";  // Pa
 
 /// A column that an autopilot compensates the motors by.
 struct MotorColumn {
@@ -53,6 +52,11 @@ const MotorColumn* motor_of(const Calibration& calibration, const EffectSetting&
   if (name.port != "bias" || !straight) return nullptr;
   const auto* const found = std::ranges::find(motor_columns, name.base, &MotorColumn::header);
   return found == motor_columns.end() ? nullptr : found;
+}
+
+/// Whether it is the constant by which the tube's pressure is off.
+bool is_zero_of_tube(const Calibration& calibration, const EffectSetting& setting) {
+  return setting.name == constant_offset && !calibration.options.own_effects.contains(setting.name);
 }
 
 void forget(std::string_view prefix, FitOptions& fit) {
@@ -98,17 +102,6 @@ void hold_entries(const Calibration& calibration, std::map<std::string, double>&
   }
 }
 
-/// The pressure in the tube is off by a constant.
-EffectKit::Maker constant_pressure() {
-  return [](const BlockModel& model, EffectSetting& setting, Record& record) {
-    const Port port{.name = constant_offset,
-                    .unit = "Pa",
-                    .components = {{.name = "s", .input = constant_offset}},
-                    .plausible = largest_offset};
-    return make_driven(setting.name, port, constant_driver(), port.unit, model, record);
-  };
-}
-
 }  // namespace
 
 void check_held(const Calibration& calibration, ExportTarget target) {
@@ -116,6 +109,7 @@ void check_held(const Calibration& calibration, ExportTarget target) {
   const EffectSetting* motor = nullptr;
   for (const EffectSetting& setting : calibration.options.effects) {
     if (!acts_on_reading(calibration, setting)) continue;
+    if (is_zero_of_tube(calibration, setting)) continue;
     const bool held = is_magnetometer(calibration) && motor_of(calibration, setting) != nullptr;
     if (held && motor == nullptr) {
       motor = &setting;
@@ -174,8 +168,10 @@ Calibration refit_held(const Calibration& calibration, const Flight& flight,
     hold_entries(calibration, held.fit.fixed);
     held.free.clear();
   } else {
-    held.own_effects[constant_offset] = constant_pressure();
-    held.effects.push_back({.name = constant_offset});
+    const auto has_zero = [](const EffectSetting& one) { return one.name == constant_offset; };
+    if (std::ranges::none_of(held.effects, has_zero)) {
+      held.effects.push_back({.name = constant_offset});
+    }
     forget("c_va", held.fit);
     std::erase(held.free, "c_va");
     held.fit.fixed["c_va"] = 0.0;
