@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal-mag: calibrates three-axis magnetometers.
+#include <optional>
+
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
@@ -21,10 +23,22 @@ class Magnetometer final : public Instrument {
     fit.add_option("--field-strength", strength_,
                    "its strength alone [uT]: no attitude is needed, and no rotation is seen")
         ->type_name("F");
+    mounting_option_ =
+        fit.add_option("--mounting", mounting_,
+                       "how the sensor is turned against the body [deg], as autopilots have it; "
+                       "alone: to be found in the flight")
+            ->type_name("ROLL,PITCH,YAW")
+            ->expected(0, 1);
   }
 
   std::shared_ptr<const Probe> probe(const Flight& /*flight*/) const override {
     if (!strength_.empty()) {
+      if (is_mounting_given()) {
+        throw Error(
+            "--mounting is of no use to --field-strength: a strength is the same however the "
+            "sensor "
+            "is turned; leave it out");
+      }
       if (!field_.empty()) {
         throw Error(
             "--field and --field-strength contradict each other; keep --field where the attitude "
@@ -32,8 +46,9 @@ class Magnetometer final : public Instrument {
       }
       return attitude_independent_probe(parse_value("--field-strength", strength_));
     }
-    if (field_.empty()) return magnetometer_probe(std::nullopt);
-    return magnetometer_probe(parse_field());
+    std::optional<std::array<double, 3>> field;
+    if (!field_.empty()) field = parse_field();
+    return magnetometer_probe(field, parse_mounting());
   }
 
   void add_flight_options(CLI::App& verb) override { add_field(verb); }
@@ -45,7 +60,10 @@ class Magnetometer final : public Instrument {
       throw Error(
           "--field is of no use to a calibration against the field's strength alone; leave it out");
     }
-    return magnetometer_probe(parse_field());
+    auto settings = fitted->settings();
+    const std::array<double, 3> field = parse_field();
+    settings["field"] = {field.begin(), field.end()};
+    return make_probe(fitted->name(), settings);
   }
 
   void add_simulation_options(CLI::App& /*simulate*/) override {}
@@ -65,8 +83,22 @@ class Magnetometer final : public Instrument {
     return parse_triple("--field", field_, "19.7,-1.4,49.4 (north, east, down in uT)");
   }
 
+  bool is_mounting_given() const {
+    return mounting_option_ != nullptr && !mounting_option_->empty();
+  }
+
+  /// Nothing where the flight is to show it.
+  std::optional<Mounting> parse_mounting() const {
+    if (!is_mounting_given()) return Mounting{};
+    if (mounting_.empty() || mounting_ == "estimate") return std::nullopt;
+    return parse_triple("--mounting", mounting_,
+                        "0,0,90 (roll, pitch, yaw in degrees), or alone, after the flight");
+  }
+
   std::string field_;
   std::string strength_;
+  std::string mounting_;
+  CLI::Option* mounting_option_ = nullptr;
 };
 
 }  // namespace

@@ -2958,6 +2958,7 @@ def magnetometer(
         collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
     ]
     | None,
+    arg1: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] | None,
 ) -> Model: ...
 def magnetometer_in_nine_states(
     arg0: typing.SupportsFloat | typing.SupportsIndex,

@@ -79,6 +79,8 @@ def fit(
         core = _core.calibrate(model._core, data._core, core_options, own)
         return Calibration(core, data, [e for e in effects if isinstance(e, Effect)])
     refuse_log_choice(options)
+    if getattr(model, "mounting", None) is not None:
+        raise _core.Error("mounting turns the readings of a Flight; turn these yourself")
     data = by_name(data)
     there = set(data)
     needed = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]

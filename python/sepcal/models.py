@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -178,28 +178,51 @@ class Magnetometer(Model):
         field: The Earth's field, north, east, down [uT]; None where the flight logs it.
         field_strength: Only |h| [uT] is known: no attitude is needed, and a rotation, C_eta, can't
             be seen. Every parameter is nonlinear; the output `field` is zero in every row.
+        mounting: Roll, pitch, yaw [deg] by which the sensor is turned against the body, as
+            autopilots have it: a Flight's readings are turned so before anything else.
+            "estimate": as the flight of a fit shows it.
 
     Raises:
-        Error: Both are given, or the strength is not positive.
+        Error: Two of these contradict each other, or the strength is not positive.
     """
 
-    def __init__(self, field: Vector | None = None, *, field_strength: float | None = None) -> None:
+    def __init__(
+        self,
+        field: Vector | None = None,
+        *,
+        field_strength: float | None = None,
+        mounting: Vector | Literal["estimate"] | None = None,
+    ) -> None:
         if field is not None and field_strength is not None:
             raise _core.Error("field and field_strength contradict each other; give one")
+        if mounting is not None and field_strength is not None:
+            raise _core.Error(
+                "mounting is of no use to field_strength: a strength is the same however the "
+                "sensor is turned; leave it out"
+            )
+        if isinstance(mounting, str) and mounting != "estimate":
+            raise _core.Error(f'mounting is {mounting!r}; give three angles [deg] or "estimate"')
         strength_alone = ", north, east, down, or the field's strength alone as field_strength"
         self.field = None if field is None else _to_vector("field", field, strength_alone)
         self.field_strength = None if field_strength is None else float(field_strength)
+        self.mounting = (
+            mounting
+            if mounting is None or isinstance(mounting, str)
+            else _to_vector("mounting", mounting, ': roll, pitch, yaw [deg], or "estimate"')
+        )
         self.name = "magnetometer" if self.field_strength is None else "magnetometer-norm"
+        turned = () if self.mounting == "estimate" else self.mounting
         super().__init__(
-            _core.magnetometer(self.field)
+            _core.magnetometer(self.field, turned)
             if self.field_strength is None
             else _core.attitude_independent_magnetometer(self.field_strength)
         )
 
-    def _settings(self) -> dict[str, float | tuple[float, ...]]:
+    def _settings(self) -> dict[str, Any]:
         if self.field_strength is not None:
             return {"field_strength": self.field_strength}
-        return {} if self.field is None else {"field": self.field}
+        given = {"field": self.field, "mounting": self.mounting}
+        return {name: value for name, value in given.items() if value is not None}
 
 
 def _to_vector(name: str, values: Vector, otherwise: str = "") -> tuple[float, float, float]:

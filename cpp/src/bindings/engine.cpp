@@ -206,8 +206,13 @@ void define_engine(py::module_& module) {
   module.def("attitude_independent_magnetometer", [](double field_strength) {
     return Model(std::shared_ptr<const Probe>(attitude_independent_probe(field_strength)));
   });
-  module.def("magnetometer", [](const std::optional<Vector>& field) {
-    return Model(std::shared_ptr<const Probe>(magnetometer_probe(field)));
+  // `mounting`: none, a sensor in body axes; empty, to be found in the flight; or three angles.
+  module.def("magnetometer", [](const std::optional<Vector>& field,
+                                const std::optional<std::vector<double>>& mounting) {
+    std::map<std::string, std::vector<double>> settings;
+    if (field) settings["field"] = {field->begin(), field->end()};
+    if (mounting) settings["mounting"] = *mounting;
+    return Model(std::shared_ptr<const Probe>(make_probe("magnetometer", settings)));
   });
   py::class_<PythonFunctions>(module, "PythonFunctions")
       .def(py::init<py::object, py::object, py::object, py::object>(), "gather"_a, "at"_a,

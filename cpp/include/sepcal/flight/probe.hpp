@@ -77,6 +77,13 @@ class Probe {
   /// lever_arm {0.35, 0, -0.02}. make_probe() takes them back.
   virtual std::map<std::string, std::vector<double>> settings() const = 0;
 
+  /// Where something of the instrument is to be found in the flight of a fit: the same probe, with
+  /// that. Else nullptr. Throws Error as prepare() does, and where the flight doesn't show it.
+  virtual std::unique_ptr<const Probe> settle(const Flight& /*flight*/,
+                                              const LogChoice& /*log*/) const {
+    return nullptr;
+  }
+
   /// What a fit takes of a flight; throws Error as prepare_five_hole() and its like do.
   virtual ProbeRecord prepare(const Flight& flight, const LogChoice& log) const = 0;
 
@@ -110,6 +117,9 @@ class Probe {
   /// Adds what only the probe knows to a fit's status, message and unobservable combinations.
   virtual void judge(Fit& fit) const;
 
+  /// What another setting would make of a fit's record, where that is far better; else nothing.
+  virtual std::string suggest(const Fit& /*fit*/, const Record& /*record*/) const { return {}; }
+
   virtual std::vector<DerivedQuantity> derive(const Fit& fit) const;
 
   /// The estimates of the probe's own parameters in other forms.
@@ -124,8 +134,11 @@ std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
 /// A plain tube; w_d is held at zero.
 std::unique_ptr<const Probe> pitot_static_probe();
 
-/// The Earth's field, north, east, down [uT], or nothing where the flight logs it.
-std::unique_ptr<const Probe> magnetometer_probe(const std::optional<std::array<double, 3>>& field);
+/// The Earth's field, north, east, down [uT], or nothing where the flight logs it; how the sensor
+/// is mounted, or nothing where the flight of a fit is to show it (settle()).
+std::unique_ptr<const Probe> magnetometer_probe(
+    const std::optional<std::array<double, 3>>& field,
+    const std::optional<Mounting>& mounting = Mounting{});
 
 /// The field's strength [uT] alone, and the sensor's noise [uT] where it is known already. A fit
 /// begins with the ellipsoid of the readings. Throws Error where the strength is not positive or

@@ -75,12 +75,18 @@ ProbeRecord prepare_pitot_static(const Flight& flight, const LogChoice& log = {}
 /// prepare_pitot_static() does for these columns.
 ProbeReadings read_pitot_static(const Flight& flight, const LogChoice& log = {});
 
+/// Roll, pitch and yaw [deg] by which a sensor is turned against the body: m_body = R m_sensor, R
+/// the 3-2-1 sequence of docs/notation.md from the sensor's axes to the body's.
+using Mounting = std::array<double, 3>;
+
 struct MagnetometerColumns {
   std::optional<std::array<double, 3>> field;  // north, east, down [uT]: instead of logged columns
   LogChoice log = {};
+  Mounting mounting = {};
 };
 
-/// time [s]; mx, my, mz [uT]; hx, hy, hz [uT], the true field in body axes: logged, or from roll,
+/// time [s]; mx, my, mz [uT], turned into body axes where the sensor is mounted otherwise; hx, hy,
+/// hz [uT], the true field in body axes: logged, or from roll,
 /// pitch, yaw [rad] and the field bn, be, bd [uT], logged or given (then it replaces logged
 /// columns, with a note). What of attitude, rates p, q, r [rad/s] and bn, be, bd is there is kept
 /// as well. Throws Error as prepare_five_hole() does, and where none of these ways to the true
@@ -93,7 +99,9 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
 ProbeRecord prepare_attitude_independent(const Flight& flight, double field_strength,
                                          const LogChoice& log = {});
 
-/// mx, my, mz [uT] of every row. Throws Error as prepare_magnetometer() does for these columns.
-ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log = {});
+/// mx, my, mz [uT] of every row, turned likewise. Throws Error as prepare_magnetometer() does for
+/// these columns.
+ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log = {},
+                                const Mounting& mounting = {});
 
 }  // namespace sepcal

@@ -58,6 +58,17 @@ TakenRows take_what_can_be(const Probe& probe, const Flight& flight, const LogCh
   }
 }
 
+/// With what the flight shows of the instrument; nullptr where that is nothing, or can't be found,
+/// which prepare() says too.
+std::unique_ptr<const Probe> settled_by(const Probe& probe, const Flight& flight,
+                                        const LogChoice& choice) {
+  try {
+    return probe.settle(flight, choice);
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
 /// What a fit would make of the flight.
 void describe_use(const Probe& probe, const Flight& flight, const LogChoice& choice,
                   const std::function<std::string(const std::string& name)>& spell,
@@ -75,8 +86,10 @@ void describe_use(const Probe& probe, const Flight& flight, const LogChoice& cho
 
 }  // namespace
 
-FlightCheck check(const Probe& probe, const Flight& logged, const LogChoice& choice,
+FlightCheck check(const Probe& given, const Flight& logged, const LogChoice& choice,
                   const std::function<std::string(const std::string& name)>& spell) {
+  const std::unique_ptr<const Probe> settled = settled_by(given, logged, choice);
+  const Probe& probe = settled ? *settled : given;
   const ReadFlight read = read_as(logged, choice);
   const Flight& flight = read.flight;
   FlightCheck check{.model = std::string(probe.name()),

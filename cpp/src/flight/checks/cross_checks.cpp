@@ -172,8 +172,10 @@ void note_field_axes(const Log& log, const FieldRows& field, std::vector<LogNote
   note.found = fmt::format(
       "{} follow the true field as ({}): correlation {:.2f} against {:.2f} as they stand",
       list_headers(field.headers), better->axes, better->agreement, better->agreement_as_logged);
-  note.effect = "no calibration turns axes that far: misalignments end at their bounds";
-  note.advice = "swap the columns or their signs in the log so; or check the attitude's signs";
+  note.effect = "no misalignment turns axes that far: they end at their bounds";
+  note.advice =
+      "swap the columns or their signs in the log so, or give how the sensor is mounted; "
+      "or check the attitude's signs";
   notes.push_back(std::move(note));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "flight/probes/air_columns.hpp"
+#include "flight/probes/mounting.hpp"
 #include "numerics/order_statistics.hpp"
 #include "sepcal/compiled_models.hpp"
 #include "sepcal/models/pitot_static.hpp"
@@ -55,6 +56,13 @@ TrueField find_true_field(const Log& log, const Settings& settings) {
   const auto set = settings.find("field");
   if (set != settings.end()) field.given = Vector3d(set->second[0], set->second[1], set->second[2]);
   return field;
+}
+
+/// From the sensor's axes to the body's.
+Eigen::Matrix3d find_turn(const Settings& settings) {
+  const auto set = settings.find("mounting");
+  if (set == settings.end() || set->second.empty()) return Eigen::Matrix3d::Identity();
+  return probes::turn_by({set->second[0], set->second[1], set->second[2]});
 }
 
 }  // namespace
@@ -110,11 +118,12 @@ std::optional<FieldRows> find_field(const Log& log, const Settings& settings) {
   if (read.empty()) return std::nullopt;
   const TrueField field = find_true_field(log, settings);
   const bool known = log.flight().rows() > 0 && field.at(0).has_value();
+  const Eigen::Matrix3d turn = find_turn(settings);
   std::vector<Vector3d> readings;
   std::vector<Vector3d> truths;
   std::vector<double> strengths;
   for (std::size_t row = 0; row < log.flight().rows(); ++row) {
-    const Vector3d reading = vector_at(read, row);
+    const Vector3d reading = turn * vector_at(read, row);
     const Vector3d truth = field.at(row).value_or(Vector3d::Zero());
     if (!reading.allFinite() || !truth.allFinite()) continue;
     readings.push_back(reading);

@@ -31,7 +31,8 @@ std::optional<Airspeed> find_airspeed(const Log& log);
 /// Rows in which the vehicle moves: faster than a share of what nine rows in ten don't exceed.
 std::vector<std::size_t> find_moving_rows(const std::vector<double>& speed, double share);
 
-/// The field read and the true one in body axes [uT], 3 x N, in the rows that have both.
+/// The field read, turned as the settings say that the sensor is mounted, and the true one in body
+/// axes [uT], 3 x N, in the rows that have both.
 struct FieldRows {
   Eigen::Matrix3Xd read;
   Eigen::Matrix3Xd truth;             // empty where the log and the settings don't say it

@@ -11,6 +11,7 @@
 #include <memory>
 #include <ranges>
 
+#include "flight/export/bodies.hpp"
 #include "flight/export/fit_for_use.hpp"
 #include "flight/export/header_text.hpp"
 #include "flight/export/loss.hpp"
@@ -148,9 +149,11 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
 }  // namespace
 
 Exported export_calibration(const Calibration& calibration, const Flight* flight,
-                            const ExportOptions& options) {
-  refuse_five_hole(calibration, options);
-  refuse_idle(calibration, options);
+                            const ExportOptions& asked) {
+  refuse_five_hole(calibration, asked);
+  refuse_idle(calibration, asked);
+  ExportOptions options = asked;
+  if (!options.mounting) options.mounting = mounting_of(calibration);
   const Calibration given = of_one_flight(calibration, flight, options);
   check_without(given, options.without);
   if (!options.force) check_fit_for_use(given, "the calibration");

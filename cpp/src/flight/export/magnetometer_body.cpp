@@ -21,18 +21,23 @@ std::vector<double> rows_of(const Eigen::Matrix3d& matrix) {
   return values;
 }
 
-/// What is left of the readings without n and the biases.
-std::string unbiased(const Correction& correction, const Dialect& dialect) {
+/// What is left of the readings, in body axes, without n and the biases.
+std::string unbiased(bool is_turned, const Correction& correction, const Dialect& dialect) {
   std::string text = "  double u[3];\n";
   for (std::size_t i = 0; i < 3; ++i) {
-    text += fmt::format("  u[{0}] = m_ut[{0}] - ({1}[{0}]{2});\n", i, dialect.constant("n"),
+    std::string read = fmt::format("m_ut[{}]", i);
+    if (is_turned) {
+      read = fmt::format("{0}[{1}][0] * m_ut[0] + {0}[{1}][1] * m_ut[1] + {0}[{1}][2] * m_ut[2]",
+                         dialect.constant("turn"), i);
+    }
+    text += fmt::format("  u[{0}] = {1} - ({2}[{0}]{3});\n", i, read, dialect.constant("n"),
                         correction.added(std::string("bias.") + axes[i]));
   }
   return text;
 }
 
-std::string at_once(const Correction& correction, const Dialect& dialect) {
-  std::string text = unbiased(correction, dialect);
+std::string at_once(bool is_turned, const Correction& correction, const Dialect& dialect) {
+  std::string text = unbiased(is_turned, correction, dialect);
   for (int i = 0; i < 3; ++i) {
     text +=
         fmt::format("  h_ut[{0}] = {1}[{0}][0] * u[0] + {1}[{0}][1] * u[1] + {1}[{0}][2] * u[2];\n",
@@ -42,8 +47,8 @@ std::string at_once(const Correction& correction, const Dialect& dialect) {
 }
 
 /// Newton's steps, each solved by Cramer's rule.
-std::string stepwise(const Correction& correction, const Dialect& dialect) {
-  std::string text = unbiased(correction, dialect);
+std::string stepwise(bool is_turned, const Correction& correction, const Dialect& dialect) {
+  std::string text = unbiased(is_turned, correction, dialect);
   text += "  double A[3][3];\n  int i;\n  int step;\n";
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -100,21 +105,26 @@ ProbeBody magnetometer_body(const FieldMatrix& field, bool up_to_rotation,
   if (up_to_rotation) body.summary += ", up to a rotation that its strength does not show";
   body.readings = {{"m_ut", 3, {"mx_ut", "my_ut", "mz_ut"}, "uT, the field as read, x y z"}};
   body.outputs = {{"h_ut", 3, {"mx_cal_ut", "my_cal_ut", "mz_cal_ut"}, "uT, the field, x y z"}};
+  const bool is_turned = field.turn != Eigen::Matrix3d::Identity();
+  if (is_turned) {
+    body.summary += "; m is turned from the sensor's axes into the body's first";
+    body.constants.push_back({"turn", rows_of(field.turn), 3, "the mounting, 1, row by row"});
+  }
   body.constants.push_back({"n", {field.n[0], field.n[1], field.n[2]}, 0, "n, uT, x y z"});
   const bool follows_field = correction.is_cubic || correction.has("scale.s") ||
                              correction.has("axis_scale.x") || correction.has("axis_scale.y") ||
                              correction.has("axis_scale.z");
   if (follows_field) {
     body.constants.push_back({"C", rows_of(field.C), 3, "C, 1, row by row"});
-    body.text = stepwise(correction, dialect);
+    body.text = stepwise(is_turned, correction, dialect);
   } else {
     body.constants.push_back({"inverse", rows_of(field.C.inverse()), 3, "C^-1, 1, row by row"});
-    body.text = at_once(correction, dialect);
+    body.text = at_once(is_turned, correction, dialect);
   }
   const std::array fields{Eigen::Vector3d(20.0, -5.0, 45.0), Eigen::Vector3d(-25.0, 15.0, -35.0),
                           Eigen::Vector3d(5.0, 30.0, 20.0)};
   for (const Eigen::Vector3d& h : fields) {
-    const Eigen::Vector3d m = field.C * h + field.n;
+    const Eigen::Vector3d m = field.turn.transpose() * (field.C * h + field.n);
     body.trials.push_back({m[0], m[1], m[2]});
   }
   return body;

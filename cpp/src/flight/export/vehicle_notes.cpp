@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "flight/export/bodies.hpp"
 #include "flight/export/parameters.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -64,6 +65,18 @@ void note_airspeed(bool as_speed, const ExportOptions& options, std::vector<std:
             "pressure already");
 }
 
+/// Of a sensor whose readings the calibration turns into body axes first.
+void note_mounting(const Mounting& mounting, const ExportOptions& options,
+                   std::vector<std::string>& notes) {
+  const bool px4 = options.target == ExportTarget::px4;
+  const std::string parameter =
+      px4 ? fmt::format("CAL_MAG{}_ROT", options.sensor.value_or(0)) : "the compass's ORIENT";
+  notes.push_back(fmt::format(
+      "the sensor is turned by roll {:.6g}, pitch {:.6g}, yaw {:.6g} deg: {} has to say "
+      "so, which is not in the file",
+      mounting[0], mounting[1], mounting[2], parameter));
+}
+
 }  // namespace
 
 bool reads_airspeed(const Calibration& calibration, const Flight& flight) {
@@ -96,6 +109,7 @@ std::vector<std::string> vehicle_notes(const Calibration& calibration, const Fli
   } else {
     note_ardupilot_field(held, notes);
   }
+  if (const auto mounting = mounting_of(calibration)) note_mounting(*mounting, options, notes);
   if (held.motor != Motor::none) {
     notes.push_back(
         fmt::format("{} is set, which switches the compensation by {} on for every {}",

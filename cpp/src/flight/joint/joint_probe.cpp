@@ -115,6 +115,12 @@ FitOptions JointProbe::complete(const FitOptions& options, const Record& record)
   return completed;
 }
 
+std::unique_ptr<const Probe> JointProbe::settle(const Flight& flight, const LogChoice& log) const {
+  std::unique_ptr<const Probe> settled = one_->settle(flight, log);
+  if (!settled) return nullptr;
+  return std::make_unique<const JointProbe>(std::move(settled), setup_);
+}
+
 std::unique_ptr<const Probe> JointProbe::with_noise(double standard_deviation) const {
   std::unique_ptr<const Probe> changed = one_->with_noise(standard_deviation);
   if (!changed) return nullptr;

@@ -32,6 +32,7 @@ class JointProbe final : public Probe {
   std::string_view app() const override { return one_->app(); }
   const BlockModel& model() const override { return model_; }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }
+  std::unique_ptr<const Probe> settle(const Flight& flight, const LogChoice& log) const override;
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
     return one_->prepare(flight, log);
   }
@@ -49,6 +50,9 @@ class JointProbe final : public Probe {
   FitOptions complete(const FitOptions& options, const Record& record) const override;
   std::unique_ptr<const Probe> with_noise(double standard_deviation) const override;
   void judge(Fit& fit) const override { one_->judge(fit); }
+  std::string suggest(const Fit& fit, const Record& record) const override {
+    return one_->suggest(fit, record);
+  }
   std::vector<DerivedQuantity> derive(const Fit& fit) const override;
   std::vector<Restatement> restate(const Fit& fit) const override;
 

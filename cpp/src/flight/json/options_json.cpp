@@ -200,7 +200,7 @@ CalibrationOptions read_options(const Json& options) {
 std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options) {
   std::map<std::string, std::vector<double>> settings;
   for (const char* name :
-       {"k_alpha", "k_beta", "lever_arm", "field", "field_strength", "field_noise"}) {
+       {"k_alpha", "k_beta", "lever_arm", "field", "mounting", "field_strength", "field_noise"}) {
     if (!options.contains(name)) continue;
     const Json& value = options.at(name);
     settings[name] = value.is_array() ? value.get<std::vector<double>>()

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "flight/probes/mounting.hpp"
 #include "flight/probes/record_builder.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/option_error.hpp"
@@ -70,6 +71,25 @@ void use_logged_field(RecordBuilder& builder) {
                    std::size_t row) { return Vector{bn.at(row), be.at(row), bd.at(row)}; });
 }
 
+/// The readings, turned into body axes where the sensor is mounted otherwise.
+void need_field_read(RecordBuilder& builder, const Mounting& mounting) {
+  if (mounting == Mounting{}) {
+    builder.need({"mx", "my", "mz"});
+    return;
+  }
+  builder.consult({"mx", "my", "mz"});
+  constexpr std::array<const char*, 3> names{"mx", "my", "mz"};
+  const Eigen::Matrix3d turn = turn_by(mounting);
+  for (std::size_t axis = 0; axis < names.size(); ++axis) {
+    builder.compute(names[axis],
+                    [row_of_turn = Eigen::RowVector3d(turn.row(static_cast<int>(axis))),
+                     x = builder.logged("mx"), y = builder.logged("my"),
+                     z = builder.logged("mz")](std::size_t row) {
+                      return row_of_turn.dot(Eigen::Vector3d(x.at(row), y.at(row), z.at(row)));
+                    });
+  }
+}
+
 /// Whether a row's is another strength [uT] than the one given, by more than it is known by.
 bool differs(const LoggedQuantity& logged, std::size_t rows, double field_strength) {
   constexpr double known_by = 1e-3;
@@ -84,7 +104,8 @@ bool differs(const LoggedQuantity& logged, std::size_t rows, double field_streng
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
   if (options.field) check_field(*options.field);
   RecordBuilder builder(flight, quantities_of("magnetometer"), options.log);
-  builder.need({"time", "mx", "my", "mz"});
+  builder.need({"time"});
+  need_field_read(builder, options.mounting);
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
   if (options.field) {
     use_given_field(builder, *options.field);
@@ -136,9 +157,10 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, double field_stre
   return builder.finish();
 }
 
-ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log) {
+ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log,
+                                const Mounting& mounting) {
   RecordBuilder builder(flight, quantities_of("magnetometer"), log);
-  builder.need({"mx", "my", "mz"});
+  need_field_read(builder, mounting);
   builder.keep_valid();
   return builder.finish_readings();
 }

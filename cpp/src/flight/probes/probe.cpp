@@ -37,8 +37,11 @@ std::unique_ptr<const Probe> make_probe(std::string_view name, const Settings& s
   }
   if (name == "pitot-static") return pitot_static_probe();
   if (name == "magnetometer") {
-    if (!settings.contains("field")) return magnetometer_probe(std::nullopt);
-    return magnetometer_probe(setting<3>(settings, "field"));
+    std::optional<std::array<double, 3>> field;
+    if (settings.contains("field")) field = setting<3>(settings, "field");
+    if (!settings.contains("mounting")) return magnetometer_probe(field);
+    if (settings.at("mounting").empty()) return magnetometer_probe(field, std::nullopt);
+    return magnetometer_probe(field, setting<3>(settings, "mounting"));
   }
   if (name == "magnetometer-norm") {
     const double strength = setting<1>(settings, "field_strength")[0];

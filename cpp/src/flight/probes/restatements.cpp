@@ -89,6 +89,15 @@ std::optional<Restatement> restate_correction(const Matrix3d& C, const Eigen::Ve
                   {"b_ut", {b.data(), b.data() + b.size()}}}};
 }
 
+Restatement restate_mounting(const std::array<double, 3>& angles) {
+  const auto [roll, pitch, yaw] = angles;
+  return {
+      .name = "mounting",
+      .sentence = fmt::format("the sensor is turned by roll {:.6g}, pitch {:.6g}, yaw {:.6g} deg",
+                              roll, pitch, yaw),
+      .numbers = {{"angles_deg", {roll, pitch, yaw}}}};
+}
+
 Restatement restate_ratio(double lambda, double bias) {
   const double factor = (1.0 + lambda) * (1.0 + lambda);
   return {.name = "airspeed_ratio",

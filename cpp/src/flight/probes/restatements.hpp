@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 
 #include "sepcal/fit.hpp"
@@ -17,6 +18,9 @@ std::optional<Restatement> restate_wind(const Fit& fit);
 /// h = A (m - b) of m = C h + b: A row by row, b [uT], and h in body axes. Nothing where C has no
 /// inverse.
 std::optional<Restatement> restate_correction(const Eigen::Matrix3d& C, const Eigen::Vector3d& b);
+
+/// How a sensor is turned, by roll, pitch and yaw [deg].
+Restatement restate_mounting(const std::array<double, 3>& angles);
 
 /// ArduPilot's ratio, which holds a scale alone, for a tube whose reading V is corrected to
 /// (1 + lambda) V + bias.

@@ -278,6 +278,11 @@ Calibration calibrate_within(std::shared_ptr<const Probe> probe, const PreparedF
       calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0}, std::move(probe),
                    std::move(held));
   note_edges(prepared.readings.record, effective, options.fit, calibration.notes);
+  std::string suggestion =
+      flight.is_mapped() ? "" : calibration.probe->suggest(calibration.fit, record);
+  if (!suggestion.empty()) {
+    calibration.notes.push_back(flight.name() + ": " + std::move(suggestion));
+  }
   return calibration;
 }
 
@@ -313,6 +318,9 @@ Calibration try_beyond(Calibration within, const std::shared_ptr<const Probe>& p
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
                       const CalibrationOptions& options) {
   if (flight.is_mapped()) check_streamed(options);
+  if (std::shared_ptr<const Probe> settled = probe->settle(flight, options.log)) {
+    probe = std::move(settled);
+  }
   const PreparedFlight prepared = prepare(*probe, flight, options.log);
   std::vector<std::string> notes;
   note_check(*probe, prepared, options, notes);
