@@ -100,6 +100,19 @@ TEST_CASE("a fitted exponent: max(d, 0)^n and its slope") {
   check_slope(*driver, d, 1.3, 1e-8);
 }
 
+TEST_CASE("levels: a function a threshold, one from there on and below the next") {
+  const auto driver = sepcal::levels_driver(channel, {-1.0, 10.0, 30.0});
+  CHECK(driver->suffixes() == std::vector<std::string>{"_2", "_3", "_4"});
+  const MatrixXd phi = evaluate(*driver, {-1.1, -1.0, 9.9, 10.0, 29.0, 30.0, 1e9}, 0.0, 3).values;
+  MatrixXd expected = MatrixXd::Zero(7, 3);
+  expected(1, 0) = expected(2, 0) = expected(3, 1) = expected(4, 1) = 1.0;
+  expected(5, 2) = expected(6, 2) = 1.0;
+  CHECK(phi == expected);
+  CHECK_THROWS_WITH_AS(sepcal::levels_driver(channel, {}),
+                       "levels of 'd' take thresholds that rise", sepcal::Error);
+  CHECK_THROWS_AS(sepcal::levels_driver(channel, {2.0, 1.0}), sepcal::Error);
+}
+
 TEST_CASE("a spline's functions are zero at the first knot and one at their own") {
   const DriverPointer driver = sepcal::spline_driver(channel, {0, 1, 3, 4});
   CHECK(driver->suffixes() == std::vector<std::string>{"_2", "_3", "_4"});

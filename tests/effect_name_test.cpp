@@ -118,8 +118,8 @@ TEST_CASE("a function that is none is refused with those that there are") {
     check_no_name(
         std::string("wind[") + driver + "]",
         {driver,
-         "is no driver; known: x, x^2, x^n, x*y, abs(x), spline(x,k), step(time), ramp(time), "
-         "decay(time), delay(x)"});
+         "is no driver; known: x, x^2, x^n, x*y, abs(x), spline(x,k), levels(x,a,b), step(time), "
+         "ramp(time), decay(time), delay(x)"});
   }
 }
 
@@ -131,6 +131,23 @@ TEST_CASE("a spline needs a number of knots from 3 to 1000") {
   }
 }
 
+TEST_CASE("levels are told by thresholds that rise") {
+  const EffectName one = parse_effect_name("wind[levels(altitude_m, 1300)]");
+  CHECK(one.text == "wind[levels(altitude_m,1300)]");
+  CHECK(one.base == "altitude_m");
+  CHECK(one.shape == Shape::levels);
+  CHECK(one.thresholds == std::vector<double>{1300.0});
+  const EffectName two = parse_effect_name("pressure_offset[levels(temp_degc,-2.5,3e1)]");
+  CHECK(two.thresholds == std::vector<double>{-2.5, 30.0});
+  CHECK(driver_channels(two) == std::vector<std::string>{"temp_degc"});
+  for (const char* driver :
+       {"levels(time)", "levels(time,)", "levels(time,2,1)", "levels(time,1,1)", "levels(time,one)",
+        "levels(time,1,)", "levels(time,nan)", "levels(time,inf)"}) {
+    check_no_name(std::string("wind[") + driver + "]",
+                  {"write levels as levels(x,a,b) with thresholds that rise"});
+  }
+}
+
 TEST_CASE("steps, ramps and decays take time, and the refusal says how to write them") {
   check_no_name("bias[step(altitude_m)]", {"step takes time: write step(time)"});
   check_no_name("bias[ramp()]", {"ramp takes time: write ramp(time)"});
@@ -138,11 +155,11 @@ TEST_CASE("steps, ramps and decays take time, and the refusal says how to write 
 }
 
 TEST_CASE("a driver without a channel is refused, and so is arithmetic on a label") {
-  for (const char* text : {"wind[^2]", "wind[delay()]", "wind[spline(,6)]"}) {
+  for (const char* text : {"wind[^2]", "wind[delay()]", "wind[spline(,6)]", "wind[levels(,6)]"}) {
     check_no_name(text, {"the driver names no channel"});
   }
   for (const char* text : {"wind[maneuver^2]", "wind[maneuver^n]", "wind[spline(maneuver,6)]",
-                           "wind[delay(maneuver)]"}) {
+                           "wind[levels(maneuver,1)]", "wind[delay(maneuver)]"}) {
     check_no_name(text, {"maneuver is a label, not a number; write port[maneuver]"});
   }
 }

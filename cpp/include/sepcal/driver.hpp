@@ -69,6 +69,10 @@ DriverPointer exponent_driver(Variable input);
 DriverPointer spline_driver(Variable input, std::vector<double> knots,
                             const std::vector<double>& means = {}, bool bends_alone = false);
 
+/// phi_j = 1 where d lies from the threshold j = 1, 2, ... on and below the next (one a function).
+/// `thresholds` rise.
+DriverPointer levels_driver(Variable input, std::vector<double> thresholds);
+
 /// phi_j = 1 where d is the code j = 1, 2, ...; `labels` are those of the codes 0, 1, 2, ...
 DriverPointer category_driver(Variable input, const std::vector<std::string>& labels);
 

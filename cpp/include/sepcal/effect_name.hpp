@@ -17,6 +17,7 @@ struct EffectName {
     product,   // "x*y^2", "x*abs(x)"
     exponent,  // "x^n"
     spline,    // "spline(x,k)"
+    levels,    // "levels(x,a,b)"
     step,      // "step(time)"
     ramp,      // "ramp(time)"
     decay,     // "decay(time)"
@@ -29,6 +30,7 @@ struct EffectName {
   Shape shape = Shape::none;
   int number = 1;                           // the power, or how many knots
   std::vector<ChannelFactor> factors = {};  // of a product
+  std::vector<double> thresholds = {};      // between levels, rising
 };
 
 /// Throws Error for a text that is no name, saying what the forms are.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/driver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -82,6 +83,26 @@ class SplineDriver final : public Driver {
  private:
   SplineBasis basis_;
   Eigen::RowVectorXd means_;
+};
+
+class LevelsDriver final : public Driver {
+ public:
+  LevelsDriver(Variable input, std::vector<double> thresholds)
+      : Driver(std::move(input), numbered(static_cast<int>(thresholds.size()))),
+        thresholds_(std::move(thresholds)) {}
+
+  void evaluate(const double* d, std::size_t /*first*/, double /*shape*/, Ref<MatrixXd> values,
+                MatrixXd* slopes) const override {
+    values.setZero();
+    for (Index i = 0; i < values.rows(); ++i) {
+      const Index level = std::ranges::upper_bound(thresholds_, d[i]) - thresholds_.begin();
+      if (level > 0) values(i, level - 1) = 1.0;
+    }
+    if (slopes != nullptr) slopes->setZero();
+  }
+
+ private:
+  std::vector<double> thresholds_;
 };
 
 class CategoryDriver final : public Driver {
@@ -174,6 +195,13 @@ DriverPointer spline_driver(Variable input, std::vector<double> knots,
                             const std::vector<double>& means, bool bends_alone) {
   return std::make_shared<const SplineDriver>(std::move(input), SplineBasis(std::move(knots)),
                                               means, bends_alone);
+}
+
+DriverPointer levels_driver(Variable input, std::vector<double> thresholds) {
+  if (thresholds.empty() || !std::ranges::is_sorted(thresholds)) {
+    throw Error("levels of '" + input.name + "' take thresholds that rise");
+  }
+  return std::make_shared<const LevelsDriver>(std::move(input), std::move(thresholds));
 }
 
 DriverPointer category_driver(Variable input, const std::vector<std::string>& labels) {

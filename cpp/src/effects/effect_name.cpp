@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -16,7 +17,8 @@ using Shape = EffectName::Shape;
 
 constexpr int most_knots = 1000;
 
-constexpr std::array<std::pair<std::string_view, Shape>, 5> functions{{{"spline", Shape::spline},
+constexpr std::array<std::pair<std::string_view, Shape>, 6> functions{{{"spline", Shape::spline},
+                                                                       {"levels", Shape::levels},
                                                                        {"step", Shape::step},
                                                                        {"ramp", Shape::ramp},
                                                                        {"decay", Shape::decay},
@@ -39,6 +41,30 @@ std::optional<int> parse_count(std::string_view digits) {
   return value;
 }
 
+/// The channel; the thresholds after it go to the name.
+std::string_view read_thresholds(EffectName& name, std::string_view arguments) {
+  const std::size_t comma = arguments.find(',');
+  std::string_view rest = comma == std::string_view::npos ? "" : arguments.substr(comma);
+  while (!rest.empty()) {
+    rest.remove_prefix(1);
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    double value = 0.0;
+    const auto [read, error] = std::from_chars(rest.data(), rest.data() + end, value);
+    const bool is_number =
+        error == std::errc{} && read == rest.data() + end && std::isfinite(value);
+    if (!is_number || (!name.thresholds.empty() && !(value > name.thresholds.back()))) {
+      name.thresholds.clear();
+      break;
+    }
+    name.thresholds.push_back(value);
+    rest.remove_prefix(end);
+  }
+  if (name.thresholds.empty()) {
+    refuse(name.text, "write levels as levels(x,a,b) with thresholds that rise");
+  }
+  return arguments.substr(0, comma);
+}
+
 /// "name(arguments)".
 void read_function(EffectName& name, std::string_view driver, std::size_t open) {
   const auto* const function =
@@ -46,7 +72,7 @@ void read_function(EffectName& name, std::string_view driver, std::size_t open) 
   if (function == functions.end() || driver.back() != ')') {
     refuse(name.text, "'" + std::string(driver) +
                           "' is no driver; known: x, x^2, x^n, x*y, abs(x), spline(x,k), "
-                          "step(time), ramp(time), decay(time), delay(x)");
+                          "levels(x,a,b), step(time), ramp(time), decay(time), delay(x)");
   }
   name.shape = function->second;
   std::string_view arguments = driver.substr(open + 1, driver.size() - open - 2);
@@ -60,6 +86,7 @@ void read_function(EffectName& name, std::string_view driver, std::size_t open) 
     name.number = *knots;
     arguments = arguments.substr(0, comma);
   }
+  if (name.shape == Shape::levels) arguments = read_thresholds(name, arguments);
   name.base = arguments;
   const bool of_time =
       name.shape == Shape::step || name.shape == Shape::ramp || name.shape == Shape::decay;

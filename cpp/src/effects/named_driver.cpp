@@ -163,6 +163,17 @@ DriverPointer make_spline(const EffectName& name, const Variable& channel,
   return spline_driver(channel, setting.knots, setting.means, has_line);
 }
 
+DriverPointer make_levels(const EffectName& name, const Variable& channel,
+                          const std::vector<double>& values, const EffectSetting& setting) {
+  const auto [lowest, highest] = std::ranges::minmax(values);
+  const bool within = lowest < name.thresholds.front() && name.thresholds.back() <= highest;
+  if (!setting.known && !within) {
+    throw Error("effect " + name.text + ": its thresholds are not within the values of '" +
+                name.base + "', " + std::to_string(lowest) + " to " + std::to_string(highest));
+  }
+  return levels_driver(channel, name.thresholds);
+}
+
 DriverPointer make_power(const EffectName& name, const Variable& channel,
                          const std::vector<double>& values, bool about_mean,
                          EffectSetting& setting) {
@@ -201,6 +212,7 @@ DriverPointer make_named_driver(const EffectName& name, const Port& port, Effect
   }
   const Variable channel(name.base, name.base == "time" ? "s" : "");
   const std::vector<double> values = selected(record, name.base);
+  if (name.shape == Shape::levels) return make_levels(name, channel, values, setting);
   if (name.shape == Shape::spline) return make_spline(name, channel, values, port, setting);
   if (name.shape == Shape::exponent) return exponent_driver(channel);
   if (name.shape == Shape::delay) return delay_driver(channel, record, longest_delay);

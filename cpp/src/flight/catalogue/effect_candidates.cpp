@@ -25,10 +25,18 @@ std::vector<std::string> list_drivers(const Record& record, const Flight& flight
 
 }  // namespace
 
+std::vector<std::string> list_channels(const Record& record, const Flight& flight) {
+  std::vector<std::string> channels = list_drivers(record, flight);
+  std::erase(channels, "time");
+  return channels;
+}
+
 std::string describe_driver(const EffectName& name) {
   switch (name.shape) {
     case EffectName::Shape::spline:
       return fmt::format("smoothly with {}", name.base);
+    case EffectName::Shape::levels:
+      return fmt::format("in steps of {}", name.base);
     case EffectName::Shape::power:
       return name.number > 1 ? fmt::format("with {}^{}", name.base, name.number)
                              : fmt::format("with {}", name.base);

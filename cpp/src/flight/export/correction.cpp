@@ -143,6 +143,10 @@ class Description {
       add_spline(setting, name, components);
       return;
     }
+    if (name.shape == Shape::levels) {
+      add_levels(setting, name, components);
+      return;
+    }
     const std::string x =
         name.shape == Shape::exponent ? exponent(setting, name) : power(setting, name);
     add_coefficients(setting, name.port, components, x);
@@ -220,6 +224,36 @@ class Description {
                 constant("values_" + of, values, said),
                 constant("curvatures_" + of, curvatures,
                          fmt::format("{}.{}, second derivatives there", setting.name, component))));
+    }
+  }
+
+  /// For every component the constant of the level that the channel is on.
+  void add_levels(const EffectSetting& setting, const EffectName& name,
+                  const std::vector<std::string>& components) {
+    const std::vector<double>& from = name.thresholds;
+    const std::string d = channel(name.base, {from.front() - 1.0, from.front(), from.back() + 1.0});
+    const std::string limits = constant(fmt::format("from_{}", number_), from, setting.name);
+    const auto element = [](const std::string& array, std::size_t size, std::size_t j) {
+      return size > 1 ? fmt::format("{}[{}]", array, j) : array;
+    };
+    for (const std::string& component : components) {
+      std::vector<double> values;
+      std::string unit;
+      for (std::size_t j = 0; j < from.size(); ++j) {
+        const Parameter& s =
+            calibration_.fit[fmt::format("{}.{}_{}", setting.name, component, j + 2)];
+        values.push_back(s.value);
+        unit = s.unit;
+      }
+      const std::string s =
+          constant(fmt::format("level_{}_{}", component, number_), values,
+                   fmt::format("{}.{} from there on, {}", setting.name, component, unit));
+      std::string value = "0.0";
+      for (std::size_t j = 0; j < from.size(); ++j) {
+        value = fmt::format("{} >= {} ? {} : {}", d, element(limits, from.size(), j),
+                            element(s, from.size(), j), value);
+      }
+      share(name.port + "." + component, fmt::format("({})", value));
     }
   }
 

@@ -10,6 +10,7 @@
 #include "base/short_number.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_candidates.hpp"
+#include "flight/verbs/curved_candidates.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
@@ -36,12 +37,25 @@ OwnEffects all_own(const Calibration& calibration, const OwnEffects& own) {
   return all;
 }
 
-/// Those of the catalogue, or of `only`, that the calibration doesn't have yet.
+/// Those of the catalogue and those that the residual asks for.
+std::vector<std::string> pool_of(const catalogue::EffectTable& table, const DiagnosedFit& fitted,
+                                 const Flight& flight, int threads) {
+  std::vector<std::string> names =
+      catalogue::list_candidates(table, fitted.kit, fitted.record, flight);
+  base::ThreadPool pool(threads);
+  for (std::string& name :
+       find_curved(fitted, catalogue::list_channels(fitted.record, flight), pool)) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+  }
+  return names;
+}
+
+/// Those of the pool, or of `only`, that the calibration doesn't have yet.
 std::vector<std::string> candidates_for(const catalogue::EffectTable& table,
                                         const DiagnosedFit& fitted, const Flight& flight,
-                                        const std::vector<std::string>& only) {
+                                        const DiagnosisOptions& options) {
   std::vector<std::string> names =
-      only.empty() ? catalogue::list_candidates(table, fitted.kit, fitted.record, flight) : only;
+      options.only.empty() ? pool_of(table, fitted, flight, options.threads) : options.only;
   std::erase_if(names, [&](const std::string& name) {
     return std::ranges::find(fitted.effects, name, &EffectSetting::name) != fitted.effects.end();
   });
@@ -70,8 +84,7 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   note_other_flight(calibration, flight, result.notes);
   DiagnosisOptions preferring = options;
   preferring.preferred = catalogued(result.model);
-  result.diagnosis =
-      diagnose(fitted, candidates_for(table, fitted, flight, options.only), preferring);
+  result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight, options), preferring);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(catalogue::describe_effect(table, effect.name));
   }
