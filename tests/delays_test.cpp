@@ -3,6 +3,7 @@
 // are known at any time, their derivatives, and that no row of another segment has a share.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -95,6 +96,32 @@ TEST_CASE("outputs_late: the outputs follow the inputs at t - tau") {
     CHECK(wave.difference_from(std::exp(-i * omega * tau),
                                {in_time("late", Delay::Kind::outputs_late, 0.5)},
                                {{"late.tau", tau}}) < 1e-7);
+  }
+}
+
+TEST_CASE("a clock that drifts is late by a share of tau that grows, and no more at either end") {
+  const Wave wave;
+  const double first = 2.0;
+  const double last = 9.0;
+  for (const auto kind : {Delay::Kind::inputs_late, Delay::Kind::outputs_late}) {
+    Effect drift = in_time("drift", kind, 0.5, {"u"});
+    if (kind == Delay::Kind::outputs_late) drift.delays.front().inputs.clear();
+    drift.delays.front().grows = {first, last};
+    const auto model = compose(block_model(Line{}), {drift}, wave.record);
+    const Record inner = without_edges(wave.record, sepcal::reach({drift}));
+    const double sign = kind == Delay::Kind::inputs_late ? 1.0 : -1.0;
+    for (const double tau : {-0.3, 0.45}) {
+      const NamedValues values{{"drift.tau", tau}, {"s", 2.0}, {"c", 0.3}};
+      VectorXd z(static_cast<Index>(inner.rows()));
+      const std::size_t begin = inner.segments().front().first;
+      for (Index k = 0; k < z.size(); ++k) {
+        const double t = wave.time[begin + static_cast<std::size_t>(k)];
+        const double share = std::min(1.0, std::max(0.0, (t - first) / (last - first)));
+        z[k] = 0.3 + 2.0 * std::sin(omega * (t + sign * tau * share));
+      }
+      CHECK(difference(*model, inner, values, z) < 1e-7);
+      check_tangent(*model, inner, values, 1e-5);
+    }
   }
 }
 

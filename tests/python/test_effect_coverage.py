@@ -17,6 +17,7 @@ SCANNED = (
     "sensor_lag",
     "pneumatic_lag",
     "time_offset",
+    "clock_drift",
 )  # half of it
 
 
@@ -32,7 +33,7 @@ def test_intervals_of_added_effects_cover(probe):
 
 
 def test_every_effect_of_the_catalogue_is_flown():
-    assert len(CASES) == 55
+    assert len(CASES) == 58
 
 
 def test_few_flights_together_show_what_one_parameter_does_not():

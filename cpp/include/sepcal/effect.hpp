@@ -9,10 +9,12 @@
 // static_composition.hpp at compile time).
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sepcal/block_model.hpp"
@@ -84,6 +86,16 @@ struct Delay {
   Kind kind = Kind::outputs_late;
   Variable parameter;               // tau [s] by its whole name, with finite bounds
   std::vector<std::string> inputs;  // of the kinds that act on inputs: which
+  /// Of a clock that drifts, late alone: from none at the first of these times [s] steadily to tau
+  /// at the second, and no further. Empty: tau at all times.
+  std::optional<std::pair<double, double>> grows = {};
+
+  /// The share of tau at a time [s].
+  double share_at(double time) const {
+    if (!grows) return 1.0;
+    const auto [first, last] = *grows;
+    return std::clamp((time - first) / (last - first), 0.0, 1.0);
+  }
 };
 
 struct Effect {

@@ -40,14 +40,14 @@ class PartFinder {
     bool outputs_lag = false;
     for (DelayPart& delay : parts_.delays) {
       if (delay.inputs.empty()) delay.inputs.assign(physical_.begin(), physical_.end());
-      if (delay.kind == Delay::Kind::outputs_lagging) {
+      if (delay.kind() == Delay::Kind::outputs_lagging) {
         if (carries) {
           throw Error("outputs of a model with a state can't lag; let its inputs come early");
         }
         if (outputs_lag) throw Error("the outputs lag in two effects; leave one out");
         outputs_lag = true;
       }
-      if (delay.kind != Delay::Kind::inputs_lagging) continue;
+      if (delay.kind() != Delay::Kind::inputs_lagging) continue;
       for (const int input : delay.inputs) {
         if (lagging.insert(input).second) continue;
         throw Error("input '" + tables_.inputs[static_cast<std::size_t>(input)].name +
@@ -128,7 +128,7 @@ class PartFinder {
   }
 
   void add(const Delay& delay, const std::string& effect) {
-    DelayPart part{delay.kind, nonlinear_++, {}};
+    DelayPart part{delay, nonlinear_++, {}};
     for (const std::string& name : delay.inputs) {
       if (std::ranges::find(tables_.inputs, name, &Variable::name) == tables_.inputs.end()) {
         throw Error("effect " + effect + " acts on the input '" + name +

@@ -36,9 +36,11 @@ struct CorrectionPart {
 };
 
 struct DelayPart {
-  Delay::Kind kind = Delay::Kind::outputs_late;
+  Delay delay;
   int parameter = 0;  // nonlinear
   std::vector<int> inputs;
+
+  Delay::Kind kind() const { return delay.kind; }
 };
 
 struct ComposedParts {

@@ -27,7 +27,7 @@ std::span<const LagNode> nodes_for(const std::vector<DelayPart>& delays) {
                                       LagNode{22.863131736889265, 1.0480011748715153e-09}};
   static constexpr std::array now{LagNode{}};
   const bool lags = std::ranges::any_of(
-      delays, [](const DelayPart& delay) { return delay.kind == Delay::Kind::outputs_lagging; });
+      delays, [](const DelayPart& delay) { return delay.kind() == Delay::Kind::outputs_lagging; });
   return lags ? std::span<const LagNode>(average) : std::span<const LagNode>(now);
 }
 
@@ -39,11 +39,16 @@ std::vector<InputColumn> as_logged(const Block& block) {
 
 }  // namespace
 
-/// What the delays make of one input: u(t + seconds) + lag u'(t + seconds).
+/// What the delays make of one input: u(t + seconds) + lag u'(t + seconds), seconds the sum of
+/// what each takes of its parameter.
 struct InputCorrections::Shift {
-  double seconds = 0.0;
+  struct Rate {
+    const DelayPart* part;
+    double rate;  // d seconds / d parameter, but for the share of a clock that drifts
+  };
+
+  std::vector<Rate> rates = {};
   double lag = 0.0;
-  std::vector<std::pair<int, double>> rates = {};  // d seconds / d parameter
   int lag_parameter = -1;
 };
 
@@ -60,6 +65,10 @@ InputCorrections::InputCorrections(const Tables& tables, const ComposedParts& pa
     interpolated_.emplace(
         input, numerics::InterpolatedColumn(record, variable.name, variable.unit == "rad"));
   }
+  const auto grows = [](const DelayPart& part) { return part.delay.grows.has_value(); };
+  if (std::ranges::none_of(parts.delays, grows)) return;
+  const auto time = record.column("time");
+  time_.assign(time.begin(), time.end());
 }
 
 InputCorrections::Shift InputCorrections::shift_of(int input, const double* xi2,
@@ -67,27 +76,38 @@ InputCorrections::Shift InputCorrections::shift_of(int input, const double* xi2,
   Shift shift;
   for (const DelayPart& delay : parts_.delays) {
     if (std::ranges::find(delay.inputs, input) == delay.inputs.end()) continue;
-    if (delay.kind == Delay::Kind::inputs_lagging) {
+    if (delay.kind() == Delay::Kind::inputs_lagging) {
       shift.lag = xi2[delay.parameter];
       shift.lag_parameter = delay.parameter;
       continue;
     }
-    const double rate = delay.kind == Delay::Kind::inputs_late    ? 1.0
-                        : delay.kind == Delay::Kind::outputs_late ? -1.0
-                                                                  : -node.age;
-    shift.seconds += rate * xi2[delay.parameter];
-    shift.rates.emplace_back(delay.parameter, rate);
+    const double rate = delay.kind() == Delay::Kind::inputs_late    ? 1.0
+                        : delay.kind() == Delay::Kind::outputs_late ? -1.0
+                                                                    : -node.age;
+    shift.rates.push_back({&delay, rate});
   }
   return shift;
+}
+
+double InputCorrections::share_at(const DelayPart& part, std::size_t row) const {
+  return part.delay.grows ? part.delay.share_at(time_[row]) : 1.0;
 }
 
 void InputCorrections::shift_in_time(std::vector<InputColumn>& columns, const Block& block,
                                      const double* xi2, const LagNode& node, int directions) const {
   const auto rows = static_cast<Index>(block.rows);
   std::vector<NaturalSpline::Value> values(block.rows);
+  std::vector<double> seconds(block.rows);
   for (const auto& [input, spline] : interpolated_) {
     const Shift shift = shift_of(input, xi2, node);
-    spline.fill(block.first, shift.seconds, values);
+    std::ranges::fill(seconds, 0.0);
+    for (const auto& [part, rate] : shift.rates) {
+      const double tau = rate * xi2[part->parameter];
+      for (std::size_t i = 0; i < seconds.size(); ++i) {
+        seconds[i] += tau * share_at(*part, block.first + i);
+      }
+    }
+    spline.fill(block.first, seconds, values);
     InputColumn& column = columns[static_cast<std::size_t>(input)];
     column.own.resize(block.rows);
     if (directions > 0) column.slopes = MatrixXd::Zero(rows, directions);
@@ -95,8 +115,10 @@ void InputCorrections::shift_in_time(std::vector<InputColumn>& columns, const Bl
       const auto& [value, slope, curvature] = values[static_cast<std::size_t>(i)];
       column.own[static_cast<std::size_t>(i)] = value + shift.lag * slope;
       if (directions == 0) continue;
-      for (const auto& [parameter, rate] : shift.rates) {
-        column.slopes(i, parameter) = rate * (slope + shift.lag * curvature);
+      for (const auto& [part, rate] : shift.rates) {
+        column.slopes(i, part->parameter) =
+            rate * share_at(*part, block.first + static_cast<std::size_t>(i)) *
+            (slope + shift.lag * curvature);
       }
       if (shift.lag_parameter >= 0) column.slopes(i, shift.lag_parameter) = slope;
     }

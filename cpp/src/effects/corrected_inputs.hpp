@@ -52,6 +52,7 @@ class InputCorrections {
   struct Shift;
 
   Shift shift_of(int input, const double* xi2, const LagNode& node) const;
+  double share_at(const DelayPart& part, std::size_t row) const;
   void shift_in_time(std::vector<InputColumn>& columns, const Block& block, const double* xi2,
                      const LagNode& node, int directions) const;
   void apply(const CorrectionPart& part, std::vector<InputColumn>& columns, const Block& block,
@@ -60,6 +61,7 @@ class InputCorrections {
   const ComposedParts& parts_;
   std::span<const LagNode> nodes_;
   std::map<int, numerics::InterpolatedColumn> interpolated_;  // by input
+  std::vector<double> time_;                                  // where a clock drifts
 };
 
 }  // namespace sepcal::effects

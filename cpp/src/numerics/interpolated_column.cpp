@@ -55,4 +55,13 @@ void InterpolatedColumn::fill(std::size_t first, double shift,
   }
 }
 
+void InterpolatedColumn::fill(std::size_t first, std::span<const double> shifts,
+                              std::span<NaturalSpline::Value> values) const {
+  const Piece& piece = piece_of(first);
+  std::size_t hint = first - piece.segment.first;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = piece.spline.at(time_[first + i] + shifts[i], hint);
+  }
+}
+
 }  // namespace sepcal::numerics

@@ -25,6 +25,10 @@ class InterpolatedColumn {
   /// At `shift` seconds after the times of the rows first, first + 1, ... of one segment.
   void fill(std::size_t first, double shift, std::span<NaturalSpline::Value> values) const;
 
+  /// The same with a shift a row, as many as values.
+  void fill(std::size_t first, std::span<const double> shifts,
+            std::span<NaturalSpline::Value> values) const;
+
  private:
   struct Piece {
     Segment segment;

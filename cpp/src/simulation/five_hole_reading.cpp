@@ -24,6 +24,7 @@ constexpr KnownEffect effects[] = {
     {"beta_offset", "beta_offset", "*", "s"},
     {"heading_bias", "heading_bias", "", "delta"},
     {"time_offset", "time_offset", "", "tau"},
+    {"clock_drift", "clock_drift", "", "tau"},
     {"pneumatic_lag", "pneumatic_lag", "", "tau"},
     {"lever_arm", "lever_arm", "", "x y z"},
     {"density_error", "density_error", "", "s"},

@@ -7,6 +7,7 @@
 #include "sepcal/error.hpp"
 #include "simulation/first_order_lag.hpp"
 #include "simulation/five_hole_reading.hpp"
+#include "simulation/lateness.hpp"
 #include "simulation/simulated_noise.hpp"
 #include "simulation/small_aircraft.hpp"
 
@@ -84,9 +85,10 @@ SimulatedFlight simulate_five_hole(const FiveHoleTruth& truth, const SimulationO
   const SmallAircraft aircraft(options, wind, truth.altitude);
   const HiddenEffects hidden = hide(truth, aircraft);
   const FiveHoleReader reader(truth, hidden);
-  const double late = check_shift(truth.source + ": time_offset", hidden.constant("time_offset"));
+  const Lateness late(hidden, aircraft.times(), truth.source);
   FirstOrderLag pressures(truth.source + ": pneumatic_lag", hidden.constant("pneumatic_lag"),
-                          aircraft.times().front() - late, [&](double time) -> Eigen::VectorXd {
+                          aircraft.times().front() - late.at(aircraft.times().front()),
+                          [&](double time) -> Eigen::VectorXd {
                             const AircraftState state = aircraft.at(time);
                             const Moment now = extend(SmallAircraft::moment(time, state), 0.0, 0.0);
                             const FiveHoleReading reading = reader.read(state, now);
@@ -103,8 +105,8 @@ SimulatedFlight simulate_five_hole(const FiveHoleTruth& truth, const SimulationO
   const Vector3d sigma(truth.noise.data());
   for (const double time : aircraft.times()) {
     const AircraftState state = aircraft.at(time);
-    const Air air = late == 0.0 ? state.air : aircraft.at(time - late).air;
-    const Eigen::VectorXd read = pressures.advance_to(time - late);
+    const Air air = late.none() ? state.air : aircraft.at(time - late.at(time)).air;
+    const Eigen::VectorXd read = pressures.advance_to(time - late.at(time));
     Vector3d logged = state.ground;
     if (hidden.has("wind")) {
       const Moment now = moment_at(reader, time, state);

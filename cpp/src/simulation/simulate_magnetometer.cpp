@@ -5,6 +5,7 @@
 
 #include "simulation/first_order_lag.hpp"
 #include "simulation/hidden_effects.hpp"
+#include "simulation/lateness.hpp"
 #include "simulation/simulated_noise.hpp"
 #include "simulation/turning_vehicle.hpp"
 
@@ -24,6 +25,7 @@ constexpr KnownEffect magnetometer_effects[] = {
     {"cubic_nonlinearity", "cubic_nonlinearity", "", "d_x d_y d_z c_x c_y c_z"},
     {"eddy_currents", "eddy_currents", "", "xx xy xz yx yy yz zx zy zz"},
     {"time_offset", "time_offset", "", "tau"},
+    {"clock_drift", "clock_drift", "", "tau"},
     {"sensor_lag", "sensor_lag", "", "tau"},
     {"field_declination", "field_declination", "", "delta"},
     {"attitude_bias", "attitude_bias", "", "x y"},
@@ -109,9 +111,10 @@ SimulatedFlight simulate_magnetometer(const MagnetometerTruth& truth,
   const TurningVehicle vehicle(options, field);
   const HiddenEffects hidden = hide(truth, vehicle);
   const Sensor sensor(truth, hidden);
-  const double late = check_shift(truth.source + ": time_offset", hidden.constant("time_offset"));
+  const Lateness late(hidden, vehicle.times(), truth.source);
   FirstOrderLag reading(truth.source + ": sensor_lag", hidden.constant("sensor_lag"),
-                        vehicle.times().front() - late, [&](double time) -> Eigen::VectorXd {
+                        vehicle.times().front() - late.at(vehicle.times().front()),
+                        [&](double time) -> Eigen::VectorXd {
                           const VehicleState state = vehicle.at(time);
                           return sensor.read(state, TurningVehicle::moment(time, state));
                         });
@@ -127,7 +130,7 @@ SimulatedFlight simulate_magnetometer(const MagnetometerTruth& truth,
     const VehicleState state = vehicle.at(time);
     const auto row = static_cast<Eigen::Index>(flight.rows());
     const Vector3d read =
-        reading.advance_to(time - late) + noise.row(row).transpose().cwiseProduct(sigma);
+        reading.advance_to(time - late.at(time)) + noise.row(row).transpose().cwiseProduct(sigma);
     append_row(
         flight, vehicle.label(time),
         {time, read.x(), read.y(), read.z(), state.angles[0], state.angles[1], state.angles[2],

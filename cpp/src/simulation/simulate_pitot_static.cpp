@@ -8,6 +8,7 @@
 #include "simulation/first_order_lag.hpp"
 #include "simulation/five_hole_reading.hpp"
 #include "simulation/hidden_effects.hpp"
+#include "simulation/lateness.hpp"
 #include "simulation/simulated_noise.hpp"
 #include "simulation/small_aircraft.hpp"
 
@@ -24,6 +25,7 @@ constexpr KnownEffect tube_effects[] = {
     {"pressure_offset", "pressure_offset", "*", "s"},
     {"pressure_offset", "pressure_offset", "", "s"},
     {"time_offset", "time_offset", "", "tau"},
+    {"clock_drift", "clock_drift", "", "tau"},
     {"pneumatic_lag", "pneumatic_lag", "", "tau"},
     {"density_error", "density_error", "", "s"},
     {"compressibility", "compressibility", "", "s"},
@@ -85,9 +87,10 @@ SimulatedFlight simulate_pitot_static(const PitotStaticTruth& truth,
                       truth.parameters.at("w_d"));
   const SmallAircraft aircraft(options, wind, truth.altitude);
   const HiddenEffects hidden = hide(truth, aircraft);
-  const double late = check_shift(truth.source + ": time_offset", hidden.constant("time_offset"));
+  const Lateness late(hidden, aircraft.times(), truth.source);
   FirstOrderLag airspeed(truth.source + ": pneumatic_lag", hidden.constant("pneumatic_lag"),
-                         aircraft.times().front() - late, [&](double time) -> Eigen::VectorXd {
+                         aircraft.times().front() - late.at(aircraft.times().front()),
+                         [&](double time) -> Eigen::VectorXd {
                            const AircraftState state = aircraft.at(time);
                            const Moment now = SmallAircraft::moment(time, state);
                            return Eigen::VectorXd::Constant(1,
@@ -106,7 +109,8 @@ SimulatedFlight simulate_pitot_static(const PitotStaticTruth& truth,
     const Vector3d ground =
         state.ground + Vector3d(hidden.sum("wind", now, 0), hidden.sum("wind", now, 1), 0.0);
     const auto row = static_cast<Eigen::Index>(flight.rows());
-    const double read = airspeed.advance_to(time - late)[0] + truth.noise[0] * noise(row, 0);
+    const double read =
+        airspeed.advance_to(time - late.at(time))[0] + truth.noise[0] * noise(row, 0);
     const Attitude& attitude = state.attitude;
     append_row(flight, aircraft.label(time),
                {time, wrap(attitude.roll.value), attitude.pitch.value, wrap(attitude.yaw.value),

@@ -25,6 +25,23 @@ EffectKit::Maker in_time(Delay::Kind kind, double bound, const std::vector<std::
   };
 }
 
+EffectKit::Maker drifting_clock(Delay::Kind kind, double bound,
+                                const std::vector<std::string>& inputs) {
+  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
+    if (!setting.span) {
+      const auto time = record.column("time");
+      const auto& segments = record.segments();
+      setting.span = {time[segments.front().first], time[segments.back().last - 1]};
+    }
+    if (!(setting.span->first < setting.span->second)) {
+      throw Error("effect " + setting.name + " needs more than one time");
+    }
+    Effect effect = in_time(kind, bound, inputs)(model, setting, record);
+    effect.delays.front().grows = setting.span;
+    return effect;
+  };
+}
+
 EffectKit::Maker wandering_angle(const std::string& input) {
   return [=](const BlockModel& model, EffectSetting& /*setting*/, Record& record) {
     const Port port{.name = input, .unit = "rad", .components = {{.name = "s", .input = input}}};

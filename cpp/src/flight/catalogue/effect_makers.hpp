@@ -24,6 +24,10 @@ EffectKit::Maker constant_on(const Port& port);
 EffectKit::Maker in_time(Delay::Kind kind, double bound,
                          const std::vector<std::string>& inputs = {});
 
+/// A clock that drifts: the same from none at the record's first time steadily to tau at its last.
+EffectKit::Maker drifting_clock(Delay::Kind kind, double bound,
+                                const std::vector<std::string>& inputs = {});
+
 /// The error of an angle among the model's inputs.
 EffectKit::Maker wandering_angle(const std::string& input);
 

@@ -139,6 +139,11 @@ EffectTable five_hole_effects() {
        .channels = {"time"},
        .maker =
            in_time(Delay::Kind::inputs_late, longest_offset, {"pt", "ps", "dpa", "dpb", "rho"})},
+      {.entry = {"clock_drift", "air data late, from 0 at first to tau at last", "none", "s"},
+       .sentence = "the sensor's clock drifts",
+       .channels = {"time"},
+       .maker = drifting_clock(Delay::Kind::inputs_late, longest_offset,
+                               {"pt", "ps", "dpa", "dpb", "rho"})},
       {.entry = {"pneumatic_lag", "tau dp/dt + p = p0 on every pressure", "none", "s"},
        .sentence = "the pressures lag in their tubes",
        .channels = {"time"},

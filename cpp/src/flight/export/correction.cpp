@@ -34,6 +34,7 @@ const std::map<std::string, const char*, std::less<>>& stranded() {
       {"icing_ramp", of_time},
       {"water_blockage", of_time},
       {"time_offset", of_moments},
+      {"clock_drift", of_time},
       {"sensor_lag", of_moments},
       {"pneumatic_lag", of_moments},
       {"eddy_currents", "it needs the rate at which the field changes"}};

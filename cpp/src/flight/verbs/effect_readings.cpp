@@ -53,9 +53,34 @@ Compact keep_rows(const ProbeReadings& readings, const Flight& flight,
 }
 
 /// How far readings are shifted to undo delays: r'(t) = r(t + late) + lag dr/dt(t + late).
-struct TimeShift {
-  double late = 0.0;  // [s]
-  double lag = 0.0;   // [s]
+class TimeShift {
+ public:
+  void add(const Delay& delay, double tau) {
+    if (delay.kind == Delay::Kind::inputs_lagging || delay.kind == Delay::Kind::outputs_lagging) {
+      lag_ += tau;
+      return;
+    }
+    late_.emplace_back(delay, tau);
+  }
+
+  bool none() const { return lag_ == 0.0 && late_.empty(); }
+  double lag() const { return lag_; }  // [s]
+
+  /// [s]; an output that was logged at t belongs to t - late(t), an input to where it is read.
+  double late(double t) const {
+    double seconds = 0.0;
+    for (const auto& [delay, tau] : late_) {
+      double own = 0.0;
+      const int rounds = delay.kind == Delay::Kind::outputs_late && delay.grows ? 4 : 1;
+      for (int round = 0; round < rounds; ++round) own = tau * delay.share_at(t + own);
+      seconds += own;
+    }
+    return seconds;
+  }
+
+ private:
+  std::vector<std::pair<Delay, double>> late_;
+  double lag_ = 0.0;
 };
 
 /// The slope about `at` of the straight line through the rows within half a width of it, by least
@@ -82,16 +107,18 @@ std::vector<double> put_in_time(const Record& record, const std::string& name,
   std::vector<double> corrected(record.length(), not_a_number);
   for (const Segment& segment : record.segments()) {
     std::vector<NaturalSpline::Value> values(segment.rows());
-    column.fill(segment.first, shift.late, values);
+    std::vector<double> late(segment.rows());
+    for (std::size_t i = 0; i < late.size(); ++i) late[i] = shift.late(time[segment.first + i]);
+    column.fill(segment.first, late, values);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const double at = time[segment.first + i] + shift.late;
+      const double at = time[segment.first + i] + late[i];
       if (at < time[segment.first] || at > time[segment.last - 1]) continue;
-      const double slope = shift.lag == 0.0
+      const double slope = shift.lag() == 0.0
                                ? 0.0
                                : slope_about(time.subspan(segment.first, segment.rows()),
                                              logged.subspan(segment.first, segment.rows()), at,
-                                             std::abs(shift.lag), values[i].slope);
-      corrected[segment.first + i] = values[i].value + shift.lag * slope;
+                                             std::abs(shift.lag()), values[i].slope);
+      corrected[segment.first + i] = values[i].value + shift.lag() * slope;
     }
   }
   return corrected;
@@ -135,10 +162,10 @@ std::map<std::string, TimeShift> shifts_of_readings(const std::vector<Effect>& e
   for (const Effect& effect : effects) {
     for (const Delay& delay : effect.delays) {
       const double tau = base::value_of(values, delay.parameter.name);
-      for (const std::string& input : delay.inputs) {
-        if (delay.kind == Delay::Kind::inputs_late) shifts[input].late += tau;
-        if (delay.kind == Delay::Kind::inputs_lagging) shifts[input].lag += tau;
-      }
+      const bool of_inputs =
+          delay.kind == Delay::Kind::inputs_late || delay.kind == Delay::Kind::inputs_lagging;
+      if (!of_inputs) continue;
+      for (const std::string& input : delay.inputs) shifts[input].add(delay, tau);
     }
   }
   return shifts;
@@ -150,9 +177,9 @@ TimeShift shift_of_outputs(const std::vector<Effect>& effects,
   TimeShift shift;
   for (const Effect& effect : effects) {
     for (const Delay& delay : effect.delays) {
-      const double tau = base::value_of(values, delay.parameter.name);
-      if (delay.kind == Delay::Kind::outputs_late) shift.late += tau;
-      if (delay.kind == Delay::Kind::outputs_lagging) shift.lag += tau;
+      const bool of_outputs =
+          delay.kind == Delay::Kind::outputs_late || delay.kind == Delay::Kind::outputs_lagging;
+      if (of_outputs) shift.add(delay, base::value_of(values, delay.parameter.name));
     }
   }
   return shift;
@@ -161,7 +188,7 @@ TimeShift shift_of_outputs(const std::vector<Effect>& effects,
 /// Corrected columns, one value a row of `record`, shifted: drivers acted when they were logged.
 void undo_delays(std::vector<CorrectedColumn>& columns, const Record& record,
                  const TimeShift& shift) {
-  if (shift.late == 0.0 && shift.lag == 0.0) return;
+  if (shift.none()) return;
   const auto time = record.column("time");
   for (CorrectedColumn& column : columns) {
     Record alone;
