@@ -4,6 +4,7 @@
 #include "sepcal/flight/probe_effects.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "block_inputs.hpp"
 #include "dense_reference.hpp"
@@ -128,6 +129,47 @@ TEST_CASE("the catalogue's unit is that of the coefficients") {
       CHECK(text == catalogued.unit);
     }
   }
+}
+
+TEST_CASE(
+    "physics bounds every coefficient of the catalogue, from either side of zero or from it") {
+  for (const char* name : all_probes) {
+    const auto probe = make_probe_called(name);
+    const Flight flight = make_flight(fly(name, {}));
+    for (const CataloguedEffect& catalogued : effect_catalogue(name)) {
+      const std::string effect = with_driver(name, catalogued.name);
+      const EffectiveFlight made = prepare(*probe, flight, effect);
+      const Effect& own = made.effects.front();
+      for (const Variable& parameter : made.model->tables().parameters()) {
+        if (!parameter.name.starts_with(own.name + ".")) continue;
+        CAPTURE(parameter.name);
+        const Interval range = plausible_range(own, parameter, made.prepared.record);
+        CHECK(std::isfinite(range.upper - range.lower));
+        CHECK(range.lower < range.upper);
+        const bool is_shape = own.driver && own.driver->shape() &&
+                              parameter.name == own.name + "." + own.driver->shape()->name;
+        if (!is_shape) CHECK((range.lower <= 0.0 && range.upper > 0.0));
+      }
+    }
+  }
+}
+
+TEST_CASE("air is compressed once, and a wind blows at 200 m/s at most") {
+  const auto probe = make_probe_called("five-hole");
+  const Flight flight = make_flight(fly("five-hole", {}));
+  const auto range_of = [&](const std::string& effect, const std::string& parameter) {
+    const EffectiveFlight made = prepare(*probe, flight, effect);
+    return plausible_range(made.effects.front(), {parameter, ""}, made.prepared.record);
+  };
+  const Interval compressed = range_of("compressibility", "compressibility.s");
+  CHECK(compressed.lower == 0.0);
+  CHECK(compressed.upper == 3.0);
+  const Interval labelled = range_of("wind[maneuver]", "wind[maneuver].n");
+  CHECK(labelled.upper == 200.0);
+  const auto& throttle = flight.find("throttle")->values;
+  const Interval driven = range_of("wind[throttle]", "wind[throttle].e");
+  CHECK(driven.upper == doctest::Approx(200.0 / *std::ranges::max_element(throttle)));
+  CHECK(driven.lower == -driven.upper);
 }
 
 TEST_CASE("aliases become the effect that they stand for") {

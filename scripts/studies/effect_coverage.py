@@ -49,6 +49,7 @@ CASES = [
     Case("five-hole", "pressure_offset[current_a^n]", 4.0),
     Case("five-hole", "compressibility", 1.0),
     Case("five-hole", "pressure_offset", 20.0),
+    Case("five-hole", "angle_loss", 1.0),
     Case("pitot-static", "pressure_offset", 30.0),
     Case("pitot-static", "wind[spline(time,4)]", (1, 0.5, -1, 0.3, -0.4, 0.8)),
     Case("five-hole", "clock_drift", 0.15, rows=1200),

@@ -177,6 +177,7 @@ FIVE_HOLE = (
           held={"b_alpha": 0.0, "b_beta": 0.0}),
     EffectCase("compressibility", lambda *_: (Effect("compressibility", {"s": "compressibility"}),),
                (1.0,), airspeed=120.0),
+    plain("angle_loss", {"s": "angle_loss"}, 1.5),
     time_offset("air_delay", 0.07),
     lag("pneumatic_lag", "air_lag", 0.06),
     together(

@@ -136,7 +136,13 @@ class FiveHoleWithEffects(WithEffects):
         mach_square = 5 * ((dynamic / air["ps"] + 1) ** (2 / 7) - 1)
         compressible = np.sqrt(HEAT_RATIO * air["ps"] / air["rho"] * mach_square)
         true_speed = (
-            (1 + lambda_va + ports["airspeed_scale"]) * speed
+            (
+                1
+                + lambda_va
+                + ports["airspeed_scale"]
+                + ports["angle_loss"] * (1 - (np.cos(as_read.alpha) * np.cos(as_read.beta)) ** 2)
+            )
+            * speed
             + b_va
             + ports["airspeed_bias"]
             + ports["compressibility"] * (compressible - as_read.speed)

@@ -33,7 +33,7 @@ def test_intervals_of_added_effects_cover(probe):
 
 
 def test_every_effect_of_the_catalogue_is_flown():
-    assert len(CASES) == 58
+    assert len(CASES) == 59
 
 
 def test_few_flights_together_show_what_one_parameter_does_not():

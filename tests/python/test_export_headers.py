@@ -38,7 +38,7 @@ FIVE_HOLE = {
     "airspeed": ("airspeed_scale[alpha^2]", "airspeed_bias[altitude_m]", "airspeed_scale[flap]"),
     "angles": ("alpha_offset[throttle]", "beta_offset[alpha]", "alpha_offset[spline(beta,4)]"),
     "pressures": ("pressure_offset", "pressure_offset[throttle]", "pressure_offset[q]"),
-    "physics": ("density_error", "compressibility", "upwash", "sidewash"),
+    "physics": ("density_error", "compressibility", "upwash", "sidewash", "angle_loss"),
     "its own readings": ("airspeed_scale[rho]", "beta_offset[ps]", "alpha_offset[q]", "upwash"),
     "the wind's": ("wind_shear", "heading_bias", "lever_arm", "mounting_error"),
 }

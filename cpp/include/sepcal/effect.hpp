@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -113,7 +114,16 @@ struct Effect {
   /// The model with nonlinear parameters more, at whose zero it is the same.
   std::function<std::shared_ptr<const BlockModel>(const std::shared_ptr<const BlockModel>&)>
       remodel = {};
+  /// Where physics lets a coefficient be, by its whole name, and how much a driven one may amount
+  /// to at its port: what plausible_range() goes by. Nothing holds a fit within.
+  std::map<std::string, Interval> plausible = {};
+  double most = infinity;
 };
+
+/// Where physics lets a parameter of the effect be, on the record that it was made for; its bounds
+/// where nothing is said. An estimate beyond is no size of this effect, but another one that looks
+/// like it.
+Interval plausible_range(const Effect& effect, const Variable& parameter, const Record& record);
 
 /// The correction u_i' = u_i + sign_i u_k sum_j s_ij phi_j(d), u_k an input or 1, a coefficient for
 /// each target and function, named owner + "." + component + suffix, within `bounds` of either

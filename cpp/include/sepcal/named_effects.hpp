@@ -46,7 +46,7 @@ struct Port {
   std::string name;  // "wind"
   std::string unit;
   std::vector<Component> components;
-  double plausible = infinity;  // the most that an effect on an input may amount to
+  double plausible = infinity;  // the most that an effect there may amount to: an input's bound
   /// Whether the model takes a constant on the port as its own: powers and splines of a channel
   /// that keeps away from zero (a voltage) then go about their mean, so that the model's parameters
   /// stay those of the flight and not of a zero that nobody saw.

@@ -68,6 +68,7 @@ MatrixXd effects::drive(const Driver& driver, double shape, const Record& record
 Effect make_driven(const std::string& owner, const Port& port, const DriverPointer& driver,
                    const std::string& unit, const BlockModel& model, const Record& record) {
   Effect effect{.name = owner, .port = port.name, .driver = driver};
+  effect.most = port.plausible;
   Varying varying{driver, {}, unit};
   std::vector<DrivenInput> inputs;
   for (const Port::Component& component : port.components) {
@@ -86,6 +87,18 @@ Effect make_driven(const std::string& owner, const Port& port, const DriverPoint
     effect.corrections.push_back(driven_inputs(owner, driver, inputs, unit, bounds));
   }
   return effect;
+}
+
+Interval plausible_range(const Effect& effect, const Variable& parameter, const Record& record) {
+  const auto said = effect.plausible.find(parameter.name);
+  if (said != effect.plausible.end()) return said->second;
+  const bool is_shape = effect.driver && effect.driver->shape() &&
+                        parameter.name == effect.name + "." + effect.driver->shape()->name;
+  if (!effect.driver || is_shape || !std::isfinite(effect.most)) {
+    return {parameter.lower, parameter.upper};
+  }
+  const double bound = effect.most / largest(*effect.driver, record);
+  return {-bound, bound};
 }
 
 VectorXd port_total(const std::vector<Effect>& effects, const std::string& port,

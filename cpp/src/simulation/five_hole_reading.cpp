@@ -29,6 +29,7 @@ constexpr KnownEffect effects[] = {
     {"lever_arm", "lever_arm", "", "x y z"},
     {"density_error", "density_error", "", "s"},
     {"compressibility", "compressibility", "", "s"},
+    {"angle_loss", "angle_loss", "", "s"},
     {"upwash", "upwash", "", "k"},
     {"sidewash", "sidewash", "", "k"},
     {"mounting_error", "mounting_error", "", "pitch yaw"},
@@ -79,6 +80,8 @@ Vector3d FiveHoleReader::correct(const Vector3d& read, const AircraftState& stat
   if (hidden_.has("compressibility")) {
     scale += hidden_.constant("compressibility") * compressible_excess(read[0], state.air);
   }
+  const double along = std::cos(read[1]) * std::cos(read[2]);
+  scale += hidden_.constant("angle_loss") * (1.0 - along * along);
   const double alpha = read[1] + hidden_.sum("alpha_offset", now) +
                        hidden_.constant("upwash") * state.rates.y() / speed;
   const double beta = read[2] + hidden_.sum("beta_offset", now) +

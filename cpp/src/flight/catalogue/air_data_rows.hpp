@@ -9,6 +9,10 @@
 
 namespace sepcal::catalogue {
 
+inline constexpr double largest_wind = 200.0;   // [m/s]
+inline constexpr double largest_speed = 50.0;   // [m/s] of a bias of the airspeed
+inline constexpr double largest_kelvin = 50.0;  // [K] of an error of the temperature
+
 /// A port with the one component s, which is added to the input of that name.
 Port on_input(const std::string& name, const std::string& unit, double plausible);
 

@@ -6,12 +6,6 @@
 #include "flight/catalogue/magnetic_rows.hpp"
 
 namespace sepcal::catalogue {
-namespace {
-
-constexpr double largest_field = 500.0;  // [uT] of a bias
-
-}  // namespace
-
 EffectTable attitude_independent_effects() {
   Port bias{"bias", "uT", {}, largest_field};
   Port axis_scale{"axis_scale", "1", {}, largest_scale};

@@ -20,7 +20,13 @@ EffectKit::Maker checked_maker(const EffectRow& row) {
     for (const std::string& channel : row.channels) {
       if (!is_logged(record, channel)) missing.push_back(channel);
     }
-    if (missing.empty()) return row.maker(model, setting, record);
+    if (missing.empty()) {
+      Effect effect = row.maker(model, setting, record);
+      for (const auto& [component, range] : row.plausible) {
+        effect.plausible[effect.name + "." + component] = range;
+      }
+      return effect;
+    }
     throw Error(fmt::format("effect {} needs {}, which the flight doesn't log", row.name(),
                             fmt::join(missing, ", ")));
   };

@@ -50,7 +50,8 @@ struct EffectRow {
   std::vector<std::string> channels = {};  // that it reads, by their names in a record
   ActsOn acts_on = ActsOn::reading;
   EffectKit::Maker maker;
-  std::vector<std::string> better_with = {};  // channels that it reads where all are logged
+  std::vector<std::string> better_with = {};       // channels that it reads where all are logged
+  std::map<std::string, Interval> plausible = {};  // of coefficients, by component
 
   const std::string& name() const { return entry.name; }
 };

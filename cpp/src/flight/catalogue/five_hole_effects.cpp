@@ -15,9 +15,11 @@ namespace {
 
 using Setting = EffectSetting;
 
-constexpr double largest_angle = 0.35;         // [rad] of an offset
-constexpr double longest_pneumatic_lag = 0.5;  // [s]
-constexpr double largest_kelvin = 50.0;        // [K] of an error of the temperature
+constexpr double largest_angle = 0.35;           // [rad] of an offset
+constexpr double longest_pneumatic_lag = 0.5;    // [s]
+constexpr double most_compressible = 3.0;        // of what air is
+constexpr double most_loss = 5.0;                // per square of a sine
+constexpr Interval near_the_probe{-10.0, 10.0};  // [m] of the probe from where it is said to be
 
 /// Adds a column that an effect derives from others; `value(row)` may be called for every row.
 template <class Value>
@@ -105,16 +107,33 @@ EffectKit::Maker compressible(const Port& airspeed_scale) {
   };
 }
 
+/// By the square of the sine of the flow's whole angle, of the angles as read.
+EffectKit::Maker angle_loss(const Port& airspeed_scale) {
+  return [=](const BlockModel& model, Setting& setting, Record& record) {
+    const auto alpha = record.column("alpha");
+    const auto beta = record.column("beta");
+    const std::string name = "sin^2 of the flow's angle";
+    derive(record, name, [&](std::size_t row) {
+      const double along = std::cos(alpha[row]) * std::cos(beta[row]);
+      return 1.0 - along * along;
+    });
+    return make_driven(setting.name, airspeed_scale, power_driver({name, "1"}, 0.0, 1), "1", model,
+                       record);
+  };
+}
+
 }  // namespace
 
 EffectTable five_hole_effects() {
-  const Port airspeed_scale{"airspeed_scale", "1", {{.name = "s", .linear = "lambda_va"}}};
-  const Port airspeed_bias{"airspeed_bias", "m/s", {{.name = "s", .linear = "b_va"}}};
+  const Port airspeed_scale{
+      "airspeed_scale", "1", {{.name = "s", .linear = "lambda_va"}}, largest_scale};
+  const Port airspeed_bias{
+      "airspeed_bias", "m/s", {{.name = "s", .linear = "b_va"}}, largest_speed};
   const Port alpha_offset = on_input("alpha_offset", "rad", largest_angle);
   const Port beta_offset = on_input("beta_offset", "rad", largest_angle);
   EffectTable table;
   table.ports = {
-      wind_row({{.name = "n", .linear = "w_n"}, {.name = "e", .linear = "w_e"}}, infinity),
+      wind_row({{.name = "n", .linear = "w_n"}, {.name = "e", .linear = "w_e"}}, largest_wind),
       airspeed_scale_row(airspeed_scale,
                          {{any_driver, "V + s x v"},
                           {"alpha^2", "pressure loss: V + s alpha^2 v", "alpha as read"},
@@ -153,7 +172,8 @@ EffectTable five_hole_effects() {
        .sentence = "the probe is not where the lever arm says",
        .channels = {"p", "q", "r"},
        .acts_on = ActsOn::world,
-       .maker = maker_of(effects::LeverArm{})},
+       .maker = maker_of(effects::LeverArm{}),
+       .plausible = {{"x", near_the_probe}, {"y", near_the_probe}, {"z", near_the_probe}}},
       {.entry = {"density_error", "v (1 + s / 2T): the temperature is off by s", "temp_k", "K"},
        .sentence = "the temperature behind the density is off",
        .channels = {"temperature"},
@@ -161,15 +181,24 @@ EffectTable five_hole_effects() {
       {.entry = {"compressibility", "V + s (v_c - v), v_c of compressible air", "ps, density", "1"},
        .sentence = "the air is compressed at this speed",
        .channels = {"ps", "rho"},
-       .maker = compressible(airspeed_scale)},
+       .maker = compressible(airspeed_scale),
+       .plausible = {{"s", {0.0, most_compressible}}}},
+      {.entry = {"angle_loss", "pressure loss: V + s (1 - cos^2 alpha cos^2 beta) v",
+                 "alpha, beta as read", "1"},
+       .sentence = "the centre hole loses pressure with the flow's angle",
+       .channels = {"alpha", "beta"},
+       .maker = angle_loss(airspeed_scale),
+       .plausible = {{"s", {-most_loss, most_loss}}}},
       {.entry = {"upwash", "alpha as read + k q / v", "q", "m"},
        .sentence = "the pitch rate turns the flow at the probe",
        .channels = {"q", "rho"},
-       .maker = by_rate(alpha_offset, "q")},
+       .maker = by_rate(alpha_offset, "q"),
+       .plausible = {{"k", near_the_probe}}},
       {.entry = {"sidewash", "beta as read + k p / v", "p", "m"},
        .sentence = "the roll rate turns the flow at the probe",
        .channels = {"p", "rho"},
-       .maker = by_rate(beta_offset, "p")},
+       .maker = by_rate(beta_offset, "p"),
+       .plausible = {{"k", near_the_probe}}},
       pressure_zero_row("v from (pt - ps) + s, angles as read"),
       icing_ramp_row("V + s (t - t0)+ v, t0 fitted", airspeed_scale),
       water_blockage_row("V + s v from t0 on, t0 by a scan", airspeed_scale),

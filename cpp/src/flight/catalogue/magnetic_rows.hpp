@@ -11,6 +11,7 @@
 namespace sepcal::catalogue {
 
 inline constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+inline constexpr double largest_field = 500.0;  // [uT] of a bias
 
 /// `forms` beside the one for any driver.
 PortRow bias_row(const Port& bias, std::vector<Form> forms = {});

@@ -77,12 +77,26 @@ struct AngleErrors {
   }
 };
 
+constexpr Interval cubic{-1e-4, 1e-4};   // [1/uT^2]: 12 uT in a field of 50
+constexpr Interval square{-5e-3, 5e-3};  // [1/uT]: the same
+constexpr double slowest = 1.0;          // [s] of a current in the structure
+
+std::map<std::string, Interval> plausible_currents() {
+  std::map<std::string, Interval> ranges;
+  for (const char* row : axes) {
+    for (const char* column : axes) {
+      ranges[std::string(row) + column] = {-slowest, slowest};
+    }
+  }
+  return ranges;
+}
+
 }  // namespace
 
 EffectTable magnetometer_effects() {
-  Port bias{"bias", "uT", {}};
-  Port scale{"scale", "1", {{.name = "s"}}};
-  Port axis_scale{"axis_scale", "1", {}};
+  Port bias{"bias", "uT", {}, largest_field};
+  Port scale{"scale", "1", {{.name = "s"}}, largest_scale};
+  Port axis_scale{"axis_scale", "1", {}, largest_scale};
   for (std::size_t i = 0; i < 3; ++i) {
     const Varying::Share share{static_cast<int>(i), {field_names[i], "uT"}};
     bias.components.push_back({.name = axes[i], .linear = std::string("n_") + axes[i]});
@@ -103,12 +117,19 @@ EffectTable magnetometer_effects() {
       warm_up_row(bias),
       {.entry = {"cubic_nonlinearity", "m_i + d_i h_i^3 + c_i h_i^2", "none", "1/uT^2, 1/uT"},
        .sentence = "the sensor's response is curved",
-       .maker = maker_of(effects::CubicNonlinearity{})},
+       .maker = maker_of(effects::CubicNonlinearity{}),
+       .plausible = {{"d_x", cubic},
+                     {"d_y", cubic},
+                     {"d_z", cubic},
+                     {"c_x", square},
+                     {"c_y", square},
+                     {"c_z", square}}},
       {.entry = {"eddy_currents", "m + E dh/dt, E 3 x 3", "p, q, r or attitude", "s"},
        .sentence = "eddy currents follow the turning field",
        .channels = {"time"},
        .maker = eddy_currents,
-       .better_with = {"p", "q", "r"}},
+       .better_with = {"p", "q", "r"},
+       .plausible = plausible_currents()},
       {.entry = {"time_offset", "magnetometer late by tau", "attitude", "s"},
        .sentence = "the sensor's time is late",
        .channels = {"time"},

@@ -7,9 +7,6 @@
 namespace sepcal::catalogue {
 namespace {
 
-constexpr double largest_wind = 200.0;  // [m/s]
-constexpr double largest_speed = 50.0;  // [m/s] of a bias
-
 EffectKit::Maker temperature_error(const Port& airspeed_scale) {
   return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
     return make_driven(setting.name, airspeed_scale, derive_half_coldness(record), "K", model,
@@ -47,7 +44,8 @@ EffectTable pitot_static_effects() {
                  "K"},
        .sentence = "the temperature behind the density is off",
        .channels = {"temperature"},
-       .maker = temperature_error(airspeed_scale)},
+       .maker = temperature_error(airspeed_scale),
+       .plausible = {{"s", {-largest_kelvin, largest_kelvin}}}},
       pressure_zero_row("rho V^2 / 2 = rho V_met^2 / 2 + s"),
       icing_ramp_row("V = V_met + s (t - t0)+ V_met, t0 fitted", airspeed_scale),
       water_blockage_row("V = V_met + s V_met from t0 on, t0 by a scan", airspeed_scale)};

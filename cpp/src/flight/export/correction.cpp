@@ -276,6 +276,9 @@ class Description {
           "1.0)) / sqrt(2.0 * pressure / rho_kgpm3) - 1.0",
           setting.name);
       add_coefficients(setting, "airspeed_scale", {"s"}, x);
+    } else if (setting.name == "angle_loss") {
+      const std::string along = local("cos(alpha_read) * cos(beta_read)", setting.name);
+      add_coefficients(setting, "airspeed_scale", {"s"}, fmt::format("(1.0 - {0} * {0})", along));
     } else if (setting.name == "upwash" || setting.name == "sidewash") {
       const bool up = setting.name == "upwash";
       const std::string x =

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -72,6 +73,27 @@ Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlig
   return residuals_of(*effective.model, effective.prepared.record, calibration.fit, pool);
 }
 
+namespace {
+
+/// Without errors of inputs that the flight doesn't log: of a field that is known in body axes no
+/// attitude wanders.
+EffectKit kit_for(const Probe& probe, const OwnEffects& own, const Record& readings) {
+  EffectKit kit = effect_kit(probe.name(), own);
+  std::erase_if(kit.wandering, [&](const EffectKit::Maker& maker) {
+    Record record = readings;
+    EffectSetting setting{.name = "wandering"};
+    const Effect effect = maker(probe.model(), setting, record);
+    return std::ranges::any_of(effect.corrections, [&](const auto& correction) {
+      return std::ranges::any_of(correction->inputs(), [&](const Variable& input) {
+        return !record.has(input.name) && !std::isfinite(input.absent);
+      });
+    });
+  });
+  return kit;
+}
+
+}  // namespace
+
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,
                            const OwnEffects& own) {
   const Probe& probe = *calibration.probe;
@@ -80,7 +102,7 @@ DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& reading
       with_effects(probe, readings, settings, own, calibration.options.fit.bounds);
   return {
       .model = model_of(probe),
-      .kit = effect_kit(probe.name(), own),
+      .kit = kit_for(probe, own, readings),
       .effects = std::move(settings),
       .record = readings,
       .rows =

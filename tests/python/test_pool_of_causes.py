@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Causes of one coefficient beside general ones: a lag before a matrix, an angle's loss.
+
+The flights are made here; what is asked is whether the simple cause is tried, and does as much.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from scipy.spatial.transform import Rotation
+
+from apps import run
+from recorded import find_case
+
+FIELD = np.array([19.7, -1.4, 49.4])
+DUTY = 20  # moments of the world a row
+
+
+def write(file: Path, columns: dict[str, np.ndarray]) -> None:
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(file, table, "%.10g", ",", header=",".join(columns), comments="")
+
+
+def fly_lagging_magnetometer(file: Path, tau: float, seed: int) -> None:
+    """A sensor behind a filter of tau [s], the true field in body axes beside it."""
+    draw = np.random.default_rng(seed)
+    t = np.arange(0.0, 100.0, 0.1 / DUTY)
+    rates = draw.uniform(0.8, 1.2, 3) * [0.9, 0.7, 0.5]
+    angles = [
+        np.pi * np.sin(rates[2] * t + 2),
+        1.2 * np.sin(rates[1] * t),
+        2.5 * np.sin(rates[0] * t),
+    ]
+    h = Rotation.from_euler("ZYX", np.column_stack(angles)).inv().apply(FIELD)
+    share = 1 - np.exp(-0.1 / DUTY / tau)
+    lagging = h[0] + lfilter([share], [1, share - 1], h - h[0], axis=0)
+    rows = slice(20 * DUTY, None, DUTY)
+    m = lagging[rows] * [1.05, 0.95, 1.1] + [10.0, -5.0, 7.0]
+    m = m + draw.normal(0.0, 0.2, m.shape)
+    columns = {"time_s": t[rows]}
+    columns |= {f"m{axis}_ut": m[:, i] for i, axis in enumerate("xyz")}
+    columns |= {f"h{axis}_ut": h[rows][:, i] for i, axis in enumerate("xyz")}
+    write(file, columns)
+
+
+@pytest.mark.parametrize(("tau", "seed"), [(0.055, 1), (0.12, 2)])
+def test_a_lag_does_what_a_matrix_of_nine_does(tmp_path: Path, tau: float, seed: int):
+    fly_lagging_magnetometer(tmp_path / "flight.csv", tau, seed)
+    app = "sepcal-mag"
+    assert run(app, "fit", "flight.csv", "-o", "base.json", folder=tmp_path).code == 0
+    diagnosed = run(app, "diagnose", "flight.csv", "base.json", "--json", folder=tmp_path).result
+    by_name = {one["name"]: one for one in diagnosed["effects"]}
+    assert by_name["sensor_lag"]["held_out_gain"] > 0.3
+    rmse = {}
+    for effect in ("sensor_lag", "eddy_currents"):
+        options = ("fit", "flight.csv", "--effect", effect, "--json")
+        fitted = run(app, *options, folder=tmp_path).result
+        rmse[effect] = np.sqrt(np.mean(np.square(list(fitted["rmse"].values()))))
+        if effect == "sensor_lag":
+            found = fitted["parameters"]["sensor_lag.tau"]
+    assert abs(found["value"] - tau) < 4.5 * found["standard_error"] + 0.002
+    assert rmse["sensor_lag"] < 1.03 * rmse["eddy_currents"]
+    assert rmse["sensor_lag"] == pytest.approx(0.2, rel=0.05)
+
+
+def fly_five_hole(file: Path, loss: float, seed: int) -> None:
+    """Level flight that weaves and heaves; the centre hole loses pressure with the angle."""
+    draw = np.random.default_rng(seed)
+    t = np.arange(0.0, 120.0, 0.2)
+    speed = 25.0 + 4.0 * np.sin(2 * np.pi * t / 47.0)
+    alpha = 0.1 + 0.12 * np.sin(2 * np.pi * t / 5.3)
+    beta = 0.15 * np.sin(2 * np.pi * t / 7.1)
+    pitch, roll = 0.05 * np.sin(2 * np.pi * t / 11.0), 0.3 * np.sin(2 * np.pi * t / 19.0)
+    yaw = np.angle(np.exp(2j * np.pi * t / 41.0))
+    body = speed[:, np.newaxis] * np.column_stack(
+        [np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)]
+    )
+    ground = Rotation.from_euler("ZYX", np.column_stack([yaw, pitch, roll])).apply(body)
+    ground += [-3.8, 2.4, 0.0]
+    read = speed / (1.0 + loss * (1 - (np.cos(alpha) * np.cos(beta)) ** 2))
+    q = 1.15 * read**2 / 2
+    v = ground + draw.normal(0.0, 0.1, ground.shape)
+    columns = {"time_s": t, "roll_rad": roll, "pitch_rad": pitch, "yaw_rad": yaw}
+    columns |= {"vn_mps": v[:, 0], "ve_mps": v[:, 1], "vd_mps": v[:, 2]}
+    columns |= {"pt_pa": 95000 + q, "ps_pa": np.full(t.size, 95000.0)}
+    columns |= {"dpa_pa": 4 * alpha * q, "dpb_pa": 4 * beta * q, "rho_kgpm3": np.full(t.size, 1.15)}
+    write(file, columns)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_centre_hole_that_loses_with_the_angle(tmp_path: Path, seed: int):
+    fly_five_hole(tmp_path / "flight.csv", 0.9, seed)
+    app = "sepcal-pitot"
+    options = ("--k-alpha", "4", "--k-beta", "4")
+    assert run(app, "fit", "flight.csv", *options, "-o", "base.json", folder=tmp_path).code == 0
+    diagnosed = run(app, "diagnose", "flight.csv", "base.json", "--json", folder=tmp_path).result
+    assert diagnosed["verdict"] == "effect_missing"
+    first = diagnosed["effects"][0]
+    assert first["name"] == "angle_loss"
+    assert first["sentence"] == "the centre hole loses pressure with the flow's angle"
+    next_ = run(app, "add", "flight.csv", "base.json", "angle_loss", "--json", folder=tmp_path)
+    assert next_.code == 0, next_.err
+    found = next_.result["parameters"]["angle_loss.s"]
+    assert abs(found["value"] - 0.9) < 4.5 * found["standard_error"] < 0.2
+    assert max(next_.result["rmse"].values()) < 0.11
+
+
+def test_the_case_of_a_five_hole_probe(tmp_path: Path):
+    """In a tunnel at angles up to 20 deg: 1.0 m/s of error, of which 0.23 stays."""
+    case = find_case("f8_nasa_5hole_M100.csv")
+    options = [f"--fix={name}=0" for name in ("w_n", "w_e", "w_d", "lambda_va")]
+    options += ["--k-alpha", "4", "--k-beta", "4"]
+    app = "sepcal-pitot"
+    base = run(app, "fit", case, *options, "-o", "base.json", "--json", folder=tmp_path)
+    added = run(app, "add", case, "base.json", "angle_loss", "--json", folder=tmp_path)
+    assert added.code in (0, 4, 5), added.err
+    before, after = (max(one.result["rmse"].values()) for one in (base, added))
+    assert after < 0.35 * before
+    assert 0.5 < added.result["parameters"]["angle_loss.s"]["value"] < 1.5
+
+
+def test_the_case_of_a_lag(tmp_path: Path):
+    """A quadrotor's compass: beside the current, one lag takes what nine coefficients do."""
+    case = find_case("f3_quad_mag1.csv")
+    rmse = {}
+    for effect in ("sensor_lag", "eddy_currents"):
+        options = ("--effect", f"bias[current_a]+{effect}", "--json")
+        fitted = run("sepcal-mag", "fit", case, *options, folder=tmp_path).result
+        rmse[effect] = np.sqrt(np.mean(np.square(list(fitted["rmse"].values()))))
+        if effect == "sensor_lag":
+            assert fitted["parameters"]["sensor_lag.tau"]["value"] == pytest.approx(0.053, abs=0.01)
+    assert rmse["sensor_lag"] < 1.05 * rmse["eddy_currents"]
