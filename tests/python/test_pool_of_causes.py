@@ -8,61 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from apps import run
 from recorded import find_case
 
-FIELD = np.array([19.7, -1.4, 49.4])
-DUTY = 20  # moments of the world a row
-
 
 def write(file: Path, columns: dict[str, np.ndarray]) -> None:
     table = np.column_stack(list(columns.values()))
     np.savetxt(file, table, "%.10g", ",", header=",".join(columns), comments="")
-
-
-def fly_lagging_magnetometer(file: Path, tau: float, seed: int) -> None:
-    """A sensor behind a filter of tau [s], the true field in body axes beside it."""
-    draw = np.random.default_rng(seed)
-    t = np.arange(0.0, 100.0, 0.1 / DUTY)
-    rates = draw.uniform(0.8, 1.2, 3) * [0.9, 0.7, 0.5]
-    angles = [
-        np.pi * np.sin(rates[2] * t + 2),
-        1.2 * np.sin(rates[1] * t),
-        2.5 * np.sin(rates[0] * t),
-    ]
-    h = Rotation.from_euler("ZYX", np.column_stack(angles)).inv().apply(FIELD)
-    share = 1 - np.exp(-0.1 / DUTY / tau)
-    lagging = h[0] + lfilter([share], [1, share - 1], h - h[0], axis=0)
-    rows = slice(20 * DUTY, None, DUTY)
-    m = lagging[rows] * [1.05, 0.95, 1.1] + [10.0, -5.0, 7.0]
-    m = m + draw.normal(0.0, 0.2, m.shape)
-    columns = {"time_s": t[rows]}
-    columns |= {f"m{axis}_ut": m[:, i] for i, axis in enumerate("xyz")}
-    columns |= {f"h{axis}_ut": h[rows][:, i] for i, axis in enumerate("xyz")}
-    write(file, columns)
-
-
-@pytest.mark.parametrize(("tau", "seed"), [(0.055, 1), (0.12, 2)])
-def test_a_lag_does_what_a_matrix_of_nine_does(tmp_path: Path, tau: float, seed: int):
-    fly_lagging_magnetometer(tmp_path / "flight.csv", tau, seed)
-    app = "sepcal-mag"
-    assert run(app, "fit", "flight.csv", "-o", "base.json", folder=tmp_path).code == 0
-    diagnosed = run(app, "diagnose", "flight.csv", "base.json", "--json", folder=tmp_path).result
-    by_name = {one["name"]: one for one in diagnosed["effects"]}
-    assert by_name["sensor_lag"]["held_out_gain"] > 0.3
-    rmse = {}
-    for effect in ("sensor_lag", "eddy_currents"):
-        options = ("fit", "flight.csv", "--effect", effect, "--json")
-        fitted = run(app, *options, folder=tmp_path).result
-        rmse[effect] = np.sqrt(np.mean(np.square(list(fitted["rmse"].values()))))
-        if effect == "sensor_lag":
-            found = fitted["parameters"]["sensor_lag.tau"]
-    assert abs(found["value"] - tau) < 4.5 * found["standard_error"] + 0.002
-    assert rmse["sensor_lag"] < 1.03 * rmse["eddy_currents"]
-    assert rmse["sensor_lag"] == pytest.approx(0.2, rel=0.05)
 
 
 def fly_five_hole(file: Path, loss: float, seed: int) -> None:

@@ -28,7 +28,8 @@ std::string catalogue_text(std::string_view model) {
   return text +
          "\nDRIVER: a numeric column by its header, or time, alpha, beta, q, r where there; x "
          "alone or "
-         "x^2 to x^9,\nx^n (n fitted), spline(x,k), levels(x,a,b), step(time), ramp(time), decay(time), delay(x), "
+         "x^2 to x^9,\nx^n (n fitted), spline(x,k), levels(x,a,b), step(time), ramp(time), "
+         "decay(time), delay(x), "
          "maneuver.\n\n";
 }
 
