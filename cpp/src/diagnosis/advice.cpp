@@ -69,6 +69,27 @@ std::string objection_to_fit(const Fit& before, const EffectFinding& finding, co
   return keeps_promise ? std::string() : disagreement(finding, fitted);
 }
 
+/// The coefficient that a fit has further off than physics lets it be.
+std::string implausible_size(const CandidateRoom& room, const Candidate& candidate,
+                             const Fit& fitted) {
+  constexpr double errors = 2.0;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < candidate.effects.size(); ++i) {
+    for (std::size_t k = 0; k < candidate.counts[i]; ++k, ++at) {
+      const Variable& coefficient = candidate.coefficients[at];
+      const Interval range = plausible_range(candidate.effects[i], coefficient, room.record());
+      const Parameter& now = fitted[coefficient.name];
+      const double error = std::isfinite(now.standard_error) ? errors * now.standard_error : 0.0;
+      if (now.value + error < range.lower || now.value - error > range.upper) {
+        return fmt::format("fitted, {} is {:.3g} +- {:.1g}, and physics lets it be {:.3g} to {:.3g}",
+                           coefficient.name, now.value, now.standard_error, range.lower,
+                           range.upper);
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFinding& finding,
@@ -94,6 +115,8 @@ Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFindin
     objection.reason = objection_to_fit(room.fitted(), finding, fitted, keeps_promise);
     objection.is_to_fit = !objection.reason.empty();
     if (objection.is_to_fit) return objection;
+    objection.reason = implausible_size(room, candidate, fitted);
+    if (!objection.reason.empty()) return objection;
     const Folds folds = few_folds(room.fit(), room.columns(candidate, shape).whole);
     const HeldOut held_out = refits.hold_out(candidate, shape, folds);
     if (held_out.judged && !(held_out.gain > 0.0)) {
