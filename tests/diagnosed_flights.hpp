@@ -9,6 +9,7 @@
 
 #include "flights_with_effects.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
+#include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::test {
 
@@ -28,8 +29,10 @@ inline const std::vector<HiddenCase> strong_effects{
     {"magnetometer", {"axis_scale[temp_degc]", {0.001, -0.001, 0.001}}, 0.3},
     {"magnetometer-norm", {"bias[current_a]", {0.06, -0.08, 0.06}}, 0.3}};
 
-inline DiagnosisOptions quick_diagnosis() {
+/// Of flights whose noise is white, and known to be.
+inline DiagnosisOptions quick_diagnosis(std::string_view probe) {
   DiagnosisOptions options;
+  for (const WanderBound& bound : effect_kit(probe).wanders) options.wanders[bound.name] = 0.0;
   options.simulations = 49;
   options.threads = 1;
   return options;
@@ -49,7 +52,7 @@ inline DiagnosedFlight diagnose_flight(std::string_view probe,
   SimulatedFlight simulated = fly(probe, hidden, conditions);
   Flight flight = make_flight(simulated);
   Calibration base = calibrate_with(probe, simulated, {});
-  FlightDiagnosis result = diagnose(base, flight, {}, quick_diagnosis());
+  FlightDiagnosis result = diagnose(base, flight, {}, quick_diagnosis(probe));
   return {std::move(simulated), std::move(flight), std::move(base), std::move(result)};
 }
 

@@ -156,7 +156,8 @@ TEST_CASE("of a straight line and a spline the line comes first, until the splin
     Bench bench;
     const VectorXd height = bench.add("height", VectorXd::LinSpaced(rows, -1.0, 1.0));
     const VectorXd wind = straight ? VectorXd(4.0 * height) : VectorXd(4.0 * height.array().cube());
-    const Diagnosis diagnosis = bench.diagnose(wind, {"c[spline(height,6)]", "c[height]"});
+    const Diagnosis diagnosis = bench.diagnose(wind, {"c[spline(height,6)]", "c[height]"},
+                                               {.wanders = {{"z", 0.0}}, .threads = 1});
     CHECK(diagnosis.effects.front().name == (straight ? "c[height]" : "c[spline(height,6)]"));
     CHECK(diagnosis.effects.front().status == FindingStatus::found);
   }
@@ -247,8 +248,8 @@ TEST_CASE("a straight line in time of the limit's size is found about nine times
     bench.draws = Draws(seed);
     const double size = 0.6;  // what find_limits() says of white noise of 1 in 600 rows is near it
     const VectorXd ramp = VectorXd::LinSpaced(rows, -0.5 * size, 0.5 * size);
-    const Diagnosis diagnosis =
-        bench.diagnose(ramp, {"c[time]"}, {.simulations = 39, .threads = 1});
+    const Diagnosis diagnosis = bench.diagnose(
+        ramp, {"c[time]"}, {.simulations = 39, .wanders = {{"z", 0.0}}, .threads = 1});
     const double limit = std::ranges::find(diagnosis.limits, "c", &DetectionLimit::port)->size;
     CHECK(limit > 0.3);
     CHECK(limit < 1.2);

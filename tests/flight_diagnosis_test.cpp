@@ -26,7 +26,7 @@ void check_order(const FlightDiagnosis& result) {
     const EffectFinding& effect = effects[i];
     CAPTURE(effect.name);
     CHECK(!result.sentences[i].empty());
-    const bool may_stand = i > 0 && result.diagnosis.verdict == Verdict::effect_missing;
+    const bool may_stand = i > 0 && result.diagnosis.verdict != Verdict::adequate;
     CHECK((effect.beside == Beside::untried || may_stand));
     CHECK(effect.p_value == Approx(std::pow(10.0, effect.log10_p)));
     CHECK(effect.visibility >= 0.0);
@@ -164,12 +164,12 @@ TEST_CASE("a flight other than the fitted is diagnosed by what its own residuals
   const Conditions conditions{.noise = noise, .seed = 16};
   const Calibration base = calibrate_with(probe, fly(probe, {}, conditions), {});
   const SimulatedFlight other = fly(probe, {hidden}, {.rows = 380, .noise = noise, .seed = 17});
-  const FlightDiagnosis result = diagnose(base, make_flight(other), {}, quick_diagnosis());
+  const FlightDiagnosis result = diagnose(base, make_flight(other), {}, quick_diagnosis(probe));
   CHECK(result.flight.rows == 380);
   CHECK(result.diagnosis.verdict == Verdict::effect_missing);
   CHECK(stands_first(result, hidden.name));
   const SimulatedFlight same = fly(probe, {}, {.rows = 380, .noise = noise, .seed = 18});
-  CHECK(diagnose(base, make_flight(same), {}, quick_diagnosis()).diagnosis.verdict ==
+  CHECK(diagnose(base, make_flight(same), {}, quick_diagnosis(probe)).diagnosis.verdict ==
         Verdict::adequate);
 }
 
@@ -177,7 +177,8 @@ TEST_CASE("what the calibration has is no candidate, and leaves nothing to find"
   const SizedEffect& hidden = strong_effects.front().effect;
   const SimulatedFlight simulated = fly("five-hole", {hidden}, {.noise = 0.15, .seed = 11});
   const Calibration whole = calibrate_with("five-hole", simulated, {hidden.name});
-  const FlightDiagnosis result = diagnose(whole, make_flight(simulated), {}, quick_diagnosis());
+  const FlightDiagnosis result =
+      diagnose(whole, make_flight(simulated), {}, quick_diagnosis("five-hole"));
   CHECK(result.diagnosis.verdict == Verdict::adequate);
   for (const EffectFinding& effect : result.diagnosis.effects) CHECK(effect.name != hidden.name);
 }
@@ -194,7 +195,7 @@ TEST_CASE("an effect of the caller's own ranks as the built-in one that it repea
          return make_named("motor", parse_effect_name("bias[current_a]"), bias, model, setting,
                            record);
        }}};
-  const FlightDiagnosis result = diagnose(base, flight, own, quick_diagnosis());
+  const FlightDiagnosis result = diagnose(base, flight, own, quick_diagnosis("magnetometer"));
   const EffectFinding& mine = find(result, "motor");
   const EffectFinding& built_in = find(result, "bias[current_a]");
   CHECK(mine.status == FindingStatus::found);
@@ -205,14 +206,15 @@ TEST_CASE("an effect of the caller's own ranks as the built-in one that it repea
   CHECK(stands_first(result, "bias[current_a]"));
   REQUIRE(mine.coefficients.size() == 3);
   CHECK(mine.coefficients[1].name == "motor.y");
-  CHECK(mine.coefficients[1].estimate == Approx(built_in.coefficients[1].estimate).epsilon(1e-6));
+  // One of the two is told as a fit has it, the other as one step has.
+  CHECK(mine.coefficients[1].estimate == Approx(built_in.coefficients[1].estimate).epsilon(0.01));
 }
 
 TEST_CASE("the same flight and seed give the same JSON on any number of threads") {
   const auto& [probe, hidden, noise] = strong_effects[4];
   const SimulatedFlight simulated = fly(probe, {hidden}, {.rows = 250, .noise = noise, .seed = 11});
   const Calibration base = calibrate_with(probe, simulated, {});
-  DiagnosisOptions options = quick_diagnosis();
+  DiagnosisOptions options = quick_diagnosis(probe);
   const std::string one = to_json(diagnose(base, make_flight(simulated), {}, options));
   options.threads = 3;
   CHECK(to_json(diagnose(base, make_flight(simulated), {}, options)) == one);

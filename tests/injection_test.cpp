@@ -25,7 +25,7 @@ struct Clean {
         base(calibrate_with(probe, simulated, effects)) {}
 
   FlightDiagnosis with(const SizedEffect& effect) const {
-    return diagnose_with(effect, base, flight, {}, quick_diagnosis());
+    return diagnose_with(effect, base, flight, {}, quick_diagnosis(base.probe->name()));
   }
 };
 
@@ -87,7 +87,8 @@ TEST_CASE("the measurements change by the effect alone: a drift of the bias, in 
     for (std::size_t i = 0; i < time.size(); ++i) column.values[i] += 0.05 * (time[i] - mean);
   }
   const Calibration again = calibrate_with("magnetometer", shifted, {});
-  const FlightDiagnosis expected = diagnose(again, make_flight(shifted), {}, quick_diagnosis());
+  const FlightDiagnosis expected =
+      diagnose(again, make_flight(shifted), {}, quick_diagnosis("magnetometer"));
   const FlightDiagnosis found = clean.with({"bias[time]", {0.05, 0.0, 0.0}});
   CHECK(found.diagnosis.rmse == Approx(expected.diagnosis.rmse).epsilon(1e-6));
   CHECK(find(found, "bias[time]").coefficients[0].estimate ==

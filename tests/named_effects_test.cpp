@@ -214,7 +214,7 @@ TEST_CASE("a name or a channel that doesn't do is refused, and the way out is sa
     check_refused([&] { make({.name = name}); }, words);
   };
   refused("d[time]", {"there is no effect 'd[time]'; known: s[driver], c[driver], u[driver]"});
-  refused("c", {"there is no effect 'c'"});
+  refused("c", {"effect 'c' needs a driver: write c[time]"});
   refused("c[flap]", {"effect c[flap]: there is no channel 'flap'", "the record has: time, u"});
   refused("c[throttle]", {"effect c[throttle]: channel 'throttle' is constant (0.5"});
   refused("c[gusts_mps]", {"effect c[gusts_mps]: channel 'gusts_mps' holds something else"});

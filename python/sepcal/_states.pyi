@@ -143,21 +143,13 @@ class Fit:
     ) -> sepcal._core.Applied: ...
     def compare(self, arg0: sepcal._core.Flight) -> sepcal._core.Comparison: ...
     def diagnose(
-        self,
-        arg0: sepcal._core.Flight,
-        arg1: typing.SupportsInt | typing.SupportsIndex,
-        arg2: typing.SupportsInt | typing.SupportsIndex,
-        arg3: str,
-        arg4: collections.abc.Sequence[str],
+        self, arg0: sepcal._core.Flight, arg1: sepcal._core.DiagnosisOptions
     ) -> sepcal._core.Diagnosed: ...
     def diagnose_stepwise(
         self,
         arg0: sepcal._core.Flight,
         arg1: typing.SupportsInt | typing.SupportsIndex | None,
-        arg2: typing.SupportsInt | typing.SupportsIndex,
-        arg3: typing.SupportsInt | typing.SupportsIndex,
-        arg4: str,
-        arg5: collections.abc.Sequence[str],
+        arg2: sepcal._core.DiagnosisOptions,
     ) -> SteppedFit: ...
     def save(self, arg0: str) -> None: ...
     def smooth(

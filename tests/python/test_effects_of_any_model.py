@@ -183,7 +183,7 @@ def test_columns_that_drive_nothing_are_ignored() -> None:
         ("k[gap]", ("'gap'", "finite")),
         ("k[time^0]", ("k[time^0]", "1 to 9")),
         ("k[short]", ("'short'", "7", "800")),
-        ("k", ("'k'", "k[driver]")),
+        ("k", ("'k'", "needs a driver", "k[time]")),
     ],
 )
 def test_effects_that_are_refused(effect: str, words: tuple[str, ...]) -> None:

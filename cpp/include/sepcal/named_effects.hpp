@@ -77,7 +77,7 @@ struct EffectKit {
   /// Corrections whose size need not be constant: noise of the inputs, as an attitude's error that
   /// its filter lets wander. diagnose() takes nothing for found that they explain.
   std::vector<Maker> wandering = {};
-  /// Errors that wander within bounds; none: each output's, by twice its white noise.
+  /// Errors that wander within bounds; none: each output's, by as much as its white noise.
   std::vector<WanderBound> wanders = {};
   std::map<std::string, std::function<std::string(const Record&)>> aliases;  // to whole names
 };

@@ -81,9 +81,9 @@ std::string implausible_size(const CandidateRoom& room, const Candidate& candida
       const Parameter& now = fitted[coefficient.name];
       const double error = std::isfinite(now.standard_error) ? errors * now.standard_error : 0.0;
       if (now.value + error < range.lower || now.value - error > range.upper) {
-        return fmt::format("fitted, {} is {:.3g} +- {:.1g}, and physics lets it be {:.3g} to {:.3g}",
-                           coefficient.name, now.value, now.standard_error, range.lower,
-                           range.upper);
+        return fmt::format(
+            "fitted, {} is {:.3g} +- {:.1g}, and physics lets it be {:.3g} to {:.3g}",
+            coefficient.name, now.value, now.standard_error, range.lower, range.upper);
       }
     }
   }

@@ -174,7 +174,7 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
                            Findings& findings) {
   std::vector<const Contender*> found;
   for (const Contender& contender : contest.contenders) {
-    if (!std::isfinite(contender.criterion)) continue;
+    if (contender.criterion == infinity) continue;
     if (finding_of(findings, contender.candidate.name).status == FindingStatus::found) {
       found.push_back(&contender);
     }

@@ -413,7 +413,8 @@ void Recipe::advise() {
   bool first_stands = false;  // though no fit takes it
   for (EffectFinding& finding : result_.effects) {
     if (finding.status != FindingStatus::found || fitted == most_fitted) return;
-    if (finding.beside == Beside::fades) continue;  // what it explains is the first's
+    if (finding.beside == Beside::fades && fitted == 0)
+      continue;  // it explains what the first does
     if (first_stands && finding.beside == Beside::counts) continue;  // alone it would stand in
     const Objection objection = object_to(finding);
     if (std::isfinite(objection.drop)) {
@@ -433,12 +434,12 @@ void Recipe::advise() {
   }
 }
 
-/// What was found and no fit bears out is no finding, where nothing else was found that a fit does.
+/// What was found and no fit bears out is no finding, nor is then what fades beside it.
 void Recipe::withdraw() {
-  if (!result_.advice.effect.empty()) return;
+  const bool nothing_stands = result_.advice.effect.empty() && !withdrawn_.empty();
   for (EffectFinding& finding : result_.effects) {
     const bool is_withdrawn = std::ranges::find(withdrawn_, finding.name) != withdrawn_.end() ||
-                              (!withdrawn_.empty() && finding.beside == Beside::fades);
+                              (nothing_stands && finding.beside == Beside::fades);
     if (finding.status != FindingStatus::found || !is_withdrawn) continue;
     const auto trial = find_trial(finding.name);
     const bool takes_much = finding.held_out_passed && finding.held_out_gain >= objects_from;
@@ -448,6 +449,10 @@ void Recipe::withdraw() {
       finding.status = trial != trials_.end() && trial->slow ? FindingStatus::slow_change
                                                              : FindingStatus::undecided;
     }
+  }
+  const bool has_first = result_.effects.front().status == FindingStatus::found;
+  for (EffectFinding& finding : result_.effects) {
+    if (!has_first) finding.beside = Beside::untried;  // they were asked beside what is withdrawn
   }
   std::ranges::stable_sort(result_.effects, {}, &EffectFinding::status);
 }

@@ -23,7 +23,7 @@ using ByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 constexpr Index most_rows = 800;
 constexpr std::array correlation_times{10.0, 60.0, 300.0, 1500.0};  // [s]
 constexpr double least_white = 1e-3;                                // of the RMSE
-constexpr double of_white = 2.0;  // how far an output wanders of which nothing is known
+constexpr double of_white = 1.0;  // how far an output wanders of which nothing is known
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -139,13 +139,19 @@ struct InstrumentNoise::Source {
 /// Noise from row to row beside wandering of known sizes, as a Kalman filter: its gains do not
 /// depend on what is filtered. Rows stand by time, the outputs of each side by side.
 struct InstrumentNoise::Noise {
-  MatrixXd decay = {};     // of each state from the row before (states x n)
-  ByRow slopes = {};       // of the states (m n x states)
-  ByRow gains = {};        // (m n x states)
-  VectorXd roots = {};     // one over the innovations' standard deviation (m n)
-  MatrixXd basis = {};     // orthonormal, of the whitened tangent
-  VectorXd residual = {};  // whitened and orthogonal to it
-  double left = infinity;  // the variance beside all candidates
+  MatrixXd decay = {};         // of each state from the row before (states x n)
+  ByRow slopes = {};           // of the states (m n x states)
+  ByRow gains = {};            // (m n x states)
+  VectorXd roots = {};         // one over the innovations' standard deviation (m n)
+  MatrixXd basis = {};         // orthonormal, of the whitened tangent
+  VectorXd residual = {};      // whitened and orthogonal to it
+  double left = not_a_number;  // the variance beside all candidates, once that is known
+
+  /// The same, no less than 1.
+  double variance() const { return left > 1.0 ? left : 1.0; }
+
+  /// The least of that and of another.
+  double least_left(double other) const { return left < other ? left : other; }
 
   MatrixXd whiten(const MatrixXd& columns) const;
 
@@ -407,7 +413,7 @@ std::vector<InstrumentTail> InstrumentNoise::tails(const std::vector<Columns>& c
     const MatrixXd white = noise.whiten_beyond(reduced);
     for_each([&](InstrumentTail& tail, Index first, Index q) {
       const MatrixXd basis = orthonormal_basis(white.middleCols(first, q));
-      const double left = std::min(noise.left, noise.left_beside(basis));
+      const double left = noise.least_left(noise.left_beside(basis));
       tail.log10_p = std::max(tail.log10_p, noise.log10_tail(basis, left));
       tail.left = std::min(tail.left, left);
     });
@@ -437,7 +443,7 @@ double InstrumentNoise::minus_two_log_likelihood(const LinearisedFit& fit) const
   if (columns.size() == 0) return -infinity;
   double least = infinity;
   for (const Noise& noise : noises_) {
-    const double sum = noise.sum_left(columns) / std::max(1.0, noise.left);
+    const double sum = noise.sum_left(columns) / noise.variance();
     least = std::min(least, sum - 2.0 * noise.roots.array().log().sum());
   }
   return least;
@@ -452,7 +458,7 @@ InstrumentTail InstrumentNoise::tail_of_fit(const LinearisedFit& with, Index coe
     const double freedom = noise.freedom_beside(coefficients);
     if (!(freedom > 0.0)) return {};
     const double sum = noise.sum_left(columns);
-    const double left = std::min(noise.left, sum / freedom);
+    const double left = noise.least_left(sum / freedom);
     const double explained = std::max(0.0, noise.residual.squaredNorm() - sum);
     const double F = explained / q / std::max(1.0, left);
     found.log10_p = std::max(found.log10_p, numerics::log10_f_tail(F, q, freedom));
@@ -479,7 +485,7 @@ VectorXd InstrumentNoise::sigmas(const Columns& columns) const {
   for (const Noise& noise : noises_) {
     const MatrixXd white = noise.whiten_beyond(reduced);
     const VectorXd sizes = white.colwise().norm().transpose();
-    least = least.cwiseMin(sizes / std::sqrt(std::max(1.0, noise.left)));
+    least = least.cwiseMin(sizes / std::sqrt(noise.variance()));
   }
   return least;
 }

@@ -47,8 +47,8 @@ inline constexpr double most_left = 2.5;  // a ratio of variances
 class InstrumentNoise {
  public:
   /// Errors wander as the kit has them, at most as far as `sizes` says by their names; of a model
-  /// whose kit has none, each output's by twice its white noise. Throws Error for a name that there
-  /// is not. The room and the null hypothesis must outlive it.
+  /// whose kit has none, each output's by as much as its white noise. Throws Error for a name that
+  /// there is not. The room and the null hypothesis must outlive it.
   InstrumentNoise(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
                   const std::map<std::string, double>& sizes);
   ~InstrumentNoise();
