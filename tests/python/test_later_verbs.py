@@ -277,12 +277,13 @@ def test_effects(bench: Bench):
         "sepcal-pitot": (
             "wind airspeed_scale airspeed_bias pressure_offset alpha_offset beta_offset",
             "heading_bias time_offset pneumatic_lag lever_arm density_error compressibility upwash "
-            "sidewash icing_ramp water_blockage mounting_error wind_shear wind_drift propwash",
+            "sidewash icing_ramp water_blockage mounting_error wind_shear wind_drift propwash "
+            "pressure_offset clock_drift angle_loss",
         ),
         "sepcal-mag": (
             "bias scale axis_scale",
             "bias_step cubic_nonlinearity time_offset sensor_lag field_declination warm_up "
-            "eddy_currents attitude_bias bias_drift",
+            "eddy_currents attitude_bias bias_drift clock_drift",
         ),
     }[bench.app]
     assert {name.split("[")[0] for name in names if "[" in name} == set(ports.split())
