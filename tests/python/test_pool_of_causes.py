@@ -73,16 +73,3 @@ def test_the_case_of_a_five_hole_probe(tmp_path: Path):
     before, after = (max(one.result["rmse"].values()) for one in (base, added))
     assert after < 0.35 * before
     assert 0.5 < added.result["parameters"]["angle_loss.s"]["value"] < 1.5
-
-
-def test_the_case_of_a_lag(tmp_path: Path):
-    """A quadrotor's compass: beside the current, one lag takes what nine coefficients do."""
-    case = find_case("f3_quad_mag1.csv")
-    rmse = {}
-    for effect in ("sensor_lag", "eddy_currents"):
-        options = ("--effect", f"bias[current_a]+{effect}", "--json")
-        fitted = run("sepcal-mag", "fit", case, *options, folder=tmp_path).result
-        rmse[effect] = np.sqrt(np.mean(np.square(list(fitted["rmse"].values()))))
-        if effect == "sensor_lag":
-            assert fitted["parameters"]["sensor_lag.tau"]["value"] == pytest.approx(0.053, abs=0.01)
-    assert rmse["sensor_lag"] < 1.05 * rmse["eddy_currents"]

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -221,7 +222,7 @@ class Recipe {
 
 void Recipe::in_time(const std::string& step, const std::function<void()>& work) {
   if (std::isinf(options_.within)) return work();
-  struct OutOfTime {};
+  struct OutOfTime : std::exception {};
   base::Stop* const outer = base::heeded_stop();
   const auto ask = [&] {
     const base::HeedStop as_asked(outer);

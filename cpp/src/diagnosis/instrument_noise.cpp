@@ -468,9 +468,10 @@ InstrumentTail InstrumentNoise::tail_of_fit(const LinearisedFit& with, Index coe
 }
 
 double InstrumentNoise::excuse(const Columns& candidate, double log10_wanted, double least) const {
-  constexpr double most = 64.0;
+  constexpr int doublings = 6;
   const MatrixXd reduced = reduce(candidate);
-  for (double times = least; times <= most; times *= 2.0) {
+  for (int doubled = 0; doubled <= doublings; ++doubled) {
+    const double times = std::ldexp(least, doubled);
     for (const Noise& noise : make_noises({times})) {
       const MatrixXd basis = orthonormal_basis(noise.whiten_beyond(reduced));
       if (noise.log10_tail(basis, noise.left_beside(basis)) > log10_wanted) return times;

@@ -49,9 +49,10 @@ std::string_view read_thresholds(EffectName& name, std::string_view arguments) {
     rest.remove_prefix(1);
     const std::size_t end = std::min(rest.find(','), rest.size());
     double value = 0.0;
-    const auto [read, error] = std::from_chars(rest.data(), rest.data() + end, value);
-    const bool is_number =
-        error == std::errc{} && read == rest.data() + end && std::isfinite(value);
+    const std::string text(rest.substr(0, end));
+    const char* const behind = text.data() + text.size();  // NOLINT(*-pointer-arithmetic)
+    const auto [read, error] = std::from_chars(text.data(), behind, value);
+    const bool is_number = error == std::errc{} && read == behind && std::isfinite(value);
     if (!is_number || (!name.thresholds.empty() && !(value > name.thresholds.back()))) {
       name.thresholds.clear();
       break;

@@ -224,12 +224,12 @@ class LevelFinder {
  public:
   LevelFinder(const BinSums& sums, const Bins& bins) : bins_(bins) {
     const Index c = sums.products.front().size();
-    squares_.push_back(MatrixXd::Zero(c, c));
-    products_.push_back(VectorXd::Zero(c));
+    squares_.emplace_back(MatrixXd::Zero(c, c));
+    products_.emplace_back(VectorXd::Zero(c));
     rows_.push_back(0.0);
     for (std::size_t b = 0; b < bins.size(); ++b) {
-      squares_.push_back(squares_.back() + sums.squares[b]);
-      products_.push_back(products_.back() + sums.products[b]);
+      squares_.emplace_back(squares_.back() + sums.squares[b]);
+      products_.emplace_back(products_.back() + sums.products[b]);
       rows_.push_back(rows_.back() + bins.rows[b]);
     }
   }
