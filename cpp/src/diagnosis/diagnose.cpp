@@ -410,12 +410,16 @@ void Recipe::tell_fitted(EffectFinding& finding) {
 /// The best of what was found that a real fit bears out and no other contradicts.
 void Recipe::advise() {
   constexpr std::size_t most_fitted = 3;
+  constexpr double most_of = 0.4;  // of what the first takes, where no fit takes that
   std::size_t fitted = 0;
   bool first_stands = false;  // though no fit takes it
   for (EffectFinding& finding : result_.effects) {
     if (finding.status != FindingStatus::found || fitted == most_fitted) return;
-    if (finding.beside == Beside::fades && fitted == 0)
-      continue;  // it explains what the first does
+    if (finding.beside == Beside::fades) {  // it explains what the first does
+      const bool does_much =
+          finding.held_out_gain > most_of * result_.effects.front().held_out_gain;
+      if (fitted == 0 || !does_much) continue;
+    }
     if (first_stands && finding.beside == Beside::counts) continue;  // alone it would stand in
     const Objection objection = object_to(finding);
     if (std::isfinite(objection.drop)) {
