@@ -324,15 +324,15 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
   const PreparedFlight prepared = prepare(*probe, flight, options.log);
   std::vector<std::string> notes;
   note_check(*probe, prepared, options, notes);
-  Calibration calibration = calibrate(std::move(probe), prepared, options);
+  Calibration calibration = calibrate(probe, prepared, options);
   std::ranges::copy(prepared.filled, std::back_inserter(calibration.notes));
   std::ranges::move(notes, std::back_inserter(calibration.notes));
   note_pull(calibration, prepared, options);
   return calibration;
 }
 
-Calibration verbs::calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
-                             const CalibrationOptions& options) {
+Calibration verbs::calibrate(const std::shared_ptr<const Probe>& probe,
+                             const PreparedFlight& prepared, const CalibrationOptions& options) {
   return try_beyond(calibrate_within(probe, prepared, options), probe, prepared, options);
 }
 

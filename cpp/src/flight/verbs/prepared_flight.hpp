@@ -60,7 +60,7 @@ std::string say_left_out(const Calibration& left, const PreparedFlight& prepared
                          const std::string& suspected);
 
 /// As the public calibrate().
-Calibration calibrate(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
+Calibration calibrate(const std::shared_ptr<const Probe>& probe, const PreparedFlight& prepared,
                       const CalibrationOptions& options);
 
 /// The base's options for a fit that begins at its estimates.
