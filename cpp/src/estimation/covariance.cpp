@@ -154,8 +154,9 @@ class Sandwich {
   void leave_columns_out(const std::vector<Index>& inside) {
     const std::vector<MatrixXd> tangents = sweep_.tangent_rows(xi1(), xi2());
     for (std::size_t j = 0; j < colours_.size(); ++j) {
-      const bool is_coloured = colours_[j].has_value() && !is_white(colours_[j].value());
-      if (!is_coloured) continue;
+      const std::optional<OutputNoise>& colour = colours_[j];
+      if (!colour.has_value()) continue;
+      if (is_white(*colour)) continue;
       colours_[j] =
           find_noise_by_itself(residuals_.col(static_cast<Index>(j)),
                                tangents[j](Eigen::all, inside), sweep_.measurements().runs());

@@ -177,7 +177,7 @@ Calibration refit_held(const Calibration& calibration, const Flight& flight,
     held.fit.fixed["c_va"] = 0.0;
   }
   keep_known(probe->model().tables(), held);
-  return verbs::calibrate(std::move(probe), verbs::prepare(calibration, flight), held);
+  return verbs::calibrate(probe, verbs::prepare(calibration, flight), held);
 }
 
 HeldField held_field(const Calibration& calibration) {
