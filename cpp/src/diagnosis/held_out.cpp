@@ -306,7 +306,9 @@ HeldOut hold_out(const LinearisedFit& without, const LinearisedFit& with, const 
     const Columns columns = join(view(fit.tangent), view(fit.residual));
     const auto factors = factor_by_fold(fit.layout, columns, folds);
     std::vector<MatrixXd> estimates;
-    for (int f = 0; f < folds.count; ++f) estimates.push_back(estimate_without(fit, factors, f));
+    for (int f = 0; f < folds.count; ++f) {
+      estimates.emplace_back(estimate_without(fit, factors, f));
+    }
     const std::vector<double> weights = weights_as_of(without.layout, fit.layout);
     std::vector<double> errors;
     for (const VectorXd& square : predict_blocks(fit.layout, weights, columns, estimates, folds)) {
