@@ -107,3 +107,14 @@ def test_an_octocopters_mast():
     assert first.status == "found"
     assert first.held_out_gain is not None
     assert 0 < first.held_out_gain < 0.2
+
+
+@pytest.mark.parametrize("hide", [{}, {"bias[current_a]": 0.05}, {"bias_step": 4.0}])
+def test_what_a_diagnosis_costs(hide: dict[str, float]):
+    """Counted, not timed: screens are cheap, tests, draws and fits are few."""
+    flight = sepcal.simulate("magnetometer", hide=hide, rows=600, seed=1)
+    work = sepcal.fit(sepcal.Magnetometer(), flight).diagnose().work
+    assert work["screened"] >= 30
+    assert work["tested"] <= 40
+    assert work["calibrated"] <= 9
+    assert work["refitted"] <= 12
