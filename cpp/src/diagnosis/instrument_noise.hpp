@@ -80,7 +80,7 @@ class InstrumentNoise {
   InstrumentTail tail_of_fit(const LinearisedFit& with, Eigen::Index coefficients) const;
 
   /// How many times as far as their bounds errors would have to wander to give a candidate that
-  /// tail, from `least` on and to a factor of 2; infinite where 64 times that are too few.
+  /// tail, from `least` on and to a factor of 2; infinite where 64 times that is too little.
   double excuse(const Columns& candidate, double log10_tail, double least) const;
 
   /// How large columns are in standard errors, in the noise that hides them best.
