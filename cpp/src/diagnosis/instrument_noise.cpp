@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using ByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr Index most_rows = 800;
+constexpr Index most_filtered_rows = 800;
 constexpr std::array correlation_times{10.0, 60.0, 300.0, 1500.0};  // [s]
 constexpr double least_white = 1e-3;                                // of the RMSE
 constexpr double of_white = 1.0;  // how far an output wanders of which nothing is known
@@ -215,7 +215,7 @@ MatrixXd InstrumentNoise::Noise::whiten(const MatrixXd& columns) const {
 InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
                                  const NullHypothesis& null,
                                  const std::map<std::string, double>& sizes)
-    : null_(null), rows_(null.fit().layout, most_rows, true), bounds_(kit.wanders) {
+    : null_(null), rows_(null.fit().layout, most_filtered_rows, true), bounds_(kit.wanders) {
   const RowLayout& layout = null.fit().layout;
   times_ = reduce_times(layout, rows_, room.times());
   known_ = MatrixXd(rows_.layout.count(), null.basis.rank() + 1);
