@@ -45,21 +45,29 @@ FlightDiagnosis told(Verdict verdict, const std::string& advised = "",
   return result;
 }
 
-/// Each diagnosis says what is next in the list.
+/// Each diagnosis of everything says what is next in the list, each of one effect whether that is
+/// still found.
 struct Verbs {
   std::vector<FlightDiagnosis> diagnoses;
   std::vector<Fitted> fits;
+  std::vector<std::string> fading = {};
   std::vector<std::string> added = {};
   std::size_t asked = 0;
 
   Stepwise run(Fitted& from, std::size_t most = 9) {
-    return run_stepwise<Fitted>(
-        from, most, [&](const Fitted&) { return diagnoses.at(asked++); },
+    const StepwiseLoop<Fitted> loop{
+        from, most,
+        [&](const Fitted&, const std::string& only, std::size_t) {
+          if (only.empty()) return diagnoses.at(asked++);
+          const bool fades = std::ranges::find(fading, only) != fading.end();
+          return fades ? told(Verdict::adequate) : told(Verdict::effect_missing, only);
+        },
         [&](const Fitted&, const std::string& effect) {
           added.push_back(effect);
           if (added.size() > fits.size()) throw Error("no such channel");
           return fits[added.size() - 1];
-        });
+        }};
+    return loop.run(from);
   }
 };
 
@@ -68,10 +76,10 @@ struct Verbs {
 TEST_CASE("steps are taken until nothing passes") {
   Verbs verbs{{told(Verdict::effect_missing, "E"), told(Verdict::effect_missing, "F"),
                told(Verdict::adequate)},
-              {with_error(0.6), with_error(0.3)}};
+              {with_error(0.6), with_error(0.3), with_error(0.5)}};
   Fitted fitted = with_error(1.0);
   const Stepwise course = verbs.run(fitted);
-  CHECK(verbs.added == std::vector<std::string>{"E", "F"});
+  CHECK(verbs.added == std::vector<std::string>{"E", "F", "F"});  // the last to ask for E
   REQUIRE(course.steps.size() == 2);
   CHECK(course.steps[0].promised.name == "E");
   CHECK(course.steps[0].rmse_before == 1.0);  // of vn alone
@@ -81,6 +89,33 @@ TEST_CASE("steps are taken until nothing passes") {
   CHECK(course.end == StepwiseEnd::nothing_found);
   CHECK(course.last.diagnosis.verdict == Verdict::adequate);
   CHECK(fitted.fit.rmse.front().value == 0.3);
+}
+
+TEST_CASE("what was added is dropped where a later step takes its place") {
+  Verbs verbs{{told(Verdict::effect_missing, "E"), told(Verdict::effect_missing, "F"),
+               told(Verdict::adequate)},
+              {with_error(0.6), with_error(0.3), with_error(0.31)},
+              {"E"}};
+  Fitted fitted = with_error(1.0);
+  Stepwise course = verbs.run(fitted);
+  REQUIRE(course.steps.size() == 2);
+  CHECK(course.steps[1].dropped == std::vector<std::string>{"E"});
+  CHECK(list_kept(course) == std::vector<std::string>{"F"});
+  CHECK(fitted.fit.rmse.front().value == 0.31);  // of the fit without E
+  CHECK(course.end == StepwiseEnd::nothing_found);
+  CHECK(to_text(course).find("- E: beside F it counts no more, and is dropped") !=
+        std::string::npos);
+  CHECK(to_text(course).find("1 effect added") != std::string::npos);
+
+  // It does not come back for ever.
+  Verbs circle{{told(Verdict::effect_missing, "E"), told(Verdict::effect_missing, "F"),
+                told(Verdict::effect_missing, "E")},
+               {with_error(0.6), with_error(0.3), with_error(0.31)},
+               {"E"}};
+  fitted = with_error(1.0);
+  course = circle.run(fitted);
+  CHECK(course.end == StepwiseEnd::withheld);
+  CHECK(course.reason == "E would come back, which F took the place of");
 }
 
 TEST_CASE("it ends with the reason") {

@@ -40,6 +40,7 @@ class StepwiseStep:
     found_drop: float | None
     rmse_before: float
     rmse_after: float
+    dropped: list[str]  # what was added before and counts no more beside it
 
 
 class Stepwise(Page, Generic[Fitted]):
@@ -78,8 +79,11 @@ class Stepwise(Page, Generic[Fitted]):
 
     @property
     def effects(self) -> list[str]:
-        """What was added, in order."""
-        return [step.effect for step in self.steps]
+        """What was added and not dropped, in order."""
+        kept: list[str] = []
+        for step in self.steps:
+            kept = [*(name for name in kept if name not in step.dropped), step.effect]
+        return kept
 
     def to_json(self) -> str:
         """The JSON that the app's diagnose --auto writes with -o: the fit, with the steps."""

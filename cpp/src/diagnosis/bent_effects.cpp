@@ -86,11 +86,11 @@ std::vector<Contender> try_on_some_rows(Bench& bench, const Findings& findings,
   std::vector<Contender> all;
   for (const EffectFinding& finding : findings) {
     const auto is_this = [&](const Contender& one) { return one.candidate.name == finding.name; };
-    if (finding.status == FindingStatus::cannot_be_seen || split_effects(finding.name).size() > 1 ||
-        finding.name.find("spline(") != std::string::npos || std::ranges::any_of(known, is_this)) {
+    if (finding.status == FindingStatus::cannot_be_seen || std::ranges::any_of(known, is_this)) {
       continue;
     }
-    all.push_back({bench.room().make(finding.name), shape_of(finding)});
+    const Candidate& candidate = bench.room().make(finding.name);
+    if (is_simple(candidate)) all.push_back({candidate, shape_of(finding)});
   }
   std::vector<std::pair<double, std::size_t>> criteria(all.size());
   bench.pool().for_each(

@@ -105,6 +105,8 @@ bool is_driven(const Effect& effect, const EffectKit& kit) {
          std::ranges::find(kit.ports, effect.port, &Port::name) != kit.ports.end();
 }
 
+constexpr int of_any_form = 3;
+
 }  // namespace
 
 std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candidate) {
@@ -113,7 +115,7 @@ std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candida
     const EffectName name = parse_effect_name(setting.name);
     int own = 0;
     if (name.shape == EffectName::Shape::spline || name.base == "maneuver") {
-      own = 3;
+      own = of_any_form;
     } else if (name.shape == EffectName::Shape::product ||
                (name.shape == EffectName::Shape::power && name.number > 1)) {
       own = 1;
@@ -124,6 +126,11 @@ std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candida
   }
   if (form < 2 && !candidate.shape.parameter.empty()) form = 2;
   return {candidate.settings.size(), form, candidate.coefficients.size()};
+}
+
+bool is_simple(const Candidate& candidate) {
+  const auto [effects, form, coefficients] = complexity_of(candidate);
+  return effects == 1 && form < of_any_form;
 }
 
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)

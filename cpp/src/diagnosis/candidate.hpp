@@ -47,6 +47,9 @@ struct Candidate {
 /// scanned, or a function of any form; how many coefficients it has.
 std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candidate);
 
+/// Whether it is of one effect that is no function of any form.
+bool is_simple(const Candidate& candidate);
+
 /// A candidate's columns, as many as coefficients.
 struct CandidateColumns {
   Columns whole;

@@ -23,6 +23,7 @@
 #include "diagnosis/residual_noise.hpp"
 #include "diagnosis/rivals.hpp"
 #include "diagnosis/unlogged.hpp"
+#include "numerics/order_statistics.hpp"
 #include "numerics/selection.hpp"
 #include "numerics/tails.hpp"
 #include "sepcal/error.hpp"
@@ -49,7 +50,8 @@ void rank(std::vector<EffectFinding>& findings) {
 
 /// What is not found and may take much of the error, as one step has it: the best few, and the best
 /// few of those that are no functions of any form.
-std::vector<EffectFinding*> choose_to_weigh(std::vector<EffectFinding>& findings) {
+std::vector<EffectFinding*> choose_to_weigh(CandidateRoom& room,
+                                             std::vector<EffectFinding>& findings) {
   constexpr double worth_a_fit = 0.6 * objects_from;
   constexpr std::ptrdiff_t most_of_any = 2;
   constexpr std::ptrdiff_t most_of_simple = 4;
@@ -60,21 +62,17 @@ std::vector<EffectFinding*> choose_to_weigh(std::vector<EffectFinding>& findings
     if (is_open && finding.held_out_gain > worth_a_fit) order.push_back(&finding);
   }
   std::ranges::stable_sort(order, std::ranges::greater(), &EffectFinding::held_out_gain);
-  const auto is_simple_one = [](const EffectFinding& finding) {
-    return finding.name.find("spline(") == std::string::npos &&
-           split_effects(finding.name).size() == 1;
-  };
   std::vector<EffectFinding*> chosen;
   std::ptrdiff_t of_any = 0;
   std::ptrdiff_t of_simple = 0;
   for (EffectFinding* finding : order) {
-    const bool is_simple = is_simple_one(*finding);
+    const bool simple = is_simple(room.make(finding->name));
     if (of_any < most_of_any) {
       ++of_any;
-    } else if (!is_simple || of_simple == most_of_simple) {
+    } else if (!simple || of_simple == most_of_simple) {
       continue;
     }
-    of_simple += is_simple ? 1 : 0;
+    of_simple += simple ? 1 : 0;
     chosen.push_back(finding);
   }
   return chosen;
@@ -158,10 +156,7 @@ double count_visible(const Trials& trials) {
 double typical_interval(const std::vector<double>& times) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
-  if (intervals.empty()) return 1.0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::ranges::nth_element(intervals, middle);
-  return *middle;
+  return intervals.empty() ? 1.0 : numerics::upper_median(std::move(intervals));
 }
 
 /// Of an effect found among `number` that could have been.
@@ -466,7 +461,7 @@ void Recipe::withdraw() {
 /// rows that lie further apart than noise remembers do not care about its model.
 void Recipe::weigh_held_out() {
   const double significant = std::log10(options_.significance / std::max(1.0, tests()));
-  std::vector<EffectFinding*> chosen = choose_to_weigh(result_.effects);
+  std::vector<EffectFinding*> chosen = choose_to_weigh(bench_.room(), result_.effects);
   if (is_far_off(bench_, result_.floor)) {  // one step may see little in what explains everything
     for (const Contender& bent : try_on_some_rows(bench_, result_.effects, {})) {
       EffectFinding& finding =

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "diagnosis/projection.hpp"
+#include "numerics/order_statistics.hpp"
 #include "numerics/tails.hpp"
 #include "sepcal/error.hpp"
 
@@ -25,12 +26,6 @@ constexpr std::array correlation_times{10.0, 60.0, 300.0, 1500.0};  // [s]
 constexpr double least_white = 1e-3;                                // of the RMSE
 constexpr double of_white = 1.0;  // how far an output wanders of which nothing is known
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Of noise that neighbouring rows do not share, by second differences, which hardly see what is
 /// slow; no single one counts for more than four robust standard deviations.
 double white_variance(const std::vector<Segment>& runs, const Eigen::Ref<const VectorXd>& e) {
@@ -45,7 +40,7 @@ double white_variance(const std::vector<Segment>& runs, const Eigen::Ref<const V
   }
   const double least = least_white * least_white * e.squaredNorm() / static_cast<double>(e.size());
   if (sizes.empty()) return least;
-  const double largest = 4.0 * robust * median_of(sizes);
+  const double largest = 4.0 * robust * numerics::upper_median(sizes);
   double sum = 0.0;
   for (const double size : sizes) {
     const double counted = largest > 0.0 ? std::min(size, largest) : size;

@@ -8,6 +8,7 @@
 #include "diagnosis/projection.hpp"
 #include "diagnosis/reduced_rows.hpp"
 #include "diagnosis/sign_flips.hpp"
+#include "numerics/order_statistics.hpp"
 #include "numerics/tails.hpp"
 
 namespace sepcal::diagnosis {
@@ -31,10 +32,8 @@ const FamilyFit& likeliest(const std::array<FamilyFit, 2>& fits) {
   return *std::ranges::min_element(fits, {}, &FamilyFit::minus_two_log_likelihood);
 }
 
-double median(VectorXd values) {
-  const Index middle = values.size() / 2;
-  std::nth_element(values.begin(), values.begin() + middle, values.end());
-  return values[middle];
+double median(const VectorXd& values) {
+  return numerics::upper_median({values.begin(), values.end()});
 }
 
 /// Sizes of innovations, output by output: no larger than 4 robust standard deviations.

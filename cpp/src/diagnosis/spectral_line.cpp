@@ -7,6 +7,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "numerics/order_statistics.hpp"
 #include "numerics/tails.hpp"
 #include "sepcal/quantity.hpp"
 
@@ -102,10 +103,8 @@ EvenGrid place_on_grid(const std::vector<double>& time) {
   if (time.size() < 2) return grid;
   std::vector<double> intervals;
   for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
-  std::vector<double> sorted = intervals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  grid.interval = *middle > 0.0 ? *middle : 1.0;
+  const double usual = numerics::upper_median(intervals);
+  grid.interval = usual > 0.0 ? usual : 1.0;
   grid.cells.push_back(0);
   double at = 0.0;
   for (const double interval : intervals) {

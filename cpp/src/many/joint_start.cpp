@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "many/arrowhead.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::many {
 namespace {
@@ -54,9 +55,7 @@ VectorXd medians(const std::vector<FlightStart>& starts, const std::vector<bool>
     for (std::size_t i = 0; i < starts.size(); ++i) {
       if (usable[i]) values.push_back(starts[i].x.tail(n_shared)[k]);
     }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    medians[k] = *middle;
+    medians[k] = numerics::upper_median(std::move(values));
   }
   return medians;
 }

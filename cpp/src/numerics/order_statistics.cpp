@@ -37,4 +37,10 @@ double select_quantile(std::vector<double>& values, double share) {
   return std::lerp(*at, next == values.end() ? *at : *std::min_element(next, values.end()), part);
 }
 
+double upper_median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace sepcal::numerics

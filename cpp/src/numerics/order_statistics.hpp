@@ -13,4 +13,7 @@ double quantile(std::span<const double> values, double share);
 /// The same of values (one or more, no NaN) in any order, which it changes.
 double select_quantile(std::vector<double>& values, double share);
 
+/// The middle one of values (one or more, no NaN) in any order, the upper where there are two.
+double upper_median(std::vector<double> values);
+
 }  // namespace sepcal::numerics

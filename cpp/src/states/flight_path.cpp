@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/models/flight_path.hpp"
+#include "numerics/order_statistics.hpp"
 #include "sepcal/states/compiled_trajectories.hpp"
 
 #include <algorithm>
@@ -35,10 +36,7 @@ double largest(const std::vector<double>& values) {
 
 /// NaN of none.
 double middle_of(std::vector<double> values) {
-  if (values.empty()) return not_a_number;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return values.empty() ? not_a_number : numerics::upper_median(std::move(values));
 }
 
 void check_unit(const Record& record, const std::string& name, double most,

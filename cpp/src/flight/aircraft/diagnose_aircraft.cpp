@@ -89,12 +89,15 @@ StepwiseAircraft diagnose_aircraft_stepwise(const AircraftFit& fitted, const Fli
   verbs::check_most(options);
   AircraftFit now =
       is_same_flight(fitted, flight) ? fitted : fit_aircraft(flight, options_on(fitted, flight));
-  Stepwise course = verbs::run_stepwise<AircraftFit>(
+  const verbs::StepwiseLoop<AircraftFit> loop{
       now, options.most,
-      [&](const AircraftFit& at) { return diagnose_aircraft(at, flight, options.diagnosis); },
+      [&](const AircraftFit& at, const std::string& only, std::size_t among) {
+        return diagnose_aircraft(at, flight, verbs::about(options.diagnosis, only, among));
+      },
       [&](const AircraftFit& at, const std::string& effect) {
         return add_to_aircraft(at, flight, effect);
-      });
+      }};
+  Stepwise course = loop.run(now);
   return {std::move(now), std::move(course)};
 }
 

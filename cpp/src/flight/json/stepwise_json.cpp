@@ -19,7 +19,8 @@ Json json::write_stepwise(const Stepwise& course) {
                      {"predicted_drop", number(promised.predicted_drop)},
                      {"found_drop", number(step.found_drop())},
                      {"rmse_before", number(step.rmse_before)},
-                     {"rmse_after", number(step.rmse_after)}});
+                     {"rmse_after", number(step.rmse_after)},
+                     {"dropped", step.dropped}});
   }
   return {{"steps", steps},
           {"end", to_string(course.end)},

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "flight/probes/ellipsoid.hpp"
+#include "numerics/order_statistics.hpp"
 
 namespace sepcal::probes {
 namespace {
@@ -40,13 +41,6 @@ using Field = std::array<std::string_view, 3>;
 constexpr Field true_field_in_body{"hx", "hy", "hz"};
 constexpr Field true_field_in_navigation{"bn", "be", "bd"};
 constexpr Field read_field{"mx", "my", "mz"};
-
-/// The middle one of the values; there is at least one.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// "; if it is in hpa or torr, ...": the units of its kind that would put both values in the range.
 std::string suggest_units(const Reading& reading, const Range& range, double smallest,
@@ -108,7 +102,7 @@ bool check_field(const Field& names, const Range& range, const FindReading& find
   for (std::size_t row = 0; row < strengths.size(); ++row) {
     strengths[row] = std::hypot(field[0].values[row], field[1].values[row], field[2].values[row]);
   }
-  const double strength = median(std::move(strengths));
+  const double strength = numerics::upper_median(std::move(strengths));
   if (range.contains(strength)) return true;
   if (names == read_field && range.contains(radius_of(field))) return true;
   const bool given = names == true_field_in_navigation && field[0].header == names[0];
@@ -153,7 +147,7 @@ void check_ports(std::string_view port, const std::vector<double>& dynamic,
   }
   if (ratios.empty()) return;
   const double largest = std::ranges::max(ratios);
-  const double usual = median(std::move(ratios));
+  const double usual = numerics::upper_median(std::move(ratios));
   if (largest == 0 || (largest >= port_ratios.low && usual <= port_ratios.high)) return;
   const bool too_large = usual > port_ratios.high;
   found.push_back({{reading->header},
@@ -169,7 +163,7 @@ void check_pressures(const FindReading& find, std::vector<Implausible>& found) {
   if (dynamic.empty()) return;
   const std::string name = headers.size() == 1 ? fmt::format("column '{}'", headers[0])
                                                : fmt::format("{} - {}", headers[0], headers[1]);
-  const double usual = median(dynamic);
+  const double usual = numerics::upper_median(dynamic);
   if (!dynamic_pressures.contains(usual)) {
     found.push_back(
         {headers,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "flight/verbs/stepwise_loop.hpp"
 #include "sepcal/flight/stepwise.hpp"
 
 namespace sepcal {
@@ -29,8 +30,12 @@ std::string to_text(const Stepwise& course) {
                         signed_percent(-promised.held_out_gain),
                         signed_percent(-promised.predicted_drop),
                         signed_percent(-step.found_drop()), step.rmse_before, step.rmse_after);
+    for (const std::string& name : step.dropped) {
+      text += fmt::format("- {}: beside {} it counts no more, and is dropped\n", name,
+                          promised.name);
+    }
   }
-  const std::size_t count = course.steps.size();
+  const std::size_t count = verbs::list_kept(course).size();
   return text + fmt::format("{} added; stopped as {}\n{}\n",
                             count == 0 ? "nothing"
                                        : fmt::format("{} effect{}", count, count == 1 ? "" : "s"),

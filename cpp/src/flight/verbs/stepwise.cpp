@@ -51,14 +51,38 @@ std::string verbs::objection_to_step(const Fit& before, const Fit& after,
                      step.rmse_before, step.rmse_after);
 }
 
+DiagnosisOptions verbs::about(DiagnosisOptions options, const std::string& only,
+                              std::size_t among) {
+  if (only.empty()) return options;
+  options.only = {only};
+  options.others = among > 1 ? among - 1 : 0;
+  return options;
+}
+
 void verbs::finish(Stepwise& course, StepwiseEnd end, std::string reason) {
   course.end = end;
   course.reason = std::move(reason);
 }
 
+std::vector<std::string> verbs::list_kept(const Stepwise& course) {
+  std::vector<std::string> kept;
+  for (const StepwiseStep& step : course.steps) {
+    for (const std::string& name : step.dropped) std::erase(kept, name);
+    kept.push_back(step.promised.name);
+  }
+  return kept;
+}
+
 const EffectFinding* verbs::next_effect(Stepwise& course, std::size_t most) {
   const Diagnosis& found = course.last.diagnosis;
   const std::string& advised = found.advice.effect;
+  for (const StepwiseStep& step : course.steps) {
+    if (advised.empty() || std::ranges::find(step.dropped, advised) == step.dropped.end()) continue;
+    finish(course, StepwiseEnd::withheld,
+           fmt::format("{} would come back, which {} took the place of", advised,
+                       step.promised.name));
+    return nullptr;
+  }
   if (found.verdict == Verdict::effect_missing && !advised.empty() && course.steps.size() < most) {
     return &*std::ranges::find(found.effects, advised, &EffectFinding::name);
   }
@@ -88,12 +112,15 @@ StepwiseCalibration diagnose_stepwise(const Calibration& base, const Flight& fli
   if (is_other_flight(base, flight)) {
     calibration = refit_to(base, prepare(base, flight), own, progress);
   }
-  Stepwise course = run_stepwise<Calibration>(
+  const StepwiseLoop<Calibration> loop{
       calibration, options.most,
-      [&](const Calibration& at) { return diagnose(at, flight, own, options.diagnosis); },
+      [&](const Calibration& at, const std::string& only, std::size_t among) {
+        return diagnose(at, flight, own, about(options.diagnosis, only, among));
+      },
       [&](const Calibration& at, const std::string& effect) {
         return add(at, flight, effect, own, progress);
-      });
+      }};
+  Stepwise course = loop.run(calibration);
   return {std::move(calibration), std::move(course)};
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sepcal/error.hpp"
 #include "sepcal/flight/stepwise.hpp"
@@ -21,39 +22,81 @@ void check_most(const StepwiseOptions& options);
 /// Why a fit with one effect more is no step; empty where it is one.
 std::string objection_to_step(const Fit& before, const Fit& after, const StepwiseStep& step);
 
+/// The options of a diagnosis of one candidate among so many; as they are where it is empty.
+DiagnosisOptions about(DiagnosisOptions options, const std::string& only, std::size_t among);
+
 /// The steps' table as to_json() has it.
 void finish(Stepwise& course, StepwiseEnd end, std::string reason);
 
 /// What is to be added next, or nullptr, why being told in `course`.
 const EffectFinding* next_effect(Stepwise& course, std::size_t most);
 
-/// `Fitted` has a member `fit`. `diagnose(fitted)` and `add(fitted, effect)` are the verbs; what
-/// add throws ends the loop.
+/// What the steps added and none dropped, in that order.
+std::vector<std::string> list_kept(const Stepwise& course);
+
+/// `Fitted` has a member `fit`. `diagnose(fitted, only, among)`, of everything or as about() has it,
+/// and `add(fitted, effect)` are the verbs; what add throws ends the loop.
 template <class Fitted>
-Stepwise run_stepwise(Fitted& fitted, std::size_t most,
-                      const std::function<FlightDiagnosis(const Fitted&)>& diagnose,
-                      const std::function<Fitted(const Fitted&, const std::string&)>& add) {
-  Stepwise course;
-  course.last = diagnose(fitted);
-  while (const EffectFinding* const advised = next_effect(course, most)) {
-    StepwiseStep step{.promised = *advised};
-    try {
-      Fitted next = add(fitted, advised->name);
-      measure_step(fitted.fit, next.fit, !course.last.diagnosis.unit.empty(), step);
-      const std::string objection = objection_to_step(fitted.fit, next.fit, step);
-      if (!objection.empty()) {
-        finish(course, StepwiseEnd::fit_failed, objection);
+struct StepwiseLoop {
+  Fitted base;
+  std::size_t most = 0;
+  std::function<FlightDiagnosis(const Fitted&, const std::string& only, std::size_t among)>
+      diagnose;
+  std::function<Fitted(const Fitted&, const std::string&)> add;
+
+  /// The base with these effects, added in turn.
+  Fitted with(const std::vector<std::string>& effects) const {
+    Fitted fitted = base;
+    for (const std::string& effect : effects) fitted = add(fitted, effect);
+    return fitted;
+  }
+
+  /// Asks of each effect that was added before the last whether it is found beside all others, and
+  /// drops those that are not: they stood in for what came later.
+  void drop_what_fades(Stepwise& course, Fitted& fitted) const {
+    const std::vector<std::string> before = list_kept(course);
+    const std::size_t among = course.last.diagnosis.effects.size();
+    for (const std::string& asked : before) {
+      if (asked == before.back()) continue;
+      std::vector<std::string> others = list_kept(course);
+      std::erase(others, asked);
+      try {
+        Fitted without = with(others);
+        if (diagnose(without, asked, among).diagnosis.verdict == Verdict::effect_missing) continue;
+        course.steps.back().dropped.push_back(asked);
+        fitted = std::move(without);
+      } catch (const Error&) {
+        continue;  // there is no fit without it
+      }
+    }
+  }
+
+  /// Where it ends, in `fitted` too.
+  Stepwise run(Fitted& fitted) const {
+    Stepwise course;
+    fitted = base;
+    course.last = diagnose(fitted, "", 0);
+    while (const EffectFinding* const advised = next_effect(course, most)) {
+      StepwiseStep step{.promised = *advised};
+      try {
+        Fitted next = add(fitted, advised->name);
+        measure_step(fitted.fit, next.fit, !course.last.diagnosis.unit.empty(), step);
+        const std::string objection = objection_to_step(fitted.fit, next.fit, step);
+        if (!objection.empty()) {
+          finish(course, StepwiseEnd::fit_failed, objection);
+          return course;
+        }
+        fitted = std::move(next);
+      } catch (const Error& error) {
+        finish(course, StepwiseEnd::fit_failed, advised->name + " can't be added: " + error.what());
         return course;
       }
-      fitted = std::move(next);
-    } catch (const Error& error) {
-      finish(course, StepwiseEnd::fit_failed, advised->name + " can't be added: " + error.what());
-      return course;
+      course.steps.push_back(std::move(step));
+      drop_what_fades(course, fitted);
+      course.last = diagnose(fitted, "", 0);
     }
-    course.steps.push_back(std::move(step));
-    course.last = diagnose(fitted);
+    return course;
   }
-  return course;
-}
+};
 
 }  // namespace sepcal::verbs
