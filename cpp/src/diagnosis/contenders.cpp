@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -17,10 +18,12 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr std::size_t most_fitted = 6;
 constexpr double worth_a_fit = 0.01;     // p, of what was not found
 constexpr double hardly_more = 1.1;      // of the error on rows held out
+constexpr double about = 1.05;           // likewise, beside far more coefficients
 constexpr std::size_t most_beside = 12;  // asked beside the first
 constexpr double counts_below = 0.01;    // p beside the first, over their number
 
@@ -94,9 +97,7 @@ NoiseMembers noise_beside(const Bench& bench, const std::vector<Contender>& aske
 /// it, or where the log's is none of these, the one given; minus infinity where that leaves nothing
 /// of an output.
 double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
-                                const DiagnosedFit& fitted) {
-  base::ThreadPool alone(1);
-  const CandidateRoom room(fitted, alone);
+                                const CandidateRoom& room) {
   const InstrumentNoise* instruments = bench.instruments();
   if (instruments && instruments->knows_the_noise()) {
     return instruments->minus_two_log_likelihood(room.fit());
@@ -118,6 +119,26 @@ double minus_two_log_likelihood(const Bench& bench, const NoiseMembers& noise,
   return products_beyond(products, tangent.rank())(0, 0);
 }
 
+/// What another fit to the same rows takes of the residual; empty where it leaves nothing of an
+/// output.
+VectorXd taken_of_residual(const LinearisedFit& without, const LinearisedFit& with) {
+  if (with.layout.outputs.size() != without.layout.outputs.size()) return {};
+  VectorXd taken = without.residual;
+  for (std::size_t j = 0; j < without.layout.outputs.size(); ++j) {
+    const Index first = without.layout.first(j);
+    const Index rows = without.layout.rows;
+    const double units = with.layout.outputs[j].scale / without.layout.outputs[j].scale;
+    taken.segment(first, rows) -= units * with.residual.segment(first, rows);
+  }
+  return taken;
+}
+
+/// Whether two fits take the same of the residual, to an angle.
+bool is_alike(const Contender& one, const Contender& other) {
+  if (one.taken.size() == 0 || one.taken.size() != other.taken.size()) return false;
+  return one.taken.dot(other.taken) > alike * one.taken.norm() * other.taken.norm();
+}
+
 /// The most that what comes first may leave of the error on rows held out, beside what others
 /// leave: noise remembers, and rows that are far apart do not. Functions of time of any form
 /// foretell noise that wanders as well, and count where they leave less than half.
@@ -133,11 +154,24 @@ double most_left_out(const std::vector<const Contender*>& found,
   return most;
 }
 
+/// Whether one asks for no more effects or coefficients than another, and for fewer of these or a
+/// simpler form.
+bool is_simpler(const Candidate& one, const Candidate& other) {
+  const auto [effects, form, coefficients] = complexity_of(one);
+  const auto [other_effects, other_form, other_coefficients] = complexity_of(other);
+  if (effects > other_effects || coefficients > other_coefficients) return false;
+  return coefficients < other_coefficients || form < other_form;
+}
+
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
   return *std::ranges::find(findings, name, &EffectFinding::name);
 }
 
 }  // namespace
+
+bool is_far_simpler(const Candidate& one, const Candidate& other) {
+  return 3 * one.coefficients.size() <= other.coefficients.size();
+}
 
 double schwarz_penalty(const Candidate& candidate, Index measurements) {
   return static_cast<double>(candidate.coefficients.size()) *
@@ -150,8 +184,12 @@ void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contende
     Contender& contender = asked[i];
     try {
       contender.fit = bench.refits().with(contender.candidate, contender.shape);
-      contender.minus_two_log_likelihood = minus_two_log_likelihood(
-          bench, noise, with_candidate(bench.fitted(), contender.candidate, contender.fit));
+      base::ThreadPool alone(1);
+      const DiagnosedFit fitted =
+          with_candidate(bench.fitted(), contender.candidate, contender.fit);
+      const CandidateRoom with(fitted, alone);
+      contender.minus_two_log_likelihood = minus_two_log_likelihood(bench, noise, with);
+      contender.taken = taken_of_residual(bench.room().fit(), with.fit());
       contender.criterion = contender.minus_two_log_likelihood +
                             schwarz_penalty(contender.candidate, bench.room().fit().layout.count());
     } catch (const Error&) {
@@ -185,7 +223,16 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   };
   const double most = most_left_out(found, error_left);
   std::erase_if(found, [&](const Contender* one) { return !(error_left(one) <= most); });
-  const Contender* first = *std::ranges::min_element(found, {}, &Contender::criterion);
+  const auto is_outdone = [&](const Contender* one) {
+    return std::ranges::any_of(found, [&](const Contender* other) {
+      const double more = is_far_simpler(other->candidate, one->candidate) ? about : 1.0;
+      return is_simpler(other->candidate, one->candidate) &&
+             error_left(other) <= more * error_left(one);
+    });
+  };
+  std::vector<const Contender*> standing;  // noise that nobody knows makes likelihoods sure
+  std::ranges::remove_copy_if(found, std::back_inserter(standing), is_outdone);
+  const Contender* first = *std::ranges::min_element(standing, {}, &Contender::criterion);
   const auto belief = [&](const Contender* contender) {
     const std::string& name = contender->candidate.name;
     const bool is_preferred = std::ranges::find(preferred, name) != preferred.end();
@@ -199,7 +246,9 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   }
   for (const Contender& contender : contest.contenders) {
     const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
-    if (&contender == first || !(std::abs(more) < as_likely)) continue;
+    if (&contender == first) continue;
+    const bool is_as_good = is_alike(contender, *first) && error_left(&contender) <= left;
+    if (!(std::abs(more) < as_likely) && !is_as_good) continue;
     finding_of(findings, contender.candidate.name).beside = Beside::equivalent;
   }
   std::ranges::stable_partition(findings, [](const EffectFinding& finding) {

@@ -3,6 +3,7 @@
 // the model, nor say what would do as well instead.
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 namespace sepcal::diagnosis {
 
 inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's with two degrees
+inline constexpr double alike = 0.94;     // cosine of 20 deg, between what two take of the residual
 
 /// The fit of the model with one more effect.
 struct Contender {
@@ -21,6 +23,7 @@ struct Contender {
   Fit fit = {};                                // undefined where the criterion is infinite
   double minus_two_log_likelihood = infinity;  // in the contest's noise; infinite: can't be fitted
   double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried
+  Eigen::VectorXd taken = {};   // what the fit takes of the residual (N n_z), in units of that one
 };
 
 /// All are judged in one noise: that beside all of them at once.
@@ -33,6 +36,9 @@ struct Contest {
 /// find_objection(), once an effect.
 const Objection& object(Bench& bench, Contest& contest, const EffectFinding& finding);
 
+/// Whether a third of the coefficients is enough for it, as for a lag beside a matrix.
+bool is_far_simpler(const Candidate& one, const Candidate& other);
+
 /// Schwarz's penalty for a candidate's coefficients and for the number of shapes tried.
 double schwarz_penalty(const Candidate& candidate, Eigen::Index measurements);
 
@@ -44,7 +50,8 @@ Contest fit_contenders(Bench& bench, const std::vector<EffectFinding>& findings)
 
 /// Of those found the one whose fit has the least criterion comes first, or the simplest of those
 /// that data can't tell from it, the preferred before others that are as simple. What would do as
-/// well in its place is marked equivalent and comes next. Returns the first's contender; null where
+/// well in its place, being as likely or taking the same of the residual, is marked equivalent and
+/// comes next. Returns the first's contender; null where
 /// none could be fitted.
 const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
                            std::vector<EffectFinding>& findings);

@@ -117,7 +117,10 @@ std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advi
       const Contender* rival = contender_of(contest, finding.name);
       if (!is_as_good || !rival || rival == chosen) continue;
       // What explains no more with many more coefficients is no cause to doubt the plain one.
-      if (rival->criterion > chosen->criterion + as_likely) continue;
+      if (rival->criterion > chosen->criterion + as_likely ||
+          is_far_simpler(chosen->candidate, rival->candidate)) {
+        continue;
+      }
       Clash clash = compare(bench, with_chosen, errors, *rival);
       if (clash.errors > most_errors) {
         clash.rival = &finding;

@@ -55,14 +55,19 @@ void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, const 
   for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
     jumps += null.white_residual.segment(layout.first(j), layout.rows).cwiseAbs2();
   }
-  jumps[0] = 0.0;
+  // A step over the first or last few rows is an outlier as well.
+  const Index side = std::min(layout.rows / 4, std::max<Index>(10, layout.rows / 50));
+  for (VectorXd* score : {&explained, &jumps}) {
+    score->head(side).setZero();
+    score->tail(side).setZero();
+  }
   const Index apart = std::max<Index>(2 * around, layout.rows / 40);
   for (VectorXd* score : {&explained, &jumps}) {
     for (int peak = 0; peak < most_peaks; ++peak) {
       Index row = 0;
       if (!(score->maxCoeff(&row) > 0.0)) break;
       for (Index near = row - around; near <= row + around; ++near) {
-        if (near < 1 || near >= layout.rows) continue;
+        if (near < side || near >= layout.rows - side) continue;
         candidate.shape.values.push_back(times[static_cast<std::size_t>(near)]);
       }
       const Index first = std::max<Index>(0, row - apart);

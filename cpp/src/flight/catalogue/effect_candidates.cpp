@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::array state_drivers{"time", "alpha", "beta", "q", "r"};
 
+}  // namespace
+
 /// Channels under their own header; what is measured can't drive an effect.
 std::vector<std::string> list_drivers(const Record& record, const Flight& flight) {
   std::vector<std::string> drivers(state_drivers.begin(), state_drivers.end());
@@ -21,14 +23,6 @@ std::vector<std::string> list_drivers(const Record& record, const Flight& flight
     if (flight.find(name) != nullptr && can_name(name)) drivers.push_back(name);
   }
   return drivers;
-}
-
-}  // namespace
-
-std::vector<std::string> list_channels(const Record& record, const Flight& flight) {
-  std::vector<std::string> channels = list_drivers(record, flight);
-  std::erase(channels, "time");
-  return channels;
 }
 
 std::string describe_driver(const EffectName& name) {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight/checks/suspects.hpp"
+
 namespace sepcal::checks {
 namespace {
 
@@ -28,11 +30,12 @@ struct SlowColumns {
   std::vector<std::string> headers;
 };
 
-std::vector<SlowColumns> find_slow(const Log& log) {
+template <class Counts>
+std::vector<SlowColumns> find_slow(const Log& log, Counts counts) {
   std::vector<SlowColumns> groups;
   for (const LoggedColumn& column : log.columns()) {
     const double rate = column.sequence.rows_per_sample();
-    if (rate <= 1.0) continue;
+    if (rate <= 1.0 || !counts(column)) continue;
     const bool held = column.sequence.hold > 1.0;
     const auto alike = std::ranges::find_if(groups, [&](const SlowColumns& group) {
       return group.held == held && group.used == column.used &&
@@ -47,14 +50,19 @@ std::vector<SlowColumns> find_slow(const Log& log) {
   return groups;
 }
 
-/// Takes a row to a sample of the slowest columns that a fit uses.
-std::string drop_repeats(const std::vector<SlowColumns>& groups) {
+/// Of those that a fit uses; nullptr where there is none.
+const SlowColumns* find_slowest_of(const std::vector<SlowColumns>& groups) {
   const SlowColumns* slowest = nullptr;
   for (const SlowColumns& group : groups) {
     if (!group.used) continue;
     if (slowest == nullptr || group.rows_per_sample > slowest->rows_per_sample) slowest = &group;
   }
-  return fmt::format("--drop-repeats {}", fmt::join(slowest->headers, ","));
+  return slowest;
+}
+
+/// Takes a row to a sample of the slowest columns that a fit uses.
+std::string drop_repeats(const std::vector<SlowColumns>& groups) {
+  return fmt::format("--drop-repeats {}", fmt::join(find_slowest_of(groups)->headers, ","));
 }
 
 void note_slow(const Log& log, const SlowColumns& group, const std::vector<SlowColumns>& groups,
@@ -107,11 +115,26 @@ void note_coarse(const Log& log, const LoggedColumn& column, std::vector<LogNote
 }  // namespace
 
 void check_samples(const Log& log, std::vector<LogNote>& notes) {
-  const std::vector<SlowColumns> groups = find_slow(log);
+  const std::vector<SlowColumns> groups = find_slow(log, [](const LoggedColumn&) { return true; });
   for (const SlowColumns& group : groups) note_slow(log, group, groups, notes);
   for (const LoggedColumn& column : log.columns()) {
     if (column.used && column.sequence.coarse) note_coarse(log, column, notes);
   }
+}
+
+std::vector<std::string> find_slowest(const Log& log) {
+  constexpr double fewest_left = 150.0;  // rows
+  const std::vector<SlowColumns> groups = find_slow(log, [&](const LoggedColumn& column) {
+    const bool is_density = column.kind() == files::UnitKind::density ||
+                            column.kind() == files::UnitKind::temperature ||
+                            column.quantity == "ps";
+    return is_measured(log, column) && !is_density;
+  });
+  const SlowColumns* slowest = find_slowest_of(groups);
+  if (slowest == nullptr) return {};
+  const auto rows = static_cast<double>(log.flight().rows());
+  return rows < fewest_left * slowest->rows_per_sample ? std::vector<std::string>()
+                                                       : slowest->headers;
 }
 
 }  // namespace sepcal::checks

@@ -8,4 +8,9 @@ namespace sepcal::checks {
 
 void check_samples(const Log& log, std::vector<LogNote>& notes);
 
+/// The columns that are sampled in fewest rows, of those that a fit measures by; none where each
+/// row is a sample, or where too few would be left. What changes as slowly as a density does as
+/// well between its samples.
+std::vector<std::string> find_slowest(const Log& log);
+
 }  // namespace sepcal::checks

@@ -100,10 +100,11 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
     here = refit_to(base, prepared, own, progress);
     notes = here.notes;
   }
-  const std::string suspected = prepared.all.columns;
+  const RowsToLeave suspected = prepared.all;
+  const std::vector<std::string> slow = prepared.slow;
   if (const auto left = without_suspects(here, prepared, own, progress)) {
     here = *left;
-    notes.push_back(say_left_out(here, prepared, suspected));
+    notes.push_back(say_left_out(here, prepared.logged.name(), suspected, slow));
   }
   note_mended(prepared);
   Calibration next = add_to(here, prepared, effect, own, progress);

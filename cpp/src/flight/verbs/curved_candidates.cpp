@@ -11,6 +11,7 @@
 #include <iterator>
 #include <numeric>
 #include <optional>
+#include <string_view>
 
 #include "base/parameter_values.hpp"
 #include "model/measurements.hpp"
@@ -37,7 +38,9 @@ constexpr std::size_t most_thresholds = 3;
 constexpr double least_level = 0.04;  // share of the rows that a level holds
 constexpr std::size_t most_bins = 256;
 constexpr std::size_t most_curved = 6;
+constexpr std::size_t most_of_time = 4;  // beside these
 constexpr std::size_t fewest_fitted = 40;
+constexpr std::string_view clock = "time";
 
 /// What a constant at a port does to every reading, and what the fit leaves of them, each output in
 /// units of its own RMSE.
@@ -315,6 +318,7 @@ std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
     found.push_back({fmt::format("{}[spline({},{})]", port.port, channel, knots_tried[i]), channel,
                      line + gains[i]});
   }
+  if (channel == clock) return found;  // a step in time is scanned by candidates of its own
   const Levels levels = LevelFinder(sums, bins).find(0.5 * telling * left * whole);
   const double gain = levels.explained / whole - line;
   const auto steps = static_cast<double>(levels.cuts.size());
@@ -326,14 +330,21 @@ std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
   return found;
 }
 
-/// The most telling first; of one channel what comes near its best port.
+/// The most telling first; of one channel what comes near its best port. Time, along which noise
+/// that wanders curves too, takes no channel's place.
 std::vector<std::string> keep_telling(std::vector<Curved> found) {
   std::ranges::stable_sort(found, std::ranges::greater{}, &Curved::taken);
   std::vector<std::string> names;
+  std::size_t of_channels = 0;
+  std::size_t of_time = 0;
   for (const Curved& curve : found) {
-    if (names.size() == most_curved) break;
+    const bool is_of_time = curve.channel == clock;
+    std::size_t& count = is_of_time ? of_time : of_channels;
+    if (count == (is_of_time ? most_of_time : most_curved)) continue;
     const auto best = std::ranges::find(found, curve.channel, &Curved::channel);
-    if (curve.taken >= close * best->taken) names.push_back(curve.name);
+    if (curve.taken < close * best->taken) continue;
+    names.push_back(curve.name);
+    ++count;
   }
   return names;
 }

@@ -11,7 +11,8 @@
 
 namespace sepcal::verbs {
 
-/// Names `port[spline(channel,k)]` and `port[levels(channel,...)]`, a few, the most telling first.
+/// Names `port[spline(channel,k)]` and `port[levels(channel,...)]`, a few, the most telling first;
+/// along time splines alone.
 /// One pass over the rows sums, a bin of a channel, what a constant at each port would explain
 /// there; every curve is then judged by those sums. `channels`: columns of the fit's record.
 std::vector<std::string> find_curved(const DiagnosedFit& fitted,

@@ -44,7 +44,7 @@ std::vector<std::string> pool_of(const catalogue::EffectTable& table, const Diag
       catalogue::list_candidates(table, fitted.kit, fitted.record, flight);
   base::ThreadPool pool(threads);
   for (std::string& name :
-       find_curved(fitted, catalogue::list_channels(fitted.record, flight), pool)) {
+       find_curved(fitted, catalogue::list_drivers(fitted.record, flight), pool)) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
   }
   return names;
@@ -99,11 +99,13 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
 /// The calibration of the rows that are readings; what was left out and mended is noted.
 Calibration believe(const Calibration& calibration, PreparedFlight& prepared, const OwnEffects& own,
                     const DiagnosisOptions& options) {
-  const std::string suspected = prepared.all.columns;
+  const RowsToLeave suspected = prepared.all;
+  const std::vector<std::string> slow = prepared.slow;
   const auto left = without_suspects(calibration, prepared, own, options.progress);
   note_mended(prepared);
   if (!left) return calibration;
-  prepared.readings.notes.push_back(say_left_out(*left, prepared, suspected));
+  prepared.readings.notes.push_back(
+      say_left_out(*left, prepared.logged.name(), suspected, slow));
   return *left;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "flight/checks/samples.hpp"
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/checks/suspects.hpp"
 #include "flight/checks/taken_rows.hpp"
@@ -156,6 +157,7 @@ MendedFlight mend(std::string_view model, const Flight& flight, const LogChoice&
       all.add(column.header, checks::leave_out(log, column.rows.frozen));
     }
   }
+  mended.slow = checks::find_slowest(log);
   mended.measured = measured.join();
   mended.all = all.join();
   return mended;

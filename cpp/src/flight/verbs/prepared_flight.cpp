@@ -2,6 +2,7 @@
 #include "flight/verbs/prepared_flight.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice
   readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());
   return {std::move(mended.flight),  std::move(readings),      std::move(read.flight),
           std::move(mended.bridged), std::move(mended.filled), std::move(mended.measured),
-          std::move(mended.all),     mended.loss_helps};
+          std::move(mended.all),     std::move(mended.slow),   mended.loss_helps};
 }
 
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
@@ -148,11 +149,15 @@ void note_mended(PreparedFlight& prepared) {
 
 std::optional<Calibration> without_suspects(const Calibration& base, PreparedFlight& prepared,
                                             const OwnEffects& own, const FitProgress& progress) {
-  if (prepared.all.condition.empty()) return std::nullopt;
+  const bool is_slow = !prepared.slow.empty() && base.options.log.drop_repeats.empty();
+  if (prepared.all.condition.empty() && !is_slow) return std::nullopt;
   const Flight& flight = prepared.logged;
   Calibration left = base;
-  std::string& where = left.options.log.where;
-  where = checks::join_conditions(where, {prepared.all.condition});
+  if (!prepared.all.condition.empty()) {
+    std::string& where = left.options.log.where;
+    where = checks::join_conditions(where, {prepared.all.condition});
+  }
+  if (is_slow) left.options.log.drop_repeats = prepared.slow;
   try {
     PreparedFlight again = prepare(left, flight);
     CalibrationOptions options = options_from(left, own, progress);
@@ -168,12 +173,22 @@ std::optional<Calibration> without_suspects(const Calibration& base, PreparedFli
   return left;
 }
 
-std::string say_left_out(const Calibration& left, const PreparedFlight& prepared,
-                         const std::string& suspected) {
+std::string say_left_out(const Calibration& left, const std::string& flight,
+                         const RowsToLeave& suspected, const std::vector<std::string>& slow) {
+  std::vector<std::string> rows;
+  std::vector<std::string> options;
+  if (!suspected.condition.empty()) {
+    rows.push_back(fmt::format("in which {} can't be a reading", suspected.columns));
+    options.push_back(fmt::format("--where \"{}\"", left.options.log.where));
+  }
+  if (!slow.empty() && slow == left.options.log.drop_repeats) {
+    rows.push_back(fmt::format("between the samples of {}", fmt::join(slow, ", ")));
+    options.push_back(fmt::format("--drop-repeats {}", fmt::join(slow, ",")));
+  }
   return fmt::format(
-      "{}: rows in which {} can't be a reading are left out, and the calibration is fitted again "
-      "without them, as fit does with --where \"{}\"",
-      prepared.logged.name(), suspected, left.options.log.where);
+      "{}: rows {} are left out, and the calibration is fitted again without them, as fit does "
+      "with {}",
+      flight, fmt::join(rows, " and "), fmt::join(options, " "));
 }
 
 Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,

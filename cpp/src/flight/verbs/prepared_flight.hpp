@@ -26,6 +26,7 @@ struct PreparedFlight {
   std::vector<std::string> filled = {};
   RowsToLeave measured = {};
   RowsToLeave all = {};
+  std::vector<std::string> slow = {};
   bool loss_helps = true;
 };
 
@@ -50,14 +51,14 @@ Eigen::MatrixXd residuals_of(const Calibration& calibration, const EffectiveFlig
 /// Adds what was mended to the notes of the readings.
 void note_mended(PreparedFlight& prepared);
 
-/// The base as it would be of the rows that are readings; `prepared` is then of these. Nothing
-/// where all rows seem to be, or where the others can't be fitted.
+/// The base as it would be of the rows that are readings, and samples of the slowest column;
+/// `prepared` is then of these. Nothing where all rows seem to be, or where these can't be fitted.
 std::optional<Calibration> without_suspects(const Calibration& base, PreparedFlight& prepared,
                                             const OwnEffects& own, const FitProgress& progress);
 
-/// What a person is told of that. `suspected`: the columns.
-std::string say_left_out(const Calibration& left, const PreparedFlight& prepared,
-                         const std::string& suspected);
+/// What a person is told of that, of the flight before it.
+std::string say_left_out(const Calibration& left, const std::string& flight,
+                         const RowsToLeave& suspected, const std::vector<std::string>& slow);
 
 /// As the public calibrate().
 Calibration calibrate(const std::shared_ptr<const Probe>& probe, const PreparedFlight& prepared,

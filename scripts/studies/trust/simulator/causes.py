@@ -24,7 +24,7 @@ OWN_NAMES = {  # of the catalogue, for what a port and a driver say
     "wind_shear": "wind[altitude_m]",
     "propwash": "pressure_offset[throttle]",
 }
-CURVE = re.compile(r"(?:spline|step|ramp)\((\w+)(?:,\d+)?\)")
+CURVE = re.compile(r"(?:spline|step|ramp|levels)\((\w+)(?:,[-\d.e]+)*\)")
 
 
 @dataclass(frozen=True)
