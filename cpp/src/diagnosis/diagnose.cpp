@@ -96,14 +96,18 @@ void bound_by_fit(const Bench& bench, Trial& trial) {
 
 /// Of what is not found and yet takes much, the simplest of those that leave about as little of the
 /// error on rows held out stands first, the others of these next, as equivalent. Functions of time
-/// of any form foretell noise that wanders too: they have to leave clearly less.
+/// of any form foretell noise that wanders too: to stand first they have to leave clearly less.
 void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& findings) {
-  constexpr double about = 1.05;
+  constexpr double about = 1.1;
   constexpr double clearly = 1.2;
   struct Place {
-    int of_status;
+    int of_status = 2;
     bool is_as_good = false;
+    bool is_flexible = false;
     std::tuple<std::size_t, int, std::size_t> complexity = {};
+    double left = 0.0;
+
+    auto key() const { return std::tuple(of_status, !is_as_good, is_flexible, complexity, left); }
   };
   const auto of_status = [](const EffectFinding& finding) {
     return finding.status == FindingStatus::slow_change ? 0
@@ -113,34 +117,29 @@ void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& finding
   int first = 2;
   for (const EffectFinding& finding : findings) first = std::min(first, of_status(finding));
   if (first == 2) return;
-  const auto is_flexible = [&](const EffectFinding& finding) {
-    return is_flexible_in_time(room.make(finding.name));
-  };
+  std::vector<std::pair<Place, EffectFinding>> placed;
   double of_flexible = infinity;  // the least that is left
   double of_others = infinity;
-  for (const EffectFinding& finding : findings) {
-    if (of_status(finding) != first) continue;
-    double& least = is_flexible(finding) ? of_flexible : of_others;
-    least = std::min(least, left_out(finding));
-  }
-  const bool others_do = of_others <= clearly * of_flexible;
-  std::vector<std::pair<Place, EffectFinding>> placed;
   for (EffectFinding& finding : findings) {
     Place place{of_status(finding)};
+    if (place.of_status < 2) place.left = left_out(finding);
     if (place.of_status == first) {
-      place.is_as_good = others_do ? !is_flexible(finding) && left_out(finding) <= about * of_others
-                                   : left_out(finding) <= about * std::min(of_flexible, of_others);
-      place.complexity = complexity_of(room.make(finding.name));
+      const Candidate& candidate = room.make(finding.name);
+      place.is_flexible = is_flexible_in_time(candidate);
+      place.complexity = complexity_of(candidate);
+      double& least = place.is_flexible ? of_flexible : of_others;
+      least = std::min(least, place.left);
     }
     placed.emplace_back(place, std::move(finding));
   }
-  std::ranges::stable_sort(placed, [](const auto& a, const auto& b) {
-    const auto key = [](const auto& one) {
-      const double left = one.first.of_status == 2 ? 0.0 : left_out(one.second);
-      return std::tuple(one.first.of_status, !one.first.is_as_good, one.first.complexity, left);
-    };
-    return key(a) < key(b);
-  });
+  const bool others_do = of_others <= clearly * of_flexible;
+  const double least = others_do ? of_others : of_flexible;
+  for (auto& [place, finding] : placed) {
+    place.is_as_good = place.of_status == first && place.left <= about * least;
+    place.is_flexible &= others_do;
+  }
+  std::ranges::stable_sort(
+      placed, [](const auto& a, const auto& b) { return a.first.key() < b.first.key(); });
   findings.clear();
   for (auto& [place, finding] : placed) {
     if (place.is_as_good && !findings.empty()) finding.beside = Beside::equivalent;
