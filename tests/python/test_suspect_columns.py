@@ -10,15 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from apps import Outcome, run
+from faults import FAULTS, ROWS, Columns, write
 from recorded import CHECKOUT, find_fixture
 
-Columns = dict[str, NDArray[np.float64]]
-Spoil = Callable[[NDArray[np.float64]], None]
-
-ROWS = 1500
 TUBE = ("--probe", "pitot-static")
 
 
@@ -44,34 +40,6 @@ def fly(seed: int = 1, shear: float = 0.02) -> Columns:
     return {**columns, "vd_mps": np.zeros(ROWS)}
 
 
-def write(columns: Columns, file: Path) -> None:
-    """As a CSV file."""
-    table = np.column_stack(list(columns.values()))
-    np.savetxt(file, table, fmt="%.6f", delimiter=",", header=",".join(columns), comments="")
-
-
-def one_cell(values: NDArray[np.float64]) -> None:
-    values[417] = 9999
-
-
-def twenty_codes(values: NDArray[np.float64]) -> None:
-    values[np.random.default_rng(3).choice(ROWS, 20, replace=False)] = -9999
-
-
-def burst(values: NDArray[np.float64]) -> None:
-    values[600:610] += 10 * values.std()
-
-
-def minute(values: NDArray[np.float64]) -> None:
-    values[700:1000] = values[700]
-
-
-FAULTS: dict[str, Spoil] = {
-    "one cell": one_cell,
-    "twenty codes": twenty_codes,
-    "burst": burst,
-    "frozen minute": minute,
-}
 MEASURED = ("vn_mps", "ve_mps", "airspeed_mps")
 DRIVERS = ("altitude_m", "temp_degc", "throttle_pct")
 CANDIDATES = ("wind[altitude_m]", "airspeed_bias[temp_degc]", "airspeed_bias[throttle_pct]")
