@@ -99,12 +99,12 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight);
 /// What it lacks: of coefficients the usual regressors, of `aero` splines too, and every other
 /// channel of the log; along a trajectory what the sensors and the wind may have. Throws Error for
 /// bad input.
-FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& flight,
+FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
                                   const DiagnosisOptions& options = {});
 
 /// The same fit with an effect more, from where it ended: "Cm[alpha^2]", "Cm[alpha*elevator]"; of
 /// `aero` also "CX[spline(alpha,5)]"; along a trajectory those that aircraft_effects_text() lists.
-AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
+AircraftFit add_to_aircraft(const AircraftFit& base, const Flight& flight,
                             const std::string& effect);
 
 struct StepwiseAircraft {

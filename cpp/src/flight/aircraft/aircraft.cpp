@@ -11,6 +11,7 @@
 #include "base/thread_pool.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
+#include "flight/aircraft/believed_rows.hpp"
 #include "flight/aircraft/innovation_comparison.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
@@ -120,7 +121,8 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   AircraftOptions first = options;
   first.model = AircraftModel::path;
   first.calibration.effects.clear();
-  ProbeRecord prepared = prepare(flight, second.model, second.calibration.log);
+  // As one with a state, which the path has.
+  ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, second.calibration.log);
   TwoStep steps = within(flight, [&] {
     return two_step(prepared.record, geometry_of(second),
                     {.equations = equations_of(second),
@@ -149,8 +151,10 @@ double AddedRegressor::drop() const {
   return 1.0 - std::sqrt(square / static_cast<double>(rmse_after.size()));
 }
 
-AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
+AircraftFit add_to_aircraft(const AircraftFit& base, const Flight& flight,
                             const std::string& effect) {
+  std::vector<std::string> left_out;
+  const AircraftFit fitted = without_suspects(base, flight, left_out);
   AircraftOptions options = options_on(fitted, flight);
   for (const std::string& one : split_effects(effect)) {
     options.calibration.effects.push_back({.name = one});
@@ -163,6 +167,7 @@ AircraftFit add_to_aircraft(const AircraftFit& fitted, const Flight& flight,
     if (!same) options.calibration.fit.start.erase(name);
   }
   AircraftFit next = fit_aircraft(flight, options);
+  next.notes.insert(next.notes.begin(), left_out.begin(), left_out.end());
   const Promise promised = promise_along(fitted, flight, next, effect);
   if (!promised.against.empty()) {
     next.notes.push_back(fmt::format("diagnose would not advise {}: {}", effect, promised.against));

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/columns.hpp"
+#include "flight/aircraft/believed_rows.hpp"
 #include "flight/probes/air_columns.hpp"
 #include "numerics/interpolated_column.hpp"
 #include "sepcal/error.hpp"
@@ -18,40 +20,7 @@ namespace sepcal::aircraft_log {
 namespace {
 
 using files::UnitKind;
-using probes::ProbeQuantity;
 using probes::RecordBuilder;
-
-constexpr std::array quantities{
-    ProbeQuantity{"time", UnitKind::time},
-    ProbeQuantity{"ax", UnitKind::acceleration},
-    ProbeQuantity{"ay", UnitKind::acceleration},
-    ProbeQuantity{"az", UnitKind::acceleration},
-    ProbeQuantity{"p", UnitKind::rate},
-    ProbeQuantity{"q", UnitKind::rate},
-    ProbeQuantity{"r", UnitKind::rate},
-    ProbeQuantity{"airspeed", UnitKind::speed},
-    ProbeQuantity{"alpha", UnitKind::angle},
-    ProbeQuantity{"beta", UnitKind::angle},
-    ProbeQuantity{"roll", UnitKind::angle},
-    ProbeQuantity{"pitch", UnitKind::angle},
-    ProbeQuantity{"yaw", UnitKind::angle},
-    ProbeQuantity{"vn", UnitKind::speed},
-    ProbeQuantity{"ve", UnitKind::speed},
-    ProbeQuantity{"vd", UnitKind::speed},
-    ProbeQuantity{"elevator", UnitKind::angle},
-    ProbeQuantity{"aileron", UnitKind::angle},
-    ProbeQuantity{"rudder", UnitKind::angle},
-    ProbeQuantity{"throttle", UnitKind::share},
-    ProbeQuantity{"thrust", UnitKind::force},
-    ProbeQuantity{"mass", UnitKind::mass},
-    ProbeQuantity{"rho", UnitKind::density},
-    ProbeQuantity{"qbar", UnitKind::pressure},
-    ProbeQuantity{"ps", UnitKind::pressure},
-    ProbeQuantity{"temp", UnitKind::temperature, true},
-    ProbeQuantity{"pdot", UnitKind::angular_acceleration},
-    ProbeQuantity{"qdot", UnitKind::angular_acceleration},
-    ProbeQuantity{"rdot", UnitKind::angular_acceleration},
-};
 
 /// A load factor has the other sign and is asked for by name, as it is what logs have.
 void refuse_load_factor(const RecordBuilder& builder, const Flight& flight) {
@@ -94,9 +63,12 @@ Record without_jumps(const Record& record) {
 
 ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log) {
   const ReadFlight read = read_as(logged, log);
-  const Flight& flight = read.flight;
-  RecordBuilder builder(flight, quantities, log);
+  const BelievedFlight believed = believe(read.flight, model, log);
+  const Flight& flight = believed.flight;
+  RecordBuilder builder(flight, probes::quantities_of(to_string(model)), log);
   refuse_load_factor(builder, flight);
+  builder.keep([&](std::size_t row) { return !std::ranges::binary_search(believed.left_out, row); },
+               "a code stands there in a reading's place");
   builder.need({"time", "ax", "ay", "az", "p", "q", "r"});
   const bool flies_by_air = model != AircraftModel::path;
   if (flies_by_air) need_air(builder, flight);
@@ -116,7 +88,9 @@ ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& 
   probes::offer_temperature(builder);
   ProbeRecord prepared = builder.finish();
   prepared.record = without_jumps(prepared.record);
-  prepared.notes.insert(prepared.notes.begin(), read.notes.begin(), read.notes.end());
+  for (const auto* notes : {&believed.notes, &read.notes}) {
+    prepared.notes.insert(prepared.notes.begin(), notes->begin(), notes->end());
+  }
   return prepared;
 }
 

@@ -2,10 +2,13 @@
 // Which effect or regressor a fitted aircraft lacks.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "flight/aircraft/aircraft_effects.hpp"
+#include "flight/aircraft/believed_rows.hpp"
 #include "flight/aircraft/coefficient_diagnosis.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
@@ -52,8 +55,10 @@ Diagnosed diagnose_trajectory(const AircraftFit& fitted, const Flight& flight, L
 
 }  // namespace
 
-FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& flight,
+FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
                                   const DiagnosisOptions& options) {
+  std::vector<std::string> left_out;
+  const AircraftFit fitted = without_suspects(base, flight, left_out);
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   return within(flight, [&] {
     FlightDiagnosis result;
@@ -66,7 +71,8 @@ FlightDiagnosis diagnose_aircraft(const AircraftFit& fitted, const Flight& fligh
                               ? diagnose_equations(fitted, flight, laid, options)
                               : diagnose_trajectory(fitted, flight, laid, options);
     result.diagnosis = std::move(diagnosed.found);
-    result.notes = std::move(laid.notes);
+    result.notes = std::move(left_out);
+    std::ranges::move(laid.notes, std::back_inserter(result.notes));
     if (!is_same_flight(fitted, flight)) {
       result.notes.push_back(
           fmt::format("{} is not the flight of the fit: the errors here are those of a prediction",

@@ -76,6 +76,10 @@ LogNote note_on(const Log& log, std::string_view kind, Concern concern,
   return note;
 }
 
+std::string in_one_line(const LogNote& note, const std::string& file) {
+  return fmt::format("{}: {}; {}; {}", file, note.found, note.effect, note.advice);
+}
+
 std::string name_row(const Log& log, std::size_t row) {
   const std::string place = log.flight().locate(row);
   const std::string name = log.flight().name() + " ";

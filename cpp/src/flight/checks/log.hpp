@@ -65,6 +65,9 @@ class Log {
 LogNote note_on(const Log& log, std::string_view kind, Concern concern,
                 std::vector<std::string> columns, std::span<const std::size_t> rows = {});
 
+/// What was found, its effect and the way out, as a line of its own.
+std::string in_one_line(const LogNote& note, const std::string& file);
+
 /// "line 17": what the flight calls a row, without the flight's name.
 std::string name_row(const Log& log, std::size_t row);
 

@@ -2,6 +2,7 @@
 // Of a check's notes, those that a fit shows.
 #include <fmt/format.h>
 
+#include "flight/checks/log.hpp"
 #include "sepcal/flight/check.hpp"
 
 namespace sepcal {
@@ -15,8 +16,7 @@ std::vector<std::string> brief_notes(const FlightCheck& check) {
     if (lines.size() == most) {
       ++hidden;
     } else {
-      lines.push_back(
-          fmt::format("{}: {}; {}; {}", check.file, note.found, note.effect, note.advice));
+      lines.push_back(checks::in_one_line(note, check.file));
     }
   }
   if (hidden > 0) {

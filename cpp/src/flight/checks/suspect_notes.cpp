@@ -11,8 +11,12 @@
 namespace sepcal::checks {
 namespace {
 
-constexpr const char* not_followed =
-    "no effect follows it there: the value between its neighbours stands in";
+/// What rows that are no readings do.
+std::string say_effect(const SuspectColumn& column, std::string_view on_measured) {
+  if (column.role == Role::measured) return std::string(on_measured);
+  if (column.role == Role::integrated) return "the value between its neighbours stands in there";
+  return "no effect follows it there: the value between its neighbours stands in";
+}
 
 std::string say_size(double size, const std::string& unit) {
   return fmt::format("{:.3g}{}{}", size, unit.empty() ? "" : " ", unit);
@@ -31,7 +35,7 @@ std::string way_out(const LogChoice& choice, const std::vector<std::string>& con
 
 std::string advise(const SuspectColumn& column, const std::string& condition,
                    std::string_view loss) {
-  if (!column.is_measured) {
+  if (column.role != Role::measured) {
     return condition.empty() ? "nothing more, or mend the log"
                              : "nothing more, or leave these rows out: " + condition;
   }
@@ -47,11 +51,14 @@ void note_sentinels(const Log& log, const SuspectColumn& column, const LogChoice
   note.found = fmt::format("{}: {} hold{} {}, a code and no reading, first at {}", column.header,
                            say_rows(rows), rows.size() == 1 ? "s" : "",
                            fmt::join(column.rows.codes, " or "), name_row(log, rows.front()));
-  note.effect =
-      column.is_measured ? "a fit takes it for a reading, diagnose and add don't" : not_followed;
-  SuspectColumn codes{column.header, column.unit, column.is_measured, column.manner, {}};
+  const bool left_out = column.role == Role::measured && leaves_codes_out(log);
+  note.effect = left_out
+                    ? "these rows are left out"
+                    : say_effect(column, "a fit takes it for a reading, diagnose and add don't");
+  const Role role = left_out ? Role::driver : column.role;
+  SuspectColumn codes{column.header, column.unit, role, column.manner, {}};
   codes.rows.codes = column.rows.codes;
-  note.advice = advise(column, way_out(choice, leave_out(log, codes)), "");
+  note.advice = advise(codes, way_out(choice, leave_out(log, codes)), "");
   notes.push_back(std::move(note));
 }
 
@@ -61,22 +68,20 @@ void note_spikes(const Log& log, const SuspectColumn& column, const LogChoice& c
   if (rows.empty()) return;
   const double share = column.rows.spike_share;
   const bool heavy = is_heavy(column.rows);
+  const bool matters = heavy || column.role == Role::integrated;
   LogNote note =
-      note_on(log, "outliers", heavy ? Concern::matters : Concern::slight, {column.header}, rows);
+      note_on(log, "outliers", matters ? Concern::matters : Concern::slight, {column.header}, rows);
   note.found =
       fmt::format("{} jumps for {} single reading{}, by up to {}, first at {}", column.header,
                   rows.size(), rows.size() == 1 ? "" : "s",
                   say_size(column.rows.farthest_spike, column.unit), name_row(log, rows.front()));
-  if (!column.is_measured) {
-    note.effect = not_followed;
-  } else if (heavy) {
-    note.effect = fmt::format(
-        "they are {:.0f} % of all that neighbouring readings differ by, in squares: estimates move "
-        "and standard errors grow; diagnose and add leave them out",
-        100 * share);
-  } else {
-    note.effect = "each pulls the estimates a little";
-  }
+  note.effect = say_effect(
+      column,
+      heavy ? fmt::format("they are {:.0f} % of all that neighbouring readings differ by, in "
+                          "squares: estimates move and standard errors grow; diagnose and add "
+                          "leave them out",
+                          100 * share)
+            : "each pulls the estimates a little");
   note.advice = advise(column, way_out(choice, leave_out(log, rows)), "huber");
   notes.push_back(std::move(note));
 }
@@ -101,9 +106,8 @@ void note_bursts(const Log& log, const SuspectColumn& column, const LogChoice& c
       fmt::format("{}: {} jump away and come back, in {} burst{}, by up to {}, first at {}",
                   column.header, say_rows(rows), count, count == 1 ? "" : "s",
                   say_size(column.rows.farthest_burst, column.unit), name_row(log, rows.front()));
-  note.effect = column.is_measured
-                    ? "a fit takes them for readings and is pulled, diagnose and add don't"
-                    : not_followed;
+  note.effect =
+      say_effect(column, "a fit takes them for readings and is pulled, diagnose and add don't");
   note.advice = advise(column, way_out(choice, leave_out(log, rows)), "cauchy");
   notes.push_back(std::move(note));
 }
@@ -117,10 +121,15 @@ void note_frozen(const Log& log, const SuspectColumn& column, const LogChoice& c
       "{}: {} stand still at {}, where others change, first at {}", column.header, say_rows(rows),
       say_size(log.flight().find(column.header)->values[rows.front()], column.unit),
       name_row(log, rows.front()));
-  note.effect = column.is_measured
-                    ? "a fit takes them for readings and is pulled, diagnose and add don't"
-                    : not_followed;
-  note.advice = advise(column, way_out(choice, leave_out(log, rows)), "");
+  SuspectColumn frozen = column;
+  if (frozen.role == Role::integrated) frozen.role = Role::measured;  // too long to be bridged
+  note.effect =
+      say_effect(frozen, column.role == Role::integrated
+                             ? "a fit takes what lies between the rows beside them, and is pulled; "
+                               "diagnose and add leave them out"
+                             : "a fit takes them for readings and is pulled, diagnose and add "
+                               "don't");
+  note.advice = advise(frozen, way_out(choice, leave_out(log, rows)), "");
   notes.push_back(std::move(note));
 }
 
@@ -143,9 +152,12 @@ void check_suspects(const Log& log, const std::vector<SuspectColumn>& suspects,
 
 void check_constants(const Log& log, std::vector<LogNote>& notes) {
   constexpr std::array readings{"mx", "my", "mz", "airspeed", "dp", "pt", "dpa", "dpb"};
+  constexpr std::array or_unused{"ax", "ay", "az", "p", "q", "r", "alpha", "beta"};  // at zero
   for (const LoggedColumn& column : log.columns()) {
-    const bool reads = std::ranges::find(readings, column.quantity) != readings.end();
     const std::span<const double> values = column.logged.column->values;
+    const bool reads =
+        std::ranges::find(readings, column.quantity) != readings.end() ||
+        (std::ranges::find(or_unused, column.quantity) != or_unused.end() && values.front() != 0);
     if (!reads || !column.used || !is_constant(values)) continue;
     LogNote note = note_on(log, "frozen", Concern::wrong, {column.header()});
     note.found = fmt::format("{} reads {} in every row", column.header(),

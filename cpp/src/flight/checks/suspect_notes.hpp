@@ -12,7 +12,8 @@ namespace sepcal::checks {
 void check_suspects(const Log& log, const std::vector<SuspectColumn>& suspects,
                     const LogChoice& choice, std::vector<LogNote>& notes);
 
-/// Readings that are one value throughout: mx_ut and its like, an airspeed, a pressure; and a
+/// Readings that are one value throughout: mx_ut and its like, an airspeed, a pressure, where it is
+/// not zero an acceleration, a rate or a flow angle; and a
 /// velocity of which the other component moves.
 void check_constants(const Log& log, std::vector<LogNote>& notes);
 

@@ -238,6 +238,8 @@ Manner manner_of(std::string_view quantity, const files::Unit& unit) {
   manner.flows = unit.kind != UnitKind::rate && !answers_the_stick;
   manner.rests = unit.kind == UnitKind::speed || quantity == "dp";
   if (unit.kind == UnitKind::angle) manner.turn = turn_in(unit);
+  constexpr std::array set{"elevator", "aileron", "rudder", "throttle", "thrust"};
+  manner.may_be_set = std::ranges::find(set, quantity) != set.end();
   return manner;
 }
 

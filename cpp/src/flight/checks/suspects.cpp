@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include "flight/checks/column_name.hpp"
 
@@ -28,41 +29,68 @@ bool is_motion(const RowList& rows, const RowList& moved) {
   return std::ranges::all_of(rows, [&](std::size_t row) { return is_near(row, moved); });
 }
 
-/// What jumps where the attitude does is the vehicle, which turns faster than it was logged.
+/// What jumps where other sensors do is the vehicle, which turns faster than it was logged.
 void forget_motion(SuspectColumn& column, const RowList& moved) {
   if (is_motion(column.rows.spikes, moved)) column.rows.spikes.clear();
   if (is_motion(column.rows.bursts, moved)) column.rows.bursts.clear();
-}
-
-bool tells_attitude(const LoggedColumn& column) {
-  return column.kind() == UnitKind::angle || column.kind() == UnitKind::rate;
 }
 
 bool is_axis(std::string_view quantity) {
   return quantity == "mx" || quantity == "my" || quantity == "mz";
 }
 
+bool is_of_aircraft(const Log& log) {
+  return log.model() == "aero" || probes::has_state(log.model());
+}
+
+/// What reads the quantity, and at a fault all that it reads: of a probe the attitude and the rest,
+/// of an aircraft, whose motion all of them show, each unit.
+std::string_view sensor_of(const Log& log, const LoggedColumn& column) {
+  if (!is_of_aircraft(log)) {
+    const bool turns = column.kind() == UnitKind::angle || column.kind() == UnitKind::rate;
+    return turns ? "attitude" : "others";
+  }
+  const std::string_view name = column.quantity;
+  if (name == "roll" || name == "pitch" || name == "yaw") return "attitude";
+  if (name == "vn" || name == "ve" || name == "vd") return "receiver";
+  const UnitKind kind = column.kind();
+  if (kind == UnitKind::acceleration) return "accelerometers";
+  return kind == UnitKind::rate || kind == UnitKind::angular_acceleration ? "gyros" : "air data";
+}
+
+/// Of an aircraft's rates too: they are logged fast, and others tell whether it turned.
+Manner manner_in(const Log& log, const LoggedColumn& column) {
+  Manner manner = manner_of(column.quantity, *column.logged.unit);
+  if (is_of_aircraft(log)) manner.flows = true;
+  return manner;
+}
+
 /// The columns of the probe's quantities, in the log's order of quantities.
 std::vector<SuspectColumn> find_in_quantities(const Log& log) {
   std::vector<SuspectColumn> columns;
-  RowList of_attitude;
-  RowList of_others;
+  std::map<std::string_view, RowList> jumps;  // of each sensor
   std::array<RowList, 3> axes;
   for (const LoggedColumn& column : log.columns()) {
-    const Manner manner = manner_of(column.quantity, *column.logged.unit);
+    const Manner manner = manner_in(log, column);
     SuspectColumn suspect{column.header(), std::string(column.logged.unit->suffix),
-                          is_measured(log, column), manner,
+                          role_of(log, column), manner,
                           find_suspect_rows(column.logged.column->values, log.stretches(), manner)};
-    const RowList jumps = join(suspect.rows.spikes, suspect.rows.bursts);
-    RowList& all = tells_attitude(column) ? of_attitude : of_others;
-    all = join(all, jumps);
-    if (is_axis(column.quantity)) axes[static_cast<std::size_t>(column.quantity[1] - 'x')] = jumps;
+    const RowList own = join(suspect.rows.spikes, suspect.rows.bursts);
+    RowList& all = jumps[sensor_of(log, column)];
+    all = join(all, own);
+    if (is_axis(column.quantity)) axes[static_cast<std::size_t>(column.quantity[1] - 'x')] = own;
     columns.push_back(std::move(suspect));
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const LoggedColumn& column = log.columns()[i];
-    forget_motion(columns[i], tells_attitude(column) ? of_others : of_attitude);
-    if (tells_attitude(column)) columns[i].rows.spikes.clear();  // it may turn as fast
+    const std::string_view sensor = sensor_of(log, column);
+    RowList elsewhere;
+    for (const auto& [other, rows] : jumps) {
+      if (other != sensor) elsewhere = join(elsewhere, rows);
+    }
+    forget_motion(columns[i], elsewhere);
+    const bool may_turn = sensor == "attitude" && !is_of_aircraft(log);
+    if (may_turn) columns[i].rows.spikes.clear();  // it may turn as fast
     if (!is_axis(column.quantity)) continue;
     const auto own = static_cast<std::size_t>(column.quantity[1] - 'x');
     forget_motion(columns[i], join(axes[(own + 1) % 3], axes[(own + 2) % 3]));
@@ -81,10 +109,19 @@ std::string unit_of_channel(const std::string& header) {
   return split == std::string::npos ? "" : header.substr(split + 1);
 }
 
-}  // namespace
+/// Whether equation error takes it, of an atmosphere what is there.
+bool is_in_coefficients(const Log& log, std::string_view quantity) {
+  const bool needs_density = log.find("qbar") == nullptr;
+  if (quantity == "rho") return needs_density;
+  if (quantity == "ps" || quantity == "temp") return needs_density && log.find("rho") == nullptr;
+  constexpr std::array beside{"roll", "pitch", "yaw", "vn", "ve", "vd"};
+  return std::ranges::find(beside, quantity) == beside.end();
+}
 
+/// Whether a fit of the model measures it, row by row.
 bool is_measured(const Log& log, const LoggedColumn& column) {
   if (!column.used) return false;
+  if (log.model() == "aero") return is_in_coefficients(log, column.quantity);
   const bool tube = log.model() == "pitot-static";
   const bool needs_density = !tube || log.find("airspeed") == nullptr;
   if (column.quantity == "rho") return needs_density;
@@ -94,12 +131,19 @@ bool is_measured(const Log& log, const LoggedColumn& column) {
   return std::ranges::find(slow, column.quantity) == slow.end();
 }
 
+}  // namespace
+
+Role role_of(const Log& log, const LoggedColumn& column) {
+  if (probes::has_state(log.model())) return Role::integrated;
+  return is_measured(log, column) ? Role::measured : Role::driver;
+}
+
 std::vector<SuspectColumn> find_suspects(const Log& log) {
   std::vector<SuspectColumn> columns = find_in_quantities(log);
   for (const Flight::Column& channel : log.flight().columns()) {
     if (is_quantity(log, channel.header)) continue;
     const Manner manner = manner_of_channel(channel.header);
-    columns.push_back({channel.header, unit_of_channel(channel.header), false, manner,
+    columns.push_back({channel.header, unit_of_channel(channel.header), Role::driver, manner,
                        find_suspect_rows(channel.values, log.stretches(), manner)});
   }
   std::erase_if(columns, [](const SuspectColumn& column) { return column.rows.empty(); });

@@ -62,12 +62,49 @@ constexpr std::array field_quantities{
     ProbeQuantity{"field_strength", UnitKind::field},
 };
 
+constexpr std::array aircraft_quantities{
+    ProbeQuantity{"time", UnitKind::time},
+    ProbeQuantity{"ax", UnitKind::acceleration},
+    ProbeQuantity{"ay", UnitKind::acceleration},
+    ProbeQuantity{"az", UnitKind::acceleration},
+    ProbeQuantity{"p", UnitKind::rate},
+    ProbeQuantity{"q", UnitKind::rate},
+    ProbeQuantity{"r", UnitKind::rate},
+    ProbeQuantity{"airspeed", UnitKind::speed},
+    ProbeQuantity{"alpha", UnitKind::angle},
+    ProbeQuantity{"beta", UnitKind::angle},
+    ProbeQuantity{"roll", UnitKind::angle},
+    ProbeQuantity{"pitch", UnitKind::angle},
+    ProbeQuantity{"yaw", UnitKind::angle},
+    ProbeQuantity{"vn", UnitKind::speed},
+    ProbeQuantity{"ve", UnitKind::speed},
+    ProbeQuantity{"vd", UnitKind::speed},
+    ProbeQuantity{"elevator", UnitKind::angle},
+    ProbeQuantity{"aileron", UnitKind::angle},
+    ProbeQuantity{"rudder", UnitKind::angle},
+    ProbeQuantity{"throttle", UnitKind::share},
+    ProbeQuantity{"thrust", UnitKind::force},
+    ProbeQuantity{"mass", UnitKind::mass},
+    ProbeQuantity{"rho", UnitKind::density},
+    ProbeQuantity{"qbar", UnitKind::pressure},
+    ProbeQuantity{"ps", UnitKind::pressure},
+    ProbeQuantity{"temp", UnitKind::temperature, true},
+    ProbeQuantity{"pdot", UnitKind::angular_acceleration},
+    ProbeQuantity{"qdot", UnitKind::angular_acceleration},
+    ProbeQuantity{"rdot", UnitKind::angular_acceleration},
+};
+
 }  // namespace
+
+bool has_state(std::string_view model) {
+  return model == "path" || model == "longitudinal" || model == "lateral" || model == "six-dof";
+}
 
 std::span<const ProbeQuantity> quantities_of(std::string_view model) {
   if (model == "five-hole") return probe_quantities;
   if (model == "pitot-static") return tube_quantities;
   if (model == "magnetometer" || model == "magnetometer-norm") return field_quantities;
+  if (model == "aero" || has_state(model)) return aircraft_quantities;
   throw Error("there is no model '" + std::string(model) + "'");
 }
 

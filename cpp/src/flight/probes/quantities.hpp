@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each probe reads of a log: its quantities by the base name of their columns.
+// What each probe, or model of an aircraft, reads of a log: its quantities by the base name of
+// their columns.
 #pragma once
 
 #include <span>
@@ -17,6 +18,9 @@ struct ProbeQuantity {
   bool is_driver = false;  // may drive effects too, then under its whole header
   bool is_extra = false;   // no fit needs it: effects may
 };
+
+/// Whether the model carries a state from row to row: one of an aircraft's, but for equation error.
+bool has_state(std::string_view model);
 
 /// Of the model by that name, needed or not. Throws Error where there is no such model.
 std::span<const ProbeQuantity> quantities_of(std::string_view model);

@@ -104,7 +104,7 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
   const std::vector<std::string> slow = prepared.slow;
   if (const auto left = without_suspects(here, prepared, own, progress)) {
     here = *left;
-    notes.push_back(say_left_out(here, prepared.logged.name(), suspected, slow));
+    notes.push_back(say_left_out(flight.name(), here.options.log, suspected, slow));
   }
   note_mended(prepared);
   Calibration next = add_to(here, prepared, effect, own, progress);

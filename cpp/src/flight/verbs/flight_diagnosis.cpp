@@ -105,7 +105,7 @@ Calibration believe(const Calibration& calibration, PreparedFlight& prepared, co
   note_mended(prepared);
   if (!left) return calibration;
   prepared.readings.notes.push_back(
-      say_left_out(*left, prepared.logged.name(), suspected, slow));
+      say_left_out(prepared.logged.name(), left->options.log, suspected, slow));
   return *left;
 }
 

@@ -19,6 +19,7 @@ namespace {
 
 using checks::join;
 using checks::Log;
+using checks::Role;
 using checks::RowList;
 using checks::SuspectColumn;
 
@@ -37,15 +38,19 @@ RowList find_empty(const Flight::Column& column, const RowList& left_out) {
 }
 
 /// On the line from the last good row to the next, by time where it was logged; beyond them, and of
-/// an angle, what the nearest before (else after) holds.
+/// an angle that began anew between (`turn`: a whole one, else 0), what the nearest before (else
+/// after) holds.
 std::vector<double> bridge(std::span<const double> values, const RowList& bad,
-                           std::span<const double> time, bool turns) {
+                           std::span<const double> time, double turn) {
   std::vector<double> mended(values.begin(), values.end());
   const auto at = [&](std::size_t row) {
     return time.empty() ? static_cast<double>(row) : time[row];
   };
   const auto is_good = [&](std::size_t row) {
     return std::isfinite(values[row]) && !std::ranges::binary_search(bad, row);
+  };
+  const auto begins_anew = [&](std::size_t before, std::size_t after) {
+    return turn > 0 && std::abs(values[after] - values[before - 1]) > 0.5 * turn;
   };
   for (const Segment& run : checks::find_runs_of(bad)) {
     std::size_t before = run.first;
@@ -54,7 +59,7 @@ std::vector<double> bridge(std::span<const double> values, const RowList& bad,
     while (after < values.size() && !is_good(after)) ++after;
     if (before == 0 && after == values.size()) continue;
     for (std::size_t row = run.first; row < run.last; ++row) {
-      if (before == 0 || after == values.size() || turns) {
+      if (before == 0 || after == values.size() || begins_anew(before, after)) {
         mended[row] = before == 0 ? values[after] : values[before - 1];
         continue;
       }
@@ -85,8 +90,8 @@ std::string say_why(const SuspectColumn* suspect, const RowList& empty) {
 /// Whether the column's readings are none in rows that pull an answer.
 bool is_serious(const SuspectColumn& column) {
   const checks::SuspectRows& rows = column.rows;
-  return column.is_measured && (!rows.sentinels.empty() || !rows.bursts.empty() ||
-                                !rows.frozen.empty() || checks::is_heavy(rows));
+  return column.role == Role::measured && (!rows.sentinels.empty() || !rows.bursts.empty() ||
+                                           !rows.frozen.empty() || checks::is_heavy(rows));
 }
 
 /// Conditions of several columns, each once.
@@ -107,12 +112,12 @@ class Conditions {
   std::string columns_;
 };
 
-/// Whether the column drives effects at most, so that a value between its neighbours will do.
-bool is_driver(const Log& log, const Flight::Column& column) {
+/// Whether a value between its neighbours will do in the column.
+bool can_be_bridged(const Log& log, const Flight::Column& column) {
   const auto time = files::find_quantity(log.flight(), "time", files::UnitKind::time);
   if (time && time->column->header == column.header) return false;
   const auto read = std::ranges::find(log.columns(), column.header, &checks::LoggedColumn::header);
-  return read == log.columns().end() || !checks::is_measured(log, *read);
+  return read == log.columns().end() || checks::role_of(log, *read) != Role::measured;
 }
 
 /// Whether no fit needs a number in each cell.
@@ -130,15 +135,15 @@ MendedFlight mend(std::string_view model, const Flight& flight, const LogChoice&
   const Log log(model, taken.flight);
   const std::vector<SuspectColumn> suspects = checks::find_suspects(log);
   for (const Flight::Column& column : flight.columns()) {
-    if (!is_driver(log, column)) continue;
+    if (!can_be_bridged(log, column)) continue;
     const auto suspect = std::ranges::find(suspects, column.header, &SuspectColumn::header);
     const SuspectColumn* found = suspect == suspects.end() ? nullptr : &*suspect;
     const RowList empty =
         may_be_empty(log, column) ? find_empty(column, taken.left_out) : RowList();
     const RowList bad = found == nullptr ? empty : join(found->rows.all(), empty);
     if (bad.empty()) continue;
-    const bool turns = found != nullptr && found->manner.turn > 0;
-    mended.flight.replace(column.header, bridge(column.values, bad, log.time(), turns));
+    const double turn = found == nullptr ? 0.0 : found->manner.turn;
+    mended.flight.replace(column.header, bridge(column.values, bad, log.time(), turn));
     auto& notes = found == nullptr ? mended.filled : mended.bridged;
     notes.push_back(fmt::format(
         "{}: column '{}' has no reading in {} of {} rows, first at {} ({}): an effect takes the "
@@ -153,7 +158,7 @@ MendedFlight mend(std::string_view model, const Flight& flight, const LogChoice&
       mended.loss_helps &= column.rows.sentinels.empty() && column.rows.frozen.empty();
       measured.add(column.header, checks::leave_out(log, column));
       all.add(column.header, checks::leave_out(log, column));
-    } else if (!column.is_measured && !column.rows.frozen.empty()) {
+    } else if (column.role != Role::measured && !column.rows.frozen.empty()) {
       all.add(column.header, checks::leave_out(log, column.rows.frozen));
     }
   }

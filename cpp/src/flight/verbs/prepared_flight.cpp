@@ -173,15 +173,15 @@ std::optional<Calibration> without_suspects(const Calibration& base, PreparedFli
   return left;
 }
 
-std::string say_left_out(const Calibration& left, const std::string& flight,
+std::string say_left_out(const std::string& flight, const LogChoice& now,
                          const RowsToLeave& suspected, const std::vector<std::string>& slow) {
   std::vector<std::string> rows;
   std::vector<std::string> options;
   if (!suspected.condition.empty()) {
     rows.push_back(fmt::format("in which {} can't be a reading", suspected.columns));
-    options.push_back(fmt::format("--where \"{}\"", left.options.log.where));
+    options.push_back(fmt::format("--where \"{}\"", now.where));
   }
-  if (!slow.empty() && slow == left.options.log.drop_repeats) {
+  if (!slow.empty() && slow == now.drop_repeats) {
     rows.push_back(fmt::format("between the samples of {}", fmt::join(slow, ", ")));
     options.push_back(fmt::format("--drop-repeats {}", fmt::join(slow, ",")));
   }

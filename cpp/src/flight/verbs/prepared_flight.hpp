@@ -56,8 +56,8 @@ void note_mended(PreparedFlight& prepared);
 std::optional<Calibration> without_suspects(const Calibration& base, PreparedFlight& prepared,
                                             const OwnEffects& own, const FitProgress& progress);
 
-/// What a person is told of that, of the flight before it.
-std::string say_left_out(const Calibration& left, const std::string& flight,
+/// What a person is told of that: what was suspected and slow before, and what is chosen now.
+std::string say_left_out(const std::string& flight, const LogChoice& now,
                          const RowsToLeave& suspected, const std::vector<std::string>& slow);
 
 /// As the public calibrate().
