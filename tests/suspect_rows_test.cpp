@@ -116,6 +116,18 @@ TEST_CASE("an angle that passes the end of its turn does not jump") {
   CHECK(look(heading, "heading_deg").empty());
 }
 
+TEST_CASE("a control may be set for some rows, and holds no code all the same") {
+  std::vector<double> angle = swing();
+  for (std::size_t row = 500; row < 510; ++row) angle[row] += 50;
+  angle[700] = -9999;
+  const files::Unit& radians = *files::find_unit(files::UnitKind::angle, "rad");
+  const auto look_at = [&](const char* quantity) {
+    return find_suspect_rows(angle, whole, manner_of(quantity, radians));
+  };
+  CHECK(look_at("elevator").bursts.empty());
+  CHECK(look_at("elevator").sentinels == RowList{700});
+}
+
 TEST_CASE("what is one value throughout") {
   CHECK(is_constant(std::vector<double>(20, 12.0)));
   CHECK_FALSE(is_constant(std::vector<double>(19, 12.0)));

@@ -5,6 +5,7 @@ Codes, glitches and frozen rows are planted in every column in turn: they are to
 alone, and what is hidden is found all the same, by equation error and along a path.
 """
 
+import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -266,6 +267,34 @@ def test_what_is_written_takes_the_bridged_rows(tmp_path: Path) -> None:
         table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
         flown[name] = table["pitch_model_rad"]
     assert np.abs(flown["spoilt"] - flown["clean"]).max() < 0.002
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("column", ["q_radps", "alpha_rad"])
+def test_an_aircraft_that_is_integrated_bends_no_answer(
+    tmp_path: Path, fault: str, column: str
+) -> None:
+    """Cm follows alpha^2 in the simulator's flight, with and without the fault."""
+    hide = ("--hide", "Cm[alpha^2]=-3", "--seed", "2")
+    made = aircraft(tmp_path, "simulate", "-o", "s.csv", "--geometry", "aircraft.json", *hide)
+    assert made.code == 0
+    with (tmp_path / "s.csv").open() as file:
+        header, *rows = csv.reader(file)
+    at = header.index(column)
+    values = np.array([float(row[at]) for row in rows])
+    FAULTS[fault](values)
+    for row, value in zip(rows, values, strict=True):
+        row[at] = repr(float(value))
+    with (tmp_path / "flight.csv").open("w", newline="") as file:
+        csv.writer(file).writerows([header, *rows])
+    model = ("--model", "longitudinal", "--geometry", "aircraft.json", "-o", "base.json")
+    fitted = aircraft(tmp_path, "fit", "flight.csv", *model)
+    assert headers_in(notes_of(fitted)) == {column}
+    added = aircraft(tmp_path, "add", "flight.csv", "base.json", "Cm[alpha^2]", "--json")
+    assert added.code == 0, added.err
+    assert column in added.err
+    entry = added.result["parameters"]["Cm_alpha^2"]
+    assert abs(entry["value"] + 3.0) < 4.0 * entry["standard_error"]
 
 
 def test_recorded_and_simulated_flights_have_no_fault(tmp_path: Path) -> None:
