@@ -128,7 +128,7 @@ std::vector<std::string> find_slowest(const Log& log) {
     const bool is_density = column.kind() == files::UnitKind::density ||
                             column.kind() == files::UnitKind::temperature ||
                             column.quantity == "ps";
-    return is_measured(log, column) && !is_density;
+    return role_of(log, column) == Role::measured && !is_density;
   });
   const SlowColumns* slowest = find_slowest_of(groups);
   if (slowest == nullptr) return {};
