@@ -51,7 +51,7 @@ void rank(std::vector<EffectFinding>& findings) {
 /// What is not found and may take much of the error, as one step has it: the best few, and the best
 /// few of those that are no functions of any form.
 std::vector<EffectFinding*> choose_to_weigh(CandidateRoom& room,
-                                             std::vector<EffectFinding>& findings) {
+                                            std::vector<EffectFinding>& findings) {
   constexpr double worth_a_fit = 0.6 * objects_from;
   constexpr std::ptrdiff_t most_of_any = 2;
   constexpr std::ptrdiff_t most_of_simple = 4;

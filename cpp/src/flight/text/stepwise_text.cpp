@@ -31,8 +31,8 @@ std::string to_text(const Stepwise& course) {
                         signed_percent(-promised.predicted_drop),
                         signed_percent(-step.found_drop()), step.rmse_before, step.rmse_after);
     for (const std::string& name : step.dropped) {
-      text += fmt::format("- {}: beside {} it counts no more, and is dropped\n", name,
-                          promised.name);
+      text +=
+          fmt::format("- {}: beside {} it counts no more, and is dropped\n", name, promised.name);
     }
   }
   const std::size_t count = verbs::list_kept(course).size();

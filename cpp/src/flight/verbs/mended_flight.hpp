@@ -22,7 +22,7 @@ struct MendedFlight {
   std::vector<std::string> bridged = {};  // a line a column with rows that were no readings
   std::vector<std::string> filled = {};   // a line a column with empty cells alone
   RowsToLeave measured = {};              // where a measured column has no reading
-  RowsToLeave all = {};    // and where a driver stood still, over which nothing bridges
+  RowsToLeave all = {};                // and where a driver stood still, over which nothing bridges
   std::vector<std::string> slow = {};  // the columns that are sampled in the fewest rows
   bool loss_helps = true;  // the measured ones are off, but not as far as a code, nor for long
 };

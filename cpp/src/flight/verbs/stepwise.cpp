@@ -78,9 +78,9 @@ const EffectFinding* verbs::next_effect(Stepwise& course, std::size_t most) {
   const std::string& advised = found.advice.effect;
   for (const StepwiseStep& step : course.steps) {
     if (advised.empty() || std::ranges::find(step.dropped, advised) == step.dropped.end()) continue;
-    finish(course, StepwiseEnd::withheld,
-           fmt::format("{} would come back, which {} took the place of", advised,
-                       step.promised.name));
+    finish(
+        course, StepwiseEnd::withheld,
+        fmt::format("{} would come back, which {} took the place of", advised, step.promised.name));
     return nullptr;
   }
   if (found.verdict == Verdict::effect_missing && !advised.empty() && course.steps.size() < most) {

@@ -34,8 +34,8 @@ const EffectFinding* next_effect(Stepwise& course, std::size_t most);
 /// What the steps added and none dropped, in that order.
 std::vector<std::string> list_kept(const Stepwise& course);
 
-/// `Fitted` has a member `fit`. `diagnose(fitted, only, among)`, of everything or as about() has it,
-/// and `add(fitted, effect)` are the verbs; what add throws ends the loop.
+/// `Fitted` has a member `fit`. `diagnose(fitted, only, among)`, of everything or as about() has
+/// it, and `add(fitted, effect)` are the verbs; what add throws ends the loop.
 template <class Fitted>
 struct StepwiseLoop {
   Fitted base;
