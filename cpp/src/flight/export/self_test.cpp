@@ -12,7 +12,7 @@
 namespace sepcal::exporting {
 namespace {
 
-constexpr std::size_t trials = 3;
+constexpr std::size_t trial_rows = 3;
 
 /// The trials as a flight, under the names that apply() reads.
 Flight trial_flight(const ProbeBody& body, const Correction& correction) {
@@ -21,7 +21,7 @@ Flight trial_flight(const ProbeBody& body, const Correction& correction) {
   for (const Quantities& one : body.readings) {
     for (const std::string& header : one.headers) {
       std::vector<double> values;
-      for (std::size_t row = 0; row < trials; ++row) values.push_back(body.trials[row][column]);
+      for (std::size_t row = 0; row < trial_rows; ++row) values.push_back(body.trials[row][column]);
       flight.add(header, std::move(values));
       ++column;
     }
@@ -64,7 +64,7 @@ std::string self_test(const Calibration& calibration, const ProbeBody& body,
   for (const Quantities& one : body.readings) inputs += static_cast<std::size_t>(one.size);
   std::vector<std::string> given;
   std::vector<std::string> expected;
-  for (std::size_t row = 0; row < trials; ++row) {
+  for (std::size_t row = 0; row < trial_rows; ++row) {
     std::vector<std::string> numbers;
     for (const double value : body.trials[row]) numbers.push_back(literal(value));
     for (const Driver& driver : correction.drivers) numbers.push_back(literal(driver.trial[row]));
