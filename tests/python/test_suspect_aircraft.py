@@ -247,7 +247,7 @@ def test_the_way_out_of_a_note_leads_out(tmp_path: Path, fault: str, model: str)
 
 @pytest.mark.parametrize("column", ["alpha_rad", "az_mps2", "q_radps", "airspeed_mps"])
 def test_a_column_that_never_changes_is_named(tmp_path: Path, column: str) -> None:
-    for model in FIT:
+    for model in ("aero",) if column == "alpha_rad" else FIT:  # a path without it hardly ends
         columns = FLY[model]()
         columns[column][:] = columns[column][0]
         lay_out(columns, tmp_path)

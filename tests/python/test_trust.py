@@ -63,14 +63,12 @@ def test_an_attitude_that_wanders_is_no_effect():
     assert found <= 2
 
 
-def test_advice_is_withheld_where_a_fit_says_otherwise_than_a_step():
-    """The small aircraft's tube: a lag of -0.01 s by one step is one of 0.1 s once it is fitted."""
+def test_rows_that_hold_a_reading_are_not_asked():
+    """The small aircraft's tube, which answers in one row of five."""
     flight = sepcal.read_csv(find_fixture("uav_pitot_static_2022_05_07_11.csv"))
     diagnosis = sepcal.fit(sepcal.PitotStatic(), flight).diagnose()
-    assert diagnosis.advice["effect"] != "time_offset"
-    assert any(reason.startswith("time_offset: ") for reason in diagnosis.advice["withheld"])
-    assert any("where one step from here has" in why for why in diagnosis.advice["withheld"])
-    assert "not to be added: " in str(diagnosis)
+    assert "671 of 3355 rows" in str(diagnosis)
+    assert any("--drop-repeats airspeed_mps" in note for note in diagnosis.notes)
 
 
 def test_nothing_stands_in_for_an_effect_that_no_fit_takes():

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flight/checks/suspects.hpp"
@@ -125,10 +126,9 @@ void check_samples(const Log& log, std::vector<LogNote>& notes) {
 std::vector<std::string> find_slowest(const Log& log) {
   constexpr double fewest_left = 150.0;  // rows
   const std::vector<SlowColumns> groups = find_slow(log, [&](const LoggedColumn& column) {
-    const bool is_density = column.kind() == files::UnitKind::density ||
-                            column.kind() == files::UnitKind::temperature ||
-                            column.quantity == "ps";
-    return role_of(log, column) == Role::measured && !is_density;
+    constexpr std::array lively{"vn", "ve", "airspeed", "dp", "pt", "dpa", "dpb", "mx", "my", "mz"};
+    return role_of(log, column) == Role::measured &&
+           std::ranges::find(lively, column.quantity) != lively.end();
   });
   const SlowColumns* slowest = find_slowest_of(groups);
   if (slowest == nullptr) return {};

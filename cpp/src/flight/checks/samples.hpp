@@ -9,8 +9,8 @@ namespace sepcal::checks {
 void check_samples(const Log& log, std::vector<LogNote>& notes);
 
 /// The columns that are sampled in fewest rows, of those that a fit measures by; none where each
-/// row is a sample, or where too few would be left. What changes as slowly as a density does as
-/// well between its samples.
+/// row is a sample, or where too few would be left. Asked are velocities over the ground, air data
+/// and magnetometers: other columns stand still in level flight, or change as slowly as a density.
 std::vector<std::string> find_slowest(const Log& log);
 
 }  // namespace sepcal::checks
