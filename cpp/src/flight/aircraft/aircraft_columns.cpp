@@ -19,7 +19,6 @@
 namespace sepcal::aircraft_log {
 namespace {
 
-using files::UnitKind;
 using probes::RecordBuilder;
 
 /// A load factor has the other sign and is asked for by name, as it is what logs have.

@@ -48,8 +48,8 @@ std::vector<std::string> pool_of(const catalogue::EffectTable& table, const Diag
     const std::string_view in_time = "[spline(time,";
     const std::size_t at = name.find(in_time);
     const auto is_known = [&](const std::string& other) {
-      return other == name || (at != std::string::npos &&
-                               other.starts_with(name.substr(0, at + in_time.size())));
+      return other == name ||
+             (at != std::string::npos && other.starts_with(name.substr(0, at + in_time.size())));
     };
     if (std::ranges::none_of(names, is_known)) names.push_back(std::move(name));
   }
