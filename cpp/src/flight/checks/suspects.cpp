@@ -65,8 +65,15 @@ Manner manner_in(const Log& log, const LoggedColumn& column) {
   return manner;
 }
 
+/// Where a column goes on: of an aircraft also from one maneuver to the next, as these are short
+/// and what is usual would not be seen in one of them.
+std::vector<Segment> find_stretches_of(const Log& log) {
+  return is_of_aircraft(log) ? probes::find_stretches(log.time(), {}) : log.stretches();
+}
+
 /// The columns of the probe's quantities, in the log's order of quantities.
-std::vector<SuspectColumn> find_in_quantities(const Log& log) {
+std::vector<SuspectColumn> find_in_quantities(const Log& log,
+                                              const std::vector<Segment>& stretches) {
   std::vector<SuspectColumn> columns;
   std::map<std::string_view, RowList> jumps;  // of each sensor
   std::array<RowList, 3> axes;
@@ -74,7 +81,7 @@ std::vector<SuspectColumn> find_in_quantities(const Log& log) {
     const Manner manner = manner_in(log, column);
     SuspectColumn suspect{column.header(), std::string(column.logged.unit->suffix),
                           role_of(log, column), manner,
-                          find_suspect_rows(column.logged.column->values, log.stretches(), manner)};
+                          find_suspect_rows(column.logged.column->values, stretches, manner)};
     const RowList own = join(suspect.rows.spikes, suspect.rows.bursts);
     RowList& all = jumps[sensor_of(log, column)];
     all = join(all, own);
@@ -139,12 +146,13 @@ Role role_of(const Log& log, const LoggedColumn& column) {
 }
 
 std::vector<SuspectColumn> find_suspects(const Log& log) {
-  std::vector<SuspectColumn> columns = find_in_quantities(log);
+  const std::vector<Segment> stretches = find_stretches_of(log);
+  std::vector<SuspectColumn> columns = find_in_quantities(log, stretches);
   for (const Flight::Column& channel : log.flight().columns()) {
     if (is_quantity(log, channel.header)) continue;
     const Manner manner = manner_of_channel(channel.header);
     columns.push_back({channel.header, unit_of_channel(channel.header), Role::driver, manner,
-                       find_suspect_rows(channel.values, log.stretches(), manner)});
+                       find_suspect_rows(channel.values, stretches, manner)});
   }
   std::erase_if(columns, [](const SuspectColumn& column) { return column.rows.empty(); });
   return columns;
