@@ -186,6 +186,7 @@ struct DiagnosisWork {
   std::size_t screened = 0;            // candidates
   std::size_t tested = 0;              // by likelihood ratios, their noise estimated anew
   std::size_t calibrated = 0;          // by draws of the noise
+  std::size_t drawn = 0;               // these draws, of each noise
   std::size_t refitted = 0;            // models with a candidate that were fitted
   std::size_t tried_on_some_rows = 0;  // the same to 400 rows, where a fit is far off
 
@@ -238,7 +239,7 @@ struct DiagnosisOptions {
   double significance = significant_below;  // of the verdict
   double unexplained_below = 0.01;          // p of offsets and of unlogged causes, after Holm
   double least_visibility = visible_from;
-  int simulations = 80;                     // of the noise, that calibrate a test
+  int simulations = 40;                     // of the noise, that calibrate a test
   std::vector<std::string> preferred = {};  // come first among those as likely
   PseBound pse = PseBound::sidpac;
   /// The caller's candidates, where there are any, in place of a catalogue's: one that the record

@@ -12,9 +12,7 @@ namespace sepcal::diagnosis {
 namespace {
 
 constexpr std::size_t most_confirmed = 3;
-constexpr double doubtless = -30.0;  // log10 of a tail for which few simulations do
-constexpr int few_simulations = 39;
-constexpr std::size_t most_calibrated = 3;  // the others are corrected as the worst of these
+constexpr std::size_t most_calibrated = 2;  // the others are corrected as the worst of these
 
 }  // namespace
 
@@ -96,53 +94,78 @@ void Bench::screen_all(Trials& trials) const {
   });
 }
 
-void Bench::test_best(Trials& trials, std::size_t most) const {
-  const std::vector<std::size_t> chosen =
-      best_of(trials, most, [](const Trial& trial) { return trial.visible; });
+void Bench::test_best(Trials& trials, std::size_t most, double threshold, bool slow_too) const {
+  constexpr double worth_telling = 0.05;  // of the error, of a slow change
+  std::vector<Trial*> chosen;
+  for (const std::size_t i :
+       best_of(trials, most, [](const Trial& trial) { return trial.visible; })) {
+    chosen.push_back(&trials[i]);
+    chosen.back()->slow = is_slow(room_, chosen.back()->candidate, chosen.back()->shape);
+  }
+  bound_all(chosen);
+  // Noise of free size is asked only where what instruments do leaves it open.
+  std::erase_if(chosen, [&](Trial* trial) {
+    if (!is_bounded(*trial) || trial->bounded->log10_p < threshold) return false;
+    if (slow_too && trial->slow && trial->predicted_drop > worth_telling) return false;
+    trial->log10_p = trial->bounded->log10_p;
+    return true;
+  });
   work_.tested += chosen.size();
   std::mutex mutex;
   double done = 0.0;
   pool_.for_each(chosen.size(), [&](std::size_t k) {
-    test(room_, null_, trials[chosen[k]]);
+    test(room_, null_, *chosen[k]);
     const std::lock_guard lock(mutex);
     report_progress("testing effects", ++done / static_cast<double>(chosen.size()));
   });
-  bound_tested(trials);
 }
 
-/// What noise as instruments have it makes of those tested. Noise is what is left beside the best
-/// of them, but for functions of time of any form, which would take it for theirs.
-void Bench::bound_tested(Trials& trials) const {
+/// What noise as instruments have it makes of them. Noise is what is left beside the best of them,
+/// but for functions of time of any form, which would take it for theirs.
+void Bench::bound_all(const std::vector<Trial*>& chosen) const {
   constexpr std::size_t most_beside = 6;
   constexpr Index rows_a_column = 20;
   if (!instruments_) return;
-  std::vector<Trial*> tested;
+  struct AtShape {
+    Trial* trial;
+    double shape;
+  };
+  std::vector<AtShape> places;
   std::vector<Columns> bases;
-  for (Trial& trial : trials) {
-    if (!trial.tested) continue;
-    tested.push_back(&trial);
-    bases.push_back(project_trial(room_, null_, trial, trial.shape).basis);
+  for (Trial* trial : chosen) {
+    for (const double shape : best_shapes(*trial)) {
+      places.push_back({trial, shape});
+      bases.push_back(project_trial(room_, null_, *trial, shape).basis);
+    }
   }
-  std::vector<std::size_t> order(tested.size());
+  std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return tested[i]->log10_plain; });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return places[i].trial->log10_plain; });
   Columns beside;
-  std::size_t taken = 0;
+  std::vector<const Trial*> taken;
   for (const std::size_t i : order) {
+    const Trial* trial = places[i].trial;
     const Index columns = beside.cols() + bases[i].cols();
-    if (is_flexible_in_time(tested[i]->candidate)) continue;
+    if (std::ranges::find(taken, trial) != taken.end()) continue;
+    if (is_flexible_in_time(trial->candidate)) continue;
     if (rows_a_column * columns > room_.fit().layout.count()) continue;
     beside = join(beside, bases[i]);
-    if (++taken == most_beside) break;
+    taken.push_back(trial);
+    if (taken.size() == most_beside) break;
   }
   instruments_->set_beside(beside);
   const std::vector<InstrumentTail> tails = instruments_->tails(bases);
-  for (std::size_t i = 0; i < tested.size(); ++i) bound(tails[i], *tested[i]);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Trial& trial = *places[i].trial;
+    const bool is_surer =
+        !trial.bounded || tails[i].log10_p + log10_scan(trial) < trial.bounded->log10_p;
+    if (is_surer) bound(tails[i], trial);
+  }
 }
 
 void Bench::hold_out_significant(Trials& trials) const {
   const double threshold = std::log10(options_.significance);
-  constexpr double much = 0.1;  // of the error, by one step
+  constexpr double much = 0.07;  // of the error, by one step
   pool_.for_each(trials.size(), [&](std::size_t i) {
     Trial& trial = trials[i];
     if (trial.tested ||
@@ -152,14 +175,14 @@ void Bench::hold_out_significant(Trials& trials) const {
   });
 }
 
-void Bench::calibrate_significant(Trials& trials, double threshold) const {
+void Bench::calibrate_significant(Trials& trials, double threshold, bool slow_too) const {
   std::vector<Trial*> significant;
+  const auto is_sure = [&](const Trial& trial) { return trial.log10_p < threshold; };
   for (Trial& trial : trials) {
     if (!trial.tested) continue;
-    const bool is_sure = trial.log10_p < threshold;
-    if (is_sure ? !is_decided_by_bounds(trial) : may_be_slow(trial, threshold)) {
-      significant.push_back(&trial);
-    }
+    const bool is_open =
+        slow_too && trial.held_out.passed && may_be_slow(trial, threshold);  // a slow change
+    if (is_sure(trial) ? !is_decided_by_bounds(trial) : is_open) significant.push_back(&trial);
   }
   std::ranges::stable_sort(significant, {}, &Trial::log10_p);
   double worst = 1.0;  // of what is left of a log10 p
@@ -169,11 +192,12 @@ void Bench::calibrate_significant(Trials& trials, double threshold) const {
     Trial& trial = *significant[i];
     const double plain = trial.tails.log10_p();
     if (i < most_calibrated) {
-      const bool beyond_doubt = plain < doubtless;
-      const int draws =
-          beyond_doubt ? std::min(few_simulations, options_.simulations) : options_.simulations;
       ++work_.calibrated;
-      calibrate(room_, null_, draws, options_.seed, pool_, trial);
+      work_.drawn += static_cast<std::size_t>(options_.simulations);
+      calibrate(
+          room_, null_,
+          {.draws = options_.simulations, .seed = options_.seed, .beside_alone = !is_sure(trial)},
+          pool_, trial);
       if (plain < 0.0) worst = std::min(worst, trial.tails.log10_p() / plain);
     } else {
       trial.tails = {worst * trial.tails.either, worst * trial.tails.beside};
@@ -183,10 +207,11 @@ void Bench::calibrate_significant(Trials& trials, double threshold) const {
   for (Trial* trial : significant) doubt(room_, null_, *trial);
   double least_sure = -infinity;
   for (const Trial& trial : trials) {
-    if (trial.tested) least_sure = std::max(least_sure, trial.log10_p);
+    if (trial.tested || trial.bounded) least_sure = std::max(least_sure, trial.log10_p);
   }
   for (Trial& trial : trials) {
-    if (trial.visible && !trial.tested) trial.log10_p = std::max(trial.log10_p, least_sure);
+    const bool only_screened = trial.visible && !trial.tested && !trial.bounded;
+    if (only_screened) trial.log10_p = std::max(trial.log10_p, least_sure);
   }
 }
 

@@ -64,22 +64,24 @@ class Bench {
 
   void screen_all(Trials& trials) const;
 
-  /// Tests the best `most` of either screen.
-  void test_best(Trials& trials, std::size_t most) const;
+  /// Tests the best `most` of either screen: in noise as instruments have it, and where that makes
+  /// the log10 of a tail less than the threshold, or with `slow_too` it may be a slow change, in
+  /// noise of free size.
+  void test_best(Trials& trials, std::size_t most, double threshold, bool slow_too) const;
 
   /// Rows are held out of those tested, and of others that are significant or promise much.
   void hold_out_significant(Trials& trials) const;
 
-  /// Corrects the tails of what would be significant; what was only screened is no surer than the
-  /// least sure of what was tested.
-  void calibrate_significant(Trials& trials, double threshold) const;
+  /// Corrects the tails of what would be significant, with `slow_too` of what could be a slow
+  /// change; what was only screened is no surer than the least sure of what was tested.
+  void calibrate_significant(Trials& trials, double threshold, bool slow_too) const;
 
   /// One step may fail an effect that bends the model: those that explain more than the best that
   /// passed get real fits.
   void confirm_best(Trials& trials, double threshold) const;
 
  private:
-  void bound_tested(Trials& trials) const;
+  void bound_all(const std::vector<Trial*>& chosen) const;
 
   const DiagnosedFit& fitted_;
   const DiagnosisOptions& options_;

@@ -295,9 +295,9 @@ void test_beside(Bench& bench, const Contender& first, Findings& findings) {
   Trials trials = beside.make(names);
   const double threshold = std::log10(counts_below / static_cast<double>(names.size()));
   beside.screen_all(trials);
-  beside.test_best(trials, trials.size());
+  beside.test_best(trials, trials.size(), threshold, false);
   beside.hold_out_significant(trials);
-  beside.calibrate_significant(trials, threshold);
+  beside.calibrate_significant(trials, threshold, false);
   bench.count(beside.work());
   for (const Trial& trial : trials) {
     const bool counts = trial.visible && trial.log10_p < threshold && trial.held_out.judged &&

@@ -181,10 +181,11 @@ class Recipe {
   /// Does a step as far as the time allows.
   void in_time(const std::string& step, const std::function<void()>& work);
   std::vector<EffectFinding> collect(const Trials& trials, double tests) const;
-  /// `tests`: how many could have been chosen.
-  std::vector<EffectFinding> judge(Trials& trials, double tests) const;
+  /// `tests`: how many could have been chosen; `slow_too`: whether slow changes are told.
+  std::vector<EffectFinding> judge(Trials& trials, double tests, bool slow_too) const;
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
+  double threshold_of(const Trials& trials, double tests) const;
   bool has(FindingStatus status) const;
   Trials::iterator find_trial(const std::string& name);
   double tests() const;
@@ -293,11 +294,17 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   return findings;
 }
 
-std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests) const {
-  bench_.hold_out_significant(trials);
+/// log10 of about what Holm's correction asks for, where `tests` could have been chosen.
+double Recipe::threshold_of(const Trials& trials, double tests) const {
+  constexpr double about = 0.3;
   const double number = std::max({1.0, count_visible(trials), tests});
-  const double threshold = std::log10(options_.significance / number) + 0.3;  // about Holm's
-  bench_.calibrate_significant(trials, threshold);
+  return std::log10(options_.significance / number) + about;
+}
+
+std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) const {
+  bench_.hold_out_significant(trials);
+  const double threshold = threshold_of(trials, tests);
+  bench_.calibrate_significant(trials, threshold, slow_too);
   bench_.confirm_best(trials, threshold);
   std::vector<EffectFinding> findings = collect(trials, tests);
   rank(findings);
@@ -309,7 +316,7 @@ void Recipe::look_from_own_fits() {
   bench_.report_progress("fitting what may be hidden", 0.0);
   const double number = std::max(1.0, tests());
   for (std::unique_ptr<OwnFit>& own : find_hidden(bench_, trials_)) {
-    Trial found = own->test(std::log10(options_.significance / number) + 0.3);
+    Trial found = own->test(threshold_of(trials_, number));
     Trial& trial = *std::ranges::find_if(
         trials_, [&](const Trial& other) { return other.candidate.name == found.candidate.name; });
     if (!found.visible || !(found.log10_p < trial.log10_p)) continue;
@@ -334,10 +341,10 @@ void Recipe::try_pairs() {
   }
   Trials pairs = bench_.make(names);
   bench_.screen_all(pairs);
-  bench_.test_best(pairs, most_pairs_tested);
   // The ten were chosen by what they explain: every pair of all candidates could have been.
   const double tests = 0.5 * (visible + static_cast<double>(options_.others)) * (visible - 1.0);
-  std::vector<EffectFinding> findings = judge(pairs, tests);
+  bench_.test_best(pairs, most_pairs_tested, threshold_of(pairs, tests), false);
+  std::vector<EffectFinding> findings = judge(pairs, tests, false);
   std::erase_if(findings,
                 [](const EffectFinding& pair) { return pair.status != FindingStatus::found; });
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
@@ -403,7 +410,7 @@ void Recipe::tell_fitted(EffectFinding& finding) {
 
 /// The best of what was found that a real fit bears out and no other contradicts.
 void Recipe::advise() {
-  constexpr std::size_t most_fitted = 3;
+  constexpr std::size_t most_fitted = 6;
   constexpr double most_of = 0.4;  // of what the first takes, where no fit takes that
   std::size_t fitted = 0;
   bool first_stands = false;  // though no fit takes it
@@ -548,8 +555,9 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   }
   trials_ = bench_.make(names);
   in_time("screening effects", [&] { bench_.screen_all(trials_); });
-  in_time("testing effects", [&] { bench_.test_best(trials_, most_tested); });
-  in_time("holding rows out", [&] { result_.effects = judge(trials_, tests()); });
+  in_time("testing effects",
+          [&] { bench_.test_best(trials_, most_tested, threshold_of(trials_, tests()), true); });
+  in_time("holding rows out", [&] { result_.effects = judge(trials_, tests(), true); });
   if (result_.effects.empty()) result_.effects = collect(trials_, tests());
   if (!has(FindingStatus::found) && room.follows_path()) {
     in_time("fitting what may be hidden", [&] { look_from_own_fits(); });

@@ -61,6 +61,7 @@ DiagnosisWork& DiagnosisWork::operator+=(const DiagnosisWork& other) {
   screened += other.screened;
   tested += other.tested;
   calibrated += other.calibrated;
+  drawn += other.drawn;
   refitted += other.refitted;
   tried_on_some_rows += other.tried_on_some_rows;
   return *this;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
@@ -166,22 +167,47 @@ struct InstrumentNoise::Noise {
     return static_cast<double>(residual.size() - basis.cols() - columns);
   }
 
-  /// The variance that is left beside columns, whitened, orthonormal and orthogonal to the tangent.
-  double left_beside(const MatrixXd& columns) const {
-    const double sum = residual.squaredNorm() - (columns.transpose() * residual).squaredNorm();
-    return sum / std::max(1.0, freedom_beside(columns.cols()));
+  /// What columns explain of the residual, and how many of them can be told apart.
+  struct Explained {
+    double square = 0.0;
+    Index columns = 0;
+  };
+
+  /// Of columns that are whitened and orthogonal to the tangent.
+  Explained explained_by(const Eigen::Ref<const MatrixXd>& white) const;
+
+  /// The variance that is left beside them.
+  double left_beside(const Explained& by) const {
+    return (residual.squaredNorm() - by.square) / std::max(1.0, freedom_beside(by.columns));
   }
 
-  /// log10 of the tail of what such columns explain, where noise has that variance but no less than
-  /// 1.
-  double log10_tail(const MatrixXd& columns, double variance) const {
-    const auto q = static_cast<double>(columns.cols());
-    const double freedom = freedom_beside(columns.cols());
+  /// log10 of the tail of what they explain, where noise has that variance but no less than 1.
+  double log10_tail(const Explained& by, double variance) const {
+    const auto q = static_cast<double>(by.columns);
+    const double freedom = freedom_beside(by.columns);
     if (q == 0.0 || !(freedom > 0.0)) return 0.0;
-    const double explained = (columns.transpose() * residual).squaredNorm();
-    return numerics::log10_f_tail(explained / q / std::max(1.0, variance), q, freedom);
+    return numerics::log10_f_tail(by.square / q / std::max(1.0, variance), q, freedom);
   }
 };
+
+InstrumentNoise::Noise::Explained InstrumentNoise::Noise::explained_by(
+    const Eigen::Ref<const MatrixXd>& white) const {
+  constexpr double apart = 1e-10;  // of the largest eigenvalue
+  if (white.cols() == 0) return {};
+  const VectorXd scale = white.colwise().norm().transpose().unaryExpr(
+      [](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
+  const MatrixXd square = scale.asDiagonal() * (white.transpose() * white) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(square);
+  const VectorXd along =
+      eigen.eigenvectors().transpose() * (scale.asDiagonal() * (white.transpose() * residual));
+  Explained explained;
+  for (Index i = 0; i < along.size(); ++i) {
+    if (!(eigen.eigenvalues()[i] > apart * eigen.eigenvalues().maxCoeff())) continue;
+    explained.square += along[i] * along[i] / eigen.eigenvalues()[i];
+    ++explained.columns;
+  }
+  return explained;
+}
 
 MatrixXd InstrumentNoise::Noise::whiten(const MatrixXd& columns) const {
   const Index n = decay.cols();
@@ -381,8 +407,7 @@ void InstrumentNoise::set_beside(const Columns& columns) {
   all << known_.leftCols(known_.cols() - 1), reduced;
   find_short_noise(remove_span(orthonormal_basis(std::move(all)), known_.rightCols<1>()));
   for (Noise& noise : noises_) {
-    const MatrixXd beside = orthonormal_basis(noise.whiten_beyond(reduced));
-    noise.left = noise.left_beside(beside);
+    noise.left = noise.left_beside(noise.explained_by(noise.whiten_beyond(reduced)));
   }
 }
 
@@ -407,9 +432,9 @@ std::vector<InstrumentTail> InstrumentNoise::tails(const std::vector<Columns>& c
   for (const Noise& noise : noises_) {
     const MatrixXd white = noise.whiten_beyond(reduced);
     for_each([&](InstrumentTail& tail, Index first, Index q) {
-      const MatrixXd basis = orthonormal_basis(white.middleCols(first, q));
-      const double left = noise.least_left(noise.left_beside(basis));
-      tail.log10_p = std::max(tail.log10_p, noise.log10_tail(basis, left));
+      const Noise::Explained by = noise.explained_by(white.middleCols(first, q));
+      const double left = noise.least_left(noise.left_beside(by));
+      tail.log10_p = std::max(tail.log10_p, noise.log10_tail(by, left));
       tail.left = std::min(tail.left, left);
     });
   }
@@ -468,8 +493,8 @@ double InstrumentNoise::excuse(const Columns& candidate, double log10_wanted, do
   for (int doubled = 0; doubled <= doublings; ++doubled) {
     const double times = std::ldexp(least, doubled);
     for (const Noise& noise : make_noises({times})) {
-      const MatrixXd basis = orthonormal_basis(noise.whiten_beyond(reduced));
-      if (noise.log10_tail(basis, noise.left_beside(basis)) > log10_wanted) return times;
+      const Noise::Explained by = noise.explained_by(noise.whiten_beyond(reduced));
+      if (noise.log10_tail(by, noise.left_beside(by)) > log10_wanted) return times;
     }
   }
   return infinity;

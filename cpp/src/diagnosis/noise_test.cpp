@@ -121,12 +121,12 @@ NoiseTails NoiseTest::tails(const Ratios& ratios, int freedom) {
           log10_tail(ratios.joint, freedom)};
 }
 
-NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool smooth, int draws,
-                                std::uint64_t seed, base::ThreadPool& pool) const {
+NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, const Drawing& drawing,
+                                base::ThreadPool& pool) const {
   constexpr Index most_rows = 600;
   const RowLayout& layout = fit_.layout;
   const Columns columns = join(basis_, added);
-  const ReducedRows reduction(layout, most_rows, smooth);
+  const ReducedRows reduction(layout, most_rows, drawing.smooth);
   const bool whole = reduction.stride == 1;
   MatrixXd basis = reduction.apply(layout, basis_);
   MatrixXd reduced_added = reduction.apply(layout, added);
@@ -154,8 +154,8 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
       regression.take(reduction.apply(layout, view(fit_.residual)).col(0));
   const auto enlarge = [&](const FamilyFit& noise, const VectorXd& sizes, std::size_t which) {
     std::vector<VectorXd> residuals;
-    std::mt19937_64 generator(seed + which);
-    for (int i = 0; i < draws; ++i) {
+    std::mt19937_64 generator(drawing.seed + which);
+    for (int i = 0; i < drawing.draws; ++i) {
       const VectorXd full = draw(families_, layout, noise.noise, sizes, generator);
       residuals.emplace_back(reduction.apply(layout, full).col(0));
     }
@@ -181,23 +181,26 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, bool
   };
   const auto freedom = static_cast<int>(added.cols());
   const auto enlarge_by_inputs = [&](WanderingInputs::Noise noise) {
-    return enlargement(inputs_.draw_ratios(added, noise, draws, seed), freedom);
+    return enlargement(inputs_.draw_ratios(added, noise, drawing.draws, drawing.seed), freedom);
   };
-  NoiseTails result{-infinity, 0.0};
+  const double of_joint = ratios.inputs_wander ? enlarge_by_inputs(WanderingInputs::Noise::beside)
+                                               : enlarge(ratios.with, beside_sizes, 2);
+  Ratios enlarged = ratios;
+  enlarged.joint /= of_joint;
   if (!inputs_.is_empty()) {
-    result.either =
-        log10_tail(ratios.of_inputs / enlarge_by_inputs(WanderingInputs::Noise::without), freedom);
+    enlarged.of_inputs /=
+        drawing.beside_alone ? of_joint : enlarge_by_inputs(WanderingInputs::Noise::without);
   }
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
+    if (drawing.beside_alone) {
+      enlarged.own[k] /= of_joint;
+      continue;
+    }
     MatrixXd white = subtract(layout, fit_.residual, basis_, nulls_[k].coefficients);
     whiten_outputs(families_, layout, nulls_[k].noise, white);
-    const double factor = enlarge(nulls_[k], cap_sizes(layout, white).cwiseMin(largest), k);
-    result.either = std::max(result.either, log10_tail(ratios.own[k] / factor, freedom));
+    enlarged.own[k] /= enlarge(nulls_[k], cap_sizes(layout, white).cwiseMin(largest), k);
   }
-  const double factor = ratios.inputs_wander ? enlarge_by_inputs(WanderingInputs::Noise::beside)
-                                             : enlarge(ratios.with, beside_sizes, 2);
-  result.beside = log10_tail(ratios.joint / factor, freedom);
-  return result;
+  return tails(enlarged, freedom);
 }
 
 MatrixXd NoiseTest::products(const NoiseMembers& noise, const Columns& X, const VectorXd& e) const {

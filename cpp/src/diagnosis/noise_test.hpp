@@ -50,10 +50,17 @@ class NoiseTest {
   /// The tails where every ratio has the chi-squared distribution that it has in large records.
   static NoiseTails tails(const Ratios& ratios, int freedom);
 
-  /// The same with each ratio over the factor by which draws enlarge it. `smooth`: whether the
-  /// columns vary slowly; long records are then averaged, else thinned out.
-  NoiseTails calibrate(const Ratios& ratios, const Columns& added, bool smooth, int draws,
-                       std::uint64_t seed, base::ThreadPool& pool) const;
+  /// How a calibration draws.
+  struct Drawing {
+    int draws = 0;  // of each noise
+    std::uint64_t seed = 0;
+    bool smooth = false;        // the columns vary slowly: long records are averaged, else thinned
+    bool beside_alone = false;  // of the noise beside the columns, which stands for the others
+  };
+
+  /// The same with each ratio over the factor by which draws enlarge it.
+  NoiseTails calibrate(const Ratios& ratios, const Columns& added, const Drawing& drawing,
+                       base::ThreadPool& pool) const;
 
   /// [X e]' [X e] of columns X and a residual e, white in these noises.
   Eigen::MatrixXd products(const NoiseMembers& noise, const Columns& X,

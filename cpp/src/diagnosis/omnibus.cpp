@@ -186,12 +186,10 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
       const auto freedom = static_cast<int>(sets[i].basis.cols());
       double free = correction + NoiseTest::tails(ratios, freedom).log10_p();
       if (free < significant) {
-        constexpr bool offsets_are_slow = true;
+        const NoiseTest::Drawing drawing{
+            .draws = options.simulations, .seed = options.seed + i, .smooth = true};
         base::ThreadPool alone(1);
-        free = correction + null.test
-                                ->calibrate(ratios, sets[i].basis, offsets_are_slow,
-                                            options.simulations, options.seed + i, alone)
-                                .log10_p();
+        free = correction + null.test->calibrate(ratios, sets[i].basis, drawing, alone).log10_p();
       }
       log10_p[i] = instruments == nullptr ? free : std::max(log10_p[i], free);
     });

@@ -40,9 +40,9 @@ Trial OwnFit::test(double threshold) {
   if (!candidate_.shape.parameter.empty()) alone.front().candidate.shape.values = {shape_};
   bench_.screen_all(alone);
   if (!alone.front().visible) return std::move(alone.front());
-  bench_.test_best(alone, 1);
+  bench_.test_best(alone, 1, threshold, true);
   bench_.hold_out_significant(alone);
-  bench_.calibrate_significant(alone, threshold);
+  bench_.calibrate_significant(alone, threshold, true);
   return std::move(alone.front());
 }
 

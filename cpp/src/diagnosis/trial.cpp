@@ -216,13 +216,16 @@ void estimate_plainly(const RowLayout& layout, const Projection& added, const Ve
                 MatrixXd::Identity(q, q), trial);
 }
 
-void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
+std::vector<double> best_shapes(const Trial& trial) {
   const auto by_white = std::ranges::min_element(trial.scores, {}, &ShapeScore::white);
   const auto by_plain = std::ranges::min_element(trial.scores, {}, &ShapeScore::plain);
-  std::vector<double> shapes{by_white->shape};
-  if (by_plain != by_white) shapes.push_back(by_plain->shape);
+  if (by_plain == by_white) return {by_white->shape};
+  return {by_white->shape, by_plain->shape};
+}
+
+void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   NoiseTails least{infinity, infinity};
-  for (const double shape : shapes) {
+  for (const double shape : best_shapes(trial)) {
     Projection added = project_trial(room, null, trial, shape);
     added.basis = keep_few(room.fit().layout, added.basis);
     const NoiseTest::Ratios ratios = null.test->compare(added.basis);
@@ -242,10 +245,14 @@ void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   set_tails(least, trial);
 }
 
-void combine_tails(Trial& trial) {
+bool is_bounded(const Trial& trial) {
   constexpr double well_seen = 0.5;
+  return trial.bounded && trial.bounded->share_seen >= well_seen;
+}
+
+void combine_tails(Trial& trial) {
   trial.log10_p = trial.tails.log10_p();
-  if (!trial.bounded || trial.bounded->share_seen < well_seen) return;
+  if (!is_bounded(trial)) return;
   trial.log10_p = is_decided_by_bounds(trial) ? trial.bounded->log10_p
                                               : std::max(trial.log10_p, trial.bounded->log10_p);
 }
@@ -276,14 +283,12 @@ bool is_smooth(const RowLayout& layout, const Columns& columns) {
   return changes < little * spread;
 }
 
-void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
+void calibrate(const CandidateRoom& room, const NullHypothesis& null, NoiseTest::Drawing drawing,
                base::ThreadPool& pool, Trial& trial) {
   Projection added = project_trial(room, null, trial, trial.shape);
   added.basis = keep_few(room.fit().layout, added.basis);
-  const bool smooth = is_smooth(room.fit().layout, added.basis);
-  const NoiseTails tails =
-      null.test->calibrate(trial.ratios, added.basis, smooth, draws, seed, pool);
-  set_tails(tails, trial);
+  drawing.smooth = is_smooth(room.fit().layout, added.basis);
+  set_tails(null.test->calibrate(trial.ratios, added.basis, drawing, pool), trial);
 }
 
 bool is_slow(const CandidateRoom& room, const Candidate& candidate, double shape) {

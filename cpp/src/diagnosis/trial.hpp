@@ -67,7 +67,11 @@ void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial)
 void estimate_plainly(const RowLayout& layout, const Projection& added,
                       const Eigen::VectorXd& residual, Trial& trial);
 
-/// The likelihood ratio at the shapes that score best, with the estimate there.
+/// The shapes that score best, by either screen: one or two.
+std::vector<double> best_shapes(const Trial& trial);
+
+/// The likelihood ratio in noise of free size at the shapes that score best, with the estimate at
+/// the surer one.
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
 /// Whether the columns hardly change within a hundredth of the record: noise that is as slow
@@ -80,6 +84,9 @@ bool is_flexible_in_time(const Candidate& candidate);
 /// Whether that holds of all that drives it, or of its columns where nothing does.
 bool is_slow(const CandidateRoom& room, const Candidate& candidate, double shape);
 
+/// Whether noise as instruments have it sees enough of it to say how sure it is.
+bool is_bounded(const Trial& trial);
+
 /// Whether noise as instruments have it decides alone: the effect is slow, so that noise of free
 /// size would take it for its own, and what is left is within what these noises allow.
 bool is_decided_by_bounds(const Trial& trial);
@@ -91,8 +98,9 @@ void combine_tails(Trial& trial);
 /// Takes what noise as instruments have it makes of the trial into its log10_p.
 void bound(const InstrumentTail& tail, Trial& trial);
 
-/// Corrects the test's tail for what draws of the noise do to the ratios.
-void calibrate(const CandidateRoom& room, const NullHypothesis& null, int draws, std::uint64_t seed,
+/// Corrects the test's tail for what draws of the noise do to the ratios. Whether the columns are
+/// smooth is asked here.
+void calibrate(const CandidateRoom& room, const NullHypothesis& null, NoiseTest::Drawing drawing,
                base::ThreadPool& pool, Trial& trial);
 
 /// Of a path: no surer than blocks of the record, each by itself, make it (block_jackknife.hpp).

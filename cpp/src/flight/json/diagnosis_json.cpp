@@ -123,6 +123,7 @@ std::string to_json(const FlightDiagnosis& result) {
   root["work"] = {{"screened", diagnosis.work.screened},
                   {"tested", diagnosis.work.tested},
                   {"calibrated", diagnosis.work.calibrated},
+                  {"drawn", diagnosis.work.drawn},
                   {"refitted", diagnosis.work.refitted},
                   {"tried_on_some_rows", diagnosis.work.tried_on_some_rows}};
   root["left_undone"] = diagnosis.left_undone;

@@ -4,16 +4,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "base/parameter_values.hpp"
+#include "diagnosis/projection.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
 #include "numerics/residual_curves.hpp"
@@ -37,8 +41,8 @@ constexpr std::array knots_tried{4, 6, 9};
 constexpr std::size_t most_thresholds = 3;
 constexpr double least_level = 0.04;  // share of the rows that a level holds
 constexpr std::size_t most_bins = 256;
-constexpr std::size_t most_curved = 6;
-constexpr std::size_t most_of_time = 4;  // beside these
+constexpr std::size_t most_curved = 16;
+constexpr std::size_t most_ports = 3;  // of a channel
 constexpr std::size_t fewest_fitted = 40;
 constexpr std::string_view clock = "time";
 
@@ -51,6 +55,7 @@ struct PortColumns {
 
 struct Linearised {
   std::vector<PortColumns> ports;
+  MatrixXd tangent;   // orthonormal, of the fit's own parameters
   VectorXd residual;  // n_z rows
   Index rows = 0;
 };
@@ -66,24 +71,41 @@ struct Bins {
   std::size_t size() const { return rows.size(); }
 };
 
-/// Sums over a bin's readings of a port's columns G: G'G and G'r.
+/// Sums over a bin's readings of a port's columns G: G'G, T'G of the tangent T and G'r.
 struct BinSums {
-  std::vector<MatrixXd> squares;
-  std::vector<VectorXd> products;
+  MatrixXd squares;
+  MatrixXd shares;
+  VectorXd products;
+
+  BinSums& operator+=(const BinSums& other) {
+    squares += other.squares;
+    shares += other.shares;
+    products += other.products;
+    return *this;
+  }
 };
+
+BinSums no_readings(Index components, Index parameters) {
+  return {MatrixXd::Zero(components, components), MatrixXd::Zero(parameters, components),
+          VectorXd::Zero(components)};
+}
 
 struct Curved {
   std::string name;
   std::string channel;
+  std::string port;
   double taken = 0.0;  // share of the residual's squares
 };
 
-/// b' A^-1 b of a positive semidefinite A, along the directions that it has.
-double explained_along(const MatrixXd& A, const VectorXd& b) {
+/// What columns explain beyond the tangent T, of which they have G'G = A, T'G = S and G'r = b:
+/// along the directions that they have there.
+double explained_beyond(const MatrixXd& A, const MatrixXd& S, const VectorXd& b) {
   constexpr double open = 1e-10;  // of the largest eigenvalue
   const VectorXd scale =
       A.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * A * scale.asDiagonal());
+  const MatrixXd beyond = A - S.transpose() * S;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * beyond *
+                                                      scale.asDiagonal());
   const VectorXd along = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
   const double least = open * eigen.eigenvalues().maxCoeff();
   double sum = 0.0;
@@ -118,7 +140,8 @@ Linearised linearise(const DiagnosedFit& fitted, base::ThreadPool& pool) {
   const model::Measurements measurements(*model, record);
   const model::Sweep sweep(*model, measurements, pool);
 
-  Linearised result{.ports = {}, .residual = {}, .rows = static_cast<Index>(record.rows())};
+  Linearised result;
+  result.rows = static_cast<Index>(record.rows());
   const MatrixXd r = sweep.residuals(xi1, xi2);
   VectorXd weight(r.size());  // of every reading
   for (Index j = 0; j < r.cols(); ++j) {
@@ -127,6 +150,14 @@ Linearised linearise(const DiagnosedFit& fitted, base::ThreadPool& pool) {
   }
   result.residual = r.reshaped().cwiseProduct(weight);
   const std::vector<Variable> parameters = tables.parameters();
+  std::vector<Index> estimated;
+  for (const Parameter& parameter : fitted.fit.parameters) {
+    if (parameter.fixed || parameter.at_bound) continue;
+    const auto at = std::ranges::find(parameters, parameter.name, &Variable::name);
+    estimated.push_back(at - parameters.begin());
+  }
+  result.tangent = diagnosis::orthonormal_basis(weight.asDiagonal() *
+                                                sweep.tangent_columns(xi1, xi2, estimated));
   for (const std::string& port : ports) {
     std::vector<Index> own;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -175,34 +206,35 @@ std::optional<Bins> bin(const VectorXd& values) {
   return bins;
 }
 
-BinSums sum_by_bin(const Bins& bins, const MatrixXd& G, const Linearised& fit) {
-  const Index c = G.cols();
-  BinSums sums{std::vector<MatrixXd>(bins.size(), MatrixXd::Zero(c, c)),
-               std::vector<VectorXd>(bins.size(), VectorXd::Zero(c))};
+std::vector<BinSums> sum_by_bin(const Bins& bins, const MatrixXd& G, const Linearised& fit) {
+  std::vector<BinSums> sums(bins.size(), no_readings(G.cols(), fit.tangent.cols()));
   for (Index i = 0; i < G.rows(); ++i) {
-    const std::size_t b = bins.of_row[static_cast<std::size_t>(i % fit.rows)];
-    sums.squares[b] += G.row(i).transpose() * G.row(i);
-    sums.products[b] += fit.residual[i] * G.row(i).transpose();
+    BinSums& own = sums[bins.of_row[static_cast<std::size_t>(i % fit.rows)]];
+    own.squares += G.row(i).transpose() * G.row(i);
+    own.shares += fit.tangent.row(i).transpose() * G.row(i);
+    own.products += fit.residual[i] * G.row(i).transpose();
   }
   return sums;
 }
 
 /// What functions of the channel (bins x functions) explain.
-double explained_by(const BinSums& sums, const MatrixXd& phi) {
-  const Index c = sums.products.front().size();
+double explained_by(const std::vector<BinSums>& sums, const MatrixXd& phi) {
+  const Index c = sums.front().products.size();
   const Index q = phi.cols();
   MatrixXd A = MatrixXd::Zero(q * c, q * c);
+  MatrixXd S = MatrixXd::Zero(sums.front().shares.rows(), q * c);
   VectorXd b = VectorXd::Zero(q * c);
   for (Index bin = 0; bin < phi.rows(); ++bin) {
-    const auto k = static_cast<std::size_t>(bin);
+    const BinSums& own = sums[static_cast<std::size_t>(bin)];
     for (Index i = 0; i < q; ++i) {
-      b.segment(i * c, c) += phi(bin, i) * sums.products[k];
+      b.segment(i * c, c) += phi(bin, i) * own.products;
+      S.middleCols(i * c, c) += phi(bin, i) * own.shares;
       for (Index j = 0; j < q; ++j) {
-        A.block(i * c, j * c, c, c) += phi(bin, i) * phi(bin, j) * sums.squares[k];
+        A.block(i * c, j * c, c, c) += phi(bin, i) * phi(bin, j) * own.squares;
       }
     }
   }
-  return explained_along(A, b);
+  return explained_beyond(A, S, b);
 }
 
 MatrixXd with_constant(const MatrixXd& functions) {
@@ -211,7 +243,7 @@ MatrixXd with_constant(const MatrixXd& functions) {
   return phi;
 }
 
-double explained_by_spline(const BinSums& sums, const Bins& bins, int knots) {
+double explained_by_spline(const std::vector<BinSums>& sums, const Bins& bins, int knots) {
   const SplineBasis spline(even_knots(bins.lowest.front(), bins.highest.back(), knots));
   return explained_by(sums, with_constant(numerics::spline_columns(spline, bins.mean)));
 }
@@ -225,55 +257,81 @@ struct Levels {
 
 class LevelFinder {
  public:
-  LevelFinder(const BinSums& sums, const Bins& bins) : bins_(bins) {
-    const Index c = sums.products.front().size();
-    squares_.emplace_back(MatrixXd::Zero(c, c));
-    products_.emplace_back(VectorXd::Zero(c));
+  LevelFinder(const std::vector<BinSums>& sums, const Bins& bins) : bins_(bins) {
+    before_.push_back(no_readings(sums.front().products.size(), sums.front().shares.rows()));
     rows_.push_back(0.0);
     for (std::size_t b = 0; b < bins.size(); ++b) {
-      squares_.emplace_back(squares_.back() + sums.squares[b]);
-      products_.emplace_back(products_.back() + sums.products[b]);
+      before_.push_back(before_.back());
+      before_.back() += sums[b];
       rows_.push_back(rows_.back() + bins.rows[b]);
     }
   }
 
-  /// As long as a cut takes `least` more.
+  /// As long as a cut takes `least` more: looked for in strides, then near the best.
   Levels find(double least) const {
-    Levels levels{{}, level(0, bins_.size())};
+    constexpr std::size_t strides = 40;
+    const std::size_t stride = std::max<std::size_t>(1, bins_.size() / strides);
+    Levels levels{{}, explained_by({})};
     while (levels.cuts.size() < most_thresholds) {
-      std::size_t best = 0;
-      double gain = least;
-      for (std::size_t i = 0; i <= levels.cuts.size(); ++i) {
-        const std::size_t first = i == 0 ? 0 : levels.cuts[i - 1];
-        const std::size_t last = i == levels.cuts.size() ? bins_.size() : levels.cuts[i];
-        const double whole = level(first, last);
-        for (std::size_t cut = first + 1; cut < last; ++cut) {
-          if (!is_wide(first, cut) || !is_wide(cut, last)) continue;
-          const double more = level(first, cut) + level(cut, last) - whole;
-          if (!(more > gain)) continue;
-          gain = more;
-          best = cut;
-        }
+      Levels best = levels;
+      const auto offer = [&](std::size_t cut) {
+        Levels more = levels;
+        more.cuts.insert(std::ranges::upper_bound(more.cuts, cut), cut);
+        if (!are_wide(more.cuts)) return;
+        more.explained = explained_by(more.cuts);
+        if (more.explained > best.explained) best = std::move(more);
+      };
+      for (std::size_t cut = stride; cut < bins_.size(); cut += stride) offer(cut);
+      if (best.cuts.size() == levels.cuts.size()) break;
+      const std::size_t found = newest(levels.cuts, best.cuts);
+      for (std::size_t cut = found - stride + 1; cut < found + stride; ++cut) {
+        if (cut < bins_.size()) offer(cut);
       }
-      if (best == 0) break;
-      levels.cuts.insert(std::ranges::upper_bound(levels.cuts, best), best);
-      levels.explained += gain;
+      if (!(best.explained > levels.explained + least)) break;
+      levels = std::move(best);
     }
     return levels;
   }
 
  private:
-  double level(std::size_t first, std::size_t last) const {
-    return explained_along(squares_[last] - squares_[first], products_[last] - products_[first]);
+  static std::size_t newest(const std::vector<std::size_t>& fewer,
+                            const std::vector<std::size_t>& cuts) {
+    return *std::ranges::find_if(
+        cuts, [&](std::size_t cut) { return std::ranges::find(fewer, cut) == fewer.end(); });
   }
 
-  bool is_wide(std::size_t first, std::size_t last) const {
-    return rows_[last] - rows_[first] >= least_level * rows_.back();
+  /// Of the levels between these cuts, each a constant: nearly as explained_beyond() has it.
+  double explained_by(const std::vector<std::size_t>& cuts) const {
+    constexpr double ridge = 1e-9;  // a constant alone may be the tangent's
+    const Index c = before_.front().products.size();
+    const auto levels = static_cast<Index>(cuts.size()) + 1;
+    MatrixXd A = MatrixXd::Zero(levels * c, levels * c);
+    MatrixXd S(before_.front().shares.rows(), levels * c);
+    VectorXd b(levels * c);
+    for (Index i = 0; i < levels; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const BinSums& first = before_[i == 0 ? 0 : cuts[k - 1]];
+      const BinSums& last = before_[i + 1 == levels ? bins_.size() : cuts[k]];
+      A.block(i * c, i * c, c, c) = (1.0 + ridge) * (last.squares - first.squares);
+      S.middleCols(i * c, c) = last.shares - first.shares;
+      b.segment(i * c, c) = last.products - first.products;
+    }
+    A -= S.transpose() * S;
+    return b.dot(A.ldlt().solve(b));
+  }
+
+  bool are_wide(const std::vector<std::size_t>& cuts) const {
+    double first = 0.0;
+    for (std::size_t i = 0; i <= cuts.size(); ++i) {
+      const double last = i == cuts.size() ? rows_.back() : rows_[cuts[i]];
+      if (last - first < least_level * rows_.back()) return false;
+      first = last;
+    }
+    return true;
   }
 
   const Bins& bins_;
-  std::vector<MatrixXd> squares_;  // of all bins before
-  std::vector<VectorXd> products_;
+  std::vector<BinSums> before_;  // of all bins before
   std::vector<double> rows_;
 };
 
@@ -297,7 +355,7 @@ std::string name_levels(const Levels& levels, const Bins& bins) {
 /// What tells enough along one channel at one port: a spline, levels, or both where it is close.
 std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
                                 const PortColumns& port, const Linearised& fit) {
-  const BinSums sums = sum_by_bin(bins, port.columns, fit);
+  const std::vector<BinSums> sums = sum_by_bin(bins, port.columns, fit);
   const double whole = fit.residual.squaredNorm();
   const auto readings = static_cast<double>(fit.residual.size());
   const auto components = static_cast<double>(port.columns.cols());
@@ -316,7 +374,7 @@ std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
   for (std::size_t i = 0; i < gains.size() && found.empty(); ++i) {
     if (gains[i] < nearly_all * most || !tells(gains[i], knots_tried[i] - 2.0)) continue;
     found.push_back({fmt::format("{}[spline({},{})]", port.port, channel, knots_tried[i]), channel,
-                     line + gains[i]});
+                     port.port, line + gains[i]});
   }
   if (channel == clock) return found;  // a step in time is scanned by candidates of its own
   const Levels levels = LevelFinder(sums, bins).find(0.5 * telling * left * whole);
@@ -324,27 +382,25 @@ std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
   const auto steps = static_cast<double>(levels.cuts.size());
   if (levels.cuts.empty() || !tells(gain, 2.0 * steps)) return found;
   found.push_back({fmt::format("{}[levels({},{})]", port.port, channel, name_levels(levels, bins)),
-                   channel, line + gain});
+                   channel, port.port, line + gain});
   const double best = std::max(found.front().taken, line + gain);
   std::erase_if(found, [&](const Curved& one) { return one.taken < close * best; });
   return found;
 }
 
-/// The most telling first; of one channel what comes near its best port. Time, along which noise
-/// that wanders curves too, takes no channel's place.
+/// The most telling first, of one channel a few ports, those that come near its best.
 std::vector<std::string> keep_telling(std::vector<Curved> found) {
   std::ranges::stable_sort(found, std::ranges::greater{}, &Curved::taken);
+  std::map<std::string, std::set<std::string>> ports;  // of each channel
   std::vector<std::string> names;
-  std::size_t of_channels = 0;
-  std::size_t of_time = 0;
   for (const Curved& curve : found) {
-    const bool is_of_time = curve.channel == clock;
-    std::size_t& count = is_of_time ? of_time : of_channels;
-    if (count == (is_of_time ? most_of_time : most_curved)) continue;
+    if (names.size() == most_curved) break;
     const auto best = std::ranges::find(found, curve.channel, &Curved::channel);
     if (curve.taken < close * best->taken) continue;
+    std::set<std::string>& of_channel = ports[curve.channel];
+    if (of_channel.size() == most_ports && !of_channel.contains(curve.port)) continue;
+    of_channel.insert(curve.port);
     names.push_back(curve.name);
-    ++count;
   }
   return names;
 }
