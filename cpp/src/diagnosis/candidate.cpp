@@ -114,12 +114,14 @@ std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candida
   for (const EffectSetting& setting : candidate.settings) {
     const EffectName name = parse_effect_name(setting.name);
     int own = 0;
-    if (name.shape == EffectName::Shape::spline || name.base == "maneuver") {
+    const bool has_levels = name.shape == EffectName::Shape::levels;
+    if (name.shape == EffectName::Shape::spline || name.base == "maneuver" ||
+        (has_levels && name.thresholds.size() > 1)) {
       own = of_any_form;
     } else if (name.shape == EffectName::Shape::product ||
                (name.shape == EffectName::Shape::power && name.number > 1)) {
       own = 1;
-    } else if (name.shape == EffectName::Shape::exponent) {
+    } else if (name.shape == EffectName::Shape::exponent || has_levels) {
       own = 2;
     }
     form = std::max(form, own);
@@ -131,6 +133,11 @@ std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candida
 bool is_simple(const Candidate& candidate) {
   const auto [effects, form, coefficients] = complexity_of(candidate);
   return effects == 1 && form < of_any_form;
+}
+
+bool is_of_lines(const Candidate& candidate, std::size_t effects) {
+  const auto [own, form, coefficients] = complexity_of(candidate);
+  return own == effects && form == 0;
 }
 
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)

@@ -50,6 +50,9 @@ std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candida
 /// Whether it is of one effect that is no function of any form.
 bool is_simple(const Candidate& candidate);
 
+/// Whether it is so many effects that have a physics of their own or follow a channel as it is.
+bool is_of_lines(const Candidate& candidate, std::size_t effects);
+
 /// A candidate's columns, as many as coefficients.
 struct CandidateColumns {
   Columns whole;

@@ -210,6 +210,9 @@ Contest fit_contenders(Bench& bench, const Findings& findings) {
 
 const Contender* put_first(const Contest& contest, const std::vector<std::string>& preferred,
                            Findings& findings) {
+  for (EffectFinding& finding : findings) {
+    if (finding.beside == Beside::equivalent) finding.beside = Beside::untried;
+  }
   std::vector<const Contender*> found;
   for (const Contender& contender : contest.contenders) {
     if (contender.criterion == infinity) continue;
@@ -234,9 +237,11 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   std::ranges::remove_copy_if(found, std::back_inserter(standing), is_outdone);
   const Contender* first = *std::ranges::min_element(standing, {}, &Contender::criterion);
   const auto belief = [&](const Contender* contender) {
-    const std::string& name = contender->candidate.name;
-    const bool is_preferred = std::ranges::find(preferred, name) != preferred.end();
-    return std::tuple(complexity_of(contender->candidate), !is_preferred, contender->criterion);
+    const Candidate& candidate = contender->candidate;
+    const bool is_preferred = std::ranges::find(preferred, candidate.name) != preferred.end();
+    auto complexity = complexity_of(candidate);  // two lines are simpler than any form of one
+    if (is_of_lines(candidate, 2)) complexity = {1, 2, candidate.coefficients.size()};
+    return std::tuple(complexity, !is_preferred, contender->criterion);
   };
   const double likely = first->criterion + as_likely;
   const double left = hardly_more * error_left(first);

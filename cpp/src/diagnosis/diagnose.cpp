@@ -191,7 +191,9 @@ class Recipe {
   double tests() const;
   void look_from_own_fits();
   void try_pairs();
-  void confirm_contenders();
+  void confirm(const Contender& contender);
+  bool try_pairs_of_lines();
+  void order_found();
   void settle();
   Objection object_to(const EffectFinding& finding);
   void tell_fitted(EffectFinding& finding);
@@ -350,24 +352,60 @@ void Recipe::try_pairs() {
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
 }
 
-/// What rows held out say of contenders, by their fits in place of one step.
-void Recipe::confirm_contenders() {
-  for (const Contender& contender : contest_.contenders) {
-    const auto trial = find_trial(contender.candidate.name);
-    if (trial == trials_.end() || !std::isfinite(contender.criterion)) continue;
-    if (trial->folds.count == 0) hold_out(bench_.room(), bench_.null(), *trial);
-    confirm(bench_.refits(), *trial);
-    tell_held_out(*trial, *std::ranges::find(result_.effects, contender.candidate.name,
-                                             &EffectFinding::name));
+/// What rows held out say of a contender, by fits in place of one step.
+void Recipe::confirm(const Contender& contender) {
+  const auto trial = find_trial(contender.candidate.name);
+  if (trial == trials_.end() || !std::isfinite(contender.criterion)) return;
+  if (trial->folds.count == 0) hold_out(bench_.room(), bench_.null(), *trial);
+  diagnosis::confirm(bench_.refits(), *trial);
+  tell_held_out(
+      *trial, *std::ranges::find(result_.effects, contender.candidate.name, &EffectFinding::name));
+}
+
+/// What is no line may stand for two of them, and no fit bears out one of two alone: the best pairs
+/// of lines are contenders too. Returns whether any is.
+bool Recipe::try_pairs_of_lines() {
+  constexpr std::size_t most_fitted = 3;
+  std::vector<std::string> names = find_pair_set(bench_, trials_, contest_.noise, true);
+  if (names.size() > most_fitted) names.resize(most_fitted);
+  std::erase_if(names, [&](const std::string& name) { return find_trial(name) != trials_.end(); });
+  Trials pairs = bench_.make(names);
+  const auto lines = static_cast<double>(std::ranges::count_if(trials_, [](const Trial& trial) {
+    return trial.visible && is_of_lines(trial.candidate, 1);
+  }));
+  const double tests = 0.5 * lines * (lines - 1.0);
+  bench_.screen_all(pairs);
+  bench_.test_best(pairs, most_fitted, threshold_of(pairs, tests), false);
+  std::vector<Contender> asked;
+  for (EffectFinding& finding : judge(pairs, tests, false)) {
+    if (finding.status != FindingStatus::found) continue;
+    asked.push_back({bench_.room().make(finding.name), shape_of(finding)});
+    trials_.push_back(*std::ranges::find_if(
+        pairs, [&](const Trial& pair) { return pair.candidate.name == finding.name; }));
+    result_.effects.insert(result_.effects.begin(), std::move(finding));
   }
+  fit_all(bench_, contest_.noise, asked);
+  for (Contender& contender : asked) {
+    confirm(contender);
+    contest_.contenders.push_back(std::move(contender));
+  }
+  return !asked.empty();
 }
 
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
   bench_.report_progress("fitting what was found", 0.0);
   contest_ = fit_contenders(bench_, result_.effects);
-  confirm_contenders();
+  for (const Contender& contender : contest_.contenders) confirm(contender);
   admit_bent(bench_, contest_, result_.effects);
+  const Contender* first = put_first(contest_, options_.preferred, result_.effects);
+  if (first && !is_of_lines(first->candidate, 1) && !bench_.room().follows_path()) {
+    try_pairs_of_lines();
+  }
+  order_found();
+}
+
+void Recipe::order_found() {
   const Contender* first = put_first(contest_, options_.preferred, result_.effects);
   promise_by_fits(bench_, contest_, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
@@ -481,7 +519,7 @@ void Recipe::weigh_held_out() {
     if (at == trials_.end()) continue;  // a pair, whose members are asked
     Trial& trial = *at;
     if (trial.folds.count == 0) hold_out(bench_.room(), bench_.null(), trial);
-    confirm(bench_.refits(), trial);
+    diagnosis::confirm(bench_.refits(), trial);
     tell_held_out(trial, *finding);
     if (!trial.held_out.passed || !(finding->held_out_gain >= objects_from)) continue;
     bound_by_fit(bench_, trial);
@@ -569,6 +607,15 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   if (has(FindingStatus::found)) {
     in_time("fitting what was found", [&] { settle(); });
     in_time("fitting what is advised", [&] { advise(); });
+    if (result_.advice.effect.empty() && !room.follows_path()) {
+      in_time("fitting two at once", [&] {
+        if (!try_pairs_of_lines()) return;
+        order_found();
+        withdrawn_.clear();
+        result_.advice = {};
+        advise();
+      });
+    }
     withdraw();
   }
   conclude();

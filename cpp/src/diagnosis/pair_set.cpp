@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t most_paired = 10;
+constexpr std::size_t most_lines = 12;  // of either screen's best
 constexpr std::size_t most_pairs = 12;
 constexpr double within = 9.2;  // of the least criterion
 
@@ -29,13 +30,24 @@ struct Causes {
   std::vector<Columns> bases;  // orthonormal, of each
 };
 
-Causes choose_causes(const Bench& bench, const Trials& trials) {
+Causes choose_causes(const Bench& bench, const Trials& trials, bool of_lines) {
   Causes causes;
-  for (const Trial& trial : trials) {
-    if (trial.visible && trial.candidate.settings.size() == 1) causes.trials.push_back(&trial);
+  const auto counts = [&](const Trial& trial) {
+    const bool fits =
+        of_lines ? is_of_lines(trial.candidate, 1) : trial.candidate.settings.size() == 1;
+    return trial.visible && fits;
+  };
+  if (of_lines) {
+    for (const std::size_t i : best_of(trials, most_lines, counts)) {
+      causes.trials.push_back(&trials[i]);
+    }
+  } else {
+    for (const Trial& trial : trials) {
+      if (counts(trial)) causes.trials.push_back(&trial);
+    }
+    std::ranges::stable_sort(causes.trials, {}, &Trial::log10_p);
+    if (causes.trials.size() > most_paired) causes.trials.resize(most_paired);
   }
-  std::ranges::stable_sort(causes.trials, {}, &Trial::log10_p);
-  if (causes.trials.size() > most_paired) causes.trials.resize(most_paired);
   for (const Trial* trial : causes.trials) {
     causes.bases.push_back(project_trial(bench.room(), bench.null(), *trial, trial->shape).basis);
   }
@@ -99,8 +111,8 @@ std::vector<Combination> rank_pairs(const Explained& explained, const Causes& ca
 }  // namespace
 
 std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials,
-                                       const NoiseMembers& noise) {
-  const Causes causes = choose_causes(bench, trials);
+                                       const NoiseMembers& noise, bool of_lines) {
+  const Causes causes = choose_causes(bench, trials, of_lines);
   const Explained explained(bench, causes, noise);
   const auto ranked = rank_pairs(explained, causes);
   if (ranked.empty()) return {};

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from studies.trust.part import Key
+from studies.trust.simulator.bounds import OF_OUTPUTS
 from studies.trust.simulator.causes import Cause
 from studies.trust.simulator.flights import Flown, fly_log
 
@@ -36,8 +37,11 @@ def fly_key(key: Key) -> tuple[str, Flown]:
     """The probe and its flight."""
     part, case, noise, size, _, seed = key
     probe, causes = parse_case(case)
-    asked = "wander" if part == WANDER else "share"
-    much = size + MORE if part in (HIDDEN, SIMPLE) else size
+    asked, much = "share", size + MORE
+    if part == WANDER:
+        asked, much = "wander", size
+    elif part == TWO:
+        asked, much = "loudness", size * OF_OUTPUTS[probe]
     hidden = [(cause, asked, much) for cause in causes] if size else []
     return probe, fly_log(probe, noise, seed, hidden)
 
