@@ -40,6 +40,7 @@ class StepwiseStep:
     found_drop: float | None
     rmse_before: float
     rmse_after: float
+    as_good: list[str]  # what would have done as well in its place
     dropped: list[str]  # what was added before and counts no more beside it
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from sepcal.stepwise import StepwiseStep
 from studies.study import Finding
 from studies.trust.asked import ask, first_of
 from studies.trust.by_key import SIMPLE, TWO, fly_key, make_case, parse_case
@@ -93,14 +94,25 @@ def _try_two(key: Key) -> Row:
     if base is None:
         return row | {"added": [], "true": [False, False], "false": []}
     stepped = base.diagnose(auto=True)
-    added = [name for step in stepped.steps for name in step.effect.split("+")]
+    kept = [step for step in stepped.steps if step.effect in stepped.effects]
     return row | {
-        "added": added,
+        "added": [name for step in kept for name in step.effect.split("+")],
         "end": stepped.end,
         "last": stepped.diagnosis.verdict,
-        "true": [any(cause.is_named_by(name) for name in added) for cause in causes],
-        "false": [name for name in added if not any(c.is_named_by(name) for c in causes)],
+        "true": [any(_says(step, cause) for step in kept) for cause in causes],
+        "false": [
+            name
+            for step in kept
+            if not any(_says(step, cause) for cause in causes)
+            for name in step.effect.split("+")
+        ],
     }
+
+
+def _says(step: StepwiseStep, cause: Cause) -> bool:
+    """Whether the step adds the cause, or what the page calls as good."""
+    said = [step.effect, *step.as_good]
+    return any(cause.is_named_by(name) for names in said for name in names.split("+"))
 
 
 def _summarise_two(rows: Sequence[Row]) -> list[Finding]:

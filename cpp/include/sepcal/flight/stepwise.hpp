@@ -35,6 +35,7 @@ struct StepwiseStep {
   double rmse_before = 0.0;  // over promised.outputs, of the rows that are fitted; 1 where these
                              // have different units: in units of each one's own
   double rmse_after = 0.0;
+  std::vector<std::string> as_good = {};  // what would have done as well in its place
   std::vector<std::string> dropped = {};  // what was added before and counts no more beside it
 
   double found_drop() const { return 1.0 - rmse_after / rmse_before; }

@@ -20,6 +20,7 @@ Json json::write_stepwise(const Stepwise& course) {
                      {"found_drop", number(step.found_drop())},
                      {"rmse_before", number(step.rmse_before)},
                      {"rmse_after", number(step.rmse_after)},
+                     {"as_good", step.as_good},
                      {"dropped", step.dropped}});
   }
   return {{"steps", steps},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -30,6 +31,9 @@ std::string to_text(const Stepwise& course) {
                         signed_percent(-promised.held_out_gain),
                         signed_percent(-promised.predicted_drop),
                         signed_percent(-step.found_drop()), step.rmse_before, step.rmse_after);
+    if (!step.as_good.empty()) {
+      text += fmt::format("  in its place {} would do as well\n", fmt::join(step.as_good, " or "));
+    }
     for (const std::string& name : step.dropped) {
       text +=
           fmt::format("- {}: beside {} it counts no more, and is dropped\n", name, promised.name);

@@ -64,6 +64,11 @@ void verbs::finish(Stepwise& course, StepwiseEnd end, std::string reason) {
   course.reason = std::move(reason);
 }
 
+std::vector<std::string> verbs::list_as_good(const Diagnosis& found) {
+  if (found.effects.front().name != found.advice.effect) return {};
+  return list_beside(found, Beside::equivalent);
+}
+
 std::vector<std::string> verbs::list_kept(const Stepwise& course) {
   std::vector<std::string> kept;
   for (const StepwiseStep& step : course.steps) {

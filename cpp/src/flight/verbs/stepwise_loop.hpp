@@ -31,6 +31,9 @@ void finish(Stepwise& course, StepwiseEnd end, std::string reason);
 /// What is to be added next, or nullptr, why being told in `course`.
 const EffectFinding* next_effect(Stepwise& course, std::size_t most);
 
+/// What would do as well as what is advised: of the first alone it was asked.
+std::vector<std::string> list_as_good(const Diagnosis& found);
+
 /// What the steps added and none dropped, in that order.
 std::vector<std::string> list_kept(const Stepwise& course);
 
@@ -77,7 +80,7 @@ struct StepwiseLoop {
     fitted = base;
     course.last = diagnose(fitted, "", 0);
     while (const EffectFinding* const advised = next_effect(course, most)) {
-      StepwiseStep step{.promised = *advised};
+      StepwiseStep step{.promised = *advised, .as_good = list_as_good(course.last.diagnosis)};
       try {
         Fitted next = add(fitted, advised->name);
         measure_step(fitted.fit, next.fit, !course.last.diagnosis.unit.empty(), step);
