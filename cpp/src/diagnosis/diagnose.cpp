@@ -609,11 +609,15 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     in_time("fitting what is advised", [&] { advise(); });
     if (result_.advice.effect.empty() && !room.follows_path()) {
       in_time("fitting two at once", [&] {
+        Diagnosis alone = result_;
         if (!try_pairs_of_lines()) return;
         order_found();
-        withdrawn_.clear();
+        const std::vector<std::string> withdrawn = std::exchange(withdrawn_, {});
         result_.advice = {};
         advise();
+        if (!result_.advice.effect.empty()) return;
+        result_ = std::move(alone);  // no fit bears out two of them either
+        withdrawn_ = withdrawn;
       });
     }
     withdraw();
