@@ -335,19 +335,24 @@ class LevelFinder {
   std::vector<double> rows_;
 };
 
-/// The number of fewest digits above `below` and not above `from`.
-double round_between(double below, double from) {
-  for (int digits = 1; digits < 17; ++digits) {
-    const double value = std::stod(fmt::format("{:.{}g}", 0.5 * (below + from), digits));
-    if (below < value && value <= from) return value;
+/// The roundest number above `below` and not above `from`, to a millionth of what the channel
+/// spans.
+double round_between(double below, double from, double span) {
+  double value = from;
+  const int first = static_cast<int>(std::ceil(std::log10(span)));
+  for (int power = first; power > first - 7; --power) {
+    const double step = std::pow(10.0, power);
+    value = std::stod(fmt::format("{:.{}f}", std::floor(from / step) * step, std::max(0, -power)));
+    if (value > below) break;
   }
-  return from;
+  return value;
 }
 
 std::string name_levels(const Levels& levels, const Bins& bins) {
   std::vector<double> thresholds;
   for (const std::size_t cut : levels.cuts) {
-    thresholds.push_back(round_between(bins.highest[cut - 1], bins.lowest[cut]));
+    thresholds.push_back(round_between(bins.highest[cut - 1], bins.lowest[cut],
+                                       bins.highest.back() - bins.lowest.front()));
   }
   return fmt::format("{}", fmt::join(thresholds, ","));
 }
