@@ -53,6 +53,20 @@ def test_it_adds_what_is_hidden_and_stops(
     assert bent.effects == []
 
 
+def test_a_step_says_what_would_do_as_well(
+    bent: sepcal.Calibration, stepped: sepcal.Stepwise[sepcal.Calibration]
+):
+    """The first step's are the first diagnosis's; the page has them below it, the JSON too."""
+    as_good = stepped.steps[0].as_good
+    assert [bent.diagnose().effects[0].name, *as_good] == bent.diagnose().explanations
+    assert [step["as_good"] for step in stepped.to_dict()["stepwise"]["steps"]] == [
+        step.as_good for step in stepped.steps
+    ]
+    for step in stepped.steps:
+        said = f"in its place {' or '.join(step.as_good)} would do as well"
+        assert (said in stepped.text) == bool(step.as_good)
+
+
 def test_steps_are_those_of_diagnose_and_add(
     bent: sepcal.Calibration, stepped: sepcal.Stepwise[sepcal.Calibration]
 ):

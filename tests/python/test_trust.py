@@ -406,6 +406,55 @@ def test_a_line_of_the_study_says_which_flight_it_was(tmp_path):
     assert fitted.rmse["airspeed"] > 0.2
 
 
+def _fit_key(*key: object) -> sepcal.Calibration:
+    """The flight of the study's simulator, by the probe's model without effects."""
+    probe, flown = by_key.fly_key(key)
+    return sepcal.fit(MODELS[probe], sepcal.Flight(flown.columns), threads=1)
+
+
+def test_a_zero_in_levels_is_told_from_curves_that_go_with_it():
+    """Half of what the pressure's zero does here the scale and the bias can do as well."""
+    case = "five-hole: step of pressure_offset along temp_degc"
+    diagnosis = _fit_key("hidden", case, "white", 0.6, 900, 731004).diagnose()
+    assert diagnosis.effects[0].name.startswith("pressure_offset[levels(temp_degc,")
+    assert diagnosis.advice["effect"] == diagnosis.effects[0].name
+
+
+@pytest.mark.parametrize(
+    ("probe", "one", "other", "noise", "seed"),
+    [
+        ("magnetometer", "bias along temp_degc", "bias along altitude_m", "white", 742138),
+        (
+            "magnetometer",
+            "bias along throttle",
+            "bias along temp_degc",
+            "Gauss-Markov 10 s",
+            742054,
+        ),
+    ],
+)
+def test_two_lines_come_before_a_curve_and_before_one_that_goes_astray(
+    probe: str, one: str, other: str, noise: str, seed: int
+):
+    """bias[spline(time,6)] passed for the first two; of the second no fit bears out one alone."""
+    case = f"{probe}: drift of {one} and drift of {other}"
+    stepped = _fit_key("two", case, noise, 4.0, 600, seed).diagnose(auto=True)
+    added = {name for effect in stepped.effects for name in effect.split("+")}
+    assert added == {f"{cause.replace(' along ', '[')}]" for cause in (one, other)}
+    assert stepped.end == "nothing_found"
+
+
+def test_a_fit_that_goes_astray_is_not_advised():
+    """One step, where the model bends, announced a sixth of what the fit comes to."""
+    case = "five-hole: step of pressure_offset along time"
+    diagnosis = _fit_key("hidden", case, "quantised at 3 noises", 0.6, 2400, 760002).diagnose()
+    (reason,) = (
+        said for said in diagnosis.advice["withheld"] if said.startswith("water_blockage:")
+    )
+    assert "where one step from here has" in reason
+    assert diagnosis.advice["effect"] == "pressure_offset[spline(time,9)]"
+
+
 def _row(part: str, case: str, noise: str, size: float, **said: object) -> dict[str, object]:
     row = {"key": [part, case, noise, size, 600, 1], "verdict": "adequate", "set": []}
     ranked = [{"name": "wind[time]", "status": "not_seen", "beside": "untried"}]

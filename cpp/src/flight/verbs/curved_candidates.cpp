@@ -339,11 +339,12 @@ class LevelFinder {
 /// spans.
 double round_between(double below, double from, double span) {
   double value = from;
-  const int first = static_cast<int>(std::ceil(std::log10(span)));
-  for (int power = first; power > first - 7; --power) {
+  const int first = static_cast<int>(std::ceil(std::log10(span))) - 1;
+  for (int power = first; power > first - 6; --power) {
     const double step = std::pow(10.0, power);
-    value = std::stod(fmt::format("{:.{}f}", std::floor(from / step) * step, std::max(0, -power)));
-    if (value > below) break;
+    value = std::stod(fmt::format("{:.{}f}", std::round(0.5 * (below + from) / step) * step,
+                                  std::max(0, -power)));
+    if (below < value && value <= from) break;
   }
   return value;
 }
