@@ -72,8 +72,11 @@ Trials Bench::make(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     try {
       Trial trial{.candidate = room_.make(name)};
-      const bool twice = std::ranges::any_of(
-          trials, [&](const Trial& other) { return other.candidate.name == trial.candidate.name; });
+      const bool twice = std::ranges::any_of(trials, [&](const Trial& other) {
+        return other.candidate.name == trial.candidate.name ||
+               (!other.candidate.stepping_port.empty() &&  // under another name
+                other.candidate.stepping_port == trial.candidate.stepping_port);
+      });
       if (!twice) trials.push_back(std::move(trial));
     } catch (const Error&) {
       continue;  // the record doesn't have what it takes

@@ -11,6 +11,7 @@
 #include "diagnosis/finding.hpp"
 #include "diagnosis/projection.hpp"
 #include "diagnosis/refits.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::diagnosis {
@@ -163,6 +164,16 @@ bool is_simpler(const Candidate& one, const Candidate& other) {
   return coefficients < other_coefficients || form < other_form;
 }
 
+/// Whether a single effect is a function of one of the pair's channels, at the same port.
+bool bends_one_of(const Candidate& pair, const Candidate& single) {
+  if (pair.settings.size() < 2 || single.settings.size() != 1) return false;
+  const EffectName curve = parse_effect_name(single.settings.front().name);
+  return std::ranges::any_of(pair.settings, [&](const EffectSetting& setting) {
+    const EffectName line = parse_effect_name(setting.name);
+    return !line.base.empty() && line.base == curve.base && line.port == curve.port;
+  });
+}
+
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
   return *std::ranges::find(findings, name, &EffectFinding::name);
 }
@@ -228,6 +239,10 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   std::erase_if(found, [&](const Contender* one) { return !(error_left(one) <= most); });
   const auto is_outdone = [&](const Contender* one) {
     return std::ranges::any_of(found, [&](const Contender* other) {
+      if (bends_one_of(one->candidate, other->candidate) &&
+          error_left(other) <= hardly_more * error_left(one)) {
+        return true;  // one cause that is curved
+      }
       const double more = is_far_simpler(other->candidate, one->candidate) ? about : 1.0;
       return is_simpler(other->candidate, one->candidate) &&
              error_left(other) <= more * error_left(one);
@@ -245,7 +260,7 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   };
   const double likely = first->criterion + as_likely;
   const double left = hardly_more * error_left(first);
-  for (const Contender* contender : found) {
+  for (const Contender* contender : standing) {
     const bool is_as_good = contender->criterion < likely && error_left(contender) <= left;
     if (is_as_good && belief(contender) < belief(first)) first = contender;
   }

@@ -382,8 +382,9 @@ bool Recipe::try_pairs_of_lines() {
     asked.push_back({bench_.room().make(finding.name), shape_of(finding)});
     trials_.push_back(*std::ranges::find_if(
         pairs, [&](const Trial& pair) { return pair.candidate.name == finding.name; }));
-    result_.effects.insert(result_.effects.begin(), std::move(finding));
+    result_.effects.push_back(std::move(finding));
   }
+  std::ranges::stable_sort(result_.effects, {}, &EffectFinding::status);
   fit_all(bench_, contest_.noise, asked);
   for (Contender& contender : asked) {
     confirm(contender);
@@ -473,7 +474,9 @@ void Recipe::advise() {
     }
     if (fitted == 0) first_stands = objection.is_to_fit;
     ++fitted;
-    result_.advice.withheld.push_back(finding.name + ": " + objection.reason);
+    const std::string reason = finding.name + ": " + objection.reason;
+    std::vector<std::string>& withheld = result_.advice.withheld;
+    if (std::ranges::find(withheld, reason) == withheld.end()) withheld.push_back(reason);
     if (!objection.is_of_rival) withdrawn_.push_back(finding.name);
   }
 }
@@ -620,7 +623,14 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
         withdrawn_ = withdrawn;
       });
     }
+    const std::string first = result_.effects.front().name;
     withdraw();
+    if (has(FindingStatus::found) && result_.effects.front().name != first) {  // it was withdrawn
+      order_found();
+      result_.advice.effect.clear();
+      in_time("fitting what is advised", [&] { advise(); });
+      withdraw();
+    }
   }
   conclude();
   in_time("limits", [&] {

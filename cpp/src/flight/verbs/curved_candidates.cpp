@@ -268,11 +268,11 @@ class LevelFinder {
   }
 
   /// As long as a cut takes `least` more: looked for in strides, then near the best.
-  Levels find(double least) const {
+  Levels find(double least, std::size_t most) const {
     constexpr std::size_t strides = 40;
     const std::size_t stride = std::max<std::size_t>(1, bins_.size() / strides);
     Levels levels{{}, explained_by({})};
-    while (levels.cuts.size() < most_thresholds) {
+    while (levels.cuts.size() < most) {
       Levels best = levels;
       const auto offer = [&](std::size_t cut) {
         Levels more = levels;
@@ -382,11 +382,15 @@ std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
     found.push_back({fmt::format("{}[spline({},{})]", port.port, channel, knots_tried[i]), channel,
                      port.port, line + gains[i]});
   }
-  if (channel == clock) return found;  // a step in time is scanned by candidates of its own
-  const Levels levels = LevelFinder(sums, bins).find(0.5 * telling * left * whole);
+  const std::size_t most_cuts = channel == clock ? 1 : most_thresholds;
+  const Levels levels = LevelFinder(sums, bins).find(0.5 * telling * left * whole, most_cuts);
   const double gain = levels.explained / whole - line;
   const auto steps = static_cast<double>(levels.cuts.size());
   if (levels.cuts.empty() || !tells(gain, 2.0 * steps)) return found;
+  if (channel == clock) {  // whose row is scanned
+    found.push_back({fmt::format("{}[step(time)]", port.port), channel, port.port, line + gain});
+    return found;
+  }
   found.push_back({fmt::format("{}[levels({},{})]", port.port, channel, name_levels(levels, bins)),
                    channel, port.port, line + gain});
   const double best = std::max(found.front().taken, line + gain);

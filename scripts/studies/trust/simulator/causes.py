@@ -24,6 +24,7 @@ OWN_NAMES = {  # of the catalogue, for what a port and a driver say
     "wind_shear": "wind[altitude_m]",
     "propwash": "pressure_offset[throttle]",
 }
+POWER = re.compile(r"(\w+)\^\w+")
 CURVE = re.compile(r"(?:spline|step|ramp|levels)\((\w+)(?:,[-\d.e]+)*\)")
 
 
@@ -63,8 +64,8 @@ class Cause:
     def is_named_by(self, effect: str) -> bool:
         """Whether the name says this port, this driver and a form that the shape has.
 
-        Curves may stand for each other, and a line for a ramp, which is one in part; no curve for a
-        line, and no line for a step or a swing.
+        Curves may stand for each other, a power for a ramp and a swing, and a line for a ramp,
+        which is one in part; no curve for a line, and no line for a step or a swing.
         """
         port, _, driver = OWN_NAMES.get(effect, effect).removesuffix("]").partition("[")
         if port != self.port:
@@ -72,6 +73,8 @@ class Cause:
         if driver == self.driver:
             return self.shape in ("drift", "ramp")
         curve = CURVE.fullmatch(driver)
+        if curve is None and self.shape in ("ramp", "swing"):
+            curve = POWER.fullmatch(driver)
         return self.shape != "drift" and curve is not None and curve[1] == self.driver
 
     def draw(self, rng: np.random.Generator, driver: Array) -> Array:
