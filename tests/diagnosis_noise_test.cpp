@@ -230,14 +230,17 @@ TEST_CASE("in white noise draws leave a tail as it is, the same with any number 
   const diagnosis::NoiseTest::Ratios ratios = null.test->compare(added);
   const diagnosis::NoiseTails plain = diagnosis::NoiseTest::tails(ratios, 3);
   base::ThreadPool pool(2);
-  const diagnosis::NoiseTails drawn = null.test->calibrate(ratios, added, false, 200, 1, pool);
+  const diagnosis::NoiseTails drawn =
+      null.test->calibrate(ratios, added, {.draws = 200, .seed = 1}, pool);
   CHECK(drawn.either >= plain.either);
   CHECK(drawn.either < 0.7 * plain.either);
   CHECK(drawn.beside < 0.7 * plain.beside);
 
   base::ThreadPool alone(1);
-  CHECK(null.test->calibrate(ratios, added, false, 200, 1, alone).log10_p() == drawn.log10_p());
-  CHECK(null.test->calibrate(ratios, added, false, 200, 2, pool).log10_p() != drawn.log10_p());
+  CHECK(null.test->calibrate(ratios, added, {.draws = 200, .seed = 1}, alone).log10_p() ==
+        drawn.log10_p());
+  CHECK(null.test->calibrate(ratios, added, {.draws = 200, .seed = 2}, pool).log10_p() !=
+        drawn.log10_p());
 }
 
 TEST_CASE("noise that wanders makes ramps: called found seldom, where chi-squared calls many") {
@@ -261,7 +264,10 @@ TEST_CASE("noise that wanders makes ramps: called found seldom, where chi-square
     const diagnosis::NoiseTest::Ratios ratios = null.test->compare(ramp);
     const double white = white_ratio(fit, VectorXd::LinSpaced(390, -1.0, 1.0));
     by_chi_squared += numerics::log10_chi_squared_tail(white, 1.0) < -2.0 ? 1 : 0;
-    found += null.test->calibrate(ratios, ramp, true, 80, 0, pool).log10_p() < -2.0 ? 1 : 0;
+    found +=
+        null.test->calibrate(ratios, ramp, {.draws = 80, .smooth = true}, pool).log10_p() < -2.0
+            ? 1
+            : 0;
   }
   CHECK(by_chi_squared > 20);
   CHECK(found <= 4);  // binomial, 1 % of 40: more than 4 in 1e-5 of all sets of seeds
