@@ -108,7 +108,8 @@ void Bench::test_best(Trials& trials, std::size_t most, double threshold, bool s
   bound_all(chosen);
   // Noise of free size is asked only where what instruments do leaves it open.
   std::erase_if(chosen, [&](Trial* trial) {
-    if (!is_bounded(*trial) || trial->bounded->log10_p < threshold) return false;
+    if (!trial->bounded || !is_bounded(*trial)) return false;
+    if (trial->bounded->log10_p < threshold) return false;
     if (slow_too && trial->slow && trial->predicted_drop > worth_telling) return false;
     trial->log10_p = trial->bounded->log10_p;
     return true;

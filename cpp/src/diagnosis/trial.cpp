@@ -252,7 +252,7 @@ bool is_bounded(const Trial& trial) {
 
 void combine_tails(Trial& trial) {
   trial.log10_p = trial.tails.log10_p();
-  if (!is_bounded(trial)) return;
+  if (!trial.bounded || !is_bounded(trial)) return;
   trial.log10_p = is_decided_by_bounds(trial) ? trial.bounded->log10_p
                                               : std::max(trial.log10_p, trial.bounded->log10_p);
 }

@@ -374,17 +374,20 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   }
   if (found.verdict == Verdict::slow_change) {
     const EffectFinding& slow = found.effects.front();
-    const bool by_time = slow.drivers.empty() || slow.drivers.front() == "time";
+    const auto way_out = [&slow]() -> std::string {
+      if (slow.drivers.empty()) return "what comes again in another flight is no noise";
+      if (slow.drivers.front() == "time") return "repeat it with the maneuvers in another order";
+      return fmt::format("repeat it with {} going the other way", slow.drivers.front());
+    };
     return fmt::format(
         "A slow change fits {} ({}){}: {}. Noise that wanders does this too, and one flight can't "
-        "tell: repeat it with {}.",
+        "tell: {}.",
         slow.name, diagnosis.sentences.front(),
         slow.held_out_gain > 0.0
             ? fmt::format(", which would take {:.0f} % of the error on rows held out",
                           100.0 * slow.held_out_gain)
             : "",
-        left,
-        by_time ? "the maneuvers in another order" : slow.drivers.front() + " going the other way");
+        left, way_out());
   }
   const EffectFinding& best = found.effects.front();
   const ErrorLeft of_best =
