@@ -37,9 +37,9 @@ def fly_key(key: Key) -> tuple[str, Flown]:
     """The probe and its flight."""
     part, case, noise, size, _, seed = key
     probe, causes = parse_case(case)
-    asked, much = "share", size + MORE
+    asked, much = "share", size + MORE if part in (HIDDEN, SIMPLE) else size
     if part == WANDER:
-        asked, much = "wander", size
+        asked = "wander"
     elif part == TWO:
         asked, much = "loudness", size * OF_OUTPUTS[probe]
     hidden = [(cause, asked, much) for cause in causes] if size else []
