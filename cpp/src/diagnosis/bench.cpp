@@ -23,9 +23,10 @@ bool may_be_slow(const Trial& trial, double threshold) {
 }
 
 std::vector<std::size_t> best_of(const Trials& trials, std::size_t most,
-                                 const std::function<bool(const Trial&)>& counts) {
+                                 const std::function<bool(const Trial&)>& counts,
+                                 std::initializer_list<double Trial::*> tails) {
   std::vector<std::size_t> chosen;
-  for (double Trial::* const by : {&Trial::log10_white, &Trial::log10_plain}) {
+  for (double Trial::* const by : tails) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       if (counts(trials[i])) order.push_back(i);
@@ -106,11 +107,19 @@ void Bench::test_best(Trials& trials, std::size_t most, double threshold, bool s
     chosen.back()->slow = is_slow(room_, chosen.back()->candidate, chosen.back()->shape);
   }
   bound_all(chosen);
-  // Noise of free size is asked only where what instruments do leaves it open.
+  double of_simple = worth_telling;
+  for (const Trial* trial : chosen) {
+    if (trial->slow && is_simple(trial->candidate)) {
+      of_simple = std::max(of_simple, trial->predicted_drop);
+    }
+  }
+  // Noise of free size is asked only where what instruments do leaves it open, and of a function of
+  // any form only where it takes more than what is simple.
   std::erase_if(chosen, [&](Trial* trial) {
     if (!trial->bounded || !is_bounded(*trial)) return false;
     if (trial->bounded->log10_p < threshold) return false;
-    if (slow_too && trial->slow && trial->predicted_drop > worth_telling) return false;
+    const double telling = is_simple(trial->candidate) ? worth_telling : of_simple;
+    if (slow_too && trial->slow && trial->predicted_drop > telling) return false;
     trial->log10_p = trial->bounded->log10_p;
     return true;
   });
@@ -159,21 +168,16 @@ void Bench::bound_all(const std::vector<Trial*>& chosen) const {
   }
   instruments_->set_beside(beside);
   const std::vector<InstrumentTail> tails = instruments_->tails(bases);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    Trial& trial = *places[i].trial;
-    const bool is_surer =
-        !trial.bounded || tails[i].log10_p + log10_scan(trial) < trial.bounded->log10_p;
-    if (is_surer) bound(tails[i], trial);
-  }
+  for (std::size_t i = 0; i < places.size(); ++i) bound(tails[i], *places[i].trial);
 }
 
-void Bench::hold_out_significant(Trials& trials) const {
+void Bench::hold_out_significant(Trials& trials, bool promising_too) const {
   const double threshold = std::log10(options_.significance);
   constexpr double much = 0.07;  // of the error, by one step
   pool_.for_each(trials.size(), [&](std::size_t i) {
     Trial& trial = trials[i];
-    if (trial.tested ||
-        (trial.visible && (trial.log10_p < threshold || trial.predicted_drop > much))) {
+    const bool is_promising = promising_too && trial.predicted_drop > much;
+    if (trial.tested || (trial.visible && (trial.log10_p < threshold || is_promising))) {
       hold_out(room_, null_, trial);
     }
   });

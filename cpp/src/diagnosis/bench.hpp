@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,9 +26,12 @@ using Trials = std::vector<Trial>;
 /// `threshold`: log10 of the probability below which it is significant.
 bool may_be_slow(const Trial& trial, double threshold);
 
-/// The places of the best `most` of either screen among those that `counts`.
+/// The places of the best `most` among those that `counts`, by each of some tails: of either
+/// screen.
 std::vector<std::size_t> best_of(const Trials& trials, std::size_t most,
-                                 const std::function<bool(const Trial&)>& counts);
+                                 const std::function<bool(const Trial&)>& counts,
+                                 std::initializer_list<double Trial::*> tails = {
+                                     &Trial::log10_white, &Trial::log10_plain});
 
 class Bench {
  public:
@@ -69,8 +73,9 @@ class Bench {
   /// noise of free size.
   void test_best(Trials& trials, std::size_t most, double threshold, bool slow_too) const;
 
-  /// Rows are held out of those tested, and of others that are significant or promise much.
-  void hold_out_significant(Trials& trials) const;
+  /// Rows are held out of those tested and of others that are significant, with `promising_too` of
+  /// those that promise much.
+  void hold_out_significant(Trials& trials, bool promising_too) const;
 
   /// Corrects the tails of what would be significant, with `slow_too` of what could be a slow
   /// change; what was only screened is no surer than the least sure of what was tested.

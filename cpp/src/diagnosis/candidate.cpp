@@ -537,24 +537,26 @@ CandidateColumns CandidateRoom::effect_columns(const Candidate& candidate, std::
   return {part, part};
 }
 
-/// Made once, as far as memory goes: a path is followed from its start for every one.
-CandidateColumns CandidateRoom::keep_followed(const std::string& key,
-                                              const std::function<CandidateColumns()>& make) const {
+/// Made once, as far as memory goes: a path is followed from its start for every one, and a model
+/// is evaluated anew with an effect that nothing drives.
+CandidateColumns CandidateRoom::keep(const std::string& key,
+                                     const std::function<CandidateColumns()>& make) const {
   constexpr Index most_kept = 33554432;  // 256 MB
   {
-    const std::lock_guard lock(following_);
-    const auto known = followed_columns_.find(key);
-    if (known != followed_columns_.end()) return known->second;
+    const std::lock_guard lock(keeping_);
+    const auto known = kept_columns_.find(key);
+    if (known != kept_columns_.end()) return known->second;
   }
   CandidateColumns made = make();
-  const std::lock_guard lock(following_);
+  const std::lock_guard lock(keeping_);
   const Index size = linearisation_.layout.count() * (made.whole.cols() + made.varying.cols());
   if (kept_ + size > most_kept) return made;
   kept_ += size;
-  return followed_columns_.try_emplace(key, std::move(made)).first->second;
+  return kept_columns_.try_emplace(key, std::move(made)).first->second;
 }
 
 CandidateColumns CandidateRoom::columns(const Candidate& candidate, double shape) const {
+  constexpr std::size_t few_columns = 3;
   CandidateColumns all;
   std::span<const Variable> coefficients(candidate.coefficients);
   for (std::size_t i = 0; i < candidate.effects.size(); ++i) {
@@ -562,7 +564,9 @@ CandidateColumns CandidateRoom::columns(const Candidate& candidate, double shape
       return effect_columns(candidate, i, coefficients.first(candidate.counts[i]), shape);
     };
     const std::string key = candidate.settings[i].name + ' ' + std::to_string(shape);
-    const CandidateColumns part = path_ ? keep_followed(key, make) : make();
+    const bool is_composed = !is_driven(candidate.effects[i], fitted_.kit) && std::isnan(shape);
+    const bool is_kept = path_ || (is_composed && candidate.counts[i] <= few_columns);
+    const CandidateColumns part = is_kept ? keep(key, make) : make();
     all = {join(all.whole, part.whole), join(all.varying, part.varying)};
     coefficients = coefficients.subspan(candidate.counts[i]);
   }

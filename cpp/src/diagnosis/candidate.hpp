@@ -123,8 +123,8 @@ class CandidateRoom {
   Candidate make_anew(const std::string& name);
   CandidateColumns effect_columns(const Candidate& candidate, std::size_t place,
                                   std::span<const Variable> coefficients, double shape) const;
-  CandidateColumns keep_followed(const std::string& key,
-                                 const std::function<CandidateColumns()>& make) const;
+  CandidateColumns keep(const std::string& key,
+                        const std::function<CandidateColumns()>& make) const;
   CandidateColumns driven_columns(const Effect& effect, double shape) const;
   const Port& port_of(const Effect& effect) const;
   bool acts_on_path(const Port& port) const;
@@ -153,8 +153,8 @@ class CandidateRoom {
   std::unique_ptr<const PathTangent> path_ = {};     // its path
   std::map<std::string, Eigen::MatrixXd> ports_;     // open ones
   std::map<std::string, PathChange> path_ports_;     // that act on a path
-  mutable std::mutex following_;
-  mutable std::map<std::string, CandidateColumns> followed_columns_ = {};
+  mutable std::mutex keeping_;
+  mutable std::map<std::string, CandidateColumns> kept_columns_ = {};
   mutable Eigen::Index kept_ = 0;                          // of their numbers
   std::map<std::string, CandidateColumns> released_ = {};  // of effects that the fit has
   std::map<std::string, Candidate> made_;  // once: an effect may leave columns in the record

@@ -316,7 +316,7 @@ void test_beside(Bench& bench, const Contender& first, Findings& findings) {
   const double threshold = std::log10(counts_below / static_cast<double>(names.size()));
   beside.screen_all(trials);
   beside.test_best(trials, trials.size(), threshold, false);
-  beside.hold_out_significant(trials);
+  beside.hold_out_significant(trials, false);
   beside.calibrate_significant(trials, threshold, false);
   bench.count(beside.work());
   for (const Trial& trial : trials) {

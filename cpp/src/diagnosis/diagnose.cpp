@@ -85,10 +85,8 @@ void bound_by_fit(const Bench& bench, Trial& trial) {
     const LinearisedFit with = bench.refits().linearise(trial.candidate, trial.shape);
     const auto coefficients = static_cast<Index>(trial.candidate.coefficients.size());
     const InstrumentTail tail = bench.instruments()->tail_of_fit(with, coefficients);
-    const bool is_surer =
-        !trial.bounded || tail.log10_p + log10_scan(trial) < trial.bounded->log10_p;
     if (!trial.tested) trial.slow = is_slow(bench.room(), trial.candidate, trial.shape);
-    if (is_surer) bound(tail, trial);
+    bound(tail, trial);
   } catch (const Error&) {
     return;  // no fit takes it
   }
@@ -194,6 +192,7 @@ class Recipe {
   void confirm(const Contender& contender);
   bool try_pairs_of_lines();
   void order_found();
+  void judge_beside(const Contender* first);
   void settle();
   Objection object_to(const EffectFinding& finding);
   void tell_fitted(EffectFinding& finding);
@@ -304,7 +303,7 @@ double Recipe::threshold_of(const Trials& trials, double tests) const {
 }
 
 std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) const {
-  bench_.hold_out_significant(trials);
+  bench_.hold_out_significant(trials, slow_too);
   const double threshold = threshold_of(trials, tests);
   bench_.calibrate_significant(trials, threshold, slow_too);
   bench_.confirm_best(trials, threshold);
@@ -329,13 +328,15 @@ void Recipe::look_from_own_fits() {
   rank(result_.effects);
 }
 
+/// Of those that are no functions of any form: two of these explain too much.
 void Recipe::try_pairs() {
   std::vector<std::string> best;
   double visible = 0.0;
   for (const EffectFinding& finding : result_.effects) {
     if (finding.status == FindingStatus::cannot_be_seen) continue;
     ++visible;
-    if (best.size() < most_paired && finding.shapes.empty()) best.push_back(finding.name);
+    if (best.size() == most_paired || !finding.shapes.empty()) continue;
+    if (is_simple(bench_.room().make(finding.name))) best.push_back(finding.name);
   }
   std::vector<std::string> names;
   for (std::size_t a = 0; a < best.size(); ++a) {
@@ -401,13 +402,17 @@ void Recipe::settle() {
   admit_bent(bench_, contest_, result_.effects);
   const Contender* first = put_first(contest_, options_.preferred, result_.effects);
   if (first && !is_of_lines(first->candidate, 1) && !bench_.room().follows_path()) {
-    try_pairs_of_lines();
+    if (try_pairs_of_lines()) first = put_first(contest_, options_.preferred, result_.effects);
   }
-  order_found();
+  judge_beside(first);
 }
 
 void Recipe::order_found() {
-  const Contender* first = put_first(contest_, options_.preferred, result_.effects);
+  judge_beside(put_first(contest_, options_.preferred, result_.effects));
+}
+
+/// What becomes of the others beside the one that stands first.
+void Recipe::judge_beside(const Contender* first) {
   promise_by_fits(bench_, contest_, result_.effects);
   if (first) test_beside(bench_, *first, result_.effects);
   result_.pairs = find_pair_set(bench_, trials_, contest_.noise);

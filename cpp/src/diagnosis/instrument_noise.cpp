@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "diagnosis/projection.hpp"
+#include "numerics/normal_equations.hpp"
 #include "numerics/order_statistics.hpp"
 #include "numerics/tails.hpp"
 #include "sepcal/error.hpp"
@@ -167,47 +167,25 @@ struct InstrumentNoise::Noise {
     return static_cast<double>(residual.size() - basis.cols() - columns);
   }
 
-  /// What columns explain of the residual, and how many of them can be told apart.
-  struct Explained {
-    double square = 0.0;
-    Index columns = 0;
-  };
-
-  /// Of columns that are whitened and orthogonal to the tangent.
-  Explained explained_by(const Eigen::Ref<const MatrixXd>& white) const;
+  /// What columns that are whitened and orthogonal to the tangent explain of the residual.
+  numerics::ExplainedSquares explained_by(const Eigen::Ref<const MatrixXd>& white) const {
+    return numerics::explained_squares(white.transpose() * white, white.transpose() * residual,
+                                       white.colwise().norm().transpose());
+  }
 
   /// The variance that is left beside them.
-  double left_beside(const Explained& by) const {
-    return (residual.squaredNorm() - by.square) / std::max(1.0, freedom_beside(by.columns));
+  double left_beside(const numerics::ExplainedSquares& by) const {
+    return (residual.squaredNorm() - by.square) / std::max(1.0, freedom_beside(by.directions));
   }
 
   /// log10 of the tail of what they explain, where noise has that variance but no less than 1.
-  double log10_tail(const Explained& by, double variance) const {
-    const auto q = static_cast<double>(by.columns);
-    const double freedom = freedom_beside(by.columns);
+  double log10_tail(const numerics::ExplainedSquares& by, double variance) const {
+    const auto q = static_cast<double>(by.directions);
+    const double freedom = freedom_beside(by.directions);
     if (q == 0.0 || !(freedom > 0.0)) return 0.0;
     return numerics::log10_f_tail(by.square / q / std::max(1.0, variance), q, freedom);
   }
 };
-
-InstrumentNoise::Noise::Explained InstrumentNoise::Noise::explained_by(
-    const Eigen::Ref<const MatrixXd>& white) const {
-  constexpr double apart = 1e-10;  // of the largest eigenvalue
-  if (white.cols() == 0) return {};
-  const VectorXd scale = white.colwise().norm().transpose().unaryExpr(
-      [](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
-  const MatrixXd square = scale.asDiagonal() * (white.transpose() * white) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(square);
-  const VectorXd along =
-      eigen.eigenvectors().transpose() * (scale.asDiagonal() * (white.transpose() * residual));
-  Explained explained;
-  for (Index i = 0; i < along.size(); ++i) {
-    if (!(eigen.eigenvalues()[i] > apart * eigen.eigenvalues().maxCoeff())) continue;
-    explained.square += along[i] * along[i] / eigen.eigenvalues()[i];
-    ++explained.columns;
-  }
-  return explained;
-}
 
 MatrixXd InstrumentNoise::Noise::whiten(const MatrixXd& columns) const {
   const Index n = decay.cols();
@@ -432,7 +410,7 @@ std::vector<InstrumentTail> InstrumentNoise::tails(const std::vector<Columns>& c
   for (const Noise& noise : noises_) {
     const MatrixXd white = noise.whiten_beyond(reduced);
     for_each([&](InstrumentTail& tail, Index first, Index q) {
-      const Noise::Explained by = noise.explained_by(white.middleCols(first, q));
+      const numerics::ExplainedSquares by = noise.explained_by(white.middleCols(first, q));
       const double left = noise.least_left(noise.left_beside(by));
       tail.log10_p = std::max(tail.log10_p, noise.log10_tail(by, left));
       tail.left = std::min(tail.left, left);
@@ -493,7 +471,7 @@ double InstrumentNoise::excuse(const Columns& candidate, double log10_wanted, do
   for (int doubled = 0; doubled <= doublings; ++doubled) {
     const double times = std::ldexp(least, doubled);
     for (const Noise& noise : make_noises({times})) {
-      const Noise::Explained by = noise.explained_by(noise.whiten_beyond(reduced));
+      const numerics::ExplainedSquares by = noise.explained_by(noise.whiten_beyond(reduced));
       if (noise.log10_tail(by, noise.left_beside(by)) > log10_wanted) return times;
     }
   }

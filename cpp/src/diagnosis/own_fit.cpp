@@ -41,7 +41,7 @@ Trial OwnFit::test(double threshold) {
   bench_.screen_all(alone);
   if (!alone.front().visible) return std::move(alone.front());
   bench_.test_best(alone, 1, threshold, true);
-  bench_.hold_out_significant(alone);
+  bench_.hold_out_significant(alone, true);
   bench_.calibrate_significant(alone, threshold, true);
   return std::move(alone.front());
 }

@@ -31,23 +31,16 @@ struct Causes {
 };
 
 Causes choose_causes(const Bench& bench, const Trials& trials, bool of_lines) {
-  Causes causes;
   const auto counts = [&](const Trial& trial) {
     const bool fits =
         of_lines ? is_of_lines(trial.candidate, 1) : trial.candidate.settings.size() == 1;
     return trial.visible && fits;
   };
-  if (of_lines) {
-    for (const std::size_t i : best_of(trials, most_lines, counts)) {
-      causes.trials.push_back(&trials[i]);
-    }
-  } else {
-    for (const Trial& trial : trials) {
-      if (counts(trial)) causes.trials.push_back(&trial);
-    }
-    std::ranges::stable_sort(causes.trials, {}, &Trial::log10_p);
-    if (causes.trials.size() > most_paired) causes.trials.resize(most_paired);
-  }
+  const std::vector<std::size_t> chosen =
+      of_lines ? best_of(trials, most_lines, counts)
+               : best_of(trials, most_paired, counts, {&Trial::log10_p});
+  Causes causes;
+  for (const std::size_t i : chosen) causes.trials.push_back(&trials[i]);
   for (const Trial* trial : causes.trials) {
     causes.bases.push_back(project_trial(bench.room(), bench.null(), *trial, trial->shape).basis);
   }

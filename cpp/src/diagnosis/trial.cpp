@@ -42,10 +42,10 @@ VectorXd explained_by_steps(const NullHypothesis& null, const MatrixXd& port) {
   return explained;
 }
 
-/// Adds to the grid the rows at which a step may well be: a grid alone misses where noise that has
-/// nearly swallowed the step shows it in one row.
-void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, const MatrixXd& columns,
-                   Candidate& candidate) {
+/// The times at which a step may well be, in place of a grid: what each row would explain is known,
+/// and noise that has nearly swallowed a step shows it in one row.
+void look_at_likely_rows(const CandidateRoom& room, const NullHypothesis& null,
+                         const MatrixXd& columns, Candidate& candidate) {
   constexpr int most_peaks = 3;
   constexpr Index around = 2;  // rows
   const RowLayout& layout = room.fit().layout;
@@ -62,6 +62,7 @@ void add_step_rows(const CandidateRoom& room, const NullHypothesis& null, const 
     score->tail(side).setZero();
   }
   const Index apart = std::max<Index>(2 * around, layout.rows / 40);
+  candidate.shape.values.clear();
   for (VectorXd* score : {&explained, &jumps}) {
     for (int peak = 0; peak < most_peaks; ++peak) {
       Index row = 0;
@@ -171,7 +172,7 @@ double log10_scan(const Trial& trial) { return std::log10(trial.candidate.shape.
 
 void screen(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   const MatrixXd* stepping = room.columns_of(trial.candidate.stepping_port);
-  if (stepping != nullptr) add_step_rows(room, null, *stepping, trial.candidate);
+  if (stepping != nullptr) look_at_likely_rows(room, null, *stepping, trial.candidate);
   double best_white = 1.0;  // log10 of the tail
   double best_plain = 1.0;
   for (const double shape : trial.candidate.shape.values) {
@@ -262,8 +263,10 @@ bool is_decided_by_bounds(const Trial& trial) {
 }
 
 void bound(const InstrumentTail& tail, Trial& trial) {
+  const double log10_p = tail.log10_p + log10_scan(trial);
+  if (trial.bounded && !(log10_p < trial.bounded->log10_p)) return;
   trial.bounded = tail;
-  trial.bounded->log10_p = std::min(0.0, tail.log10_p + log10_scan(trial));
+  trial.bounded->log10_p = std::min(0.0, log10_p);
   combine_tails(trial);
 }
 

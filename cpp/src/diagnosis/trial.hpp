@@ -95,7 +95,8 @@ bool is_decided_by_bounds(const Trial& trial);
 /// slow for its own; noise within an instrument's bounds tells both, where the log's noise is such.
 void combine_tails(Trial& trial);
 
-/// Takes what noise as instruments have it makes of the trial into its log10_p.
+/// Takes what noise as instruments have it makes of the trial into its log10_p, unless it is surer
+/// already at another shape.
 void bound(const InstrumentTail& tail, Trial& trial);
 
 /// Corrects the test's tail for what draws of the noise do to the ratios. Whether the columns are

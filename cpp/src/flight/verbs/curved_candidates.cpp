@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "diagnosis/projection.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
+#include "numerics/normal_equations.hpp"
 #include "numerics/residual_curves.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
@@ -96,24 +96,6 @@ struct Curved {
   std::string port;
   double taken = 0.0;  // share of the residual's squares
 };
-
-/// What columns explain beyond the tangent T, of which they have G'G = A, T'G = S and G'r = b:
-/// along the directions that they have there.
-double explained_beyond(const MatrixXd& A, const MatrixXd& S, const VectorXd& b) {
-  constexpr double open = 1e-10;  // of the largest eigenvalue
-  const VectorXd scale =
-      A.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
-  const MatrixXd beyond = A - S.transpose() * S;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * beyond *
-                                                      scale.asDiagonal());
-  const VectorXd along = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
-  const double least = open * eigen.eigenvalues().maxCoeff();
-  double sum = 0.0;
-  for (Index i = 0; i < along.size(); ++i) {
-    if (eigen.eigenvalues()[i] > least) sum += along[i] * along[i] / eigen.eigenvalues()[i];
-  }
-  return sum;
-}
 
 /// All ports at once, in one pass.
 Linearised linearise(const DiagnosedFit& fitted, base::ThreadPool& pool) {
@@ -217,7 +199,7 @@ std::vector<BinSums> sum_by_bin(const Bins& bins, const MatrixXd& G, const Linea
   return sums;
 }
 
-/// What functions of the channel (bins x functions) explain.
+/// What functions of the channel (bins x functions) explain beyond the tangent.
 double explained_by(const std::vector<BinSums>& sums, const MatrixXd& phi) {
   const Index c = sums.front().products.size();
   const Index q = phi.cols();
@@ -234,7 +216,8 @@ double explained_by(const std::vector<BinSums>& sums, const MatrixXd& phi) {
       }
     }
   }
-  return explained_beyond(A, S, b);
+  const VectorXd lengths = A.diagonal().cwiseSqrt();
+  return numerics::explained_squares(A - S.transpose() * S, b, lengths).square;
 }
 
 MatrixXd with_constant(const MatrixXd& functions) {
@@ -300,7 +283,7 @@ class LevelFinder {
         cuts, [&](std::size_t cut) { return std::ranges::find(fewer, cut) == fewer.end(); });
   }
 
-  /// Of the levels between these cuts, each a constant: nearly as explained_beyond() has it.
+  /// Of the levels between these cuts, each a constant: nearly as explained_squares() has it.
   double explained_by(const std::vector<std::size_t>& cuts) const {
     constexpr double ridge = 1e-9;  // a constant alone may be the tangent's
     const Index c = before_.front().products.size();
