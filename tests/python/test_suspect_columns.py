@@ -135,6 +135,10 @@ def test_a_column_that_never_changes_is_named(tmp_path: Path) -> None:
     write(columns, tmp_path / "flight.csv")
     (note,) = tube(tmp_path, "check", "flight.csv", "--json", *TUBE).result["notes"]
     assert (note["kind"], note["columns"]) == ("frozen", ["airspeed_mps"])
+    assert tube(tmp_path, "fit", "flight.csv", "-o", "base.json", *TUBE).code == 4
+    diagnosis = tube(tmp_path, "diagnose", "flight.csv", "base.json")
+    assert diagnosis.code == 2
+    assert "airspeed_mps reads 12 mps in every row" in diagnosis.err
 
 
 # --- what must not be called a fault

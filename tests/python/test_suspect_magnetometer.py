@@ -139,10 +139,14 @@ def test_the_way_out_of_a_note_leads_out(spoilt: Callable[[str, str], Path], fau
 
 @pytest.mark.parametrize("column", AXES)
 def test_an_axis_that_never_changes_is_named(tmp_path: Path, column: str) -> None:
-    """By check and by fit."""
+    """By check and by fit, and diagnose refuses it."""
     columns = fly()
     columns[column][:] = 17
     write(columns, tmp_path / "flight.csv")
     notes = compass(tmp_path, "check", "flight.csv", "--json").result["notes"]
     assert [note["columns"] for note in notes if note["kind"] == "frozen"] == [[column]]
-    assert f"{column} reads 17 ut in every row" in compass(tmp_path, "fit", "flight.csv").err
+    frozen = f"{column} reads 17 ut in every row"
+    assert frozen in compass(tmp_path, "fit", "flight.csv", "-o", "base.json").err
+    diagnosis = compass(tmp_path, "diagnose", "flight.csv", "base.json")
+    assert diagnosis.code == 2
+    assert frozen in diagnosis.err

@@ -10,6 +10,8 @@
 #include "base/short_number.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_candidates.hpp"
+#include "flight/checks/suspect_notes.hpp"
+#include "flight/checks/taken_rows.hpp"
 #include "flight/verbs/curved_candidates.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -102,9 +104,22 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   return result;
 }
 
+/// Of a reading that never changes nothing can be learnt: whatever explains it is an artefact.
+void refuse_frozen(const Calibration& calibration, const PreparedFlight& prepared) {
+  const std::string model(calibration.probe->name());
+  const checks::TakenRows taken =
+      checks::take_rows(model, prepared.logged, calibration.options.log);
+  std::vector<LogNote> found;
+  checks::check_constants(checks::Log(model, taken.flight), found);
+  if (found.empty()) return;
+  throw Error(
+      fmt::format("{}; {}; {}", found.front().found, found.front().effect, found.front().advice));
+}
+
 /// The calibration of the rows that are readings; what was left out and mended is noted.
 Calibration believe(const Calibration& calibration, PreparedFlight& prepared, const OwnEffects& own,
                     const DiagnosisOptions& options) {
+  refuse_frozen(calibration, prepared);
   const RowsToLeave suspected = prepared.all;
   const std::vector<std::string> slow = prepared.slow;
   const auto left = without_suspects(calibration, prepared, own, options.progress);
