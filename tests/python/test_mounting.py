@@ -138,6 +138,18 @@ def test_a_fit_that_holds_the_turn_says_nothing(tmp_path: Path, yaw: float):
     assert "--mounting" not in fit(tmp_path).err
 
 
+def test_a_turn_that_the_fit_can_hold_is_told_as_one(tmp_path: Path):
+    """Of 30 deg the misalignment and the scales make the best, and look like faults."""
+    fly(tmp_path / "flight.csv", (0.0, 0.0, 30.0), seed=11)
+    (note,) = (line for line in fit(tmp_path).err.splitlines() if "--mounting" in line)
+    assert "the sensor is turned by 30 deg" in note
+    advised = note.split("give --mounting ")[1].split(" ")[0]
+    followed = fit(tmp_path, "--mounting", advised, "--json")
+    assert "--mounting" not in followed.err
+    eta = (followed.result["parameters"][f"eta_{axis}"]["value"] for axis in "xyz")
+    assert max(map(abs, eta)) < 0.1
+
+
 def test_one_axis_tells_it_too(tmp_path: Path):
     """Of level turns the sensor's scale and soft iron are not known, its mounting is."""
     fly(tmp_path / "flight.csv", (0.0, 0.0, 120.0), 8, level, np.eye(3))
@@ -260,3 +272,4 @@ def test_the_case_of_30_deg(tmp_path: Path):
     assert max(done.result["rmse"].values()) < 0.25
     plain = run(APP, "fit", case, *GIVEN, folder=tmp_path)
     assert "eta_z" in plain.out.splitlines()[2]  # which goes beyond its default bounds for it
+    assert "the sensor is turned by 30 deg" in plain.err

@@ -93,17 +93,26 @@ class KnownFieldMagnetometer final : public Probe {
   std::string suggest(const Fit& fit, const Record& record) const override {
     constexpr double far_better = 1.5;  // of the error, the present fit's over that turned
     constexpr double far_turned = 5.0;  // [deg]
+    constexpr double no_misalignment = 15.0;
     const auto found = is_turned() ? std::nullopt : find_mounting(record);
     if (!found || found->mirrored || found->turn < far_turned) return {};
     double squares = 0.0;
     for (const OutputValue& output : fit.rmse) squares += output.value * output.value;
     const double rmse = std::sqrt(squares / static_cast<double>(fit.rmse.size()));
-    if (!(rmse > far_better * found->rmse)) return {};
+    const std::string way_out =
+        fmt::format("give --mounting {} (roll, pitch, yaw), or --mounting alone to have it found",
+                    name_angles(found->angles));
+    if (rmse > far_better * found->rmse) {
+      return fmt::format(
+          "the readings fit a sensor that is turned by {:.0f} deg: {:.3g} uT would be left of "
+          "{:.3g}; {}",
+          found->turn, found->rmse, rmse, way_out);
+    }
+    if (found->turn < no_misalignment) return {};
     return fmt::format(
-        "the readings fit a sensor that is turned by {:.0f} deg: {:.3g} uT would be left of "
-        "{:.3g}; "
-        "give --mounting {} (roll, pitch, yaw), or --mounting alone to have it found",
-        found->turn, found->rmse, rmse, name_angles(found->angles));
+        "the sensor is turned by {:.0f} deg against the attitude's axes, which eta and lambda "
+        "stand for here; {}",
+        found->turn, way_out);
   }
 
   /// Of the readings as they are, whichever way they are turned.
