@@ -5,6 +5,7 @@ Codes, glitches and frozen rows are planted in every column in turn: they are to
 neither fit, diagnose nor add. Clean columns are left alone.
 """
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -126,6 +127,20 @@ def test_fit_says_what_a_loss_would_change(tmp_path: Path) -> None:
     name, there = told.split("with --loss cauchy ")[1].split()[0:3:2]
     assert float(there) == pytest.approx(robust["parameters"][name]["value"], rel=1e-3)
     assert robust["parameters"]["s_va"]["value"] == pytest.approx(0.95, abs=0.01)
+
+
+def test_what_auto_writes_is_of_readings_alone(tmp_path: Path) -> None:
+    """Where nothing is added, too: its verdict is of the fit that it hands on."""
+    columns = fly(shear=0)
+    columns["airspeed_mps"][[150, 700, 1450]] = -99
+    write(columns, tmp_path / "flight.csv")
+    tube(tmp_path, "fit", "flight.csv", "-o", "base.json", *TUBE)
+    told = tube(tmp_path, "diagnose", "flight.csv", "base.json", "--auto", "-o", "auto.json")
+    assert "nothing added" in told.out
+    assert "airspeed_mps != -99" in told.err
+    kept = json.loads((tmp_path / "auto.json").read_text())
+    assert kept["parameters"]["s_va"]["value"] == pytest.approx(0.95, abs=0.01)
+    assert kept["rmse"]["airspeed"] < 0.2
 
 
 def test_a_column_that_never_changes_is_named(tmp_path: Path) -> None:

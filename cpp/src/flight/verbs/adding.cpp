@@ -94,21 +94,10 @@ Calibration add_to(const Calibration& base, const PreparedFlight& prepared,
 Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
                 const OwnEffects& own, const FitProgress& progress) {
   PreparedFlight prepared = prepare(base, flight);
-  Calibration here = base;
-  std::vector<std::string> notes;
-  if (is_other_flight(base, flight)) {
-    here = refit_to(base, prepared, own, progress);
-    notes = here.notes;
-  }
-  const RowsToLeave suspected = prepared.all;
-  const std::vector<std::string> slow = prepared.slow;
-  if (const auto left = without_suspects(here, prepared, own, progress)) {
-    here = *left;
-    notes.push_back(say_left_out(flight.name(), here.options.log, suspected, slow));
-  }
+  const OnFlight here = on_readings_of(base, flight, prepared, own, progress);
   note_mended(prepared);
-  Calibration next = add_to(here, prepared, effect, own, progress);
-  next.notes.insert(next.notes.begin(), notes.begin(), notes.end());
+  Calibration next = add_to(here.calibration, prepared, effect, own, progress);
+  next.notes.insert(next.notes.begin(), here.notes.begin(), here.notes.end());
   return next;
 }
 

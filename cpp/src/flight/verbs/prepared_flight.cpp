@@ -202,4 +202,20 @@ Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, co
   return here;
 }
 
+OnFlight on_readings_of(const Calibration& base, const Flight& flight, PreparedFlight& prepared,
+                        const OwnEffects& own, const FitProgress& progress) {
+  OnFlight here{base, {}};
+  if (is_other_flight(base, flight)) {
+    here.calibration = refit_to(base, prepared, own, progress);
+    here.notes = here.calibration.notes;
+  }
+  const RowsToLeave suspected = prepared.all;
+  const std::vector<std::string> slow = prepared.slow;
+  if (const auto left = without_suspects(here.calibration, prepared, own, progress)) {
+    here.calibration = *left;
+    here.notes.push_back(say_left_out(flight.name(), left->options.log, suspected, slow));
+  }
+  return here;
+}
+
 }  // namespace sepcal::verbs

@@ -60,6 +60,15 @@ std::optional<Calibration> without_suspects(const Calibration& base, PreparedFli
 std::string say_left_out(const std::string& flight, const LogChoice& now,
                          const RowsToLeave& suspected, const std::vector<std::string>& slow);
 
+/// The base as it would be of a flight's readings: fitted anew where it is of another flight, or of
+/// rows that are none.
+struct OnFlight {
+  Calibration calibration;
+  std::vector<std::string> notes;  // that say so
+};
+OnFlight on_readings_of(const Calibration& base, const Flight& flight, PreparedFlight& prepared,
+                        const OwnEffects& own, const FitProgress& progress);
+
 /// As the public calibrate().
 Calibration calibrate(const std::shared_ptr<const Probe>& probe, const PreparedFlight& prepared,
                       const CalibrationOptions& options);

@@ -113,10 +113,10 @@ StepwiseCalibration diagnose_stepwise(const Calibration& base, const Flight& fli
                                       const OwnEffects& own, const StepwiseOptions& options) {
   check_most(options);
   const FitProgress& progress = options.diagnosis.progress;
-  Calibration calibration = base;
-  if (is_other_flight(base, flight)) {
-    calibration = refit_to(base, prepare(base, flight), own, progress);
-  }
+  PreparedFlight prepared = prepare(base, flight);
+  OnFlight here = on_readings_of(base, flight, prepared, own, progress);
+  Calibration calibration = std::move(here.calibration);
+  calibration.notes = std::move(here.notes);
   const StepwiseLoop<Calibration> loop{
       calibration, options.most,
       [&](const Calibration& at, const std::string& only, std::size_t among) {
