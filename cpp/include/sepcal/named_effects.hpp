@@ -53,6 +53,9 @@ struct Port {
   bool constant_is_own = true;
   /// Channels of which the model has a straight line there: their splines go without.
   std::vector<std::string> lines = {};
+  /// How the names of channels that can drive it begin, where not any can (the wind changes with
+  /// time and place): any other stands in for one of these.
+  std::vector<std::string> causes = {};
 };
 
 /// An error that wanders, a Gauss-Markov process, and how far instruments of the kind let it: what
@@ -62,6 +65,7 @@ struct WanderBound {
   std::string unit;                       // of what it is an error of
   double size = 0.0;                      // standard deviation of each component, at most [unit]
   double time_s = 0.0;                    // its correlation time; 0: any
+  bool is_stated = false;                 // the size is a user's own
   std::string port = {};                  // where it comes in, in each component, or
   std::vector<std::string> outputs = {};  // in each of these, or
   std::vector<int> corrections = {};      // as these of the kit's `wandering`

@@ -63,8 +63,7 @@ std::string objection_to_fit(const Fit& before, const EffectFinding& finding, co
   }
   const std::vector<std::string> held = newly_at_bounds(before, fitted);
   if (!held.empty()) {
-    return fmt::format("fitted, it runs into the bounds of {}; wider ones may let it",
-                       fmt::join(held, ", "));
+    return fmt::format("fitted, it runs into the bounds of {}", fmt::join(held, ", "));
   }
   return keeps_promise ? std::string() : disagreement(finding, fitted);
 }

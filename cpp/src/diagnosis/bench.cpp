@@ -101,10 +101,14 @@ void Bench::screen_all(Trials& trials) const {
 void Bench::test_best(Trials& trials, std::size_t most, double threshold, bool slow_too) const {
   constexpr double worth_telling = 0.05;  // of the error, of a slow change
   std::vector<Trial*> chosen;
-  for (const std::size_t i :
-       best_of(trials, most, [](const Trial& trial) { return trial.visible; })) {
-    chosen.push_back(&trials[i]);
-    chosen.back()->slow = is_slow(room_, chosen.back()->candidate, chosen.back()->shape);
+  for (const bool of_any_form : {false, true}) {  // which would leave no place to the others
+    const auto counts = [&](const Trial& trial) {
+      return trial.visible && is_of_any_form(trial.candidate) == of_any_form;
+    };
+    for (const std::size_t i : best_of(trials, most, counts)) {
+      chosen.push_back(&trials[i]);
+      chosen.back()->slow = is_slow(room_, chosen.back()->candidate, chosen.back()->shape);
+    }
   }
   bound_all(chosen);
   double of_simple = worth_telling;
@@ -144,11 +148,13 @@ void Bench::bound_all(const std::vector<Trial*>& chosen) const {
     double shape;
   };
   std::vector<AtShape> places;
+  std::vector<Projection> projections;
   std::vector<Columns> bases;
   for (Trial* trial : chosen) {
     for (const double shape : best_shapes(*trial)) {
       places.push_back({trial, shape});
-      bases.push_back(project_trial(room_, null_, *trial, shape).basis);
+      projections.push_back(project_trial(room_, null_, *trial, shape));
+      bases.push_back(projections.back().basis);
     }
   }
   std::vector<std::size_t> order(places.size());
@@ -168,7 +174,15 @@ void Bench::bound_all(const std::vector<Trial*>& chosen) const {
   }
   instruments_->set_beside(beside);
   const std::vector<InstrumentTail> tails = instruments_->tails(bases);
-  for (std::size_t i = 0; i < places.size(); ++i) bound(tails[i], *places[i].trial);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto [trial, shape] = places[i];
+    const bool is_surer = bound(tails[i], *trial);
+    if (is_surer && shape != trial->shape && is_decided_by_bounds(*trial)) {
+      trial->shape = shape;
+      estimate_plainly(room_.fit().layout, projections[i], null_.residual, *trial);
+      trial->predicted_drop = predict_drop(null_, bases[i]);
+    }
+  }
 }
 
 void Bench::hold_out_significant(Trials& trials, bool promising_too) const {
@@ -213,7 +227,7 @@ void Bench::calibrate_significant(Trials& trials, double threshold, bool slow_to
     }
   }
   for (Trial* trial : significant) doubt(room_, null_, *trial);
-  double least_sure = -infinity;
+  double least_sure = threshold;
   for (const Trial& trial : trials) {
     if (trial.tested || trial.bounded) least_sure = std::max(least_sure, trial.log10_p);
   }

@@ -78,7 +78,8 @@ class Bench {
   void hold_out_significant(Trials& trials, bool promising_too) const;
 
   /// Corrects the tails of what would be significant, with `slow_too` of what could be a slow
-  /// change; what was only screened is no surer than the least sure of what was tested.
+  /// change; what was only screened is not significant, nor surer than the least sure of what was
+  /// tested.
   void calibrate_significant(Trials& trials, double threshold, bool slow_too) const;
 
   /// One step may fail an effect that bends the model: those that explain more than the best that

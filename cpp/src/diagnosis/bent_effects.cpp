@@ -55,6 +55,14 @@ bool predicts(Bench& bench, const Contender& contender, EffectFinding& finding) 
   return true;
 }
 
+/// What a fit with it takes of the RMSE over all outputs.
+double drop_of(const Contender& contender, double rmse_before) {
+  double squares = 0.0;
+  for (const OutputValue& rmse : contender.fit.rmse) squares += rmse.value * rmse.value;
+  const auto outputs = static_cast<double>(contender.fit.rmse.size());
+  return 1.0 - std::sqrt(squares / outputs) / rmse_before;
+}
+
 void tell_by_fit(const Contender& contender, double rmse_before, const EffectFinding& surest,
                  EffectFinding& finding) {
   finding.status = FindingStatus::found;
@@ -67,10 +75,7 @@ void tell_by_fit(const Contender& contender, double rmse_before, const EffectFin
     coefficient.estimate = fitted.value;
     coefficient.standard_error = fitted.standard_error;
   }
-  double squares = 0.0;
-  for (const OutputValue& rmse : contender.fit.rmse) squares += rmse.value * rmse.value;
-  const auto outputs = static_cast<double>(contender.fit.rmse.size());
-  finding.predicted_drop = 1.0 - std::sqrt(squares / outputs) / rmse_before;
+  finding.predicted_drop = drop_of(contender, rmse_before);
   for (auto& [name, shape] : finding.shapes) shape = contender.fit[name].value;
 }
 
@@ -125,9 +130,9 @@ void admit_bent(Bench& bench, Contest& contest, Findings& findings) {
   std::ranges::move(others, std::back_inserter(contest.contenders));
   for (const Contender& contender : contest.contenders) {
     EffectFinding& finding = finding_of(findings, contender);
-    const bool is_better = finding.status != FindingStatus::found &&
-                           contender.criterion < least - as_likely &&
-                           contender.fit.status == FitStatus::converged;
+    const bool is_better =
+        finding.status != FindingStatus::found && contender.criterion < least - as_likely &&
+        drop_of(contender, rmse) >= objects_from && contender.fit.status == FitStatus::converged;
     if (is_better && predicts(bench, contender, finding)) {
       tell_by_fit(contender, rmse, *surest, finding);
     }

@@ -130,9 +130,20 @@ std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candida
   return {candidate.settings.size(), form, candidate.coefficients.size()};
 }
 
+bool is_of_any_form(const Candidate& candidate) {
+  return std::get<1>(complexity_of(candidate)) == of_any_form;
+}
+
 bool is_simple(const Candidate& candidate) {
-  const auto [effects, form, coefficients] = complexity_of(candidate);
-  return effects == 1 && form < of_any_form;
+  return candidate.settings.size() == 1 && !is_of_any_form(candidate);
+}
+
+bool is_line_of(const Candidate& line, const Candidate& curve, bool at_its_port) {
+  if (!is_of_lines(line, 1) || !is_of_any_form(curve) || curve.settings.size() > 1) return false;
+  const EffectName straight = parse_effect_name(line.settings.front().name);
+  const EffectName bent = parse_effect_name(curve.settings.front().name);
+  return !straight.base.empty() && straight.base == bent.base &&
+         (!at_its_port || straight.port == bent.port);
 }
 
 bool is_of_lines(const Candidate& candidate, std::size_t effects) {
@@ -356,6 +367,13 @@ Candidate CandidateRoom::make_anew(const std::string& name) {
   if (candidate.effects.size() == 1 && is_driven(first, fitted_.kit) && first.driver->is_step()) {
     candidate.stepping_port = first.port;
   }
+  candidate.stands_in = std::ranges::any_of(candidate.settings, [&](const EffectSetting& setting) {
+    const EffectName own = parse_effect_name(setting.name);
+    const auto port = std::ranges::find(fitted_.kit.ports, own.port, &Port::name);
+    if (port == fitted_.kit.ports.end() || port->causes.empty() || own.base.empty()) return false;
+    return std::ranges::none_of(
+        port->causes, [&](const std::string& cause) { return own.base.starts_with(cause); });
+  });
   std::string joined;
   for (const EffectSetting& setting : candidate.settings) {
     joined += (joined.empty() ? "" : "+") + setting.name;

@@ -40,6 +40,7 @@ struct Candidate {
   std::vector<std::size_t> counts = {};     // of each effect, how many of these
   ShapeGrid shape = {};
   std::string stepping_port = {};  // of a single effect that is a step in time
+  bool stands_in = false;          // follows a channel that can't be the cause at its port
 };
 
 /// How much a candidate asks to be believed, least first: how many effects it is of; whether it has
@@ -47,11 +48,18 @@ struct Candidate {
 /// scanned, or a function of any form; how many coefficients it has.
 std::tuple<std::size_t, int, std::size_t> complexity_of(const Candidate& candidate);
 
+/// Whether an effect of it is a function of any form.
+bool is_of_any_form(const Candidate& candidate);
+
 /// Whether it is of one effect that is no function of any form.
 bool is_simple(const Candidate& candidate);
 
 /// Whether it is so many effects that have a physics of their own or follow a channel as it is.
 bool is_of_lines(const Candidate& candidate, std::size_t effects);
+
+/// Whether the one is a line along the channel of which the other is a function of any form, at any
+/// port or at the same.
+bool is_line_of(const Candidate& line, const Candidate& curve, bool at_its_port);
 
 /// A candidate's columns, as many as coefficients.
 struct CandidateColumns {

@@ -21,7 +21,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t most_fitted = 6;
+constexpr std::size_t most_fitted = 5;
 constexpr double worth_a_fit = 0.01;     // p, of what was not found
 constexpr double hardly_more = 1.1;      // of the error on rows held out
 constexpr double about = 1.05;           // likewise, beside far more coefficients
@@ -45,13 +45,34 @@ std::vector<const EffectFinding*> choose_contenders(const Findings& findings) {
   std::vector<const EffectFinding*> by_gain = by_order;
   std::ranges::stable_sort(by_gain, {}, [](const EffectFinding* one) { return left_out(*one); });
   std::vector<const EffectFinding*> chosen;
-  for (std::size_t i = 0; i < by_order.size(); ++i) {
+  for (std::size_t i = 0; i < by_order.size() && chosen.size() < most_fitted; ++i) {
     for (const EffectFinding* next : {by_gain[i], by_order[i]}) {
-      if (chosen.size() == most_fitted) return chosen;
+      if (chosen.size() == most_fitted) break;
       if (std::ranges::find(chosen, next) == chosen.end()) chosen.push_back(next);
     }
   }
   return chosen;
+}
+
+/// The contenders, and one more: the line along the channel of one that is a function of any form,
+/// if it was found.
+std::vector<Contender> join_line(CandidateRoom& room, const Findings& findings) {
+  std::vector<Contender> asked;
+  for (const EffectFinding* finding : choose_contenders(findings)) {
+    asked.push_back({room.make(finding->name), shape_of(*finding)});
+  }
+  for (const EffectFinding& finding : findings) {
+    if (finding.status != FindingStatus::found) continue;
+    const Candidate& line = room.make(finding.name);
+    const bool is_asked = std::ranges::any_of(
+        asked, [&](const Contender& one) { return one.candidate.name == finding.name; });
+    const bool is_of_one = std::ranges::any_of(
+        asked, [&](const Contender& one) { return is_line_of(line, one.candidate, true); });
+    if (is_asked || !is_of_one) continue;
+    asked.push_back({line, shape_of(finding)});
+    break;
+  }
+  return asked;
 }
 
 /// Of what was found: the first, what would do as well, what counts beside it, the untried, the
@@ -145,7 +166,6 @@ bool is_alike(const Contender& one, const Contender& other) {
 /// foretell noise that wanders as well, and count where they leave less than half.
 double most_left_out(const std::vector<const Contender*>& found,
                      const std::function<double(const Contender*)>& error_left) {
-  constexpr double clearly_less = 0.8;
   constexpr double less_than_half = 0.45;
   double most = infinity;
   for (const Contender* contender : found) {
@@ -174,6 +194,13 @@ bool bends_one_of(const Candidate& pair, const Candidate& single) {
   });
 }
 
+/// Whether the one follows a channel that can't be the cause, the other at its port one that can.
+bool is_stand_in_for(const Candidate& one, const Candidate& other) {
+  if (!one.stands_in || other.stands_in || one.settings.size() != 1) return false;
+  const std::string port = parse_effect_name(one.settings.front().name).port;
+  return other.settings.size() == 1 && parse_effect_name(other.settings.front().name).port == port;
+}
+
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
   return *std::ranges::find(findings, name, &EffectFinding::name);
 }
@@ -185,9 +212,13 @@ bool is_far_simpler(const Candidate& one, const Candidate& other) {
 }
 
 double schwarz_penalty(const Candidate& candidate, Index measurements) {
-  return static_cast<double>(candidate.coefficients.size()) *
-             std::log(static_cast<double>(measurements)) +
-         2.0 * std::log(candidate.shape.tried);
+  const double each = std::log(static_cast<double>(measurements));
+  std::size_t thresholds = 0;  // each chosen among the rows, as a step's time is
+  for (const EffectSetting& setting : candidate.settings) {
+    thresholds += parse_effect_name(setting.name).thresholds.size();
+  }
+  return each * static_cast<double>(candidate.coefficients.size()) +
+         2.0 * each * static_cast<double>(thresholds) + 2.0 * std::log(candidate.shape.tried);
 }
 
 void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contender>& asked) {
@@ -210,10 +241,7 @@ void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contende
 }
 
 Contest fit_contenders(Bench& bench, const Findings& findings) {
-  Contest contest;
-  for (const EffectFinding* finding : choose_contenders(findings)) {
-    contest.contenders.push_back({bench.room().make(finding->name), shape_of(*finding)});
-  }
+  Contest contest{.contenders = join_line(bench.room(), findings)};
   contest.noise = noise_beside(bench, contest.contenders);
   fit_all(bench, contest.noise, contest.contenders);
   return contest;
@@ -243,20 +271,27 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
           error_left(other) <= hardly_more * error_left(one)) {
         return true;  // one cause that is curved
       }
+      const bool follows_noise_too = is_line_of(other->candidate, one->candidate, true);
+      const bool stands_in = is_stand_in_for(one->candidate, other->candidate);
+      if ((follows_noise_too || stands_in) && clearly_less * error_left(other) <= error_left(one)) {
+        return true;
+      }
       const double more = is_far_simpler(other->candidate, one->candidate) ? about : 1.0;
       return is_simpler(other->candidate, one->candidate) &&
+             !is_stand_in_for(other->candidate, one->candidate) &&
              error_left(other) <= more * error_left(one);
     });
   };
   std::vector<const Contender*> standing;  // noise that nobody knows makes likelihoods sure
   std::ranges::remove_copy_if(found, std::back_inserter(standing), is_outdone);
+  if (standing.empty()) standing = found;
   const Contender* first = *std::ranges::min_element(standing, {}, &Contender::criterion);
   const auto belief = [&](const Contender* contender) {
     const Candidate& candidate = contender->candidate;
     const bool is_preferred = std::ranges::find(preferred, candidate.name) != preferred.end();
     auto complexity = complexity_of(candidate);  // two lines are simpler than any form of one
     if (is_of_lines(candidate, 2)) complexity = {1, 2, candidate.coefficients.size()};
-    return std::tuple(complexity, !is_preferred, contender->criterion);
+    return std::tuple(complexity, candidate.stands_in, !is_preferred, contender->criterion);
   };
   const double likely = first->criterion + as_likely;
   const double left = hardly_more * error_left(first);
@@ -267,8 +302,10 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   for (const Contender& contender : contest.contenders) {
     const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
     if (&contender == first) continue;
+    const bool is_as_likely =
+        std::abs(more) < as_likely && clearly_less * error_left(&contender) <= error_left(first);
     const bool is_as_good = is_alike(contender, *first) && error_left(&contender) <= left;
-    if (!(std::abs(more) < as_likely) && !is_as_good) continue;
+    if (!is_as_likely && !is_as_good) continue;
     finding_of(findings, contender.candidate.name).beside = Beside::equivalent;
   }
   std::ranges::stable_partition(findings, [](const EffectFinding& finding) {

@@ -13,8 +13,9 @@
 
 namespace sepcal::diagnosis {
 
-inline constexpr double as_likely = 9.2;  // in -2 ln L: 1 % of chi-squared's with two degrees
-inline constexpr double alike = 0.94;     // cosine of 20 deg, between what two take of the residual
+inline constexpr double as_likely = 9.2;     // in -2 ln L: 1 % of chi-squared's with two degrees
+inline constexpr double clearly_less = 0.8;  // of the error on rows held out
+inline constexpr double alike = 0.94;  // cosine of 20 deg, between what two take of the residual
 
 /// The fit of the model with one more effect.
 struct Contender {

@@ -101,11 +101,14 @@ void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& finding
   struct Place {
     int of_status = 2;
     bool is_as_good = false;
+    bool stands_in = false;
     bool is_flexible = false;
     std::tuple<std::size_t, int, std::size_t> complexity = {};
     double left = 0.0;
 
-    auto key() const { return std::tuple(of_status, !is_as_good, is_flexible, complexity, left); }
+    auto key() const {
+      return std::tuple(of_status, !is_as_good, stands_in, is_flexible, complexity, left);
+    }
   };
   const auto of_status = [](const EffectFinding& finding) {
     return finding.status == FindingStatus::slow_change ? 0
@@ -123,6 +126,7 @@ void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& finding
     if (place.of_status < 2) place.left = left_out(finding);
     if (place.of_status == first) {
       const Candidate& candidate = room.make(finding.name);
+      place.stands_in = candidate.stands_in;
       place.is_flexible = is_flexible_in_time(candidate);
       place.complexity = complexity_of(candidate);
       double& least = place.is_flexible ? of_flexible : of_others;
@@ -143,6 +147,10 @@ void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& finding
     if (place.is_as_good && !findings.empty()) finding.beside = Beside::equivalent;
     findings.push_back(std::move(finding));
   }
+}
+
+bool takes_much(const EffectFinding& finding) {
+  return finding.held_out_passed && finding.held_out_gain >= objects_from;
 }
 
 double count_visible(const Trials& trials) {
@@ -188,6 +196,7 @@ class Recipe {
   Trials::iterator find_trial(const std::string& name);
   double tests() const;
   void look_from_own_fits();
+  bool is_of_one(const EffectFinding& pair);
   void try_pairs();
   void confirm(const Contender& contender);
   bool try_pairs_of_lines();
@@ -197,8 +206,9 @@ class Recipe {
   Objection object_to(const EffectFinding& finding);
   void tell_fitted(EffectFinding& finding);
   void advise();
-  void withdraw();
+  bool withdraw();
   void weigh_held_out();
+  void put_line_first();
   void explain_away();
   void conclude();
 
@@ -213,6 +223,7 @@ class Recipe {
   std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
   Contest contest_;
   std::vector<std::string> withdrawn_;  // were found, but no fit bears them out
+  double left_by_first_ = 1.0;          // of the error, by a first that takes much and no fit takes
   Diagnosis result_;
 };
 
@@ -328,6 +339,18 @@ void Recipe::look_from_own_fits() {
   rank(result_.effects);
 }
 
+/// Whether one of a pair leaves as little of the error on rows held out as both.
+bool Recipe::is_of_one(const EffectFinding& pair) {
+  constexpr double about = 1.05;
+  const Candidate& both = bench_.room().make(pair.name);
+  return std::ranges::any_of(both.settings, [&](const EffectSetting& member) {
+    const auto alone = find_trial(member.name);
+    if (alone == trials_.end() || !alone->visible) return false;
+    if (alone->folds.count == 0) hold_out(bench_.room(), bench_.null(), *alone);
+    return alone->held_out.judged && 1.0 - alone->held_out.gain <= about * left_out(pair);
+  });
+}
+
 /// Of those that are no functions of any form: two of these explain too much.
 void Recipe::try_pairs() {
   std::vector<std::string> best;
@@ -348,8 +371,9 @@ void Recipe::try_pairs() {
   const double tests = 0.5 * (visible + static_cast<double>(options_.others)) * (visible - 1.0);
   bench_.test_best(pairs, most_pairs_tested, threshold_of(pairs, tests), false);
   std::vector<EffectFinding> findings = judge(pairs, tests, false);
-  std::erase_if(findings,
-                [](const EffectFinding& pair) { return pair.status != FindingStatus::found; });
+  std::erase_if(findings, [&](const EffectFinding& pair) {
+    return pair.status != FindingStatus::found || is_of_one(pair);
+  });
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
 }
 
@@ -478,6 +502,9 @@ void Recipe::advise() {
       return;
     }
     if (fitted == 0) first_stands = objection.is_to_fit;
+    if (fitted == 0 && first_stands && takes_much(finding)) {
+      left_by_first_ = std::min(left_by_first_, left_out(finding));
+    }
     ++fitted;
     const std::string reason = finding.name + ": " + objection.reason;
     std::vector<std::string>& withheld = result_.advice.withheld;
@@ -486,27 +513,36 @@ void Recipe::advise() {
   }
 }
 
-/// What was found and no fit bears out is no finding, nor is then what fades beside it.
-void Recipe::withdraw() {
+/// What was found and no fit bears out is no finding, nor is then what fades beside it, nor what
+/// leaves clearly more than a first that takes much though no fit takes it: alone it would stand
+/// in. Returns whether something else that was found stands first now.
+bool Recipe::withdraw() {
   const bool nothing_stands = result_.advice.effect.empty() && !withdrawn_.empty();
   for (EffectFinding& finding : result_.effects) {
     const bool is_withdrawn = std::ranges::find(withdrawn_, finding.name) != withdrawn_.end() ||
                               (nothing_stands && finding.beside == Beside::fades);
     if (finding.status != FindingStatus::found || !is_withdrawn) continue;
     const auto trial = find_trial(finding.name);
-    const bool takes_much = finding.held_out_passed && finding.held_out_gain >= objects_from;
-    if (!takes_much) {
+    if (!takes_much(finding)) {
       finding.status = FindingStatus::not_seen;
     } else {
       finding.status = trial != trials_.end() && trial->slow ? FindingStatus::slow_change
                                                              : FindingStatus::undecided;
     }
   }
-  const bool has_first = result_.effects.front().status == FindingStatus::found;
   for (EffectFinding& finding : result_.effects) {
-    if (!has_first) finding.beside = Beside::untried;  // they were asked beside what is withdrawn
+    const bool stands_in = nothing_stands && clearly_less * left_out(finding) > left_by_first_;
+    if (finding.status == FindingStatus::found && stands_in) {
+      finding.status = FindingStatus::not_seen;
+    }
   }
+  const bool first_stands = result_.effects.front().status == FindingStatus::found;
   std::ranges::stable_sort(result_.effects, {}, &EffectFinding::status);
+  if (first_stands) return false;
+  for (EffectFinding& finding : result_.effects) {
+    finding.beside = Beside::untried;  // they were asked beside what is withdrawn
+  }
+  return has(FindingStatus::found);
 }
 
 /// What takes much of the error on rows held out by a real fit is said, whatever noise could do:
@@ -545,7 +581,34 @@ void Recipe::weigh_held_out() {
     rank(result_.effects);
   } else {
     put_simplest_first(bench_.room(), result_.effects);
+    put_line_first();
   }
+}
+
+/// A function of any form that takes much has been chosen to follow the noise too: where a line
+/// along its channel leaves hardly more, this stands first, as what would do as well.
+void Recipe::put_line_first() {
+  const EffectFinding first = result_.effects.front();
+  if (first.status != FindingStatus::slow_change && first.status != FindingStatus::undecided)
+    return;
+  const auto curve = find_trial(first.name);
+  if (curve == trials_.end() || !is_of_any_form(curve->candidate)) return;
+  auto best = trials_.end();
+  for (auto trial = trials_.begin(); trial != trials_.end(); ++trial) {
+    if (!trial->visible || !is_line_of(trial->candidate, curve->candidate, false)) continue;
+    if (trial->folds.count == 0) hold_out(bench_.room(), bench_.null(), *trial);
+    if (!trial->held_out.passed) continue;
+    if (best == trials_.end() || trial->held_out.gain > best->held_out.gain) best = trial;
+  }
+  if (best == trials_.end()) return;
+  diagnosis::confirm(bench_.refits(), *best);
+  if (!(clearly_less * (1.0 - best->held_out.gain) <= left_out(first))) return;
+  const auto line = std::ranges::find(result_.effects, best->candidate.name, &EffectFinding::name);
+  tell_held_out(*best, *line);
+  line->status = first.status;
+  result_.effects.front().beside = Beside::equivalent;
+  std::rotate(result_.effects.begin(), line, line + 1);
+  result_.effects.front().beside = Beside::untried;
 }
 
 /// How far errors would have to wander to look like the slow effect that stands first.
@@ -595,7 +658,6 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
   result_.correlation_time =
       correlation_rows(layout, room.fit().residual) * typical_interval(room.times());
   result_.has_time = room.record().has("time");
-  if (bench_.instruments()) result_.wanders = bench_.instruments()->bounds();
   if (!options_.only.empty()) {
     for (const std::string& name : names) bench_.room().make(name);  // or the reason is thrown
   }
@@ -628,15 +690,14 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
         withdrawn_ = withdrawn;
       });
     }
-    const std::string first = result_.effects.front().name;
-    withdraw();
-    if (has(FindingStatus::found) && result_.effects.front().name != first) {  // it was withdrawn
+    constexpr int most_headlines = 4;
+    for (int round = 0; withdraw() && round < most_headlines; ++round) {
       order_found();
       result_.advice.effect.clear();
       in_time("fitting what is advised", [&] { advise(); });
-      withdraw();
     }
   }
+  if (bench_.instruments()) result_.wanders = bench_.instruments()->bounds();
   conclude();
   in_time("limits", [&] {
     result_.limits = find_limits(bench_.room(), fitted_.kit, bench_.null(), bench_.instruments(),

@@ -239,7 +239,9 @@ InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
           fmt::format("nothing called '{}' wanders; there is: {}", name, fmt::join(names, ", ")));
     }
     known->size = size;
+    known->is_stated = true;
   }
+  for (const WanderBound& bound : bounds_) least_sizes_.push_back(bound.size);
   add_sources(room, kit);
   find_short_noise(known_.rightCols<1>());
 }
@@ -249,6 +251,17 @@ void InstrumentNoise::find_short_noise(const VectorXd& residual) {
   for (std::size_t j = 0; j < rows_.layout.outputs.size(); ++j) {
     short_.push_back(
         short_noise(rows_.layout.runs, residual.segment(rows_.layout.first(j), rows_.layout.rows)));
+  }
+  // What is loud over seconds is as loud over half a minute: turbulence has no bound of its own.
+  for (std::size_t b = 0; b < bounds_.size(); ++b) {
+    WanderBound& bound = bounds_[b];
+    if (bound.time_s == 0.0 || bound.is_stated) continue;
+    bound.size = least_sizes_[b];
+    for (std::size_t j = 0; j < short_.size(); ++j) {
+      const UsedOutput& output = null_.fit().layout.outputs[j];
+      if (output.unit != bound.unit) continue;
+      bound.size = std::max(bound.size, std::sqrt(short_[j].variance) * output.scale);
+    }
   }
   noises_ = make_noises({1.0, 0.5});
 }

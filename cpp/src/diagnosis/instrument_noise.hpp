@@ -46,9 +46,10 @@ inline constexpr double most_left = 2.5;  // a ratio of variances
 
 class InstrumentNoise {
  public:
-  /// Errors wander as the kit has them, at most as far as `sizes` says by their names; of a model
-  /// whose kit has none, each output's by as much as its white noise. Throws Error for a name that
-  /// there is not. The room and the null hypothesis must outlive it.
+  /// Errors wander as the kit has them, at most as far as `sizes` says by their names; those with a
+  /// correlation time of their own (gusts) as far as what goes together over seconds, too; of a
+  /// model whose kit has none, each output's by as much as its white noise. Throws Error for a name
+  /// that there is not. The room and the null hypothesis must outlive it.
   InstrumentNoise(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
                   const std::map<std::string, double>& sizes);
   ~InstrumentNoise();
@@ -105,6 +106,7 @@ class InstrumentNoise {
   std::vector<ShortNoise> short_;  // of each output in them
   Eigen::MatrixXd known_;          // [basis, residual] of the null hypothesis
   std::vector<WanderBound> bounds_;
+  std::vector<double> least_sizes_;  // of those of gusts, which may be louder in this log
   std::vector<Source> sources_;
   std::vector<Noise> noises_;
 };

@@ -30,14 +30,9 @@ Columns constant_share(const CandidateColumns& columns) {
           }};
 }
 
-/// The model's own parameters by a fit with an effect.
-struct Estimates {
-  VectorXd values;     // where the effect is zero
-  VectorXd at_mean;    // where it is at its mean over the record
-  bool is_about_mean;  // both are the same
-};
-
-Estimates estimates_of(const Bench& bench, const Contender& contender) {
+/// The model's own parameters by a fit with an effect, where this is at its mean over the record:
+/// where it is zero is a matter of its driver.
+VectorXd estimates_of(const Bench& bench, const Contender& contender) {
   const CandidateRoom& room = bench.room();
   const Fit& fit = contender.fit;
   const auto values_of = [&fit](const auto& entries, const auto& name_of) {
@@ -52,8 +47,7 @@ Estimates estimates_of(const Bench& bench, const Contender& contender) {
                                     [](const Variable& coefficient) { return coefficient.name; });
   const Columns share = constant_share(room.columns(contender.candidate, contender.shape));
   const VectorXd shift = explained_by(bench.null().basis, share) * effect;
-  constexpr double no_shift = 1e-9;
-  return {own, own + shift, shift.norm() <= no_shift * own.norm()};
+  return own + shift;
 }
 
 const Contender* contender_of(const Contest& contest, const std::string& name) {
@@ -72,13 +66,10 @@ struct Clash {
 
 /// The parameter that comes furthest away, were the rival the cause, by the larger of the two
 /// standard errors. `errors`: with what is advised.
-Clash compare(const Bench& bench, const Estimates& with_chosen, const VectorXd& errors,
+Clash compare(const Bench& bench, const VectorXd& now, const VectorXd& errors,
               const Contender& rival) {
   const std::vector<std::string>& names = bench.room().fit().parameters;
-  const Estimates with_rival = estimates_of(bench, rival);
-  const bool at_mean = with_chosen.is_about_mean || with_rival.is_about_mean;
-  const VectorXd& now = at_mean ? with_chosen.at_mean : with_chosen.values;
-  const VectorXd& truth = at_mean ? with_rival.at_mean : with_rival.values;
+  const VectorXd truth = estimates_of(bench, rival);
   Clash worst;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto at = static_cast<Index>(k);
@@ -109,7 +100,7 @@ std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advi
   constexpr double most_errors = 1.5;
   const Contender* chosen = contender_of(contest, advised.name);
   if (!chosen) return {};
-  const Estimates with_chosen = estimates_of(bench, *chosen);
+  const VectorXd with_chosen = estimates_of(bench, *chosen);
   const auto find_clashes = [&](const VectorXd& errors) {
     std::vector<Clash> clashes;
     for (const EffectFinding& finding : findings) {

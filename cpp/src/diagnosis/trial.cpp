@@ -226,7 +226,9 @@ std::vector<double> best_shapes(const Trial& trial) {
 
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial) {
   NoiseTails least{infinity, infinity};
-  for (const double shape : best_shapes(trial)) {
+  const std::vector<double> shapes =
+      is_decided_by_bounds(trial) ? std::vector{trial.shape} : best_shapes(trial);
+  for (const double shape : shapes) {
     Projection added = project_trial(room, null, trial, shape);
     added.basis = keep_few(room.fit().layout, added.basis);
     const NoiseTest::Ratios ratios = null.test->compare(added.basis);
@@ -262,12 +264,13 @@ bool is_decided_by_bounds(const Trial& trial) {
   return trial.bounded && trial.slow && trial.bounded->left < most_left;
 }
 
-void bound(const InstrumentTail& tail, Trial& trial) {
+bool bound(const InstrumentTail& tail, Trial& trial) {
   const double log10_p = tail.log10_p + log10_scan(trial);
-  if (trial.bounded && !(log10_p < trial.bounded->log10_p)) return;
+  if (trial.bounded && !(log10_p < trial.bounded->log10_p)) return false;
   trial.bounded = tail;
   trial.bounded->log10_p = std::min(0.0, log10_p);
   combine_tails(trial);
+  return true;
 }
 
 bool is_smooth(const RowLayout& layout, const Columns& columns) {

@@ -71,7 +71,7 @@ void estimate_plainly(const RowLayout& layout, const Projection& added,
 std::vector<double> best_shapes(const Trial& trial);
 
 /// The likelihood ratio in noise of free size at the shapes that score best, with the estimate at
-/// the surer one.
+/// the surer one; where noise as instruments have it decides, at the shape that this has chosen.
 void test(const CandidateRoom& room, const NullHypothesis& null, Trial& trial);
 
 /// Whether the columns hardly change within a hundredth of the record: noise that is as slow
@@ -95,9 +95,9 @@ bool is_decided_by_bounds(const Trial& trial);
 /// slow for its own; noise within an instrument's bounds tells both, where the log's noise is such.
 void combine_tails(Trial& trial);
 
-/// Takes what noise as instruments have it makes of the trial into its log10_p, unless it is surer
-/// already at another shape.
-void bound(const InstrumentTail& tail, Trial& trial);
+/// Takes what noise as instruments have it makes of the trial into its log10_p. Returns false where
+/// it is surer already at another shape.
+bool bound(const InstrumentTail& tail, Trial& trial);
 
 /// Corrects the test's tail for what draws of the noise do to the ratios. Whether the columns are
 /// smooth is asked here.

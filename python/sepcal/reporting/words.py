@@ -37,7 +37,7 @@ MODELS = {
     "magnetometer-norm": "magnetometer without attitude",
 }
 VERDICTS = {
-    "adequate": "Nothing missing",
+    "adequate": "Nothing found",
     "effect_missing": "An effect is missing",
     "slow_change": "A slow change",
     "unexplained": "Unexplained structure",

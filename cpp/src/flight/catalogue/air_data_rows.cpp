@@ -10,7 +10,11 @@ Port on_input(const std::string& name, const std::string& unit, double plausible
 }
 
 PortRow wind_row(const std::vector<Port::Component>& components, double plausible) {
-  return {.port = {"wind", "m/s", components, plausible},
+  return {.port = {.name = "wind",
+                   .unit = "m/s",
+                   .components = components,
+                   .plausible = plausible,
+                   .causes = time_and_place()},
           .sentence = "the wind changes",
           .acts_on = ActsOn::world,
           .forms = {{any_driver, "W + s x (n, e)"},

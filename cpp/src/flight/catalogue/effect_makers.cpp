@@ -49,6 +49,10 @@ EffectKit::Maker wandering_angle(const std::string& input) {
   };
 }
 
+std::vector<std::string> time_and_place() {
+  return {"time", "maneuver", "alt", "height", "lat", "lon", "north", "east", "distance"};
+}
+
 WanderBound tilt_bound() {
   return {.name = "tilt", .unit = "rad", .size = 0.005, .corrections = {0, 1}};
 }

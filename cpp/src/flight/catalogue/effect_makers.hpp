@@ -31,6 +31,9 @@ EffectKit::Maker drifting_clock(Delay::Kind kind, double bound,
 /// The error of an angle among the model's inputs.
 EffectKit::Maker wandering_angle(const std::string& input);
 
+/// A port's `causes` where what happens there is the air's: time, place and labels.
+std::vector<std::string> time_and_place();
+
 /// How far an attitude's filter lets roll and pitch wander, and the heading: a third of a degree, a
 /// degree. A table's `wandering` has the three in this order.
 WanderBound tilt_bound();

@@ -144,7 +144,8 @@ EffectTable path_effects() {
                   .components = {{.name = "n", .input = "wind_change_n"},
                                  {.name = "e", .input = "wind_change_e"},
                                  {.name = "d", .input = "wind_change_d"}},
-                  .plausible = strongest_wind};
+                  .plausible = strongest_wind,
+                  .causes = time_and_place()};
   const Port vane{.name = "vane_position",
                   .unit = "m",
                   .components = {{.name = "x", .input = "vane_shift_x"},
