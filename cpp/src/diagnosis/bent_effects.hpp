@@ -18,8 +18,8 @@ std::vector<Contender> try_on_some_rows(Bench& bench, const std::vector<EffectFi
                                         const std::vector<Contender>& known);
 
 /// Far off, the best of those that are not in the contest are fitted. One that is likelier than all
-/// that were found joins them, as sure as the surest, with the estimates of its fit, if this takes a
-/// fifth of the error and real fits without some rows predict these better.
+/// that were found joins them, as sure as the surest, with the estimates of its fit, if this takes
+/// a fifth of the error and real fits without some rows predict these better.
 void admit_bent(Bench& bench, Contest& contest, std::vector<EffectFinding>& findings);
 
 }  // namespace sepcal::diagnosis
