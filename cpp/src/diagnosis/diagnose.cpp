@@ -425,8 +425,9 @@ void Recipe::settle() {
   for (const Contender& contender : contest_.contenders) confirm(contender);
   admit_bent(bench_, contest_, result_.effects);
   const Contender* first = put_first(contest_, options_.preferred, result_.effects);
-  if (first && !is_of_lines(first->candidate, 1) && !bench_.room().follows_path()) {
-    if (try_pairs_of_lines()) first = put_first(contest_, options_.preferred, result_.effects);
+  if (first && !is_of_lines(first->candidate, 1) && !bench_.room().follows_path() &&
+      try_pairs_of_lines()) {
+    first = put_first(contest_, options_.preferred, result_.effects);
   }
   judge_beside(first);
 }
