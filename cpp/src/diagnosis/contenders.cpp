@@ -273,7 +273,8 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
       }
       const bool follows_noise_too = is_line_of(other->candidate, one->candidate, true);
       const bool stands_in = is_stand_in_for(one->candidate, other->candidate);
-      if ((follows_noise_too || stands_in) && clearly_less * error_left(other) <= error_left(one)) {
+      if ((follows_noise_too || stands_in) &&
+          does_nearly_as_well(error_left(other), error_left(one))) {
         return true;
       }
       const double more = is_far_simpler(other->candidate, one->candidate) ? about : 1.0;

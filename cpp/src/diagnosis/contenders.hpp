@@ -17,6 +17,12 @@ inline constexpr double as_likely = 9.2;     // in -2 ln L: 1 % of chi-squared's
 inline constexpr double clearly_less = 0.8;  // of the error on rows held out
 inline constexpr double alike = 0.94;  // cosine of 20 deg, between what two take of the residual
 
+/// Whether what leaves so much of the error on rows held out does nearly as well as what leaves the
+/// least of it: that does not leave clearly less, and half of what it takes is taken.
+inline bool does_nearly_as_well(double left, double least) {
+  return clearly_less * left <= least && 1.0 - left >= 0.5 * (1.0 - least);
+}
+
 /// The fit of the model with one more effect.
 struct Contender {
   Candidate candidate = {};

@@ -603,7 +603,7 @@ void Recipe::put_line_first() {
   }
   if (best == trials_.end()) return;
   diagnosis::confirm(bench_.refits(), *best);
-  if (!(clearly_less * (1.0 - best->held_out.gain) <= left_out(first))) return;
+  if (!does_nearly_as_well(1.0 - best->held_out.gain, left_out(first))) return;
   const auto line = std::ranges::find(result_.effects, best->candidate.name, &EffectFinding::name);
   tell_held_out(*best, *line);
   line->status = first.status;
