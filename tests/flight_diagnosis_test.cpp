@@ -42,7 +42,8 @@ void check_order(const FlightDiagnosis& result) {
     const bool is_found = effect.p_adjusted < 0.05 && effect.held_out_passed;
     CHECK((effect.status == FindingStatus::found) == is_found);
     if (i > 0 && effects[i - 1].status == effect.status) {
-      const bool by_fits = i == 1 || effects[i - 1].beside == Beside::equivalent;
+      const bool by_fits = i == 1 || effects[i - 1].beside == Beside::equivalent ||
+                           effects[i - 1].beside != effect.beside;
       CHECK((by_fits || effects[i - 1].log10_p <= effect.log10_p));
     }
     if (i > 0) CHECK(effects[i - 1].status <= effect.status);

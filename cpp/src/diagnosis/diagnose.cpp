@@ -538,7 +538,10 @@ bool Recipe::withdraw() {
     }
   }
   const bool first_stands = result_.effects.front().status == FindingStatus::found;
-  std::ranges::stable_sort(result_.effects, {}, &EffectFinding::status);
+  std::ranges::stable_sort(result_.effects, [](const EffectFinding& a, const EffectFinding& b) {
+    if (a.status != b.status) return a.status < b.status;
+    return a.status == FindingStatus::not_seen && a.log10_p < b.log10_p;
+  });
   if (first_stands) return false;
   for (EffectFinding& finding : result_.effects) {
     finding.beside = Beside::untried;  // they were asked beside what is withdrawn
