@@ -19,6 +19,20 @@ using Texts = std::vector<std::string>;
 namespace {
 
 /// What must hold of every diagnosis, whatever its verdict.
+/// Where it stands behind the first of what was found.
+int place_of(Beside beside) {
+  switch (beside) {
+    case Beside::equivalent:
+      return 1;
+    case Beside::counts:
+      return 2;
+    case Beside::untried:
+      return 3;
+    default:
+      return 4;
+  }
+}
+
 void check_order(const FlightDiagnosis& result) {
   const std::vector<EffectFinding>& effects = result.diagnosis.effects;
   REQUIRE(result.sentences.size() == effects.size());
@@ -42,8 +56,10 @@ void check_order(const FlightDiagnosis& result) {
     const bool is_found = effect.p_adjusted < 0.05 && effect.held_out_passed;
     CHECK((effect.status == FindingStatus::found) == is_found);
     if (i > 0 && effects[i - 1].status == effect.status) {
-      const bool by_fits = i == 1 || effects[i - 1].beside == Beside::equivalent ||
-                           effects[i - 1].beside != effect.beside;
+      const bool stands_alike = effects[i - 1].beside == effect.beside;
+      const bool by_fits = i == 1 || effects[i - 1].beside == Beside::equivalent || !stands_alike;
+      const bool is_among_found = i > 1 && effect.status == FindingStatus::found;
+      if (is_among_found) CHECK(place_of(effects[i - 1].beside) <= place_of(effect.beside));
       CHECK((by_fits || effects[i - 1].log10_p <= effect.log10_p));
     }
     if (i > 0) CHECK(effects[i - 1].status <= effect.status);
