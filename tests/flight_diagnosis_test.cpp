@@ -18,7 +18,6 @@ using Texts = std::vector<std::string>;
 
 namespace {
 
-/// What must hold of every diagnosis, whatever its verdict.
 /// Where it stands behind the first of what was found.
 int place_of(Beside beside) {
   switch (beside) {
@@ -33,6 +32,7 @@ int place_of(Beside beside) {
   }
 }
 
+/// What must hold of every diagnosis, whatever its verdict.
 void check_order(const FlightDiagnosis& result) {
   const std::vector<EffectFinding>& effects = result.diagnosis.effects;
   REQUIRE(result.sentences.size() == effects.size());
