@@ -28,7 +28,7 @@ TEST_CASE("a fit to blocks of rows is one step from the fit to all") {
   const diagnosis::Candidate candidate = room.make("wind[altitude_m]");
   diagnosis::Refits refits(room);
   const Fit& all = refits.with(candidate, not_a_number);  // 6000 rows are less than enough
-  const Fit some = diagnosis::refit_nearly(room, candidate, not_a_number, 600);
+  const Fit some = diagnosis::refit_nearly(room, candidate, not_a_number, 900);
   CHECK(diagnosis::refit_nearly(room, candidate, not_a_number, 6000).by_name() == all.by_name());
 
   fitted.effects.push_back(candidate.settings.front());

@@ -46,11 +46,16 @@ def smooth(commanded: Array, time: float) -> Array:
 
 
 def fly(
-    seed: int, gusts: float, zero: float = 0.0, front: tuple[float, float] = (0.0, 0.0)
+    seed: int,
+    gusts: float,
+    zero: float = 0.0,
+    front: tuple[float, float] = (0.0, 0.0),
+    propeller: float = 0.0,
 ) -> dict[str, Array]:
     """A tube with a factor of 0.96 whose zero goes by so many Pa as the board warms.
 
-    The wind is (3, -4) m/s before a front, which changes it within a minute.
+    The wind is (3, -4) m/s before a front, which changes it within a minute. A propeller blows on
+    the tube by so many m/s at full throttle, from 45 % on.
     """
     draw = np.random.default_rng(seed)
     time = STEP * np.arange(ROWS)
@@ -74,16 +79,19 @@ def fly(
     pressure += zero * (board - board.mean()) / np.ptp(board) + draw.normal(0, 1.2, ROWS)
     throttle = np.clip(0.2 + 0.0009 * speed**2 + draw.normal(0, 0.02, ROWS), 0, 1)
     drawn = np.cumsum(throttle) / np.sum(throttle)
+    airspeed = np.sqrt(np.maximum(2 * pressure / density, 1.0))
+    airspeed += propeller * np.maximum(throttle - 0.45, 0) / 0.55
     return {
         "time_s": time,
         "vn_mps": speed * along + wind[0] + wander(draw, 0.07, 120) + draw.normal(0, 0.04, ROWS),
         "ve_mps": speed * across + wind[1] + wander(draw, 0.07, 120) + draw.normal(0, 0.04, ROWS),
         "vd_mps": np.zeros(ROWS),
-        "airspeed_mps": np.round(np.sqrt(np.maximum(2 * pressure / density, 1.0)), 2),
+        "airspeed_mps": np.round(airspeed, 2),
         "board_degc": np.round(board, 1),
         "battery_v": np.round(16.6 - 1.7 * drawn - 0.4 * throttle + draw.normal(0, 0.015, ROWS), 2),
         "altitude_m": np.round(altitude + wander(draw, 1, 60), 1),
         "throttle": np.round(throttle, 2),
+        "current_a": np.round(1 + smooth(24 * throttle**1.4, 0.4) + draw.normal(0, 0.3, ROWS), 1),
         "cpu_degc": np.round(52 + 8 * share + wander(draw, 1.2, 8)),
     }
 
@@ -121,6 +129,31 @@ def test_a_front_is_no_matter_of_the_battery(
     first = diagnosis.result["effects"][0]["name"]
     assert first.startswith("wind[")
     assert "time" in first
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_propeller_is_no_matter_of_the_current(
+    diagnosed: Callable[[dict[str, Array]], Outcome], seed: int
+) -> None:
+    """A line stands for the curve along its own channel, and not for that along another."""
+    diagnosis = diagnosed(fly(seed, gusts=0.3, propeller=6))
+    assert diagnosis.code == 3
+    assert "[" in (first := diagnosis.result["effects"][0]["name"])
+    assert "throttle" in first
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_what_the_wander_hides_is_among_what_would_do_as_well(
+    diagnosed: Callable[[dict[str, Array]], Outcome], seed: int
+) -> None:
+    """A zero that warms by little more than a velocity wanders, in a set that is worth reading."""
+    diagnosis = diagnosed(fly(seed, gusts=0.3, zero=30))
+    assert diagnosis.result["verdict"] in ("slow_change", "effect_missing")
+    effects = diagnosis.result["effects"]
+    equivalent = [effect for effect in effects[1:] if effect["beside"] == "equivalent"]
+    told = [effects[0], *(effect for effect in equivalent if effect["status"] != "not_seen")]
+    assert any(effect["name"].endswith("[board_degc]") for effect in told)
+    assert len(told) <= 5
 
 
 @pytest.mark.parametrize("gusts", [0.3, 0.6, 0.9])

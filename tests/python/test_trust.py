@@ -444,14 +444,13 @@ def test_two_lines_come_before_a_curve_and_before_one_that_goes_astray(
     assert stepped.end == "nothing_found"
 
 
-def test_a_fit_that_goes_astray_is_not_advised():
-    """One step, where the model bends, announced a fifth of what a coefficient comes to."""
+def test_a_curve_that_keeps_its_promise_is_not_withheld_for_a_coefficient():
+    """Its columns are alike and exchange coefficients; the line of its channel stands before it."""
     case = "magnetometer: ramp of bias along throttle"
     diagnosis = _fit_key("hidden", case, "Gauss-Markov 60 s", 0.3, 1800, 760007).diagnose()
-    curve = "bias[spline(throttle,9)]: fitted, "
-    (reason,) = (said for said in diagnosis.advice["withheld"] if said.startswith(curve))
-    assert "where one step from here has" in reason
     assert diagnosis.advice["effect"] == "bias[throttle]"
+    assert "bias[spline(throttle,9)]" in diagnosis.explanations
+    assert not any("spline(throttle" in said for said in diagnosis.advice["withheld"])
 
 
 def _row(part: str, case: str, noise: str, size: float, **said: object) -> dict[str, object]:

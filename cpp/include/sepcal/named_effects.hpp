@@ -65,7 +65,6 @@ struct WanderBound {
   std::string unit;                       // of what it is an error of
   double size = 0.0;                      // standard deviation of each component, at most [unit]
   double time_s = 0.0;                    // its correlation time; 0: any
-  bool is_stated = false;                 // the size is a user's own
   std::string port = {};                  // where it comes in, in each component, or
   std::vector<std::string> outputs = {};  // in each of these, or
   std::vector<int> corrections = {};      // as these of the kit's `wandering`

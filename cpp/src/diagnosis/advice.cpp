@@ -93,6 +93,7 @@ std::string implausible_size(const CandidateRoom& room, const Candidate& candida
 
 Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFinding& finding,
                          double least_visibility) {
+  constexpr double nearly_all = 0.9;  // rows held out take no part in the fit
   Objection objection;
   if (!(finding.visibility >= room.visible_from(least_visibility))) {
     objection.reason = fmt::format(
@@ -107,10 +108,10 @@ Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFindin
     if (room.follows_path()) objection.drop = drop_of_adding(room, candidate, fitted);
     if (!objection.reason.empty()) return objection;
     const bool keeps_promise =
-        room.follows_path()
-            ? objection.drop >= finding.predicted_drop
-            : finding.held_out_refitted && finding.held_out_passed &&
-                  finding.held_out_gain >= std::max(objects_from, finding.predicted_drop);
+        room.follows_path() ? objection.drop >= finding.predicted_drop
+                            : finding.held_out_refitted && finding.held_out_passed &&
+                                  finding.held_out_gain >=
+                                      std::max(objects_from, nearly_all * finding.predicted_drop);
     objection.reason = objection_to_fit(room.fitted(), finding, fitted, keeps_promise);
     objection.is_to_fit = !objection.reason.empty();
     if (objection.is_to_fit) return objection;

@@ -39,32 +39,21 @@ double criterion_of_some(const Bench& bench, const Contender& contender) {
   }
 }
 
-/// Whether real fits without some rows predict them better; the finding is told so.
-bool predicts(Bench& bench, const Contender& contender, EffectFinding& finding) {
+/// How real fits without some rows predict them.
+HeldOut hold_out_few(Bench& bench, const Contender& contender) {
   const CandidateRoom& room = bench.room();
   const Columns G = room.columns(contender.candidate, contender.shape).whole;
-  const HeldOut held_out =
-      bench.refits().hold_out(contender.candidate, contender.shape, few_folds(room.fit(), G));
-  if (!held_out.judged || !held_out.passed) return false;
+  return bench.refits().hold_out(contender.candidate, contender.shape, few_folds(room.fit(), G));
+}
+
+void tell_by_fit(const Contender& contender, const HeldOut& held_out, const EffectFinding& surest,
+                 EffectFinding& finding) {
   finding.held_out_before = held_out.before;
   finding.held_out_after = held_out.after;
   finding.held_out_gain = held_out.gain;
   finding.held_out_passed = true;
   finding.held_out_interleaved = true;
   finding.held_out_refitted = true;
-  return true;
-}
-
-/// What a fit with it takes of the RMSE over all outputs.
-double drop_of(const Contender& contender, double rmse_before) {
-  double squares = 0.0;
-  for (const OutputValue& rmse : contender.fit.rmse) squares += rmse.value * rmse.value;
-  const auto outputs = static_cast<double>(contender.fit.rmse.size());
-  return 1.0 - std::sqrt(squares / outputs) / rmse_before;
-}
-
-void tell_by_fit(const Contender& contender, double rmse_before, const EffectFinding& surest,
-                 EffectFinding& finding) {
   finding.status = FindingStatus::found;
   finding.log10_p = surest.log10_p;
   finding.p_value = surest.p_value;
@@ -75,7 +64,7 @@ void tell_by_fit(const Contender& contender, double rmse_before, const EffectFin
     coefficient.estimate = fitted.value;
     coefficient.standard_error = fitted.standard_error;
   }
-  finding.predicted_drop = drop_of(contender, rmse_before);
+  finding.predicted_drop = contender.drop;
   for (auto& [name, shape] : finding.shapes) shape = contender.fit[name].value;
 }
 
@@ -111,17 +100,17 @@ std::vector<Contender> try_on_some_rows(Bench& bench, const Findings& findings,
 }
 
 void admit_bent(Bench& bench, Contest& contest, Findings& findings) {
-  const CandidateRoom& room = bench.room();
-  const double rmse = total_rmse(room.fit().layout, room.fit().residual);
   if (contest.contenders.empty() || !is_far_off(bench, bench.null().test->floor(contest.noise))) {
     return;
   }
-  double least = infinity;
+  double likeliest = infinity;  // by Schwarz's criterion, of what was found
+  double least_left = 1.0;      // of the error
   const EffectFinding* surest = nullptr;
   for (const Contender& contender : contest.contenders) {
     const EffectFinding& finding = finding_of(findings, contender);
     if (finding.status != FindingStatus::found) continue;
-    least = std::min(least, contender.criterion);
+    likeliest = std::min(likeliest, contender.criterion);
+    least_left = std::min(least_left, error_left(contender, finding));
     if (!surest || finding.log10_p < surest->log10_p) surest = &finding;
   }
   if (!surest) return;
@@ -130,11 +119,15 @@ void admit_bent(Bench& bench, Contest& contest, Findings& findings) {
   std::ranges::move(others, std::back_inserter(contest.contenders));
   for (const Contender& contender : contest.contenders) {
     EffectFinding& finding = finding_of(findings, contender);
-    const bool is_better =
-        finding.status != FindingStatus::found && contender.criterion < least - as_likely &&
-        drop_of(contender, rmse) >= objects_from && contender.fit.status == FitStatus::converged;
-    if (is_better && predicts(bench, contender, finding)) {
-      tell_by_fit(contender, rmse, *surest, finding);
+    const bool takes_it = finding.status != FindingStatus::found &&
+                          contender.drop >= objects_from &&
+                          contender.fit.status == FitStatus::converged;
+    const bool is_likelier = contender.criterion < likeliest - as_likely;
+    const double left_at_most = is_likelier ? 1.0 : clearly_less * least_left;
+    if (!takes_it || !(1.0 - contender.drop < left_at_most)) continue;
+    const HeldOut held_out = hold_out_few(bench, contender);
+    if (held_out.judged && held_out.passed && 1.0 - held_out.gain < left_at_most) {
+      tell_by_fit(contender, held_out, *surest, finding);
     }
   }
 }

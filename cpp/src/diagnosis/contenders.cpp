@@ -207,6 +207,10 @@ EffectFinding& finding_of(Findings& findings, const std::string& name) {
 
 }  // namespace
 
+double error_left(const Contender& contender, const EffectFinding& finding) {
+  return std::max(left_out(finding), 1.0 - contender.drop);
+}
+
 bool is_far_simpler(const Candidate& one, const Candidate& other) {
   return 3 * one.coefficients.size() <= other.coefficients.size();
 }
@@ -232,6 +236,11 @@ void fit_all(const Bench& bench, const NoiseMembers& noise, std::vector<Contende
       const CandidateRoom with(fitted, alone);
       contender.minus_two_log_likelihood = minus_two_log_likelihood(bench, noise, with);
       contender.taken = taken_of_residual(bench.room().fit(), with.fit());
+      if (contender.taken.size() > 0) {
+        const LinearisedFit& before = bench.room().fit();
+        contender.drop = 1.0 - total_rmse(before.layout, before.residual - contender.taken) /
+                                   total_rmse(before.layout, before.residual);
+      }
       contender.criterion = contender.minus_two_log_likelihood +
                             schwarz_penalty(contender.candidate, bench.room().fit().layout.count());
     } catch (const Error&) {
@@ -261,19 +270,27 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   }
   if (found.empty()) return nullptr;
   const auto error_left = [&](const Contender* contender) {
-    return left_out(finding_of(findings, contender->candidate.name));
+    return diagnosis::error_left(*contender, finding_of(findings, contender->candidate.name));
   };
   const double most = most_left_out(found, error_left);
-  std::erase_if(found, [&](const Contender* one) { return !(error_left(one) <= most); });
+  const auto speaks_for = [&](const Contender* line, const Contender* curve) {
+    return is_line_of(line->candidate, curve->candidate, true) &&
+           does_nearly_as_well(error_left(line), error_left(curve));
+  };
+  const std::vector<const Contender*> all = found;
+  std::erase_if(found, [&](const Contender* one) {
+    return error_left(one) > most && std::ranges::none_of(all, [&](const Contender* curve) {
+             return error_left(curve) <= most && speaks_for(one, curve);
+           });
+  });
   const auto is_outdone = [&](const Contender* one) {
     return std::ranges::any_of(found, [&](const Contender* other) {
       if (bends_one_of(one->candidate, other->candidate) &&
           error_left(other) <= hardly_more * error_left(one)) {
         return true;  // one cause that is curved
       }
-      const bool follows_noise_too = is_line_of(other->candidate, one->candidate, true);
-      const bool stands_in = is_stand_in_for(one->candidate, other->candidate);
-      if ((follows_noise_too || stands_in) &&
+      if (speaks_for(other, one)) return true;  // which follows noise too
+      if (is_stand_in_for(one->candidate, other->candidate) &&
           does_nearly_as_well(error_left(other), error_left(one))) {
         return true;
       }
@@ -286,27 +303,39 @@ const Contender* put_first(const Contest& contest, const std::vector<std::string
   std::vector<const Contender*> standing;  // noise that nobody knows makes likelihoods sure
   std::ranges::remove_copy_if(found, std::back_inserter(standing), is_outdone);
   if (standing.empty()) standing = found;
-  const Contender* first = *std::ranges::min_element(standing, {}, &Contender::criterion);
+  const auto most_likely_of = [&](const Contender* contender) {  // and of what it speaks for
+    const Contender* best = contender;
+    for (const Contender* curve : found) {
+      if (curve->criterion < best->criterion && speaks_for(contender, curve)) best = curve;
+    }
+    return best;
+  };
+  const auto criterion = [&](const Contender* contender) {
+    return most_likely_of(contender)->criterion;
+  };
+  const Contender* first = *std::ranges::min_element(standing, {}, criterion);
   const auto belief = [&](const Contender* contender) {
     const Candidate& candidate = contender->candidate;
     const bool is_preferred = std::ranges::find(preferred, candidate.name) != preferred.end();
     auto complexity = complexity_of(candidate);  // two lines are simpler than any form of one
     if (is_of_lines(candidate, 2)) complexity = {1, 2, candidate.coefficients.size()};
-    return std::tuple(complexity, candidate.stands_in, !is_preferred, contender->criterion);
+    return std::tuple(complexity, candidate.stands_in, !is_preferred, criterion(contender));
   };
-  const double likely = first->criterion + as_likely;
+  const double likely = criterion(first) + as_likely;
   const double left = hardly_more * error_left(first);
   for (const Contender* contender : standing) {
-    const bool is_as_good = contender->criterion < likely && error_left(contender) <= left;
+    const bool is_as_good = criterion(contender) < likely && error_left(contender) <= left;
     if (is_as_good && belief(contender) < belief(first)) first = contender;
   }
+  const Contender* curve = most_likely_of(first);  // itself, or one that it can't stand for alone
   for (const Contender& contender : contest.contenders) {
     const double more = contender.minus_two_log_likelihood - first->minus_two_log_likelihood;
     if (&contender == first) continue;
+    const bool is_likelier = &contender == curve && more < -as_likely;
     const bool is_as_likely =
         std::abs(more) < as_likely && clearly_less * error_left(&contender) <= error_left(first);
     const bool is_as_good = is_alike(contender, *first) && error_left(&contender) <= left;
-    if (!is_as_likely && !is_as_good) continue;
+    if (!is_likelier && !is_as_likely && !is_as_good) continue;
     finding_of(findings, contender.candidate.name).beside = Beside::equivalent;
   }
   std::ranges::stable_partition(findings, [](const EffectFinding& finding) {

@@ -17,10 +17,12 @@ inline constexpr double as_likely = 9.2;     // in -2 ln L: 1 % of chi-squared's
 inline constexpr double clearly_less = 0.8;  // of the error on rows held out
 inline constexpr double alike = 0.94;  // cosine of 20 deg, between what two take of the residual
 
-/// Whether what leaves so much of the error on rows held out does nearly as well as what leaves the
-/// least of it: that does not leave clearly less, and half of what it takes is taken.
+/// Whether what leaves so much of the error does nearly as well as what leaves the least of it: it
+/// takes nearly all of what that takes, or half of it where that does not leave clearly less.
 inline bool does_nearly_as_well(double left, double least) {
-  return clearly_less * left <= least && 1.0 - left >= 0.5 * (1.0 - least);
+  constexpr double nearly_all = 0.85;
+  const double taken = (1.0 - left) / (1.0 - least);
+  return taken >= nearly_all || (taken >= 0.5 && clearly_less * left <= least);
 }
 
 /// The fit of the model with one more effect.
@@ -30,6 +32,7 @@ struct Contender {
   Fit fit = {};                                // undefined where the criterion is infinite
   double minus_two_log_likelihood = infinity;  // in the contest's noise; infinite: can't be fitted
   double criterion = infinity;  // the same with Schwarz's penalty for coefficients and shapes tried
+  double drop = not_a_number;   // of the RMSE over all outputs, where the fit leaves each something
   Eigen::VectorXd taken = {};   // what the fit takes of the residual (N n_z), in units of that one
 };
 
@@ -39,6 +42,9 @@ struct Contest {
   std::vector<Contender> contenders = {};
   std::map<std::string, Objection> objections = {};  // that were asked for
 };
+
+/// What of the error it leaves, on all rows or on rows held out, whichever is more.
+double error_left(const Contender& contender, const EffectFinding& finding);
 
 /// find_objection(), once an effect.
 const Objection& object(Bench& bench, Contest& contest, const EffectFinding& finding);

@@ -23,6 +23,7 @@
 #include "diagnosis/residual_noise.hpp"
 #include "diagnosis/rivals.hpp"
 #include "diagnosis/unlogged.hpp"
+#include "diagnosis/weighing.hpp"
 #include "numerics/order_statistics.hpp"
 #include "numerics/selection.hpp"
 #include "numerics/tails.hpp"
@@ -48,36 +49,6 @@ void rank(std::vector<EffectFinding>& findings) {
   });
 }
 
-/// What is not found and may take much of the error, as one step has it: the best few, and the best
-/// few of those that are no functions of any form.
-std::vector<EffectFinding*> choose_to_weigh(CandidateRoom& room,
-                                            std::vector<EffectFinding>& findings) {
-  constexpr double worth_a_fit = 0.6 * objects_from;
-  constexpr std::ptrdiff_t most_of_any = 2;
-  constexpr std::ptrdiff_t most_of_simple = 4;
-  std::vector<EffectFinding*> order;
-  for (EffectFinding& finding : findings) {
-    const bool is_open =
-        finding.status == FindingStatus::not_seen || finding.status == FindingStatus::slow_change;
-    if (is_open && finding.held_out_gain > worth_a_fit) order.push_back(&finding);
-  }
-  std::ranges::stable_sort(order, std::ranges::greater(), &EffectFinding::held_out_gain);
-  std::vector<EffectFinding*> chosen;
-  std::ptrdiff_t of_any = 0;
-  std::ptrdiff_t of_simple = 0;
-  for (EffectFinding* finding : order) {
-    const bool simple = is_simple(room.make(finding->name));
-    if (of_any < most_of_any) {
-      ++of_any;
-    } else if (!simple || of_simple == most_of_simple) {
-      continue;
-    }
-    of_simple += simple ? 1 : 0;
-    chosen.push_back(finding);
-  }
-  return chosen;
-}
-
 /// The tail of a trial by its fit: one step may see little in what bends the model.
 void bound_by_fit(const Bench& bench, Trial& trial) {
   if (!bench.instruments()) return;
@@ -89,63 +60,6 @@ void bound_by_fit(const Bench& bench, Trial& trial) {
     bound(tail, trial);
   } catch (const Error&) {
     return;  // no fit takes it
-  }
-}
-
-/// Of what is not found and yet takes much, the simplest of those that leave about as little of the
-/// error on rows held out stands first, the others of these next, as equivalent. Functions of time
-/// of any form foretell noise that wanders too: to stand first they have to leave clearly less.
-void put_simplest_first(CandidateRoom& room, std::vector<EffectFinding>& findings) {
-  constexpr double about = 1.1;
-  constexpr double clearly = 1.2;
-  struct Place {
-    int of_status = 2;
-    bool is_as_good = false;
-    bool stands_in = false;
-    bool is_flexible = false;
-    std::tuple<std::size_t, int, std::size_t> complexity = {};
-    double left = 0.0;
-
-    auto key() const {
-      return std::tuple(of_status, !is_as_good, stands_in, is_flexible, complexity, left);
-    }
-  };
-  const auto of_status = [](const EffectFinding& finding) {
-    return finding.status == FindingStatus::slow_change ? 0
-           : finding.status == FindingStatus::undecided ? 1
-                                                        : 2;
-  };
-  int first = 2;
-  for (const EffectFinding& finding : findings) first = std::min(first, of_status(finding));
-  if (first == 2) return;
-  std::vector<std::pair<Place, EffectFinding>> placed;
-  double of_flexible = infinity;  // the least that is left
-  double of_others = infinity;
-  for (EffectFinding& finding : findings) {
-    Place place{of_status(finding)};
-    if (place.of_status < 2) place.left = left_out(finding);
-    if (place.of_status == first) {
-      const Candidate& candidate = room.make(finding.name);
-      place.stands_in = candidate.stands_in;
-      place.is_flexible = is_flexible_in_time(candidate);
-      place.complexity = complexity_of(candidate);
-      double& least = place.is_flexible ? of_flexible : of_others;
-      least = std::min(least, place.left);
-    }
-    placed.emplace_back(place, std::move(finding));
-  }
-  const bool others_do = of_others <= clearly * of_flexible;
-  const double least = others_do ? of_others : of_flexible;
-  for (auto& [place, finding] : placed) {
-    place.is_as_good = place.of_status == first && place.left <= about * least;
-    place.is_flexible &= others_do;
-  }
-  std::ranges::stable_sort(
-      placed, [](const auto& a, const auto& b) { return a.first.key() < b.first.key(); });
-  findings.clear();
-  for (auto& [place, finding] : placed) {
-    if (place.is_as_good && !findings.empty()) finding.beside = Beside::equivalent;
-    findings.push_back(std::move(finding));
   }
 }
 
@@ -553,7 +467,7 @@ bool Recipe::withdraw() {
 /// rows that lie further apart than noise remembers do not care about its model.
 void Recipe::weigh_held_out() {
   const double significant = std::log10(options_.significance / std::max(1.0, tests()));
-  std::vector<EffectFinding*> chosen = choose_to_weigh(bench_.room(), result_.effects);
+  std::vector<EffectFinding*> chosen = choose_to_weigh(bench_, result_.effects);
   if (is_far_off(bench_, result_.floor)) {  // one step may see little in what explains everything
     for (const Contender& bent : try_on_some_rows(bench_, result_.effects, {})) {
       EffectFinding& finding =
@@ -584,7 +498,7 @@ void Recipe::weigh_held_out() {
   if (has(FindingStatus::found)) {
     rank(result_.effects);
   } else {
-    put_simplest_first(bench_.room(), result_.effects);
+    put_simplest_first(bench_, result_.effects);
     put_line_first();
   }
 }

@@ -239,9 +239,11 @@ InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
           fmt::format("nothing called '{}' wanders; there is: {}", name, fmt::join(names, ", ")));
     }
     known->size = size;
-    known->is_stated = true;
   }
-  for (const WanderBound& bound : bounds_) least_sizes_.push_back(bound.size);
+  for (const WanderBound& bound : bounds_) {
+    const bool may_be_louder = bound.time_s > 0.0 && !sizes.contains(bound.name);
+    gusts_at_least_.push_back(may_be_louder ? bound.size : not_a_number);
+  }
   add_sources(room, kit);
   find_short_noise(known_.rightCols<1>());
 }
@@ -255,8 +257,8 @@ void InstrumentNoise::find_short_noise(const VectorXd& residual) {
   // What is loud over seconds is as loud over half a minute: turbulence has no bound of its own.
   for (std::size_t b = 0; b < bounds_.size(); ++b) {
     WanderBound& bound = bounds_[b];
-    if (bound.time_s == 0.0 || bound.is_stated) continue;
-    bound.size = least_sizes_[b];
+    if (std::isnan(gusts_at_least_[b])) continue;
+    bound.size = gusts_at_least_[b];
     for (std::size_t j = 0; j < short_.size(); ++j) {
       const UsedOutput& output = null_.fit().layout.outputs[j];
       if (output.unit != bound.unit) continue;

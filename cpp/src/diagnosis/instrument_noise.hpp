@@ -106,7 +106,7 @@ class InstrumentNoise {
   std::vector<ShortNoise> short_;  // of each output in them
   Eigen::MatrixXd known_;          // [basis, residual] of the null hypothesis
   std::vector<WanderBound> bounds_;
-  std::vector<double> least_sizes_;  // of those of gusts, which may be louder in this log
+  std::vector<double> gusts_at_least_;  // of each bound; NaN: as stated, not as loud as the log
   std::vector<Source> sources_;
   std::vector<Noise> noises_;
 };

@@ -14,7 +14,9 @@ namespace {
 
 /// About so many rows in blocks that lie evenly over every segment; all where there are no more.
 std::vector<Segment> spread(const std::vector<Segment>& segments, std::size_t most) {
-  constexpr std::size_t block = 200;
+  constexpr std::size_t fewest_blocks = 10;  // two of them fit anything
+  constexpr std::size_t longest_block = 200;
+  const std::size_t block = std::min(longest_block, most / fewest_blocks);
   std::size_t rows = 0;
   for (const Segment& segment : segments) rows += segment.rows();
   if (rows <= most) return segments;
