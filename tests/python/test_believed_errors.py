@@ -91,6 +91,26 @@ def test_a_recorded_tube_is_beside_its_jackknife(tmp_path: Path):
         assert LEAST < result["parameters"][name]["standard_error"] / error < MOST
 
 
+@pytest.mark.parametrize("mount", ["internal", "external"])
+def test_a_recorded_compass_is_beside_its_jackknife(mount: str):
+    """Twenty blocks of a flight of 38 s, each left out in turn; what is at a bound has no error."""
+    blocks = 20
+    compass = sepcal.Magnetometer(field=(19.72, -1.41, 49.44))
+    flight = sepcal.read_csv(find_fixture(f"octocopter_{mount}_mag.csv"))
+    fit = sepcal.fit(compass, flight)
+    names = [name for name in fit.parameters if not fit[name].at_bound]
+    columns = {header: np.asarray(flight[header]) for header in flight}
+    rows = len(columns["time_s"])
+    estimates = []
+    for left_out in np.array_split(np.arange(rows), blocks):
+        rest = {header: np.delete(column, left_out) for header, column in columns.items()}
+        again = sepcal.fit(compass, sepcal.Flight(rest))
+        estimates.append([again[name].value for name in names])
+    expected = np.std(estimates, axis=0) * np.sqrt(blocks - 1)
+    stated = np.array([fit[name].standard_error for name in names])
+    assert np.all((stated / expected > LEAST) & (stated / expected < MOST))
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_as_many_parameters_as_readings_are_not_identifiable(seed: int):
     fit = by_strength(tumbled(seed, rows=9, noise=0.2))
