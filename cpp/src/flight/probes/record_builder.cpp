@@ -170,14 +170,28 @@ void RecordBuilder::consult(Names names) {
   checked_.insert(checked_.end(), names);
 }
 
+/// With the first of its cells that fails the test. A column that has numbers in most of them is
+/// slower than the log, or has gaps: the rows where it has them are a log too.
+std::string RecordBuilder::say_not_used(const Flight::Column& column, std::size_t row,
+                                        const RowTest& is_valid) const {
+  std::string said =
+      fmt::format("column '{}' is not used: {}", column.header, files::describe_cell(column, row));
+  std::size_t valid = 0;
+  rows_.for_each([&](std::size_t at) { valid += is_valid(at) ? 1 : 0; });
+  if (valid == 0) return said;
+  return said + fmt::format(
+                    "; {} of {} rows have a number there, and a log of these rows alone has the "
+                    "column",
+                    valid, rows_.size());
+}
+
 bool RecordBuilder::offer(Names names) {
   if (!has(names)) return false;
   for (const std::string_view name : names) {
     const auto& [column, unit] = logged(name);
     const auto is_valid = [&](std::size_t row) { return files::is_valid(*column, unit, row); };
     if (const auto row = rows_.find_if_not(is_valid)) {
-      note(fmt::format("column '{}' is not used: {}", column->header,
-                       files::describe_cell(*column, *row)));
+      note(say_not_used(*column, *row, is_valid));
       return false;
     }
   }

@@ -89,6 +89,8 @@ class RecordBuilder {
   ProbeReadings finish_readings();
 
  private:
+  std::string say_not_used(const Flight::Column& column, std::size_t row,
+                           const RowTest& is_valid) const;
   void find_quantity(const ProbeQuantity& quantity);
   void choose_rows(const LogChoice& choice);
   void drop_repeats(const std::vector<std::string>& columns);
