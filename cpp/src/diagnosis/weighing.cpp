@@ -29,7 +29,7 @@ struct Standing {
   }
 };
 
-Standing place(Bench& bench, EffectFinding finding) {
+Standing place(Bench& bench, const EffectFinding& finding) {
   const Candidate& candidate = bench.room().make(finding.name);
   return {.finding = finding,
           .left = std::max(left_out(finding), 1.0 - finding.predicted_drop),
