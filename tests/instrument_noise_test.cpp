@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "diagnosis/projection.hpp"
@@ -155,6 +156,64 @@ TEST_CASE("noise that wanders within the bounds is seldom significant, an effect
   }
   CHECK(by_chance <= 19);  // a rate of 5 % does so in 99 of 100 sets of seeds
   CHECK(seen >= 190);
+}
+
+TEST_CASE("what the log rules out excuses nothing, and what wanders less than its bound is noise") {
+  const Index n = 400;
+  constexpr int flights = 200;
+  const auto swing = [&](double period) {
+    VectorXd column(n);
+    for (Index t = 0; t < n; ++t)
+      column[t] = std::sin(2.0 * std::numbers::pi * static_cast<double>(t) / period);
+    return VectorXd(column.normalized());
+  };
+  const VectorXd slow = swing(200.0);  // rows of half a second
+  const VectorXd faster = swing(25.0);
+  const auto tails_of = [&](const VectorXd& measured, bool asks_the_log) {
+    const Bench bench(measured);
+    const DiagnosedFit fitted = fit_constant(bench.record);
+    base::ThreadPool pool(1);
+    diagnosis::CandidateRoom room(fitted, pool);
+    room.orthonormalise();
+    const diagnosis::NullHypothesis null = diagnosis::find_plain_null(room.fit());
+    diagnosis::InstrumentNoise noise(room, fitted.kit, null, {});
+    if (asks_the_log) noise.set_beside(diagnosis::Columns(MatrixXd(faster)));
+    const auto tails =
+        noise.tails({diagnosis::Columns(MatrixXd(slow)), diagnosis::Columns(MatrixXd(faster))});
+    return std::pair(tails[0].log10_p, tails[1].log10_p);
+  };
+  for (const double size : {0.0, 0.03, 0.1, 0.2, 0.3}) {
+    CAPTURE(size);
+    int slow_by_chance = 0;
+    int faster_by_chance = 0;
+    for (int flight = 0; flight < flights; ++flight) {
+      const auto seed = static_cast<std::uint64_t>(flight);
+      const VectorXd steps = white(n, 1.0, 20000 + seed);
+      const double decay = std::exp(-0.5 / 20.0);
+      double wander = size * steps[0];
+      VectorXd z = white(n, 0.1, 30000 + seed);
+      for (Index t = 0; t < n; ++t) {
+        if (t > 0) wander = decay * wander + size * std::sqrt(1.0 - decay * decay) * steps[t];
+        z[t] += wander;
+      }
+      const auto [of_slow, of_faster] = tails_of(z, true);
+      slow_by_chance += of_slow < std::log10(0.05);
+      faster_by_chance += of_faster < std::log10(0.05);
+    }
+    CHECK(slow_by_chance <= 19);
+    CHECK(faster_by_chance <= 19);
+  }
+  constexpr double six_errors = 6.0 * 0.1;
+  int seen_in_bounds = 0;
+  int seen_in_the_log = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const VectorXd with = white(n, 0.1, 40000 + seed) + six_errors * faster;
+    seen_in_bounds += tails_of(with, false).second < std::log10(0.01);
+    seen_in_the_log += tails_of(with, true).second < std::log10(0.01);
+  }
+  CAPTURE(seen_in_bounds);
+  CHECK(seen_in_the_log >= 40);
+  CHECK(seen_in_bounds <= 25);
 }
 
 TEST_CASE("bounds are the caller's where it knows them, and a name must be one") {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "diagnosis/projection.hpp"
 #include "numerics/normal_equations.hpp"
@@ -163,6 +164,12 @@ struct InstrumentNoise::Noise {
     return remove_span(others, white.rightCols<1>()).squaredNorm();
   }
 
+  /// Of the residual, but for a constant, whatever its size.
+  double minus_two_log_likelihood() const {
+    const auto count = static_cast<double>(residual.size());
+    return count * std::log(residual.squaredNorm() / count) - 2.0 * roots.array().log().sum();
+  }
+
   double freedom_beside(Index columns) const {
     return static_cast<double>(residual.size() - basis.cols() - columns);
   }
@@ -246,6 +253,7 @@ InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
   }
   add_sources(room, kit);
   find_short_noise(known_.rightCols<1>());
+  noises_ = make_noises({1.0, 0.5}, whole());
 }
 
 void InstrumentNoise::find_short_noise(const VectorXd& residual) {
@@ -265,7 +273,6 @@ void InstrumentNoise::find_short_noise(const VectorXd& residual) {
       bound.size = std::max(bound.size, std::sqrt(short_[j].variance) * output.scale);
     }
   }
-  noises_ = make_noises({1.0, 0.5});
 }
 
 InstrumentNoise::~InstrumentNoise() = default;
@@ -300,32 +307,74 @@ void InstrumentNoise::add_sources(CandidateRoom& room, const EffectKit& kit) {
 }
 
 /// The noise from row to row alone, and beside it the errors, all or without those that have a
-/// correlation time of their own or these alone, at shares of their bounds.
-std::vector<InstrumentNoise::Noise> InstrumentNoise::make_noises(
-    const std::vector<double>& shares) const {
-  const auto sized = [&](double of_slow, double of_timed) {
-    std::vector<double> sizes;
-    for (const Source& source : sources_) {
-      const WanderBound& bound = bounds_[source.bound];
-      sizes.push_back(bound.size * (bound.time_s > 0.0 ? of_timed : of_slow));
+/// correlation time of their own or these alone, at so many times their sizes.
+std::vector<InstrumentNoise::Noise> InstrumentNoise::make_noises(const std::vector<double>& times,
+                                                                 const Shares& shares) const {
+  const auto sized = [&](const VectorXd& share, double of_slow, double of_timed) {
+    VectorXd sizes = share;
+    for (std::size_t b = 0; b < bounds_.size(); ++b) {
+      sizes[static_cast<Index>(b)] *= bounds_[b].time_s > 0.0 ? of_timed : of_slow;
     }
     return sizes;
   };
   const bool has_timed =
       std::ranges::any_of(bounds_, [](const WanderBound& bound) { return bound.time_s > 0.0; });
+  const VectorXd whole = VectorXd::Ones(static_cast<Index>(bounds_.size()));
   std::vector<Noise> noises;
-  noises.push_back(filter(sized(0.0, 0.0), 0.0));
-  for (const double share : shares) {
-    if (has_timed) noises.push_back(filter(sized(0.0, share), 0.0));
-    for (const double time : correlation_times) noises.push_back(filter(sized(share, share), time));
+  noises.push_back(filter(sized(whole, 0.0, 0.0), 0.0));
+  for (const double size : times) {
+    if (has_timed) noises.push_back(filter(sized(shares.front(), 0.0, size), 0.0));
+    for (std::size_t k = 0; k < correlation_times.size(); ++k) {
+      noises.push_back(filter(sized(shares[k + 1], size, size), correlation_times[k]));
+    }
   }
   if (!has_timed) return noises;
-  for (const double time : correlation_times) noises.push_back(filter(sized(1.0, 0.0), time));
+  for (std::size_t k = 0; k < correlation_times.size(); ++k) {
+    noises.push_back(filter(sized(shares[k + 1], 1.0, 0.0), correlation_times[k]));
+  }
   return noises;
 }
 
-InstrumentNoise::Noise InstrumentNoise::filter(const std::vector<double>& sizes,
-                                               double time_s) const {
+InstrumentNoise::Shares InstrumentNoise::whole() const {
+  return Shares(correlation_times.size() + 1, VectorXd::Ones(static_cast<Index>(bounds_.size())));
+}
+
+/// Of each bound, as far as the residual may wander beside the others: a half is taken while it is
+/// clearly likelier than the whole. For errors with correlation times of their own alone, then
+/// beside those of each correlation time.
+InstrumentNoise::Shares InstrumentNoise::find_shares() const {
+  constexpr double clearly_likelier = 10.0;  // in -2 ln L
+  constexpr double least = 1.0 / 32.0;
+  constexpr double middle = std::numbers::sqrt2 / 2.0;  // of a whole and its half
+  const auto likeliest = [&](bool timed_alone, double time_s) {
+    VectorXd share(bounds_.size());
+    for (std::size_t b = 0; b < bounds_.size(); ++b) {
+      share[static_cast<Index>(b)] = timed_alone && bounds_[b].time_s == 0.0 ? 0.0 : 1.0;
+    }
+    double now = filter(middle * share, time_s).minus_two_log_likelihood();
+    bool is_open = true;
+    while (is_open) {
+      is_open = false;
+      for (double& one : share) {
+        if (!(one > least)) continue;
+        one *= 0.5;
+        const double half = filter(middle * share, time_s).minus_two_log_likelihood();
+        if (half < now - clearly_likelier) {
+          now = half;
+          is_open = true;
+        } else {
+          one *= 2.0;
+        }
+      }
+    }
+    return share;
+  };
+  Shares shares{likeliest(true, 0.0)};
+  for (const double time : correlation_times) shares.push_back(likeliest(false, time));
+  return shares;
+}
+
+InstrumentNoise::Noise InstrumentNoise::filter(const VectorXd& shares, double time_s) const {
   const Index n = rows_.layout.rows;
   const auto outputs = static_cast<Index>(short_.size());
   struct State {
@@ -336,10 +385,12 @@ InstrumentNoise::Noise InstrumentNoise::filter(const std::vector<double>& sizes,
     Index output;
   };
   std::vector<State> states;
-  for (std::size_t s = 0; s < sizes.size(); ++s) {
-    if (!(sizes[s] > 0.0)) continue;
-    const double own = bounds_[sources_[s].bound].time_s;
-    states.push_back({sizes[s] * sizes[s], own > 0.0 ? own : time_s, 0.0, &sources_[s].slopes, 0});
+  for (const Source& source : sources_) {
+    const WanderBound& bound = bounds_[source.bound];
+    const double size = shares[static_cast<Index>(source.bound)] * bound.size;
+    if (!(size > 0.0)) continue;
+    const double time = bound.time_s > 0.0 ? bound.time_s : time_s;
+    states.push_back({size * size, time, 0.0, &source.slopes, 0});
   }
   for (Index j = 0; j < outputs; ++j) {
     const ShortNoise& own = short_[static_cast<std::size_t>(j)];
@@ -399,6 +450,7 @@ void InstrumentNoise::set_beside(const Columns& columns) {
   MatrixXd all(known_.rows(), known_.cols() - 1 + reduced.cols());
   all << known_.leftCols(known_.cols() - 1), reduced;
   find_short_noise(remove_span(orthonormal_basis(std::move(all)), known_.rightCols<1>()));
+  noises_ = make_noises({1.0, 0.5}, find_shares());
   for (Noise& noise : noises_) {
     noise.left = noise.left_beside(noise.explained_by(noise.whiten_beyond(reduced)));
   }
@@ -485,7 +537,7 @@ double InstrumentNoise::excuse(const Columns& candidate, double log10_wanted, do
   const MatrixXd reduced = reduce(candidate);
   for (int doubled = 0; doubled <= doublings; ++doubled) {
     const double times = std::ldexp(least, doubled);
-    for (const Noise& noise : make_noises({times})) {
+    for (const Noise& noise : make_noises({times}, whole())) {
       const numerics::ExplainedSquares by = noise.explained_by(noise.whiten_beyond(reduced));
       if (noise.log10_tail(by, noise.left_beside(by)) > log10_wanted) return times;
     }

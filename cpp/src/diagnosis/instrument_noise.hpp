@@ -93,8 +93,13 @@ class InstrumentNoise {
 
   void add_sources(CandidateRoom& room, const EffectKit& kit);
   void find_short_noise(const Eigen::VectorXd& residual);
-  std::vector<Noise> make_noises(const std::vector<double>& shares) const;
-  Noise filter(const std::vector<double>& sizes, double time_s) const;
+  /// Of each bound, for each form of noise.
+  using Shares = std::vector<Eigen::VectorXd>;
+
+  Shares whole() const;
+  Shares find_shares() const;
+  std::vector<Noise> make_noises(const std::vector<double>& times, const Shares& shares) const;
+  Noise filter(const Eigen::VectorXd& shares, double time_s) const;
   Eigen::MatrixXd reduce(const Columns& columns) const;
   /// [tangent, residual] of another fit, in this one's units; none where it leaves nothing of an
   /// output.

@@ -40,7 +40,7 @@ class StudyOptions:
 
     seeds: int = 40  # of each effect and size
     null_seeds: int = 100  # of each probe and noise, with nothing hidden
-    sigmas: tuple[float, ...] = (3.0, 5.0, 7.0, 10.0)
+    sigmas: tuple[float, ...] = (5.0, 10.0, 20.0, 50.0)
     first_seed: int = 0
     processes: int | None = None  # None: one a core
 
@@ -79,7 +79,7 @@ def _tasks(options: StudyOptions) -> Iterable[tuple[str, tuple[Any, ...]]]:
                 yield "null", (probe, noise, seed)
         yield from (("decoys", (probe, seed)) for seed in seeds)
     for pair in PAIRS:
-        factors = tuple(factor_for(case, 7.0) for case in pair)
+        factors = tuple(factor_for(case, 30.0) for case in pair)
         yield from (("pairs", (pair, factors, seed)) for seed in seeds)
     for case in INVISIBLE:
         yield from (("invisible", (case, seed)) for seed in seeds)

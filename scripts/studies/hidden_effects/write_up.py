@@ -59,7 +59,9 @@ An effect is hidden in a simulated flight of two minutes, 400 to 1,200 rows, by 
 shares no code with the effects; the probe is calibrated without it and the calibration diagnosed.
 A size of s sigmas is a noncentrality of s^2: what the best fit without the effect leaves of a
 flight without noise, in variances of the noise. "First": the true effect comes first, or would do
-as well instead of what does. "Found": so, or among those found (Holm p < 0.05, held out).
+as well instead of what does. "Found": so, or among those found (Holm p < 0.05, held out). What
+changes as slowly as an instrument's errors wander, and by less, is no finding, however many sigmas
+it has: [how far that is](diagnosis.md#how-far-instruments-wander).
 Seeds count from {options.first_seed}.
 
 ![share of flights against size]({picture})"""
@@ -122,7 +124,7 @@ def _others(rows: dict[str, list[Row]]) -> str:
 
     body = []
     for effects, chosen in by("pairs", "effects"):
-        what = f"two at 7 sigmas: {effects}"
+        what = f"two at 30 sigmas: {effects}"
         both = _rate(chosen, lambda row: row["both"] and not row["third"])
         body.append([what, "both are added and no third", both])
     decoys = rows["decoys"]
@@ -191,6 +193,8 @@ def _draw(rows: list[Row], file: Path) -> None:
             shares = [sum(row[key] for row in some) / len(some) for some in chosen]
             axes.plot(sizes, shares, style, marker="o", markersize=3, label=f"{probe}, {key}")
     axes.axhline(0.9, color="0.8", linewidth=0.8)
-    axes.set(xlabel="size of the hidden effect [sigmas]", ylabel="share of flights", ylim=(0, 1.02))
+    axes.set(xlabel="size of the hidden effect [sigmas]", xscale="log", xticks=sizes)
+    axes.set(xticklabels=[f"{size:g}" for size in sizes], ylabel="share of flights")
+    axes.set(ylim=(0, 1.02))
     axes.legend(frameon=False, fontsize=8)
     figure.savefig(file)
