@@ -187,14 +187,16 @@ def _draw(rows: list[Row], file: Path) -> None:
     sizes = _sizes(rows)
     figure = Figure(figsize=(6.4, 3.6), layout="constrained")
     axes = figure.add_subplot()
-    for probe in dict.fromkeys(row["probe"] for row in rows):
+    for number, probe in enumerate(dict.fromkeys(row["probe"] for row in rows)):
         for key, style in (("first", "--"), ("found", "-")):
             chosen = [[r for r in rows if r["probe"] == probe and r["sigmas"] == s] for s in sizes]
             shares = [sum(row[key] for row in some) / len(some) for some in chosen]
-            axes.plot(sizes, shares, style, marker="o", markersize=3, label=f"{probe}, {key}")
+            label = f"{probe}, {key}"
+            axes.plot(sizes, shares, f"C{number}o{style}", markersize=3, label=label)
     axes.axhline(0.9, color="0.8", linewidth=0.8)
     axes.set(xlabel="size of the hidden effect [sigmas]", xscale="log", xticks=sizes)
     axes.set(xticklabels=[f"{size:g}" for size in sizes], ylabel="share of flights")
     axes.set(ylim=(0, 1.02))
+    axes.minorticks_off()
     axes.legend(frameon=False, fontsize=8)
     figure.savefig(file)
