@@ -71,22 +71,31 @@ VectorXd white(Index n, double size, std::uint64_t seed) {
   return VectorXd::NullaryExpr(n, [&] { return normal(generator); });
 }
 
-TEST_CASE("a tail is that of generalised least squares in the covariance") {
-  const Index n = 300;
-  VectorXd z = white(n, 0.1, 1);
-  for (Index t = 0; t < n; ++t) z[t] += 0.4 * std::sin(0.05 * static_cast<double>(t));
-  const Bench bench(z);
+/// What is asked of the noise of a fit to these readings.
+template <class Ask>
+auto ask_noise(const VectorXd& measured, Ask ask) {
+  const Bench bench(measured);
   const DiagnosedFit fitted = fit_constant(bench.record);
   base::ThreadPool pool(1);
   diagnosis::CandidateRoom room(fitted, pool);
   room.orthonormalise();
   const diagnosis::NullHypothesis null = diagnosis::find_plain_null(room.fit());
-  const diagnosis::InstrumentNoise noise(room, fitted.kit, null, {});
+  diagnosis::InstrumentNoise noise(room, fitted.kit, null, {});
+  return ask(noise);
+}
 
+double log10_tail(const diagnosis::InstrumentNoise& noise, const VectorXd& column) {
+  return noise.tails({diagnosis::Columns(MatrixXd(column))}).front().log10_p;
+}
+
+TEST_CASE("a tail is that of generalised least squares in the covariance") {
+  const Index n = 300;
+  VectorXd z = white(n, 0.1, 1);
+  for (Index t = 0; t < n; ++t) z[t] += 0.4 * std::sin(0.05 * static_cast<double>(t));
   VectorXd line(n);
   for (Index t = 0; t < n; ++t) line[t] = static_cast<double>(t) - 0.5 * static_cast<double>(n - 1);
   line.normalize();
-  const double found = noise.tails({diagnosis::Columns(MatrixXd(line))}).front().log10_p;
+  const double found = ask_noise(z, [&](const auto& noise) { return log10_tail(noise, line); });
 
   // The same over every noise of the set, by dense Cholesky factors.
   const VectorXd e = z.array() - z.mean();
@@ -140,14 +149,8 @@ TEST_CASE("noise that wanders within the bounds is seldom significant, an effect
     VectorXd line(n);
     for (Index t = 0; t < n; ++t) line[t] = static_cast<double>(t) - 0.5 * (n - 1.0);
     const auto tail_of = [&](const VectorXd& measured) {
-      const Bench bench(measured);
-      const DiagnosedFit fitted = fit_constant(bench.record);
-      base::ThreadPool pool(1);
-      diagnosis::CandidateRoom room(fitted, pool);
-      room.orthonormalise();
-      const diagnosis::NullHypothesis null = diagnosis::find_plain_null(room.fit());
-      const diagnosis::InstrumentNoise noise(room, fitted.kit, null, {});
-      return noise.tails({diagnosis::Columns(MatrixXd(line.normalized()))}).front().log10_p;
+      return ask_noise(measured,
+                       [&](const auto& noise) { return log10_tail(noise, line.normalized()); });
     };
     by_chance += tail_of(z) < std::log10(0.05);
     const VectorXd with =
@@ -170,17 +173,10 @@ TEST_CASE("what the log rules out excuses nothing, and what wanders less than it
   const VectorXd slow = swing(200.0);  // rows of half a second
   const VectorXd faster = swing(25.0);
   const auto tails_of = [&](const VectorXd& measured, bool asks_the_log) {
-    const Bench bench(measured);
-    const DiagnosedFit fitted = fit_constant(bench.record);
-    base::ThreadPool pool(1);
-    diagnosis::CandidateRoom room(fitted, pool);
-    room.orthonormalise();
-    const diagnosis::NullHypothesis null = diagnosis::find_plain_null(room.fit());
-    diagnosis::InstrumentNoise noise(room, fitted.kit, null, {});
-    if (asks_the_log) noise.set_beside(diagnosis::Columns(MatrixXd(faster)));
-    const auto tails =
-        noise.tails({diagnosis::Columns(MatrixXd(slow)), diagnosis::Columns(MatrixXd(faster))});
-    return std::pair(tails[0].log10_p, tails[1].log10_p);
+    return ask_noise(measured, [&](auto& noise) {
+      if (asks_the_log) noise.set_beside(diagnosis::Columns(MatrixXd(faster)));
+      return std::pair(log10_tail(noise, slow), log10_tail(noise, faster));
+    });
   };
   for (const double size : {0.0, 0.03, 0.1, 0.2, 0.3}) {
     CAPTURE(size);
