@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 
 #include "diagnosis/projection.hpp"
 #include "numerics/normal_equations.hpp"
@@ -340,17 +341,20 @@ InstrumentNoise::Shares InstrumentNoise::whole() const {
 }
 
 /// Of each bound, as far as the residual may wander beside the others: a half is taken while it is
-/// clearly likelier than the whole. For errors with correlation times of their own alone, then
-/// beside those of each correlation time.
+/// clearly likelier than the whole. Gusts have many scales, for which one process stands in:
+/// where they are loud nothing is ruled out. For errors with correlation times of their own
+/// alone, then beside those of each correlation time.
 InstrumentNoise::Shares InstrumentNoise::find_shares() const {
   constexpr double clearly_likelier = 10.0;  // in -2 ln L
   constexpr double least = 1.0 / 32.0;
+  constexpr double loud = 0.5;
   constexpr double middle = std::numbers::sqrt2 / 2.0;  // of a whole and its half
   const auto likeliest = [&](bool timed_alone, double time_s) {
     VectorXd share(bounds_.size());
     for (std::size_t b = 0; b < bounds_.size(); ++b) {
       share[static_cast<Index>(b)] = timed_alone && bounds_[b].time_s == 0.0 ? 0.0 : 1.0;
     }
+    const VectorXd first = share;
     double now = filter(middle * share, time_s).minus_two_log_likelihood();
     bool is_open = true;
     while (is_open) {
@@ -367,6 +371,10 @@ InstrumentNoise::Shares InstrumentNoise::find_shares() const {
         }
       }
     }
+    const bool are_loud = std::ranges::any_of(std::views::iota(0UL, bounds_.size()), [&](auto b) {
+      return bounds_[b].time_s > 0.0 && share[static_cast<Index>(b)] >= loud;
+    });
+    if (are_loud) return first;
     return share;
   };
   Shares shares{likeliest(true, 0.0)};
