@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 
 #include "diagnosis/projection.hpp"
 #include "numerics/normal_equations.hpp"
@@ -341,44 +340,46 @@ InstrumentNoise::Shares InstrumentNoise::whole() const {
 }
 
 /// Of each bound, as far as the residual may wander beside the others: a half is taken while it is
-/// clearly likelier than the whole. Gusts have many scales, for which one process stands in:
-/// where they are loud nothing is ruled out. For errors with correlation times of their own
-/// alone, then beside those of each correlation time.
-InstrumentNoise::Shares InstrumentNoise::find_shares() const {
+/// clearly likelier than the whole. Gusts have many scales, for which one process stands in: where
+/// they are loud nothing is ruled out.
+VectorXd InstrumentNoise::find_share(const VectorXd& whole, double time_s) const {
   constexpr double clearly_likelier = 10.0;  // in -2 ln L
   constexpr double least = 1.0 / 32.0;
   constexpr double loud = 0.5;
   constexpr double middle = std::numbers::sqrt2 / 2.0;  // of a whole and its half
-  const auto likeliest = [&](bool timed_alone, double time_s) {
-    VectorXd share(bounds_.size());
-    for (std::size_t b = 0; b < bounds_.size(); ++b) {
-      share[static_cast<Index>(b)] = timed_alone && bounds_[b].time_s == 0.0 ? 0.0 : 1.0;
-    }
-    const VectorXd first = share;
-    double now = filter(middle * share, time_s).minus_two_log_likelihood();
-    bool is_open = true;
-    while (is_open) {
-      is_open = false;
-      for (double& one : share) {
-        if (!(one > least)) continue;
-        one *= 0.5;
-        const double half = filter(middle * share, time_s).minus_two_log_likelihood();
-        if (half < now - clearly_likelier) {
-          now = half;
-          is_open = true;
-        } else {
-          one *= 2.0;
-        }
+  VectorXd share = whole;
+  double now = filter(middle * share, time_s).minus_two_log_likelihood();
+  bool is_open = true;
+  while (is_open) {
+    is_open = false;
+    for (double& one : share) {
+      if (!(one > least)) continue;
+      one *= 0.5;
+      const double half = filter(middle * share, time_s).minus_two_log_likelihood();
+      if (half < now - clearly_likelier) {
+        now = half;
+        is_open = true;
+      } else {
+        one *= 2.0;
       }
     }
-    const bool are_loud = std::ranges::any_of(std::views::iota(0UL, bounds_.size()), [&](auto b) {
-      return bounds_[b].time_s > 0.0 && share[static_cast<Index>(b)] >= loud;
-    });
-    if (are_loud) return first;
-    return share;
-  };
-  Shares shares{likeliest(true, 0.0)};
-  for (const double time : correlation_times) shares.push_back(likeliest(false, time));
+  }
+  for (std::size_t b = 0; b < bounds_.size(); ++b) {
+    if (bounds_[b].time_s > 0.0 && share[static_cast<Index>(b)] >= loud) return whole;
+  }
+  return share;
+}
+
+/// For errors with correlation times of their own alone, then beside those of each correlation
+/// time.
+InstrumentNoise::Shares InstrumentNoise::find_shares() const {
+  VectorXd all = VectorXd::Ones(static_cast<Index>(bounds_.size()));
+  Shares shares;
+  for (const double time : correlation_times) shares.push_back(find_share(all, time));
+  for (std::size_t b = 0; b < bounds_.size(); ++b) {
+    if (bounds_[b].time_s == 0.0) all[static_cast<Index>(b)] = 0.0;
+  }
+  shares.insert(shares.begin(), find_share(all, 0.0));
   return shares;
 }
 

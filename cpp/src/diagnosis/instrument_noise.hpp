@@ -97,6 +97,7 @@ class InstrumentNoise {
   using Shares = std::vector<Eigen::VectorXd>;
 
   Shares whole() const;
+  Eigen::VectorXd find_share(const Eigen::VectorXd& whole, double time_s) const;
   Shares find_shares() const;
   std::vector<Noise> make_noises(const std::vector<double>& times, const Shares& shares) const;
   Noise filter(const Eigen::VectorXd& shares, double time_s) const;
