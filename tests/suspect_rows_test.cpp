@@ -89,6 +89,15 @@ TEST_CASE("readings that jump away and come back, one or some, in a column with 
   CHECK(look(values, "throttle").empty());
 }
 
+TEST_CASE("of two spikes with a good reading between, both are found") {
+  for (const double second : {7.0, -7.0, 2.5}) {
+    std::vector<double> values = swing();
+    values[200] += 3;
+    values[202] += second;
+    CHECK(look(values, "altitude_m").spikes == RowList{200, 202});
+  }
+}
+
 TEST_CASE("a step stays, and so do steps that come in pairs") {
   std::vector<double> values = swing();
   for (std::size_t row = 500; row < rows; ++row) values[row] += 15;

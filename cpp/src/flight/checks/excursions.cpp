@@ -49,12 +49,25 @@ double usual_near(const std::vector<double>& errors, std::size_t k) {
   return select_quantile(near, 0.85);
 }
 
+/// How far it is from the reading beside k, on that side, to the next; to the one beyond where the
+/// next is off by itself, as of two spikes with a good reading between.
+double way_beside(const std::vector<double>& x, const std::vector<double>& errors, std::size_t k,
+                  int side, double off) {
+  const auto at = [&](int away) {
+    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + side * away);
+  };
+  const bool has_beyond = side < 0 ? k >= 3 : k + 3 < x.size();
+  const bool is_off = has_beyond && std::abs(errors[at(2)]) > off;
+  return std::abs(x[at(1)] - x[at(is_off ? 3 : 2)]);
+}
+
 /// A spike goes and comes back: it stands on one side of both neighbours, by half of its error and
-/// by twice the way to these from the next, which a turn is not.
-bool is_spike(const std::vector<double>& x, const std::vector<double>& errors, std::size_t k) {
+/// by twice the way from these to the next, which a turn does not.
+bool is_spike(const std::vector<double>& x, const std::vector<double>& errors, std::size_t k,
+              double off) {
   const double before = x[k] - x[k - 1];
   const double after = x[k] - x[k + 1];
-  const double way = std::max(std::abs(x[k - 1] - x[k - 2]), std::abs(x[k + 2] - x[k + 1]));
+  const double way = std::max(way_beside(x, errors, k, -1, off), way_beside(x, errors, k, 1, off));
   const double least = std::max(0.5 * std::abs(errors[k]), 2 * way);
   return before * after > 0 && std::min(std::abs(before), std::abs(after)) > least;
 }
@@ -80,7 +93,7 @@ void find_spikes(const std::vector<Readings>& stretches, double scale, const Man
     for (std::size_t k = 2; k + 2 < part.rows.size(); ++k) {
       const double error = std::abs(part.errors[k]);
       all += error * error;
-      if (!(error > 8 * scale) || !is_spike(part.values, part.errors, k)) continue;
+      if (!(error > 8 * scale) || !is_spike(part.values, part.errors, k, 8 * scale)) continue;
       if (!(error > 6 * usual_near(part.errors, k)) || is_rest(part, k, manner)) continue;
       add_rows(found.spikes, part, k, k + 1);
       found.farthest_spike = std::max(found.farthest_spike, error);
