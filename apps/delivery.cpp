@@ -1,24 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "delivery.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <utility>
 
-#include "sepcal/error.hpp"
-
 namespace sepcal::app {
-
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw Error("standard output can't be written; is the disc full?");
-  }
-}
-
-void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-}
 
 int exit_code(FitStatus status) {
   switch (status) {
@@ -44,7 +29,7 @@ void Delivery::deliver(const std::string& json, const std::string& page) {
     file_->commit();
   }
   print(wishes_.json ? json : page);
-  if (file_ && !wishes_.json) print(fmt::format("wrote {}\n", wishes_.output));
+  if (file_ && !wishes_.json) print(base::page("wrote {}\n", wishes_.output));
 }
 
 }  // namespace sepcal::app

@@ -11,13 +11,9 @@
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/output_file.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
-
-/// Prints a result and makes sure that it arrived: a full disc behind a redirection is an error.
-void print(const std::string& text);
-
-void print_notes(const std::vector<std::string>& notes);
 
 inline Detail detail_of(bool explain) { return explain ? Detail::explained : Detail::brief; }
 
@@ -38,7 +34,7 @@ class Delivery {
 
   template <class Result>
   void deliver(const Result& result) {
-    print_notes(result.notes);
+    tell_notes(result.notes);
     deliver(to_json(result), to_text(result, detail_of(wishes_.explain)));
   }
 

@@ -6,6 +6,7 @@
 
 #include <map>
 
+#include "base/thread_pool.hpp"
 #include "option_values.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
@@ -19,8 +20,6 @@ void refuse_repeated(const std::string& option, const std::map<std::string, Valu
   if (given.contains(name))
     throw Error(fmt::format("{} {} is given twice; keep one", option, name));
 }
-
-constexpr int most_threads = 1024;
 
 void add_repeated(CLI::App& fit, const std::string& name, std::vector<std::string>& texts,
                   const std::string& form, const std::string& description) {
@@ -97,7 +96,7 @@ void FitArguments::add_to(CLI::App& fit) {
                  "relative change of R at which R and the parameters have settled")
       ->type_name("T")
       ->capture_default_str();
-  add_whole_number(fit, "--threads", engine.threads, "threads; 0: one a core", most_threads);
+  add_whole_number(fit, "--threads", engine.threads, "threads; 0: one a core", base::most_threads);
   log_.add_to(fit);
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "progress.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
+
+#include "terminal.hpp"
 
 namespace sepcal::app {
 
+using base::Page;
+using base::page;
 using namespace std::chrono_literals;
 
 namespace {
@@ -26,24 +29,18 @@ void ProgressLine::show(std::string_view task, double fraction) {
   }
   if (now < next_) return;
   next_ = now + (terminal_ ? Clock::duration(100ms) : between_lines);
-  std::string line = fmt::format("{}: {:3.0f} %", task, 100.0 * fraction);
+  Page line = page("{}: {:3.0f} %", task, 100.0 * fraction);
   const double elapsed = std::chrono::duration<double>(now - begun_).count();
   if (fraction > 0.0 && elapsed > 1.0) {
-    line += fmt::format(", about {:.0f} s left", elapsed * (1.0 - fraction) / fraction);
+    line += page(", about {:.0f} s left", elapsed * (1.0 - fraction) / fraction);
   }
-  if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", line);
-    shown_ = true;
-  } else {
-    fmt::print(stderr, "{}\n", line);
-  }
-  std::fflush(stderr);
+  tell(terminal_ ? "\r\033[K" + line : line + "\n");
+  shown_ = terminal_;
 }
 
 void ProgressLine::clear() {
   if (!shown_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  tell("\r\033[K");
   shown_ = false;
 }
 

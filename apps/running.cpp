@@ -7,7 +7,6 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <csignal>
-#include <cstdio>
 #include <new>
 
 #include "interrupt.hpp"
@@ -15,8 +14,12 @@
 #include "sepcal/option_error.hpp"
 #include "sepcal/solver_log.hpp"
 #include "sepcal/stop.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
+
+using base::page;
+
 namespace {
 
 constexpr int bad_usage = 2;
@@ -65,7 +68,7 @@ std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
 int refuse_usage(const CLI::App& cli, const CLI::ParseError& error) {
   std::string command = cli.get_name();
   for (const CLI::App* verb : cli.get_subcommands()) command += " " + verb->get_name();
-  fmt::print(stderr, "{}: {} (see {} --help)\n", cli.get_name(), describe(cli, error), command);
+  tell(page("{}: {} (see {} --help)\n", cli.get_name(), describe(cli, error), command));
   return bad_usage;
 }
 
@@ -95,14 +98,14 @@ int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perfor
   }
 
   const auto refuse = [&](const std::string& what) {
-    fmt::print(stderr, "{}: {}\n", cli.get_name(), what);
+    tell(page("{}: {}\n", cli.get_name(), what));
     return bad_usage;
   };
   try {
     const StopScope scope = heed_interrupts(cli.get_name());
     return perform();
   } catch (const Stopped&) {
-    fmt::print(stderr, "{}: stopped by Ctrl-C; no file was written\n", cli.get_name());
+    tell(page("{}: stopped by Ctrl-C; no file was written\n", cli.get_name()));
     return interrupted;
   } catch (const std::bad_alloc&) {
     return refuse("memory ran out; take fewer --samples or --rows, or a shorter log");

@@ -4,7 +4,7 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <cstdio>
+
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -22,8 +22,11 @@
 #include "sepcal/simulation/aircraft.hpp"
 #include "sepcal/simulation/truth.hpp"
 #include "simulation_arguments.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
+using base::page;
+
 namespace {
 
 std::vector<std::string> split_names(const std::string& text) {
@@ -309,7 +312,7 @@ class AircraftApp {
     if (diagnosis_.adds()) {
       const StepwiseAircraft result = diagnose_aircraft_stepwise(base, flight, options);
       line.clear();
-      print_notes(result.fitted.notes);
+      tell_notes(result.fitted.notes);
       delivery.deliver(to_json(result), to_text(result, detail_of(wishes_.explain)));
       const int fitted = exit_code(result.fitted.fit.status);
       return fitted != 0 ? fitted : exit_code(result.course.last.diagnosis.verdict);
@@ -333,7 +336,7 @@ class AircraftApp {
     const AircraftFit base = read_aircraft_fit(base_);
     const Applied applied = apply_aircraft_to_file(
         base, flight_, wishes_.output, parse_deviations("--process-noise", process_noise_));
-    print_notes(applied.notes);
+    tell_notes(applied.notes);
     print(wishes_.json ? to_json(applied, base) : to_text(applied, base));
     return 0;
   }
@@ -347,11 +350,11 @@ class AircraftApp {
     const AircraftFit base = read_aircraft_fit(base_);
     OutputFile output(wishes_.output);
     const TrackedAircraft tracked = track_aircraft(base, read_flight(), options);
-    print_notes(tracked.notes);
+    tell_notes(tracked.notes);
     write_csv(tracked, output);
     output.commit();
     print(wishes_.json ? to_json(tracked)
-                       : to_text(tracked) + fmt::format("wrote {}\n", wishes_.output));
+                       : to_text(tracked) + page("wrote {}\n", wishes_.output).text());
     return 0;
   }
 
@@ -376,7 +379,7 @@ class AircraftApp {
     write_csv(flight, output.stream());
     output.flush();
     output.commit();
-    print(wishes_.json ? flown : fmt::format("wrote {}: {} rows\n", wishes_.output, flight.rows()));
+    print(wishes_.json ? flown : page("wrote {}: {} rows\n", wishes_.output, flight.rows()).text());
     return 0;
   }
 
@@ -407,12 +410,11 @@ class AircraftApp {
 }  // namespace
 }  // namespace sepcal::app
 
-int main(int argc, char** argv) try {
-  CLI::App cli("Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.",
-               "sepcal-aircraft");
-  const sepcal::app::AircraftApp app(cli);
-  return sepcal::app::run(cli, argc, argv, [&] { return app.perform(); });
-} catch (...) {  // before the command line is there
-  std::fputs("sepcal-aircraft: memory ran out\n", stderr);
-  return 2;
+int main(int argc, char** argv) {
+  return sepcal::app::start("sepcal-aircraft", [&] {
+    CLI::App cli("Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.",
+                 "sepcal-aircraft");
+    const sepcal::app::AircraftApp app(cli);
+    return sepcal::app::run(cli, argc, argv, [&] { return app.perform(); });
+  });
 }

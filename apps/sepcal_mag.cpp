@@ -6,6 +6,7 @@
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/simulation/truth.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -105,6 +106,8 @@ class Magnetometer final : public Instrument {
 }  // namespace sepcal::app
 
 int main(int argc, char** argv) {
-  sepcal::app::Magnetometer magnetometer;
-  return sepcal::app::run(magnetometer, argc, argv);
+  return sepcal::app::start("sepcal-mag", [&] {
+    sepcal::app::Magnetometer magnetometer;
+    return sepcal::app::run(magnetometer, argc, argv);
+  });
 }

@@ -9,6 +9,7 @@
 #include "option_values.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/simulation/truth.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -98,6 +99,8 @@ class Pitot final : public Instrument {
 }  // namespace sepcal::app
 
 int main(int argc, char** argv) {
-  sepcal::app::Pitot pitot;
-  return sepcal::app::run(pitot, argc, argv);
+  return sepcal::app::start("sepcal-pitot", [&] {
+    sepcal::app::Pitot pitot;
+    return sepcal::app::run(pitot, argc, argv);
+  });
 }

@@ -25,8 +25,12 @@
 #include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/read_as.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
+
+using base::page;
+
 Flight Verbs::read_flight(int threads) const { return read_flight(arguments_.flight, threads); }
 
 Flight Verbs::read_flight(const std::string& file, int threads) const {
@@ -62,7 +66,7 @@ Verbs::Subject Verbs::read_subject() const {
   }
   std::vector<std::string> notes;
   Flight joined = rejoin_flights(calibration, read_flights(), notes);
-  print_notes(notes);
+  tell_notes(notes);
   return {std::move(calibration), std::move(joined)};
 }
 
@@ -158,7 +162,7 @@ int Verbs::diagnose(StepwiseOptions options, bool adds) const {
     StepwiseCalibration result = diagnose_stepwise(base, flight, {}, options);
     find_departures(result.calibration, flight);
     line.clear();
-    print_notes(result.calibration.notes);
+    tell_notes(result.calibration.notes);
     delivery.deliver(to_json(result), to_text(result, detail_of(arguments_.explain)));
     const int fitted = exit_code(result.calibration.fit.status);
     return fitted != 0 ? fitted : exit_code(result.course.last.diagnosis.verdict);
@@ -194,7 +198,7 @@ int Verbs::apply() const {
       [&](double fraction) { line.show("reading " + arguments_.flight, fraction); },
       arguments_.stream);
   line.clear();
-  print_notes(applied.notes);
+  tell_notes(applied.notes);
   print(arguments_.json ? to_json(applied, calibration)
                         : to_text(applied, calibration, detail_of(arguments_.explain)));
   return 0;
@@ -210,7 +214,7 @@ int Verbs::export_to(ExportOptions options) const {
   const Exported exported =
       export_to_file(calibration, flight ? &*flight : nullptr, options, arguments_.output);
   line.clear();
-  print_notes(exported.notes);
+  tell_notes(exported.notes);
   print(arguments_.json ? to_json(exported, arguments_.output)
                         : to_text(exported, arguments_.output));
   return 0;
@@ -238,10 +242,9 @@ int Verbs::simulate(SimulationOrder order) const {
   if (arguments_.json) {
     print(simulation.truth);
   } else {
-    print(fmt::format("wrote {}: {} rows\n", arguments_.output, simulation.flight.rows()));
+    print(page("wrote {}: {} rows\n", arguments_.output, simulation.flight.rows()));
     if (!arguments_.truth.empty()) {
-      print(
-          fmt::format("{} {}: the true parameters\n", given ? "read" : "wrote", arguments_.truth));
+      print(page("{} {}: the true parameters\n", given ? "read" : "wrote", arguments_.truth));
     }
   }
   return 0;

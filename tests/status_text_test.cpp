@@ -38,27 +38,27 @@ TEST_CASE("sentences of one kind keep their order") {
 }
 
 TEST_CASE("a brief page has three sentences, each within a line") {
-  CHECK(sentence_lines("", Detail::brief) == "");
-  CHECK(sentence_lines("a; b; c", Detail::brief) == "  a\n  b\n  c\n");
-  CHECK(sentence_lines("a; b; c; d", Detail::brief) ==
+  CHECK(sentence_lines("", Detail::brief).text() == "");
+  CHECK(sentence_lines("a; b; c", Detail::brief).text() == "  a\n  b\n  c\n");
+  CHECK(sentence_lines("a; b; c; d", Detail::brief).text() ==
         "  a\n  b\n  c\n  ... more with --explain\n");
   const std::string sentence = "a and b are hard to tell apart: " + long_reason;
-  CHECK(sentence_lines(sentence, Detail::brief) ==
+  CHECK(sentence_lines(sentence, Detail::brief).text() ==
         "  a and b are hard to tell apart\n  ... more with --explain\n");
-  CHECK(sentence_lines("short: " + long_reason, Detail::brief) == "  short: " + long_reason + "\n");
+  CHECK(sentence_lines("short: " + long_reason, Detail::brief).text() == "  short: " + long_reason + "\n");
 }
 
 TEST_CASE("explained, everything is there") {
   const std::string sentence = "a and b are hard to tell apart: " + long_reason;
-  CHECK(sentence_lines("a; b; c; d; " + sentence, Detail::explained) ==
+  CHECK(sentence_lines("a; b; c; d; " + sentence, Detail::explained).text() ==
         "  a\n  b\n  c\n  d\n  " + sentence + "\n");
 }
 
 TEST_CASE("the status counts and names the parameters at their bounds") {
-  CHECK(status_lines(FitStatus::converged, {}, "", Detail::brief) == "status: converged\n");
-  CHECK(status_lines(FitStatus::not_converged, {"a"}, "b", Detail::brief) ==
+  CHECK(status_lines(FitStatus::converged, {}, "", Detail::brief).text() == "status: converged\n");
+  CHECK(status_lines(FitStatus::not_converged, {"a"}, "b", Detail::brief).text() ==
         "status: not_converged, 1 parameter at its bound: a\n  b\n");
-  CHECK(status_lines(FitStatus::not_identifiable, {"a", "b"}, "", Detail::brief) ==
+  CHECK(status_lines(FitStatus::not_identifiable, {"a", "b"}, "", Detail::brief).text() ==
         "status: not_identifiable, 2 parameters at their bounds: a, b\n");
 }
 

@@ -15,6 +15,8 @@
 
 namespace sepcal::base {
 
+constexpr int most_threads = 1024;
+
 class ThreadPool {
  public:
   /// `threads` of them, the caller's included; 0: as many as the machine has cores.

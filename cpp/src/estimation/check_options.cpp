@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/name_list.hpp"
+#include "base/thread_pool.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::estimation {
@@ -109,6 +110,10 @@ void check_numbers(const FitOptions& options) {
   check_at_least("iterations", options.iterations, 1);
   check_at_least("noise_iterations", options.noise_iterations, 1);
   check_at_least("threads", options.threads, 0);
+  if (options.threads > base::most_threads) {
+    throw Error("threads is " + std::to_string(options.threads) + "; it must be at most " +
+                std::to_string(base::most_threads));
+  }
   if (!(options.loss_width >= 0) || !std::isfinite(options.loss_width)) {
     throw Error("loss_width must be positive, or 0 for the loss's own");
   }

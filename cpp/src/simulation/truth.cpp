@@ -111,7 +111,7 @@ bool read_more(const std::string& key, const files::Json& value, Truth& truth) {
 template <class Truth>
 void read_truth(std::string_view json, std::string_view model, Outputs outputs,
                 const std::vector<Setting>& settings, Truth& truth) {
-  const files::Json root = files::Json::parse(json, nullptr, false);
+  const files::Json root = files::parse_json(json, truth.source);
   if (root.is_discarded() || !root.is_object()) {
     throw Error(truth.source +
                 " is not a truth file; give a JSON object {\"parameters\": {name: value}}");

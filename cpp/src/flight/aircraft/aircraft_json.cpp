@@ -144,7 +144,7 @@ std::string to_json(const Applied& applied, const AircraftFit& fitted) {
 }
 
 AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source) {
-  const Json root = Json::parse(json, nullptr, false);
+  const Json root = files::parse_json(json, source);
   if (root.is_discarded() || !root.is_object() || !root.contains("schema_version")) {
     throw Error(fmt::format("{} is no fit of an aircraft; give the JSON that fit wrote with -o{}",
                             source, json.empty() ? " (it is empty)" : ""));

@@ -1,45 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fits of an aircraft as pages for people.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "base/page.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/text/fit_text.hpp"
+#include "flight/text/pages.hpp"
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 
 namespace sepcal {
+
+using base::joined;
+using base::Page;
+using base::page;
+
 namespace {
 
-std::string heading(const AircraftFit& fitted) {
-  std::string text = fmt::format("{} by {}", to_string(fitted.options.model), method_of(fitted));
+Page heading(const AircraftFit& fitted) {
+  Page text = page("{} by {}", to_string(fitted.options.model), method_of(fitted));
   if (fitted.options.model != AircraftModel::aero) {
-    text += fmt::format(", inputs {} between rows", to_string(fitted.options.trajectory.inputs));
+    text += page(", inputs {} between rows", to_string(fitted.options.trajectory.inputs));
   }
   if (fitted.options.geometry && fitted.options.model != AircraftModel::path) {
-    text += fmt::format(", pitch rate q {}", to_string(fitted.options.geometry->rate_reference));
+    text += page(", pitch rate q {}", to_string(fitted.options.geometry->rate_reference));
   }
-  return text + fmt::format(": {} of {} rows of {}\n", fitted.flight.rows_used, fitted.flight.rows,
-                            fitted.flight.file);
+  return text + page(": {} of {} rows of {}\n", fitted.flight.rows_used, fitted.flight.rows,
+                     fitted.flight.file);
 }
 
 /// The chain of added effects, each with the errors before and after.
-std::string history_table(const AircraftFit& fitted) {
-  std::string text = fitted.history.empty() ? "" : "\nRMSE before and after\n";
+Page history_table(const AircraftFit& fitted) {
+  Page text = fitted.history.empty() ? Page() : Page("\nRMSE before and after\n");
   for (const AddedRegressor& added : fitted.history) {
-    text += fmt::format("  + {}\n", added.effect);
+    text += page("  + {}\n", added.effect);
     for (std::size_t j = 0; j < added.rmse_after.size(); ++j) {
       const double before = added.rmse_before[j].value;
       const double after = added.rmse_after[j].value;
-      text += fmt::format("      {:<9} {:.4g} -> {:.4g}  ({:+.1f} %)\n", added.rmse_after[j].name,
-                          before, after, 100.0 * (after / before - 1.0));
+      text += page("      {:<9} {:.4g} -> {:.4g}  ({:+.1f} %)\n", added.rmse_after[j].name, before,
+                   after, 100.0 * (after / before - 1.0));
     }
     if (std::isnan(added.predicted_drop)) continue;
-    text += fmt::format("      all, each in units of its own: {:+.1f} %, promised {:+.1f} %\n",
-                        -100.0 * added.drop(), -100.0 * added.predicted_drop);
+    text += page("      all, each in units of its own: {:+.1f} %, promised {:+.1f} %\n",
+                 -100.0 * added.drop(), -100.0 * added.predicted_drop);
   }
   return text;
 }
@@ -56,59 +60,86 @@ Fit shown(const AircraftFit& fitted, Detail detail) {
   return fit;
 }
 
-}  // namespace
-
-std::string to_text(const AircraftFit& fitted, Detail detail) {
+Page fit_page(const AircraftFit& fitted, Detail detail) {
   const Fit fit = shown(fitted, detail);
-  std::string text = heading(fitted) + text::fit_table(fit, fitted.options.calibration, {}, detail);
+  Page text = heading(fitted) + text::fit_table(fit, fitted.options.calibration, {}, detail);
   if (const auto hidden = fitted.fit.parameters.size() - fit.parameters.size(); hidden > 0) {
-    text += fmt::format("{} initial states of the segments: all of them with --explain\n", hidden);
+    text += page("{} initial states of the segments: all of them with --explain\n", hidden);
   }
   text += history_table(fitted);
-  if (!fitted.warning.empty()) text += fmt::format("\nwarning: {}\n", fitted.warning);
+  if (!fitted.warning.empty()) text += page("\nwarning: {}\n", fitted.warning);
   return text;
 }
 
+}  // namespace
+
+std::string to_text(const AircraftFit& fitted, Detail detail) {
+  return fit_page(fitted, detail).text();
+}
+
 std::string to_text(const StepwiseAircraft& result, Detail detail) {
-  return to_text(result.course) + "\n" + to_text(result.fitted, detail);
+  return (text::course_page(result.course) + "\n" + fit_page(result.fitted, detail)).text();
 }
 
 std::string to_text(const TwoStepFit& fitted, Detail detail) {
-  return "step one, the flight path\n" + to_text(fitted.path, detail) +
-         "\nstep two, the aerodynamics of what was flown\n" + to_text(fitted.aero, detail);
+  const Page text = "step one, the flight path\n" + fit_page(fitted.path, detail) +
+                    "\nstep two, the aerodynamics of what was flown\n" +
+                    fit_page(fitted.aero, detail);
+  return text.text();
 }
 
 std::string to_text(const Applied& applied, const AircraftFit& fitted) {
   constexpr std::size_t many = 24;
   const auto& headers = applied.headers;
-  std::string text = fmt::format(
-      "wrote {}: {} rows with {} more\n", applied.output, applied.rows,
-      headers.size() > many
-          ? fmt::format("{} columns, {} ... {}", headers.size(), headers.front(), headers.back())
-          : fmt::format("{}", fmt::join(headers, ", ")));
+  Page text = page("wrote {}: {} rows with {} more\n", applied.output, applied.rows,
+                   headers.size() > many ? page("{} columns, {} ... {}", headers.size(),
+                                                headers.front(), headers.back())
+                                         : joined(headers, ", "));
   if (applied.rows_left_empty > 0) {
-    text +=
-        fmt::format("{} rows were left empty: they are in no segment\n", applied.rows_left_empty);
+    text += page("{} rows were left empty: they are in no segment\n", applied.rows_left_empty);
   }
-  return text + fmt::format("status of the fit: {}\n", to_string(fitted.fit.status));
+  text += page("status of the fit: {}\n", to_string(fitted.fit.status));
+  return text.text();
+}
+
+std::string to_text(const TrackedAircraft& tracked, Detail /*detail*/) {
+  const Track& track = tracked.track;
+  const Eigen::Index last = track.estimates.rows() - 1;
+  Page text = page("{} rows of {} tracked, to {:.6g} s\n", track.rows.size(), tracked.file,
+                   track.time.back());
+  text += page("{:<14} {:>12} {:>12} {:>12} {:>12}  unit\n", "", "first", "sd", "last", "sd");
+  for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
+    const Variable& estimate = tracked.table[static_cast<std::size_t>(k)];
+    text += page("{:<14} {:>12.5g} {:>12.3g} {:>12.5g} {:>12.3g}  {}\n", estimate.name,
+                 track.estimates(0, k), track.standard_deviations(0, k), track.estimates(last, k),
+                 track.standard_deviations(last, k), estimate.unit);
+  }
+  if (track.refused > 0) {
+    text += page("{} rows were refused: something there is no finite number\n", track.refused);
+  }
+  if (track.not_converged > 0) {
+    text += page("{} rows ended by the cap of the iterations\n", track.not_converged);
+  }
+  return text.text();
 }
 
 std::string aircraft_effects_text() {
-  std::string text =
-      catalogue_text("path") + catalogue_text("aircraft") + "what each coefficient is a sum of\n";
+  Page text = text::catalogue_page("path") + text::catalogue_page("aircraft") +
+              "what each coefficient is a sum of\n";
   for (const AeroEquation& equation : standard_equations()) {
-    text += fmt::format("  {}  {}\n", equation.coefficient, fmt::join(equation.regressors, ", "));
+    text += page("  {}  {}\n", equation.coefficient, joined(equation.regressors, ", "));
   }
   text += "\nwhat diagnose tries beside these and every other channel of the log\n";
   for (const char* const like : {"Cm", "Cn"}) {
-    text += fmt::format("  {}  {}\n", like == std::string_view("Cm") ? "CX CZ Cm" : "CY Cl Cn",
-                        fmt::join(aircraft_log::usual_regressors(like), ", "));
+    text += page("  {}  {}\n", like == std::string_view("Cm") ? "CX CZ Cm" : "CY Cl Cn",
+                 joined(aircraft_log::usual_regressors(like), ", "));
   }
-  return text +
-         "\n--effect adds a regressor: a product of powers of alpha, beta, p_hat, q_hat, r_hat,\n"
-         "elevator, aileron, rudder, throttle and any other column of the log by its header, as\n"
-         "  --effect 'Cm[alpha^2]'  --effect 'Cl[alpha*p_hat]'  --effect 'CY[beta*abs(beta)]'\n"
-         "--equation 'Cm=1,alpha,q_hat,elevator' takes the place of a coefficient's own\n";
+  text +=
+      "\n--effect adds a regressor: a product of powers of alpha, beta, p_hat, q_hat, r_hat,\n"
+      "elevator, aileron, rudder, throttle and any other column of the log by its header, as\n"
+      "  --effect 'Cm[alpha^2]'  --effect 'Cl[alpha*p_hat]'  --effect 'CY[beta*abs(beta)]'\n"
+      "--equation 'Cm=1,alpha,q_hat,elevator' takes the place of a coefficient's own\n";
+  return text.text();
 }
 
 }  // namespace sepcal

@@ -116,30 +116,6 @@ void write_csv(const TrackedAircraft& tracked, OutputFile& target) {
   }
 }
 
-std::string to_text(const TrackedAircraft& tracked, Detail /*detail*/) {
-  const Track& track = tracked.track;
-  const Eigen::Index last = track.estimates.rows() - 1;
-  std::string text = fmt::format("{} rows of {} tracked, to {:.6g} s\n", track.rows.size(),
-                                 tracked.file, track.time.back());
-  text +=
-      fmt::format("{:<14} {:>12} {:>12} {:>12} {:>12}  unit\n", "", "first", "sd", "last", "sd");
-  for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
-    const Variable& estimate = tracked.table[static_cast<std::size_t>(k)];
-    text +=
-        fmt::format("{:<14} {:>12.5g} {:>12.3g} {:>12.5g} {:>12.3g}  {}\n", estimate.name,
-                    track.estimates(0, k), track.standard_deviations(0, k),
-                    track.estimates(last, k), track.standard_deviations(last, k), estimate.unit);
-  }
-  if (track.refused > 0) {
-    text +=
-        fmt::format("{} rows were refused: something there is no finite number\n", track.refused);
-  }
-  if (track.not_converged > 0) {
-    text += fmt::format("{} rows ended by the cap of the iterations\n", track.not_converged);
-  }
-  return text;
-}
-
 std::string to_json(const TrackedAircraft& tracked) {
   using json::Json;
   const Track& track = tracked.track;

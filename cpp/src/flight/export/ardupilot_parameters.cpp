@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "base/escaping.hpp"
 #include "flight/export/parameters.hpp"
 
 namespace sepcal::exporting {
@@ -67,7 +68,7 @@ std::vector<VehicleParameter> ardupilot_airspeed(const HeldAirspeed& held,
 std::string ardupilot_text(const std::vector<VehicleParameter>& parameters,
                            const std::vector<std::string>& comment) {
   std::string text;
-  for (const std::string& line : comment) text += fmt::format("# {}\n", line);
+  for (const std::string& line : comment) text += fmt::format("# {}\n", base::in_line(line));
   for (const VehicleParameter& parameter : parameters) {
     text += fmt::format("{},{}\n", parameter.name, float_text(parameter.value));
   }

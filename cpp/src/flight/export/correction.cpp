@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/escaping.hpp"
 #include "flight/catalogue/effect_channels.hpp"
 #include "flight/export/driver_names.hpp"
 #include "sepcal/natural_spline.hpp"
@@ -103,8 +104,8 @@ class Description {
 
   std::string local(const std::string& expression, const std::string& comment) {
     const std::string name = fmt::format("x_{}", number_);
-    result_.statements.push_back(
-        fmt::format("const double {} = {}; /* {} */", name, expression, comment));
+    result_.statements.push_back(fmt::format("const double {} = {}; /* {} */", name, expression,
+                                             base::in_c_comment(comment)));
     return name;
   }
 

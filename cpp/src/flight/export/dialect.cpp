@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/escaping.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
@@ -60,8 +61,8 @@ std::string Dialect::closing() const {
 std::string Dialect::define(std::string_view name, const std::vector<double>& values,
                             std::size_t columns, std::string_view comment) const {
   std::string text =
-      fmt::format("/* {} */\n{} double {}", comment, cpp_ ? "inline constexpr" : "static const",
-                  cpp_ ? std::string(name) : own(name));
+      fmt::format("/* {} */\n{} double {}", base::in_c_comment(comment),
+                  cpp_ ? "inline constexpr" : "static const", cpp_ ? std::string(name) : own(name));
   if (values.size() == 1 && columns == 0) {
     return text + fmt::format(" = {};\n", literal(values.front()));
   }

@@ -20,6 +20,8 @@ constexpr std::array known_channels{
     KnownChannel{"rho", "rho_kgpm3", "kg/m^3, density of the air", {1.2, 1.1, 1.05}},
     KnownChannel{"temperature", "temp_k", "K, of the air", {280.0, 290.0, 300.0}}};
 
+/// Words of C and C++ and of what compilers add, names of the header itself, and macros: those of
+/// math.h and of vehicles' own headers are in capitals.
 bool is_reserved(const std::string& name) {
   static const std::set<std::string, std::less<>> words{
       "alignas", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const",
@@ -29,7 +31,12 @@ bool is_reserved(const std::string& name) {
       "return", "short", "signed", "sizeof", "static", "struct", "switch", "template", "this",
       "throw", "true", "try", "typedef", "typename", "union", "unsigned", "using", "virtual",
       "void", "volatile", "while", "and", "or", "not", "xor", "compl", "bitand", "bitor", "not_eq",
-      "concept", "requires", "nullptr", "noexcept", "decltype",
+      "concept", "requires", "nullptr", "noexcept", "decltype", "and_eq", "or_eq", "xor_eq",
+      "bitor", "alignof", "char8_t", "char16_t", "char32_t", "wchar_t", "co_await", "co_return",
+      "co_yield", "const_cast", "dynamic_cast", "reinterpret_cast", "static_cast", "consteval",
+      "constexpr", "constinit", "static_assert", "thread_local", "typeid", "typeof",
+      "typeof_unqual", "complex", "imaginary", "linux", "unix", "i386", "math_errhandling", "far",
+      "near", "main", "std",
       // of the correction itself
       "A", "J", "F", "constants", "spline", "correct", "self_test", "ok", "bad_input",
       "no_solution", "h_ut", "m_ut", "alpha_read", "beta_read", "pressure", "read", "met", "i", "j",
@@ -37,7 +44,9 @@ bool is_reserved(const std::string& name) {
       "dpb_pa", "alpha_cal_rad", "beta_cal_rad", "u", "v", "w", "y", "z", "pow", "fabs", "sqrt",
       "sin", "cos", "atan2", "asin", "isfinite", "alpha", "beta", "square", "side", "below", "in",
       "out", "got", "row"};
-  return words.contains(name) || name.starts_with("x_") || name.starts_with("sepcal");
+  const bool in_capitals = std::ranges::none_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
+  return in_capitals || words.contains(name) || name.starts_with("x_") ||
+         name.starts_with("sepcal");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
+#include "base/page.hpp"
 #include "flight/export/provenance.hpp"
 #include "flight/export/vehicle_notes.hpp"
 #include "flight/files/json_values.hpp"
@@ -8,6 +7,8 @@
 
 namespace sepcal {
 
+using base::Page;
+using base::page;
 using namespace exporting;  // this room's own
 
 namespace {
@@ -31,25 +32,24 @@ files::Json write_loss(const ExportLoss& loss) {
 }  // namespace
 
 std::string to_text(const Exported& exported, const std::string& output) {
-  std::string text = fmt::format("wrote {}: ", output);
+  Page text = page("wrote {}: ", output);
   if (exported.parameters.empty()) {
-    text += fmt::format("the correction as a {} header, with its self-test\n",
-                        exported.target == ExportTarget::c ? "C" : "C++");
+    text += page("the correction as a {} header, with its self-test\n",
+                 exported.target == ExportTarget::c ? "C" : "C++");
   } else {
-    text += fmt::format("{} parameters of {}\n", exported.parameters.size(),
-                        exported.target == ExportTarget::px4 ? "PX4" : "ArduPilot");
+    text += page("{} parameters of {}\n", exported.parameters.size(),
+                 exported.target == ExportTarget::px4 ? "PX4" : "ArduPilot");
   }
   for (const std::string& effect : exported.left_to_others) {
-    text +=
-        fmt::format("{}: acts on the reference or the wind, no part of the correction\n", effect);
+    text += page("{}: acts on the reference or the wind, no part of the correction\n", effect);
   }
-  if (!exported.loss) return text;
+  if (!exported.loss) return text.text();
   if (!exported.loss->flight.empty()) {
-    text += fmt::format("against the calibration, over {} rows of {}:\n", exported.loss->rows,
-                        exported.loss->flight);
+    text += page("against the calibration, over {} rows of {}:\n", exported.loss->rows,
+                 exported.loss->flight);
   }
-  for (const std::string& line : loss_lines(*exported.loss)) text += "  " + line + "\n";
-  return text;
+  for (const std::string& line : loss_lines(*exported.loss)) text += page("  {}\n", line);
+  return text.text();
 }
 
 std::string to_json(const Exported& exported, const std::string& output) {

@@ -6,22 +6,15 @@
 
 #include <algorithm>
 
+#include "base/escaping.hpp"
 #include "flight/export/probe_body.hpp"
 #include "flight/export/self_test.hpp"
 
 namespace sepcal::exporting {
-namespace {
 
-/// A comment's lines; what would end it is taken out.
-std::string in_comment(std::string text) {
-  for (std::size_t at = text.find("*/"); at != std::string::npos; at = text.find("*/")) {
-    text.replace(at, 2, "* /");
-  }
-  for (std::size_t at = text.find("/*"); at != std::string::npos; at = text.find("/*")) {
-    text.replace(at, 2, "/ *");
-  }
-  return text;
-}
+using base::in_c_comment;
+
+namespace {
 
 /// A function's array argument in C and C++: its size is for the reader.
 std::string declared(const Quantities& one, bool output) {
@@ -60,9 +53,9 @@ std::string spline_function(const Dialect& dialect) {
 }
 
 std::string explain_arguments(const ProbeBody& body, const Correction& correction) {
-  std::string text = fmt::format("/* {}.\n", body.summary);
+  std::string text = "/* " + in_c_comment(body.summary) + ".\n";
   const auto add = [&](const std::string& name, const std::string& what) {
-    text += in_comment(fmt::format("     {}: {}\n", name, what));
+    text += fmt::format("     {}: {}\n", in_c_comment(name), in_c_comment(what));
   };
   for (const Quantities& one : body.readings) add(one.argument, one.comment);
   for (const Driver& driver : correction.drivers) {
@@ -105,7 +98,7 @@ std::string define_constants(const ProbeBody& body, const Correction& correction
   std::string text = dialect.is_cpp() ? "namespace constants {\n\n" : "";
   for (const auto* const list : {&body.constants, &correction.constants}) {
     for (const Constant& one : *list) {
-      text += dialect.define(one.name, one.values, one.columns, in_comment(one.comment));
+      text += dialect.define(one.name, one.values, one.columns, one.comment);
     }
   }
   return text + (dialect.is_cpp() ? "\n} /* namespace constants */\n\n" : "\n");
@@ -118,10 +111,11 @@ Header header_text(const Calibration& calibration, const Dialect& dialect,
   const Correction correction = describe_correction(calibration, dialect);
   const ProbeBody body = body_of(calibration, correction, dialect);
   std::string text = "/*\n";
-  for (const std::string& line : comment) text += in_comment(fmt::format(" * {}\n", line));
+  for (const std::string& line : comment) text += fmt::format(" * {}\n", in_c_comment(line));
   for (const std::string& effect : correction.left_to_others) {
-    text += in_comment(fmt::format(
-        " * {}: on the reference or the wind, not on the reading: no part of this\n", effect));
+    text +=
+        fmt::format(" * {}: on the reference or the wind, not on the reading: no part of this\n",
+                    in_c_comment(effect));
   }
   text += " */\n" + dialect.opening() + define_constants(body, correction, dialect);
   if (correction.has_splines) text += spline_function(dialect);

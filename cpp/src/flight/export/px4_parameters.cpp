@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/escaping.hpp"
 #include "flight/export/parameters.hpp"
 
 namespace sepcal::exporting {
@@ -85,7 +86,7 @@ std::string px4_text(const std::vector<VehicleParameter>& parameters,
   constexpr int float_type = 9;  // MAV_PARAM_TYPE_REAL32
   constexpr int whole_type = 6;  // MAV_PARAM_TYPE_INT32
   std::string text;
-  for (const std::string& line : comment) text += fmt::format("# {}\n", line);
+  for (const std::string& line : comment) text += fmt::format("# {}\n", base::in_line(line));
   text += "#\n# Vehicle-Id Component-Id Name Value Type\n";
   for (const VehicleParameter& parameter : parameters) {
     const std::string value = parameter.whole ? fmt::format("{}", std::llround(parameter.value))

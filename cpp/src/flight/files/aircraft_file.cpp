@@ -93,7 +93,7 @@ Json list_of(const Eigen::Vector3d& position) {
 }  // namespace
 
 AircraftGeometry parse_aircraft(std::string_view json, const std::string& source) {
-  const Json root = Json::parse(json, nullptr, false);
+  const Json root = parse_json(json, source);
   if (root.is_discarded() || !root.is_object()) {
     throw Error(source + " is not an aircraft file; give a JSON object {\"area_m2\": ...}");
   }

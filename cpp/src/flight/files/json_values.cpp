@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/files/json_values.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/escaping.hpp"
 #include "base/utf8.hpp"
 
 namespace sepcal::files {
@@ -13,10 +17,45 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+Json parse_json(std::string_view text, const std::string& source) {
+  constexpr int deepest = 64;
+  constexpr std::array<std::string_view, 5> free_texts{"file", "flight", "label", "message",
+                                                       "where"};
+  std::string key;
+  const auto check = [&](int depth, Json::parse_event_t event, const Json& value) {
+    using Event = Json::parse_event_t;
+    if (depth >= deepest && (event == Event::object_start || event == Event::array_start)) {
+      throw Error(
+          fmt::format("{} is nested more than {} deep, as no file of sepcal is", source, deepest));
+    }
+    if (event != Event::key && !value.is_string()) return true;
+    if (event != Event::key && event != Event::value) return true;
+    const auto& said = value.get_ref<const std::string&>();
+    const bool is_free = event == Event::value &&
+                         std::ranges::find(free_texts, key) != free_texts.end();
+    if (!is_free && base::in_line(said) != said) {
+      throw Error(fmt::format("{}: '{}' holds characters that can't be printed", source,
+                              said.substr(0, 60)));
+    }
+    if (event == Event::key) key = said;
+    return true;
+  };
+  return Json::parse(text, check, false);
+}
+
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 double number_or(const Json& value, double missing) {
   return value.is_null() ? missing : value.get<double>();
+}
+
+std::string sha256_of(const Json& value) {
+  const auto& digits = value.get_ref<const std::string&>();
+  const bool is_hash = digits.size() == 64 && std::ranges::all_of(digits, [](char c) {
+                         return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+                       });
+  if (is_hash || digits.empty()) return digits;
+  throw Error(describe(value) + " stands where the 64 digits of a sha256 should");
 }
 
 /// No dump of what is nested: that takes stack by the level, and a file may have a million.

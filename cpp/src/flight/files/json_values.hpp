@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,11 @@
 namespace sepcal::files {
 
 using Json = nlohmann::ordered_json;
+
+/// Reads a file's text; discarded where it is no JSON. Throws Error that begins with `source` where
+/// it nests deeper than 64, or where a name or a text steers a terminal or ends a line: a file's
+/// name, a message and a condition on rows may, and are escaped where they are shown.
+Json parse_json(std::string_view text, const std::string& source);
 
 /// null for NaN and infinities.
 Json number(double value);
@@ -37,6 +43,9 @@ T whole_number(const Json& value) {
   }
   throw Error(describe(value) + " stands where a whole number should");
 }
+
+/// 64 hexadecimal digits, or empty where no file was read. Throws Error for anything else.
+std::string sha256_of(const Json& value);
 
 /// The entries of an object, and the elements of a list. Throw Json::exception for anything else.
 inline const auto& entries_of(const Json& object) {

@@ -88,7 +88,7 @@ std::string to_json(const Calibration& calibration) {
 
 Calibration parse_calibration(std::string_view json, const std::string& source,
                               std::string_view app) {
-  Json root = Json::parse(json, nullptr, false);
+  Json root = files::parse_json(json, source);
   if (root.is_discarded() || !root.is_object() || !root.contains("schema_version") ||
       !root.contains("model") || !root["model"].is_string()) {
     throw Error(fmt::format("{} is not a calibration; give the JSON that fit wrote with -o{}",

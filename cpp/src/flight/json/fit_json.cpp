@@ -183,7 +183,7 @@ Json write_inputs(const FittedFlight& flight) {
 }
 
 FittedFlight read_inputs(const Json& inputs) {
-  return {inputs.at("file").get<std::string>(), inputs.at("sha256").get<std::string>(),
+  return {inputs.at("file").get<std::string>(), files::sha256_of(inputs.at("sha256")),
           whole_number<std::size_t>(inputs.at("rows")),
           whole_number<std::size_t>(inputs.at("rows_used"))};
 }

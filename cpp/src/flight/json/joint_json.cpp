@@ -32,7 +32,7 @@ void read_joint(const Json& object, Calibration& calibration) {
   for (const Json& flight : elements_of(object.at("flights"))) {
     setup.flights.push_back({.label = flight.at("label").get<std::string>(),
                              .file = flight.at("file").get<std::string>(),
-                             .sha256 = flight.at("sha256").get<std::string>(),
+                             .sha256 = files::sha256_of(flight.at("sha256")),
                              .rows = flight.at("rows").get<std::size_t>()});
   }
   calibration.probe = joint_probe(calibration.probe, std::move(setup));

@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "base/thread_pool.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::json {
@@ -193,6 +194,9 @@ CalibrationOptions read_options(const Json& options) {
     fit.process_noise = options.at("process_noise").get<std::map<std::string, double>>();
   }
   fit.threads = whole_number<int>(options.at("threads"));
+  if (fit.threads < 0 || fit.threads > base::most_threads) {
+    throw Error(describe(options.at("threads")) + " threads are none that can be had");
+  }
   result.log = read_choice_of_log(options);
   return result;
 }

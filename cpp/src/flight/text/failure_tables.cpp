@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/text/failure_tables.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <vector>
 
+#include "base/page.hpp"
 #include "base/short_number.hpp"
 
 namespace sepcal::text {
+
+using base::Page;
+using base::page;
 
 namespace {
 
@@ -28,39 +30,37 @@ std::vector<ChannelMisfit> telling_channels(const Comparison& comparison) {
 
 }  // namespace
 
-std::string channel_table(const Comparison& comparison) {
+Page channel_table(const Comparison& comparison) {
   const std::vector<ChannelMisfit> telling = telling_channels(comparison);
   if (telling.empty()) return "no channel explains a hundredth of an output's residual\n";
   std::size_t width = 8;
   for (const ChannelMisfit& channel : telling) width = std::max(width, channel.driver.size());
-  std::string text = fmt::format("{:<{}}  {:<8} {:>8} {:>8} {:>12} {:>10}  {}\n", "channel", width,
-                                 "output", "line", "smooth", "slope", "+-", "unit");
+  Page text = page("{:<{}}  {:<8} {:>8} {:>8} {:>12} {:>10}  {}\n", "channel", width, "output",
+                   "line", "smooth", "slope", "+-", "unit");
   for (const ChannelMisfit& channel : telling) {
-    text +=
-        fmt::format("{:<{}}  {:<8} {:>6.1f} % {:>6.1f} % {:>12.4g} {:>10.2g}  {}\n", channel.driver,
-                    width, channel.output, 100.0 * channel.share_line, 100.0 * channel.share_smooth,
-                    channel.slope, channel.slope_error, channel.unit);
+    text += page("{:<{}}  {:<8} {:>6.1f} % {:>6.1f} % {:>12.4g} {:>10.2g}  {}\n", channel.driver,
+                 width, channel.output, 100.0 * channel.share_line, 100.0 * channel.share_smooth,
+                 channel.slope, channel.slope_error, channel.unit);
   }
   return text +
          "line, smooth: what a straight line, a spline of the channel explains of the residual's "
          "variance\n";
 }
 
-std::string window_table(const Comparison& comparison) {
+Page window_table(const Comparison& comparison) {
   if (comparison.windows.empty()) return "";
-  std::string text = fmt::format("{:<24} {:>8}", "worst windows [s]", "rows");
-  for (const Misfit& misfit : comparison.overall) text += fmt::format(" {:>11}", misfit.output);
+  Page text = page("{:<24} {:>8}", "worst windows [s]", "rows");
+  for (const Misfit& misfit : comparison.overall) text += page(" {:>11}", misfit.output);
   for (const Misfit& misfit : comparison.overall) {
-    text += fmt::format(" {:>11}", fmt::format("mean {}", misfit.output));
+    text += page(" {:>11}", page("mean {}", misfit.output));
   }
-  text += '\n';
+  text += "\n";
   for (const Window& window : comparison.windows) {
-    text +=
-        fmt::format("{:<24} {:>8}", base::stamp(window.first_s) + ":" + base::stamp(window.last_s),
-                    window.rows);
-    for (const OutputValue& rmse : window.rmse) text += fmt::format(" {:>11.4g}", rmse.value);
-    for (const OutputValue& mean : window.mean) text += fmt::format(" {:>11.4g}", mean.value);
-    text += '\n';
+    text += page("{:<24} {:>8}", base::stamp(window.first_s) + ":" + base::stamp(window.last_s),
+                 window.rows);
+    for (const OutputValue& rmse : window.rmse) text += page(" {:>11.4g}", rmse.value);
+    for (const OutputValue& mean : window.mean) text += page(" {:>11.4g}", mean.value);
+    text += "\n";
   }
   return text;
 }

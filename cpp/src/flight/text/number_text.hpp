@@ -2,16 +2,15 @@
 // Numbers that may be undefined, as pages show them.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <string>
+
+#include "base/page.hpp"
 
 namespace sepcal::text {
 
 /// "-" for NaN.
-inline std::string defined(double value, const char* format) {
-  return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
+inline base::Page defined(double value, fmt::format_string<double> format) {
+  return std::isnan(value) ? base::Page("-") : base::page(format, value);
 }
 
 }  // namespace sepcal::text

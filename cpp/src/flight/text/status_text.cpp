@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/text/status_text.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
 
+#include "base/page.hpp"
 #include "base/sentences.hpp"
 #include "flight/verbs/at_bound.hpp"
 
 namespace sepcal::text {
+
+using base::joined;
+using base::Page;
+using base::page;
+
 namespace {
 
 constexpr std::size_t most_sentences = 3;
@@ -57,8 +60,8 @@ std::vector<std::string> sentences(const std::string& message) {
   return result;
 }
 
-std::string sentence_lines(const std::string& message, Detail detail) {
-  std::string text;
+Page sentence_lines(const std::string& message, Detail detail) {
+  Page text;
   bool hides = false;
   std::size_t shown = 0;
   for (const std::string& sentence : sentences(message)) {
@@ -69,24 +72,24 @@ std::string sentence_lines(const std::string& message, Detail detail) {
     }
     const std::string line = whole ? sentence : shorten(sentence);
     hides = hides || line != sentence;
-    text += fmt::format("  {}\n", line);
+    text += page("  {}\n", line);
   }
   return hides ? text + "  ... more with --explain\n" : text;
 }
 
-std::string status_lines(FitStatus status, const std::vector<std::string>& at_bound,
-                         const std::string& message, Detail detail) {
-  std::string text = fmt::format("status: {}", to_string(status));
+Page status_lines(FitStatus status, const std::vector<std::string>& at_bound,
+                  const std::string& message, Detail detail) {
+  Page text = page("status: {}", to_string(status));
   if (!at_bound.empty()) {
-    text += fmt::format(
-        ", {} at {}: {}",
-        at_bound.size() == 1 ? "1 parameter" : fmt::format("{} parameters", at_bound.size()),
-        at_bound.size() == 1 ? "its bound" : "their bounds", fmt::join(at_bound, ", "));
+    text +=
+        page(", {} at {}: {}",
+             at_bound.size() == 1 ? Page("1 parameter") : page("{} parameters", at_bound.size()),
+             at_bound.size() == 1 ? "its bound" : "their bounds", joined(at_bound, ", "));
   }
   return text + "\n" + sentence_lines(message, detail);
 }
 
-std::string status_lines(const Fit& fit, Detail detail) {
+Page status_lines(const Fit& fit, Detail detail) {
   return status_lines(fit.status, verbs::names_at_bound(fit), fit.message, detail);
 }
 

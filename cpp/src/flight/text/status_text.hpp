@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/page.hpp"
 #include "sepcal/flight/calibration.hpp"
 
 namespace sepcal::text {
@@ -14,11 +15,11 @@ namespace sepcal::text {
 std::vector<std::string> sentences(const std::string& message);
 
 /// They, a line each; of a brief page the three worst, each within a line.
-std::string sentence_lines(const std::string& message, Detail detail);
+base::Page sentence_lines(const std::string& message, Detail detail);
 
 /// "status: converged, 2 parameters at their bounds: alpha_xz, eta_y", then sentence_lines().
-std::string status_lines(FitStatus status, const std::vector<std::string>& at_bound,
-                         const std::string& message, Detail detail);
-std::string status_lines(const Fit& fit, Detail detail);
+base::Page status_lines(FitStatus status, const std::vector<std::string>& at_bound,
+                        const std::string& message, Detail detail);
+base::Page status_lines(const Fit& fit, Detail detail);
 
 }  // namespace sepcal::text
