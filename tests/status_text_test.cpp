@@ -45,7 +45,8 @@ TEST_CASE("a brief page has three sentences, each within a line") {
   const std::string sentence = "a and b are hard to tell apart: " + long_reason;
   CHECK(sentence_lines(sentence, Detail::brief).text() ==
         "  a and b are hard to tell apart\n  ... more with --explain\n");
-  CHECK(sentence_lines("short: " + long_reason, Detail::brief).text() == "  short: " + long_reason + "\n");
+  CHECK(sentence_lines("short: " + long_reason, Detail::brief).text() ==
+        "  short: " + long_reason + "\n");
 }
 
 TEST_CASE("explained, everything is there") {

@@ -17,6 +17,7 @@ from typing import NoReturn
 from sepcal import _core
 from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
+from sepcal.printing import in_line, tell
 from sepcal.reporting import command as report
 
 COMMANDS = (report, log, field)
@@ -29,7 +30,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Exits with 2."""
-        self.exit(BAD_INPUT, f"{self.prog}: {message}; --help shows how\n")
+        self.exit(BAD_INPUT, in_line(f"{self.prog}: {message}; --help shows how") + "\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -48,10 +49,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except _core.Error as error:
-        print(f"sepcal {chosen.command}: {error}", file=sys.stderr)
+        tell(f"sepcal {chosen.command}: {error}")
         return BAD_INPUT
     except KeyboardInterrupt:
-        print(f"sepcal {chosen.command}: stopped by Ctrl-C; no file was written", file=sys.stderr)
+        tell(f"sepcal {chosen.command}: stopped by Ctrl-C; no file was written")
         return INTERRUPTED
 
 

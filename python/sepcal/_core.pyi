@@ -81,6 +81,8 @@ __all__: list[str] = [
     "fit_trials",
     "five_hole_probe",
     "gather_figures",
+    "in_line",
+    "in_shell",
     "magnetometer",
     "magnetometer_in_nine_states",
     "parse_calibration",
@@ -2953,6 +2955,8 @@ def five_hole_probe(
     ],
 ) -> Model: ...
 def gather_figures(arg0: Calibration, arg1: Flight) -> FlightFigures: ...
+def in_line(arg0: bytes) -> str: ...
+def in_shell(arg0: bytes) -> str: ...
 def magnetometer(
     arg0: typing.Annotated[
         collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"

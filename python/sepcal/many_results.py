@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from sepcal import _core
+from sepcal.printing import page_of
 
 
 class ManyFit(_core.ManyFit):
@@ -46,7 +47,7 @@ class ManyFit(_core.ManyFit):
             lines.append(line)
         lines += [f"{name} is left out: {reason}" for name, reason in self.left_out.items()]
         lines.append(f"{self.status}: {self.message}" if self.message else self.status)
-        return "\n".join(lines)
+        return page_of(lines)
 
     def __repr__(self) -> str:
         return (

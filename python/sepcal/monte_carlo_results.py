@@ -14,6 +14,7 @@ import numpy as np
 
 from sepcal._core import Error
 from sepcal.columns import Array
+from sepcal.printing import page_of
 from sepcal.quantiles import binomial_limits, student_quantile
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
 
@@ -177,7 +178,7 @@ class MonteCarlo:
         lines += [f"trial {record.index} failed: {_reason(record)}" for record in shown]
         if more := len(unsaid) - len(shown):
             lines.append(f"and {more} more failed; `failed` has the record of each")
-        return "\n".join(lines)
+        return page_of(lines)
 
     def __repr__(self) -> str:
         return f"<sepcal.MonteCarlo {_headline(self)}>"

@@ -13,7 +13,7 @@ WIDTH = 40
 @contextmanager
 def progress_bar(shown: bool | None = None) -> Iterator[Callable[[float], None]]:
     """Gives a function of the fraction done; None: shown where standard error is a terminal."""
-    is_shown = sys.stderr.isatty() if shown is None else shown
+    is_shown = sys.stderr is not None and (sys.stderr.isatty() if shown is None else shown)
     drawn = -1
 
     def report_progress(fraction: float) -> None:

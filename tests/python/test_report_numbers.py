@@ -212,7 +212,7 @@ def test_figures_of_a_tube_in_other_units() -> None:
         (words.number(None), "–"), (words.number(-3e-9), "−3.00·10<sup>−9</sup>"),
         (words.number(123456.0), "123456"), (words.percent(-0.0001), "0 %"),
         (words.percent(0.254), "25 %"), (words.percent(0.0254), "2.5 %"),
-        (words.percent(0.0001), "&lt; 0.1 %"), (words.probability(0.0312), "0.031"),
+        (words.percent(0.0001), "< 0.1 %"), (words.probability(0.0312), "0.031"),
         (words.probability(2e-12), "2·10<sup>−12</sup>"),
         (words.estimate(0.0100123, 0.0000373, "m/s per m"), "0.010012 ± 0.000037 m/s per m"),
         (words.estimate(-1.2324, 0.0301, "1 per V"), "−1.232 ± 0.030 per V"),

@@ -11,7 +11,7 @@ namespace {
 
 /// U+200E and U+200F, U+2028 to U+202E, U+2066 to U+2069: marks and ends of lines and directions.
 bool is_separator_or_direction(std::string_view character) {
-  if (character.size() != 3 || !character.starts_with("\xE2")) return false;
+  if (character.size() != 3 || character.front() != '\xE2') return false;
   const auto second = static_cast<unsigned char>(character[1]);
   const auto third = static_cast<unsigned char>(character[2]);
   if (second == 0x80) return third == 0x8E || third == 0x8F || (third >= 0xA8 && third <= 0xAE);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal._core: the engine and its flights for the Python front, which documents it.
+#include "base/escaping.hpp"
 #include "bindings.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/error.hpp"
@@ -18,6 +19,12 @@ void define_error(py::module_& module) {
       "Non-convergence is no error: it is the `status` of a fit.";
 }
 
+/// Of bytes, as a file's name in Python may hold what is no UTF-8.
+void define_escaping(py::module_& module) {
+  module.def("in_line", [](const py::bytes& text) { return base::in_line(std::string(text)); });
+  module.def("in_shell", [](const py::bytes& text) { return base::in_shell(std::string(text)); });
+}
+
 }  // namespace
 }  // namespace sepcal::bindings
 
@@ -28,6 +35,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("SIGNIFICANT_BELOW") = sepcal::significant_below;
   module.attr("VISIBLE_FROM") = sepcal::visible_from;
   define_error(module);
+  define_escaping(module);
   define_options(module);
   define_results(module);
   define_effects(module);

@@ -6,9 +6,9 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
-import sys
 
 from sepcal.geomagnetism.models import EarthField, earth_field, warn_of_age
+from sepcal.printing import show, tell
 
 
 def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -36,8 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Prints the field; returns 0. Raises sepcal.Error on bad input."""
     field = earth_field(arguments.lat, arguments.lon, arguments.altitude, arguments.date)
     if age := warn_of_age():
-        print(f"sepcal field: {age}", file=sys.stderr)
-    print(to_json(field) if arguments.json else describe(field))
+        tell(f"sepcal field: {age}")
+    show(to_json(field) if arguments.json else describe(field))
     return 0
 
 

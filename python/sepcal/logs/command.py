@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import shlex
-import sys
 
 from sepcal._core import Error
 from sepcal.geomagnetism.models import warn_of_age
@@ -14,6 +12,7 @@ from sepcal.logs.flights import LoggedFlight, convert, sidecar_of, to_json
 from sepcal.logs.listing import list_recording
 from sepcal.logs.reading import open_log
 from sepcal.logs.recording import MAGNETOMETER
+from sepcal.printing import in_shell, page_of, show, tell, told_progress
 from sepcal.whole_files import refuse_outputs
 
 
@@ -58,20 +57,11 @@ def run(arguments: argparse.Namespace) -> int:
         if output is None:
             raise Error("nothing to do: -o FLIGHT.csv writes a flight, --list shows what is there")
         refuse_outputs((output, sidecar_of(output)), (arguments.log,))
-    live = sys.stderr.isatty()
-
-    def report_progress(what: str) -> None:
-        if live:
-            print(f"\r\033[Ksepcal log: {what} ...", end="", file=sys.stderr, flush=True)
-
-    try:
+    with told_progress("log") as report_progress:
         log = open_log(arguments.log, arguments.cut_off, report_progress)
-    finally:
-        if live:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
     if arguments.list:
         contents = list_recording(log)
-        print(json.dumps(contents.to_dict(), indent=2) if arguments.json else contents)
+        show(json.dumps(contents.to_dict(), indent=2) if arguments.json else contents.text)
         return 0
     flight = convert(
         log,
@@ -83,11 +73,11 @@ def run(arguments: argparse.Namespace) -> int:
     )
     flight.save(output)
     if flight.conversion["field"] is not None and (age := warn_of_age()):
-        print(f"sepcal log: {age}", file=sys.stderr)
+        tell(f"sepcal log: {age}")
     if arguments.json:
-        print(to_json(flight.conversion), end="")
+        show(to_json(flight.conversion))
     else:
-        print(describe(flight, output, [sensor.name for sensor in log.sensors]))
+        show(describe(flight, output, [sensor.name for sensor in log.sensors]))
     return 0
 
 
@@ -115,11 +105,11 @@ def describe(flight: LoggedFlight, output: str, sensors: list[str]) -> str:
     if others := [name for name in sensors if name != sensor["name"]]:
         lines.append(f"  also in the log: {', '.join(others)} (--sensor)")
     lines.append(f"  {sidecar_of(output)} says what was done to each column")
-    return "\n".join((*lines, *_advise(flight, output)))
+    return page_of((*lines, *_advise(flight, output)))
 
 
 def _advise(flight: LoggedFlight, output: str) -> list[str]:
-    told, output = flight.conversion, shlex.quote(output)
+    told, output = flight.conversion, in_shell([output])
     if told["sensor"]["kind"] != MAGNETOMETER:
         return [f"next: sepcal-pitot check {output}, sepcal-pitot fit {output} -o base.json"]
     field = told["field"]

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +12,7 @@ from sepcal.geomagnetism.command import describe_place, paste
 from sepcal.logs.earth import find_field
 from sepcal.logs.reading import find_lacking, open_log
 from sepcal.logs.recording import MAGNETOMETER, Channel, Recording, Sensor
+from sepcal.printing import in_shell, page_of
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ def _page(told: dict[str, Any]) -> str:
         for mode in told["modes"]:
             lines.append(f"{mode['maneuver']:<20}{mode['from_s']:>18.3f}{mode['to_s']:>18.3f}")
     lines += ["", *_advise(told)]
-    return "\n".join(lines)
+    return page_of(lines)
 
 
 def _channel_table(title: str, channels: dict[str, dict[str, Any]]) -> list[str]:
@@ -176,7 +176,7 @@ def _advise(told: dict[str, Any]) -> list[str]:
         if not sensor["calibrates"]:
             lines.append(f"  {name}: no, {sensor['lacks']} is logged")
             continue
-        log = shlex.quote(told["file"])
+        log = in_shell([told["file"]])
         lines.append(f"  python -m sepcal log {log} --sensor {name} -o {name}.csv, then")
         if sensor["kind"] != MAGNETOMETER:
             lines.append(f"    sepcal-pitot fit {name}.csv -o {name}_base.json")

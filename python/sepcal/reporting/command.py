@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 
 from sepcal._core import Error
 from sepcal.calibration import Calibration, load
 from sepcal.flight import read_csv
+from sepcal.printing import in_line, show, told_progress
 from sepcal.reporting import report
 from sepcal.whole_files import refuse_outputs
 
@@ -60,13 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     last = chain[-1]
     if isinstance(last, Calibration) and (more or last.flights):
         flight = last.join([flight, *map(read_csv, more)])
-    live = sys.stderr.isatty()
-
-    def report_progress(what: str) -> None:
-        if live:
-            print(f"\r\033[Ksepcal report: {what} ...", end="", file=sys.stderr, flush=True)
-
-    try:
+    with told_progress("report") as report_progress:
         report(
             chain,
             arguments.output,
@@ -75,10 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
             process_noise=read_noise(arguments.process_noise),
             progress=report_progress,
         )
-    finally:
-        if live:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
-    print(f"wrote {arguments.output}")
+    show(in_line(f"wrote {arguments.output}"))
     return 0
 
 

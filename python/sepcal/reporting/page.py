@@ -12,7 +12,6 @@ import base64
 import gzip
 import json
 from dataclasses import dataclass, field
-from html import escape
 from importlib import resources
 from typing import Any
 
@@ -20,6 +19,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
+from sepcal.reporting.markup import Html, as_html, html, join
 
 ROUNDING = 1e-4  # of an array's spread: float32 may change no value by more
 
@@ -51,8 +51,8 @@ class Section:
     """A heading, what to look for in a sentence, and blocks: HTML, a figure or a grid of them."""
 
     title: str
-    lead: str = ""  # HTML
-    blocks: list[str | Figure | Grid] = field(default_factory=list)
+    lead: str = ""  # text, or Html
+    blocks: list[str | Figure | Grid] = field(default_factory=list)  # text, or Html
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Page:
     """All that the page shows."""
 
     title: str  # text
-    verdict: str  # HTML, above all sections
+    verdict: Html  # above all sections
     sections: list[Section]
 
 
@@ -88,9 +88,9 @@ class Pool:
         return value.item() if isinstance(value, np.generic) else value
 
     def to_json(self) -> str:
-        """For a script element: "</" can't end it early."""
+        """For a script element: no "<" can end it early, or open a comment in it."""
         whole = {"arrays": list(self.arrays), "figures": self.figures}
-        return json.dumps(whole, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+        return json.dumps(whole, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def encode_array(values: Array) -> str:
@@ -107,12 +107,16 @@ def encode_array(values: Array) -> str:
 def build_page(page: Page, plotly: str) -> str:
     """The HTML, with Plotly as read_plotly() gives it inside."""
     pool = Pool()
-    entries = "".join(
-        f'<li><a href="#s{number}">{escape(section.title)}</a></li>'
-        for number, section in enumerate(page.sections, 1)
+    entries = join(
+        "",
+        (
+            html('<li><a href="#s{}">{}</a></li>', number, section.title)
+            for number, section in enumerate(page.sections, 1)
+        ),
     )
-    sections = "\n".join(
-        _build_section(section, number, pool) for number, section in enumerate(page.sections, 1)
+    sections = join(
+        "\n",
+        (_build_section(section, number, pool) for number, section in enumerate(page.sections, 1)),
     )
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -120,14 +124,14 @@ def build_page(page: Page, plotly: str) -> str:
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{POLICY}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(page.title)}</title>
+<title>{as_html(page.title)}</title>
 <style>
 {read_asset("style.css")}</style>
 </head>
 <body>
 <main>
 <header>
-{page.verdict}
+{as_html(page.verdict)}
 </header>
 <nav aria-label="Contents"><ol>{entries}</ol></nav>
 {sections}
@@ -141,23 +145,25 @@ def build_page(page: Page, plotly: str) -> str:
 """
 
 
-def _build_section(section: Section, number: int, pool: Pool) -> str:
-    lead = f'<p class="lead">{section.lead}</p>' if section.lead else ""
-    blocks = "\n".join(_build_block(block, pool) for block in section.blocks)
-    title = f'<h2><span class="number">{number}</span>{escape(section.title)}</h2>'
-    return f'<section id="s{number}">\n{title}\n{lead}\n{blocks}\n</section>'
+def _build_section(section: Section, number: int, pool: Pool) -> Html:
+    lead = html('<p class="lead">{}</p>', section.lead) if section.lead else ""
+    blocks = join("\n", (_build_block(block, pool) for block in section.blocks))
+    title = html('<h2><span class="number">{}</span>{}</h2>', number, section.title)
+    return html('<section id="s{}">\n{}\n{}\n{}\n</section>', number, title, lead, blocks)
 
 
-def _build_block(block: str | Figure | Grid, pool: Pool) -> str:
+def _build_block(block: str | Figure | Grid, pool: Pool) -> Html:
     if isinstance(block, str):
-        return block
+        return as_html(block)
     if isinstance(block, Grid):
-        cells = "".join(_build_block(figure, pool) for figure in block.figures)
-        return f'<div class="grid" style="--width:{block.width}px">{cells}</div>'
-    height = block.layout["height"]
-    return (
-        f'<div class="figure" role="img" aria-label="{escape(block.name)}" '
-        f'data-figure="{pool.keep(block)}" style="height:{height}px"></div>'
+        cells = join("", (_build_block(figure, pool) for figure in block.figures))
+        return html('<div class="grid" style="--width:{}px">{}</div>', block.width, cells)
+    return html(
+        '<div class="figure" role="img" aria-label="{}" data-figure="{}" '
+        'style="height:{}px"></div>',
+        block.name,
+        pool.keep(block),
+        block.layout["height"],
     )
 
 

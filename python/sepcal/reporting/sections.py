@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from html import escape
-
 import numpy as np
 
 from sepcal import _core
@@ -14,6 +12,7 @@ from sepcal.reporting.figures_cause import draw_added_variable, draw_channel
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall
 from sepcal.reporting.figures_fit import Channel, draw_overlay
 from sepcal.reporting.gather import Material
+from sepcal.reporting.markup import Html, html
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.sections_flight import show_coverage, show_noise
 from sepcal.reporting.thin import say_thinned
@@ -48,46 +47,41 @@ def pooled_unit(material: Material) -> str:
     return material.units[0]
 
 
-def show_verdict(material: Material) -> str:
+def show_verdict(material: Material) -> Html:
     """The sentence on top, the numbers behind it, and what to type next."""
     found, last = material.diagnosis, material.last
     unit = pooled_unit(material)
-    facts = [
+    facts: list[tuple[str, str]] = [
         (words.with_unit(found.rmse, unit), "RMSE left, all outputs"),
         (words.with_unit(found.noise_floor, unit), "noise floor"),
     ]
     if best := advice.advised(material):
         facts += [
-            (words.percent(best.predicted_drop), f"less with {escape(best.name)}"),
+            (words.percent(best.predicted_drop), f"less with {best.name}"),
             (words.percent(best.held_out_gain), "less on rows held out"),
         ]
-    status = escape(last.status.replace("_", " "))
-    flagged = status if last.status == "converged" else f'<span class="flag">{status}</span>'
-    facts.append((flagged, "status of the fit"))
-    shown = "".join(f"<div><b>{value}</b><span>{name}</span></div>" for value, name in facts)
+    facts.append((tables.flag_status(last.status), "status of the fit"))
     effects = ", ".join(at.name for at in last.effects)
     kind = words.MODELS.get(material.model, material.model)
-    heading = f"<b>{escape(material.title)}</b> · {escape(kind)}" + (
-        f" with {escape(effects)}" if effects else ""
-    )
+    with_effects = f" with {effects}" if effects else ""
     warnings = advice.warn(last, PARAMETERS)
     if not material.is_fitted_flight:
         fitted = material.description["inputs"]["file"]
-        warnings.append(f"The calibration was fitted on another flight, {escape(fitted)}.")
+        warnings.append(f"The calibration was fitted on another flight, {fitted}.")
     file = material.files[-1] if material.files else ""
     command = advice.next_command(material, file)
-    more = "".join(f'<p class="warning">{warning}</p>' for warning in warnings)
-    if material.notes:
-        notes = tables.bullets([escape(note) for note in material.notes])
-        more += f"<details><summary>notes on the data</summary>{notes}</details>"
-    return (
-        f"<h1>{heading}</h1>"
-        f'<div class="verdict {found.verdict}"><span class="tag">'
-        f"{words.VERDICTS.get(found.verdict, found.verdict)}</span>"
-        f"<p>{escape(found.sentence)}</p></div>"
-        f'<div class="facts">{shown}</div>'
-        + (f"<p>To add it:</p><pre>{escape(command)}</pre>" if command else "")
-        + more
+    return html(
+        '<h1><b>{}</b> · {}{}</h1><div class="verdict {}"><span class="tag">{}</span><p>{}</p>'
+        "</div>{}{}{}",
+        material.title,
+        kind,
+        with_effects,
+        found.verdict,
+        words.VERDICTS.get(found.verdict, found.verdict),
+        found.sentence,
+        tables.list_facts(facts),
+        html("<p>To add it:</p><pre>{}</pre>", command) if command else "",
+        tables.list_warnings(warnings, material.notes),
     )
 
 
@@ -159,7 +153,7 @@ def show_overlay(material: Material) -> Section:
     if maneuvers:
         lead += " Maneuvers are shaded."
     if note := say_thinned(comparison.time.size):
-        blocks.append(f'<p class="note">{note}</p>')
+        blocks.append(html('<p class="note">{}</p>', note))
     return Section("Measured and modelled", lead, blocks)
 
 
@@ -176,22 +170,26 @@ def show_where(material: Material) -> Section:
 
 def show_candidates(material: Material) -> Section:
     """The ranking of physical effects."""
-    lead = (
+    lead = html(
         "Physical effects that the model may lack, best first. <b>p</b> is corrected for their "
-        f"number; an effect is <b>found</b> when p is below {_core.SIGNIFICANT_BELOW:g} and rows "
-        "held out of the fit gain too. <b>Visibility</b> near 0: other parameters absorb the "
-        "effect on this flight, which then can't show it."
+        "number; an effect is <b>found</b> when p is below {} and rows held out of the fit gain "
+        "too. <b>Visibility</b> near 0: other parameters absorb the effect on this flight, which "
+        "then can't show it.",
+        f"{_core.SIGNIFICANT_BELOW:g}",
     )
     extra: list[str | Figure | Grid] = [tables.list_candidates(material.diagnosis.effects)]
     for effect in material.diagnosis.found[:1]:
         extra.append(tables.list_absorbed(effect, material.last))
     unexplained = material.diagnosis.unexplained
     for cause in material.diagnosis.unlogged:
-        extra.append(f"<p>In this flight, {escape(cause['sentence'])}.</p>")
+        extra.append(html("<p>In this flight, {}.</p>", cause["sentence"]))
     if unexplained["significant"]:
         extra.append(
-            f"<p>Structure that no candidate explains, p = "
-            f"{words.probability(unexplained['p_adjusted'])}: {escape(unexplained['where'])}.</p>"
+            html(
+                "<p>Structure that no candidate explains, p = {}: {}.</p>",
+                words.probability(unexplained["p_adjusted"]),
+                unexplained["where"],
+            )
         )
     return Section("Ranked candidates", lead, extra)
 
@@ -208,7 +206,7 @@ def show_channels(material: Material) -> Section:
         residual = comparison.residuals[:, outputs.index(channel.output)]
         if x is None or (smooth := _core.smooth(x, residual)) is None:
             continue
-        title = f"{channel.driver}: {words.share(channel.share_smooth)} of {channel.output}"
+        title = f"{channel.driver}: {words.percent(channel.share_smooth)} of {channel.output}"
         unit = material.units[outputs.index(channel.output)]
         _, _, per = channel.unit.partition(" per ")
         x_title = f"{channel.driver} [{per}]" if per else channel.driver
@@ -219,8 +217,11 @@ def show_channels(material: Material) -> Section:
     if others:
         most = max(channel.share_smooth for channel in others)
         blocks.append(
-            f'<p class="note">Not drawn, {words.percent(most)} at most: '
-            f"{escape(', '.join(channel.driver for channel in others))}.</p>"
+            html(
+                '<p class="note">Not drawn, {} at most: {}.</p>',
+                words.percent(most),
+                ", ".join(channel.driver for channel in others),
+            )
         )
     lead = (
         "Residual against each logged channel, in the output where a smooth curve explains the "
@@ -251,7 +252,7 @@ def show_trials(material: Material) -> Section:
     )
     if not material.diagnosis.found:
         lead += " None was found: this is what nothing looks like."
-    blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else ["<p>None.</p>"]
+    blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else [html("<p>None.</p>")]
     return Section("What the first candidates explain", lead, blocks)
 
 

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from html import escape
-
 import numpy as np
 
 from sepcal.columns import Array
@@ -18,6 +16,7 @@ from sepcal.reporting.figures_flight import (
 )
 from sepcal.reporting.figures_noise import draw_autocorrelation, draw_quantiles, draw_spectrum
 from sepcal.reporting.gather import Material
+from sepcal.reporting.markup import Html, html
 from sepcal.reporting.page import Figure, Grid, Section
 
 UNEVEN = 0.1  # share of the median interval: sampling that varies by more is uneven
@@ -38,7 +37,7 @@ def show_noise(material: Material) -> Section:
         "Noise alone keeps its autocorrelation inside the grey band, its spectrum flat on the "
         "dotted line and its quantiles on the dashed one."
     )
-    key = (
+    key = html(
         '<p class="note">Ljung-Box: the probability of such correlations in white noise. d and AR '
         "order: the noise model, a fractional difference (0 white, 0.5 pink, 1 a random walk) and "
         "an autoregression; its innovations are the noise floor.</p>"
@@ -46,21 +45,25 @@ def show_noise(material: Material) -> Section:
     blocks: list[str | Figure | Grid] = [Grid(figures, 320), _coverage_table(material), key]
     if longest - shortest > UNEVEN * interval:
         blocks.append(
-            f'<p class="note">The sampling is uneven ({words.number(shortest)} to '
-            f"{words.number(longest)} s between most rows): lags and frequencies are counted in "
-            f"rows of {words.number(interval)} s.</p>"
+            html(
+                '<p class="note">The sampling is uneven ({} to {} s between most rows): lags and '
+                "frequencies are counted in rows of {} s.</p>",
+                words.number(shortest),
+                words.number(longest),
+                words.number(interval),
+            )
         )
     return Section("Is the rest noise?", lead, blocks)
 
 
-def _coverage_table(material: Material) -> str:
+def _coverage_table(material: Material) -> Html:
     """By output: the share of rows inside the 95 % band, and the whiteness of the rest."""
     rows = []
     for i, misfit in enumerate(material.comparison.overall):
         told = material.diagnosis.residual.get(misfit.output, {})
         model = told.get("noise") or {}
         rows.append([
-            f"<b>{escape(misfit.output)}</b>",
+            html("<b>{}</b>", misfit.output),
             words.percent(material.figures.within_95[i]),
             words.with_unit(misfit.rmse, misfit.unit),
             words.with_unit(told.get("floor"), misfit.unit),
@@ -80,7 +83,7 @@ def show_coverage(material: Material) -> Section:
     if material.model.startswith("magnetometer"):
         figures, told = _cover_field(material)
     else:
-        figures, told = _cover_air(material), ""
+        figures, told = _cover_air(material), html("")
     lead = (
         "What was never flown can't be calibrated: directions all over the sphere separate the "
         "errors of a magnetometer's axes from its hard iron."
@@ -108,7 +111,7 @@ def _heading_figures(material: Material) -> list[Figure]:
     return [draw_rose(f"{found[1].capitalize()} [deg]", found[0])] if found else []
 
 
-def _cover_field(material: Material) -> tuple[list[Figure], str]:
+def _cover_field(material: Material) -> tuple[list[Figure], Html]:
     applied = list(material.last.apply(material.flight).values())
     vectors = np.stack(applied, axis=-1)[material.figures.rows]
     vectors = vectors[np.isfinite(vectors).all(axis=1)]
@@ -117,8 +120,8 @@ def _cover_field(material: Material) -> tuple[list[Figure], str]:
     figures += _heading_figures(material)
     strength = np.linalg.norm(vectors, axis=1)
     figures.append(draw_histogram("Strength of the calibrated field", strength, "|h| [uT]"))
-    told = f"<p>The field came from {visited} of {cells} equal parts of the sphere.</p>"
-    return figures, told
+    told = "<p>The field came from {} of {} equal parts of the sphere.</p>"
+    return figures, html(told, visited, cells)
 
 
 def _cover_air(material: Material) -> list[Figure]:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report's tables as HTML. Every name from a file is escaped."""
+"""The report's tables as HTML."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from sepcal._core import Combination, HistoryEntry, Parameter
 from sepcal.calibration import Calibration
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import EffectFinding
+from sepcal.reporting.markup import Html, html, join
 from sepcal.reporting.words import (
     MEANINGS,
     estimate,
@@ -28,30 +28,52 @@ SHOWN = 10  # candidates; the others are folded away
 NEGLIGIBLE = 0.3  # standard errors: a shift that needs no table
 
 
-def table(head: Sequence[tuple[str, bool]], rows: Sequence[Sequence[str]]) -> str:
-    """Columns (title, whether it holds numbers) and cells, both HTML."""
-    kinds = [' class="n"' if numeric else "" for _, numeric in head]
-    top = "".join(f"<th{kind}>{title}</th>" for kind, (title, _) in zip(kinds, head, strict=True))
-    body = "".join(
-        "<tr>"
-        + "".join(f"<td{kind}>{cell}</td>" for kind, cell in zip(kinds, row, strict=True))
-        + "</tr>"
-        for row in rows
-    )
-    return f'<div class="table"><table><tr>{top}</tr>{body}</table></div>'
+def table(head: Sequence[tuple[str, bool]], rows: Sequence[Sequence[str]]) -> Html:
+    """Columns (title, whether it holds numbers) and cells, text or Html."""
+    kinds = [html(' class="n"') if numeric else "" for _, numeric in head]
+    titles = zip(kinds, head, strict=True)
+    top = join("", (html("<th{}>{}</th>", kind, title) for kind, (title, _) in titles))
+    body = join("", (html("<tr>{}</tr>", _cells(kinds, row)) for row in rows))
+    return html('<div class="table"><table><tr>{}</tr>{}</table></div>', top, body)
 
 
-def list_history(history: Sequence[HistoryEntry], unit: str) -> str:
+def _cells(kinds: Sequence[str], row: Sequence[str]) -> Html:
+    cells = zip(kinds, row, strict=True)
+    return join("", (html("<td{}>{}</td>", kind, cell) for kind, cell in cells))
+
+
+def flag_status(status: str) -> Html:
+    """A fit's status, red where it did not converge."""
+    shown = html("{}", status.replace("_", " "))
+    return shown if status == "converged" else html('<span class="flag">{}</span>', shown)
+
+
+def list_facts(facts: Sequence[tuple[str, str]]) -> Html:
+    """Values, each over what it is."""
+    shown = (html("<div><b>{}</b><span>{}</span></div>", value, name) for value, name in facts)
+    return html('<div class="facts">{}</div>', join("", shown))
+
+
+def list_warnings(warnings: Sequence[str], notes: Sequence[str]) -> Html:
+    """What to know before reading on, and notes on the data, folded away."""
+    shown = join("", (html('<p class="warning">{}</p>', warning) for warning in warnings))
+    if not notes:
+        return shown
+    folded = "{}<details><summary>notes on the data</summary>{}</details>"
+    return html(folded, shown, bullets(notes))
+
+
+def list_history(history: Sequence[HistoryEntry], unit: str) -> Html:
     """Promised next to achieved, a row an added effect."""
     rows = []
     for entry in history:
         achieved = drop(entry.rmse_before, entry.rmse_after)
         rows.append([
-            f"<code>{escape(entry.effect)}</code>",
-            f"{number(entry.rmse_before)} → {with_unit(entry.rmse_after, unit)}",
+            html("<code>{}</code>", entry.effect),
+            html("{} → {}", number(entry.rmse_before), with_unit(entry.rmse_after, unit)),
             percent(entry.predicted_drop),
             percent(achieved),
-            f"{number(entry.held_out_before)} → {number(entry.held_out_after)}"
+            html("{} → {}", number(entry.held_out_before), number(entry.held_out_after))
             if entry.held_out_after is not None
             else "–",
             percent(drop(entry.held_out_before, entry.held_out_after)),
@@ -68,23 +90,23 @@ def drop(before: float | None, after: float | None) -> float | None:
 
 def list_calibrations(
     chain: Sequence[Fit], files: Sequence[str], comparisons: Sequence[Comparison]
-) -> str:
+) -> Html:
     """RMSE of every calibration of the chain on this flight."""
     outputs = [misfit.output for misfit in comparisons[-1].overall]
     rows = []
     for i, calibration in enumerate(chain):
-        effects = ", ".join(f"<code>{escape(at.name)}</code>" for at in calibration.effects)
+        effects = join(", ", (html("<code>{}</code>", at.name) for at in calibration.effects))
         rows.append([
-            escape(files[i]) if i < len(files) else f"{i + 1}",
+            files[i] if i < len(files) else f"{i + 1}",
             effects or "none",
-            escape(calibration.status.replace("_", " ")),
+            calibration.status.replace("_", " "),
             *(with_unit(misfit.rmse, misfit.unit) for misfit in comparisons[i].overall),
         ])  # fmt: skip
     head = [("calibration", False), ("effects in it", False), ("status", False)]
-    return table([*head, *((f"RMSE {escape(name)}", True) for name in outputs)], rows)
+    return table([*head, *((f"RMSE {name}", True) for name in outputs)], rows)
 
 
-def list_windows(comparison: Comparison) -> str:
+def list_windows(comparison: Comparison) -> Html:
     """The worst stretches of the flight, worst first."""
     outputs = [misfit.output for misfit in comparison.overall]
     units = {misfit.output: misfit.unit for misfit in comparison.overall}
@@ -93,38 +115,41 @@ def list_windows(comparison: Comparison) -> str:
             f"{window.first_s:.6g} to {window.last_s:.6g} s",
             f"{window.rows}",
             *(
-                f"{with_unit(window.rmse[at], units[at])} <small>mean {number(window.mean[at], 2)}"
-                "</small>"
+                html(
+                    "{} <small>mean {}</small>",
+                    with_unit(window.rmse[at], units[at]),
+                    number(window.mean[at], 2),
+                )
                 for at in outputs
             ),
         ]
         for window in comparison.windows
     ]
     head = [("worst windows", False), ("rows", True)]
-    return table([*head, *((f"RMSE {escape(name)}", True) for name in outputs)], rows)
+    return table([*head, *((f"RMSE {name}", True) for name in outputs)], rows)
 
 
-def list_candidates(effects: Sequence[EffectFinding]) -> str:
+def list_candidates(effects: Sequence[EffectFinding]) -> Html:
     """The ranking: the first in sight, the others folded away."""
     first = _rank(effects[:SHOWN], 1)
     if len(effects) <= SHOWN:
         return first
     others = _rank(effects[SHOWN:], SHOWN + 1)
-    left = len(effects) - SHOWN
-    return f"{first}<details><summary>the other {left} candidates</summary>{others}</details>"
+    folded = "{}<details><summary>the other {} candidates</summary>{}</details>"
+    return html(folded, first, len(effects) - SHOWN, others)
 
 
-def _rank(effects: Sequence[EffectFinding], first: int) -> str:
+def _rank(effects: Sequence[EffectFinding], first: int) -> Html:
     rows = []
     for i, effect in enumerate(effects, first):
-        name = f"<b>{escape(effect.name)}</b><br><small>{escape(effect.sentence)}</small>"
+        name = html("<b>{}</b><br><small>{}</small>", effect.name, effect.sentence)
         if not all(at in effect.name or at in effect.sentence for at in effect.drivers):
-            name += f"<br><small>driven by {escape(', '.join(effect.drivers))}</small>"
-        status = effect.in_words
+            name = html("{}<br><small>driven by {}</small>", name, ", ".join(effect.drivers))
+        kind = "found" if effect.status == "found" else "pill"
         held = percent(effect.held_out_gain)
         seen = number(effect.visibility, 2)
         if effect.visibility < _core.VISIBLE_FROM:
-            seen = f'<span class="flag">{seen}</span>'
+            seen = html('<span class="flag">{}</span>', seen)
         rows.append([
             f"{i}",
             name,
@@ -137,13 +162,15 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> str:
             percent(drop(effect.pse_without, effect.pse)),
             percent(_share(effect.sse_reduction, effect.sse)),
             effect.beside_in_words,
-            f'<span class="{"found" if effect.status == "found" else "pill"}">{status}</span>',
+            html('<span class="{}">{}</span>', kind, effect.in_words),
         ])  # fmt: skip
-    head = [("", True), ("candidate", False), ("estimate ± standard error", False),
-            ("p,<br>adjusted", True), ("predicted<br>drop", True), ("held-out<br>gain", True),
-            ("visi-<br>bility", True), ("partial<br>F", True), ("PSE<br>falls by", True),
-            ("SSE<br>falls by", True), ("beside<br>the first", False),
-            ("status", False)]  # fmt: skip
+    head: list[tuple[str, bool]] = [
+        ("", True), ("candidate", False), ("estimate ± standard error", False),
+        (html("p,<br>adjusted"), True), (html("predicted<br>drop"), True),
+        (html("held-out<br>gain"), True), (html("visi-<br>bility"), True),
+        (html("partial<br>F"), True), (html("PSE<br>falls by"), True),
+        (html("SSE<br>falls by"), True), (html("beside<br>the first"), False), ("status", False),
+    ]  # fmt: skip
     return table(head, rows)
 
 
@@ -151,24 +178,28 @@ def _share(part: float | None, whole: float | None) -> float | None:
     return None if part is None or whole is None or whole == 0 else part / whole
 
 
-def _coefficients(effect: EffectFinding, most: int = 4) -> str:
+def _coefficients(effect: EffectFinding, most: int = 4) -> Html:
     lines = []
     for name, value in list(effect.estimate.items())[:most]:
         short = name.removeprefix(effect.name).lstrip(".") or name
         unit = effect.unit.get(name, "")
         shown = estimate(value, effect.standard_error.get(name), unit)
-        lines.append(f'<span class="pill"><small>{escape(short)}</small> {shown}</span>')
+        lines.append(html('<span class="pill"><small>{}</small> {}</span>', short, shown))
     left = len(effect.estimate) - most
     if left > 0:
-        lines.append(f"<small>and {left} more coefficients</small>")
+        lines.append(html("<small>and {} more coefficients</small>", left))
     lines += [
-        f"<small>{escape(name.removeprefix(effect.name).lstrip('.'))} = {number(value, 4)}</small>"
+        html(
+            "<small>{} = {}</small>",
+            name.removeprefix(effect.name).lstrip("."),
+            number(value, 4),
+        )
         for name, value in effect.shapes.items()
     ]
-    return "<br>".join(lines)
+    return join("<br>", lines)
 
 
-def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5) -> str:
+def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5) -> Html:
     """How far ignoring an effect shifts the parameters, those that are off most first."""
     shifts = []
     for name, shift in effect.absorbed_by.items():
@@ -180,30 +211,32 @@ def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5
     shifts.sort(key=lambda entry: -entry[0])
     rows = [
         [
-            f"<b>{escape(parameter.name)}</b>",
-            f"<small>{escape(meaning(parameter, calibration))}</small>",
+            html("<b>{}</b>", parameter.name),
+            html("<small>{}</small>", meaning(parameter, calibration)),
             with_unit(shift, parameter.unit, 2),
             number(ratio, 2),
         ]
         for ratio, parameter, shift in shifts[:most]
     ]
     if not rows:
-        return ""
+        return html("")
     if shifts[0][0] < NEGLIGIBLE:
-        return (
-            f"<p>Ignoring <code>{escape(effect.name)}</code> shifts no parameter by more than "
-            f"{number(shifts[0][0], 1)} of its standard error.</p>"
+        return html(
+            "<p>Ignoring <code>{}</code> shifts no parameter by more than {} of its standard "
+            "error.</p>",
+            effect.name,
+            number(shifts[0][0], 1),
         )
     head = [("parameter", False), ("", False), ("off by", True), ("in standard errors", True)]
-    title = f"<h3>What ignoring <code>{escape(effect.name)}</code> does to the parameters</h3>"
-    return title + table(head, rows)
+    title = "<h3>What ignoring <code>{}</code> does to the parameters</h3>{}"
+    return html(title, effect.name, table(head, rows))
 
 
 def list_parameters(
     calibration: Fit,
     derived: Mapping[str, _core.Derived] | None = None,
     leave_out: Collection[str] = (),
-) -> str:
+) -> Html:
     """Estimates with both standard errors, flags, and the most correlated partner."""
     rows = []
     for i, parameter in enumerate(calibration.parameters.values()):
@@ -211,22 +244,22 @@ def list_parameters(
             continue
         partner, r = find_partner(calibration, i)
         strong = abs(r) >= 0.9
-        told = f"{escape(partner)} {number(r, 3 if abs(r) > 0.95 else 2)}" if partner else "–"
+        told = html("{} {}", partner, number(r, 3 if abs(r) > 0.95 else 2)) if partner else "–"
         rows.append([
-            f"<b>{escape(parameter.name)}</b>",
-            f"<small>{escape(meaning(parameter, calibration))}</small>",
+            html("<b>{}</b>", parameter.name),
+            html("<small>{}</small>", meaning(parameter, calibration)),
             with_unit(parameter.value, parameter.unit, 6),
             number(parameter.standard_error, 2),
             number(parameter.standard_error_white, 2),
-            f'<span class="flag">{told}</span>' if strong else told,
+            html('<span class="flag">{}</span>', told) if strong else told,
             _flag(parameter),
         ])  # fmt: skip
     head = [("parameter", False), ("", False), ("value", True), ("standard error", True),
             ("if white", True), ("most correlated with", True), ("", False)]  # fmt: skip
     for follows in (derived or {}).values():
         rows.append([
-            f"<b>{escape(follows.name)}</b>",
-            f"<small>follows from the others: {MEANINGS.get(follows.name, '')}</small>",
+            html("<b>{}</b>", follows.name),
+            html("<small>follows from the others: {}</small>", MEANINGS.get(follows.name, "")),
             with_unit(follows.value, follows.unit, 6),
             number(follows.standard_error, 2),
             number(follows.standard_error_white, 2),
@@ -236,13 +269,10 @@ def list_parameters(
     return table(head, rows)
 
 
-def list_restated(restated: Mapping[str, Mapping[str, Any]]) -> str:
+def list_restated(restated: Mapping[str, Mapping[str, Any]]) -> Html:
     """Estimates in other words, a line each; empty where there are none."""
-    lines = [
-        f"<b>{escape(name)}</b>: {escape(str(entry['sentence']))}"
-        for name, entry in restated.items()
-    ]
-    return f"<h3>In other words</h3>{bullets(lines)}" if lines else ""
+    lines = [html("<b>{}</b>: {}", name, entry["sentence"]) for name, entry in restated.items()]
+    return html("<h3>In other words</h3>{}", bullets(lines)) if lines else html("")
 
 
 def meaning(parameter: Parameter, calibration: Fit) -> str:
@@ -256,11 +286,11 @@ def meaning(parameter: Parameter, calibration: Fit) -> str:
     return MEANINGS.get(parameter.name, "")
 
 
-def _flag(parameter: Parameter) -> str:
+def _flag(parameter: Parameter) -> Html:
     if not parameter.remark:
-        return ""
+        return html("")
     bounds = f" [{parameter.lower:.4g}, {parameter.upper:.4g}]" if parameter.at_bound else ""
-    return f'<span class="flag">{escape(parameter.remark)}</span>{bounds}'
+    return html('<span class="flag">{}</span>{}', parameter.remark, bounds)
 
 
 def find_partner(calibration: Fit, i: int) -> tuple[str, float]:
@@ -273,27 +303,32 @@ def find_partner(calibration: Fit, i: int) -> tuple[str, float]:
     return calibration.names[j], float(row[j])
 
 
-def list_directions(unobservable: Sequence[Combination], weak: Sequence[Combination]) -> str:
+def list_directions(unobservable: Sequence[Combination], weak: Sequence[Combination]) -> Html:
     """What the flight leaves open, in words."""
     lines = [
-        f"The flight can't show <code>{escape(at.text)}</code>"
-        + (
-            f" (standard error {number(at.standard_error, 2)})."
+        html(
+            "The flight can't show <code>{}</code>{}.",
+            at.text,
+            html(" (standard error {})", number(at.standard_error, 2))
             if np.isfinite(at.standard_error)
-            else "."
+            else "",
         )
         for at in unobservable
     ]
     lines += [
-        f"Poorly determined: <code>{escape(at.text)}</code>, standard error "
-        f"{number(at.standard_error, 2)}; its parameters are hard to tell apart."
+        html(
+            "Poorly determined: <code>{}</code>, standard error {}; its parameters are hard to "
+            "tell apart.",
+            at.text,
+            number(at.standard_error, 2),
+        )
         for at in weak
     ]
     if not lines:
-        return "<p>Every combination of the parameters is determined by this flight.</p>"
+        return html("<p>Every combination of the parameters is determined by this flight.</p>")
     return bullets(lines)
 
 
-def bullets(lines: Sequence[str]) -> str:
-    """HTML lines as a list."""
-    return "<ul>" + "".join(f"<li>{line}</li>" for line in lines) + "</ul>"
+def bullets(lines: Sequence[str]) -> Html:
+    """Lines, text or Html, as a list."""
+    return html("<ul>{}</ul>", join("", (html("<li>{}</li>", line) for line in lines)))

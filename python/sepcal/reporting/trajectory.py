@@ -4,14 +4,11 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import platform
 import re
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -22,11 +19,13 @@ from sepcal.aircraft_fits import AircraftFit
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.flight import Flight
+from sepcal.printing import in_shell
 from sepcal.reporting import advice, tables, words
 from sepcal.reporting.figures_cause import draw_channel
 from sepcal.reporting.figures_error import draw_heat_strip
 from sepcal.reporting.figures_fit import Channel, Run, draw_overlay
 from sepcal.reporting.figures_states import draw_beside_zero, draw_with_band
+from sepcal.reporting.markup import Html, html
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.thin import Rows, say_thinned
 from sepcal.smoothing import Smoothed
@@ -160,20 +159,17 @@ def compose_flown(flown: Flown, file: str) -> Page:
     return Page(f"{title}: sepcal report", verdict, sections)
 
 
-def show_verdict(flown: Flown, title: str, parameters: int) -> str:
+def show_verdict(flown: Flown, title: str, parameters: int) -> Html:
     """What was fitted and how, the errors left, and what the intervals lack.
 
     `parameters` is the number of their section.
     """
     last = flown.last
-    status = escape(last.status.replace("_", " "))
-    flagged = status if last.status == "converged" else f'<span class="flag">{status}</span>'
-    facts = [
-        (words.with_unit(misfit.rmse, misfit.unit), f"RMSE left, {escape(misfit.output)}")
+    facts: list[tuple[str, str]] = [
+        (words.with_unit(misfit.rmse, misfit.unit), f"RMSE left, {misfit.output}")
         for misfit in flown.comparison.overall[:5]
     ]
-    facts.append((flagged, "status of the fit"))
-    shown = "".join(f"<div><b>{value}</b><span>{name}</span></div>" for value, name in facts)
+    facts.append((tables.flag_status(last.status), "status of the fit"))
     lagging = [m.output for m in flown.comparison.overall if not m.is_white]
     what = "innovations" if flown.comparison.by == "filter-error" else "residuals"
     verdict = (
@@ -184,19 +180,21 @@ def show_verdict(flown: Flown, title: str, parameters: int) -> str:
     )
     kind = "unexplained" if lagging else "adequate"
     tag = "Not all is noise" if lagging else "Noise is left"
-    warnings = [*advice.warn(last, parameters), *([escape(last.warning)] if last.warning else [])]
-    more = "".join(f'<p class="warning">{text}</p>' for text in warnings)
+    warnings = [*advice.warn(last, parameters), *([last.warning] if last.warning else [])]
     notes = list(dict.fromkeys([*last.notes, *flown.comparison.notes]))
-    if notes:
-        listed = tables.bullets([escape(note) for note in notes])
-        more += f"<details><summary>notes on the data</summary>{listed}</details>"
     effects = ", ".join(at.name for at in last.effects)
-    heading = f"<b>{escape(title)}</b> · {escape(last.model)} by {escape(last.method)}" + (
-        f" with {escape(effects)}" if effects else ""
-    )
-    return (
-        f'<h1>{heading}</h1><div class="verdict {kind}"><span class="tag">{tag}</span>'
-        f'<p>{escape(verdict)}</p></div><div class="facts">{shown}</div>{more}'
+    return html(
+        '<h1><b>{}</b> · {} by {}{}</h1><div class="verdict {}"><span class="tag">{}</span>'
+        "<p>{}</p></div>{}{}",
+        title,
+        last.model,
+        last.method,
+        f" with {effects}" if effects else "",
+        kind,
+        tag,
+        verdict,
+        tables.list_facts(facts),
+        tables.list_warnings(warnings, notes),
     )
 
 
@@ -204,9 +202,9 @@ def show_steps(flown: Flown) -> Section:
     """The error of each output after every regressor that was added."""
     rows = [
         [
-            f"<code>{escape(entry.effect)}</code>",
-            escape(output),
-            f"{words.number(before)} → {words.number(entry.rmse_after[output])}",
+            html("<code>{}</code>", entry.effect),
+            output,
+            html("{} → {}", words.number(before), words.number(entry.rmse_after[output])),
             words.percent(tables.drop(before, entry.rmse_after[output])),
         ]
         for entry in flown.last.history
@@ -236,7 +234,7 @@ def show_overlay(flown: Flown) -> Section:
     gaps = (np.flatnonzero(np.diff(flown.rows) > 1) + 1).tolist()
     blocks: list[str | Figure | Grid] = [draw_overlay(comparison.time, channels, flown.runs, gaps)]
     if note := say_thinned(comparison.time.size):
-        blocks.append(f'<p class="note">{note}</p>')
+        blocks.append(html('<p class="note">{}</p>', note))
     by_filter = comparison.by == "filter-error"
     says = "the filter foretold from the rows before" if by_filter else "the integrated model says"
     lead = (
@@ -274,15 +272,15 @@ def show_channels(flown: Flown) -> Section:
         residual = comparison.residuals[:, place]
         if x is None or (smooth := _core.smooth(x, residual)) is None:
             continue
-        title = f"{channel.driver}: {words.share(channel.share_smooth)} of {channel.output}"
+        title = f"{channel.driver}: {words.percent(channel.share_smooth)} of {channel.output}"
         y_title = f"{channel.output} [{comparison.overall[place].unit}]"
         figures.append(draw_channel(title, channel.driver, y_title, x, residual, smooth))
-    lead = (
+    lead = html(
         "Residual against each logged channel, in the output where a smooth curve explains the "
         "most of it. A curve that leaves its band about zero names a regressor to try: "
         "<code>add FLIGHT.csv FIT.json 'Cm[alpha^2]'</code>."
     )
-    blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else ["<p>None.</p>"]
+    blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else [html("<p>None.</p>")]
     return Section("Residual against the channels", lead, blocks)
 
 
@@ -300,11 +298,13 @@ def show_states(flown: Flown) -> list[Section]:
     smoothed = flown.smoothed
     if smoothed is None:
         said = (
-            "<p>Give process noise to have the states with their bands, the innovations of the "
-            "filter and the noise that drives the states, given all of the flight: "
-            "<code>--process-noise NAME=SD</code>.</p>"
+            html(
+                "<p>Give process noise to have the states with their bands, the innovations of the "
+                "filter and the noise that drives the states, given all of the flight: "
+                "<code>--process-noise NAME=SD</code>.</p>"
+            )
             if flown.last.method == "output-error"
-            else "<p>Equation error has no states.</p>"
+            else html("<p>Equation error has no states.</p>")
         )
         return [Section("States", blocks=[said])]
     time, rows, runs = flown.comparison.time, flown.rows, flown.runs
@@ -326,13 +326,13 @@ def show_states(flown: Flown) -> list[Section]:
         "States",
         "Given all of the flight, with 2 standard deviations to either side, the errors of the "
         "parameters among them; process noise: "
-        f"{escape(given)}.",
+        f"{given}.",
         [draw("state", smoothed.states, smoothed.x, smoothed.standard_error, draw_with_band)],
     )
     scaled = smoothed.innovations[rows] / smoothed.innovation_sd[rows]
     table = [
         [
-            escape(name),
+            name,
             words.number(float(np.nanstd(scaled[:, j]))),
             words.number(_lag_one(scaled[:, j]), 2),
         ]
@@ -366,7 +366,7 @@ def show_states(flown: Flown) -> list[Section]:
     return [states, innovations, noise]
 
 
-def list_disturbances(comparison: Comparison) -> list[str]:
+def list_disturbances(comparison: Comparison) -> list[Html]:
     """Sizes that filter error found, and when each noise was more than noise; or nothing."""
     if not comparison.disturbances:
         return []
@@ -377,11 +377,17 @@ def list_disturbances(comparison: Comparison) -> list[str]:
             if one.rows
             else "none"
         )
-        size = f"{words.number(one.noise.value)} ± {words.number(one.noise.standard_error, 2)}"
+        size = html(
+            "{} ± {} {}{}",
+            words.number(one.noise.value),
+            words.number(one.noise.standard_error, 2),
+            one.noise.unit,
+            ", at its floor" if one.noise.at_floor else "",
+        )
         rows.append(
             [
-                escape(one.noise.name),
-                f"{size} {escape(one.noise.unit)}" + (", at its floor" * one.noise.at_floor),
+                one.noise.name,
+                size,
                 words.percent(one.share_beyond),
                 when,
             ]
@@ -390,7 +396,7 @@ def list_disturbances(comparison: Comparison) -> list[str]:
         ("process noise", False), ("size", True), ("beyond 3", True),
         ("longest stretch beyond 3 standard deviations", False),
     ]  # fmt: skip
-    said = (
+    said = html(
         "<p>Beyond 3 of its standard deviations, as all of the flight tells it: noise alone is "
         "there in 0.27 % of the rows, a row or a few at a time. A long stretch says when the model "
         "fails.</p>"
@@ -416,7 +422,7 @@ def show_parameters(flown: Flown) -> Section:
         others = set(last.names) - initial
         folded = tables.list_parameters(last, leave_out=others)
         blocks.append(
-            f"<details><summary>{len(initial)} initial states</summary>{folded}</details>"
+            html("<details><summary>{} initial states</summary>{}</details>", len(initial), folded)
         )
     blocks.append(tables.list_directions(last.unobservable, last.weak))
     return Section("Parameters", lead, blocks)
@@ -426,30 +432,26 @@ def show_provenance(flown: Flown, file: str) -> Section:
     """Inputs, version, options, and what makes the page again."""
     flight, last = flown.flight, flown.last
     description = last.to_dict()
-    rows = [
-        ["flight", f"{escape(flight.name)}, {flight.rows:,} rows, {flown.rows.size:,} used"],
-        ["sha256 of the flight", f"<code>{flight.sha256 or 'none: arrays, not a file'}</code>"],
+    rows: list[list[str]] = [
+        ["flight", f"{flight.name}, {flight.rows:,} rows, {flown.rows.size:,} used"],
+        ["sha256 of the flight", advice.code([flight.sha256 or "none: arrays, not a file"])],
     ]
     for i, fit in enumerate(flown.chain):
         name = flown.files[i] if i < len(flown.files) else f"fit {i + 1}"
         digest = hashlib.sha256(fit.to_json().encode()).hexdigest()
-        rows.append([f"sha256 of {escape(name)}", f"<code>{digest}</code>"])
+        rows.append([f"sha256 of {name}", advice.code([digest])])
     if flight.sha256 and description["inputs"]["sha256"] != flight.sha256:
         fitted = description["inputs"]
-        rows.append(["fitted on", f"{escape(fitted['file'])}, <code>{fitted['sha256']}</code>"])
+        at = html("{}, {}", fitted["file"], advice.code([fitted["sha256"]]))
+        rows.append(["fitted on", at])
     rows += [
-        ["model", escape(f"{last.model}, {last.method}")],
-        ["sepcal", f"{escape(_core.__version__)}, Python {platform.python_version()}"],
+        ["model", f"{last.model}, {last.method}"],
+        ["sepcal", f"{_core.__version__}, Python {platform.python_version()}"],
     ]
     again = f"sepcal.report(fits, {file!r}, flight)"
     if flown.files and flight.sha256:
         noise = [f"--process-noise={name}={sd:g}" for name, sd in flown.process_noise.items()]
         command = ["python", "-m", "sepcal", "report", flight.name, *flown.files, *noise]
-        again = shlex.join([*command, "-o", file])
-    options = escape(json.dumps(description["options"]))
-    shown = tables.table([("", False), ("", False)], rows)
-    text = (
-        f"{shown}<p>This page again:</p><pre>{escape(again)}</pre>"
-        f"<details><summary>all options of the fit</summary><pre>{options}</pre></details>"
-    )
+        again = in_shell([*command, "-o", file])
+    text = advice.list_origin(rows, again, description["options"])
     return Section("Where this comes from", blocks=[text])

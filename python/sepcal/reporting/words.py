@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import math
-from html import escape, unescape
+from html import escape
 from typing import Any
 
 import numpy as np
 
 from sepcal.columns import Array
+from sepcal.reporting.markup import Html, as_html, html
 
 INK, QUIET, RULE = "#1c2127", "#5c6670", "#e6e9ec"
 MEASURED, MODELLED, ALARM = "#9aa3ab", "#2463a8", "#b83a26"
@@ -44,74 +45,74 @@ VERDICTS = {
 }
 
 
-def number(value: float | None, digits: int = 3) -> str:
+def number(value: float | None, digits: int = 3) -> Html:
     """With so many significant digits; a dash where it is undefined."""
     if value is None or math.isnan(value):
-        return "–"
+        return html("–")
     if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
+        return html("∞") if value > 0 else html("−∞")
     if value == 0:
-        return "0"
+        return html("0")
     text = f"{value:#.{digits}g}".removesuffix(".")
     if "e" in text:
         mantissa, exponent = text.split("e")
         if -5 <= int(exponent) < 6:
             text = f"{value:.{max(0, digits - 1 - int(exponent))}f}"
         else:
-            power = f"{mantissa.removesuffix('.')}·10<sup>{int(exponent)}</sup>"
-            return power.replace("-", "−")
-    return text.replace("-", "−")
+            return power_of_ten(mantissa.removesuffix("."), int(exponent))
+    return as_html(text.replace("-", "−"))
 
 
-def estimate(value: float | None, error: float | None, unit: str) -> str:
+def power_of_ten(mantissa: str, exponent: int) -> Html:
+    """`1.2*10^-7`."""
+    signs = (f"{part}".replace("-", "−") for part in (mantissa, exponent))
+    return html("{}·10<sup>{}</sup>", *signs)
+
+
+def estimate(value: float | None, error: float | None, unit: str) -> Html:
     """`1.234 ± 0.056 m/s`, the value to its error's second digit."""
     suffix = unit_suffix(unit)
     if value is None or error is None or not error > 0 or not math.isfinite(error):
-        return f"{number(value, 4)}{suffix}"
+        return html("{}{}", number(value, 4), suffix)
     places = 1 - math.floor(math.log10(error))
     if abs(value) >= 1e6 or error < 1e-6:
-        return f"{number(value, 4)} ± {number(error, 2)}{suffix}"
+        return html("{} ± {}{}", number(value, 4), number(error, 2), suffix)
     shown = f"{value:.{max(0, places)}f}".replace("-", "−")
-    return f"{shown} ± {error:.{max(0, places)}f}{suffix}"
+    return html("{} ± {}{}", shown, f"{error:.{max(0, places)}f}", suffix)
 
 
 def percent(fraction: float | None) -> str:
-    """`12 %`; with a decimal below ten."""
+    """`12 %`; with a decimal below ten. Text, not HTML."""
     if fraction is None or math.isnan(fraction):
         return "–"
     value = 100 * fraction
     if 0 < value < 0.05:
-        return "&lt; 0.1 %"
+        return "< 0.1 %"
     text = f"{value:.0f}" if abs(value) >= 9.95 else f"{value:.1f}"
     return f"{'0' if text in ('-0.0', '0.0') else text} %".replace("-", "−")
 
 
-def share(fraction: float) -> str:
-    """The same as text, not HTML."""
-    return unescape(percent(fraction))
-
-
-def probability(p: float | None) -> str:
+def probability(p: float | None) -> Html:
     """`0.031`, or `3*10^-12` where it is tiny."""
     if p is None or math.isnan(p):
-        return "–"
+        return html("–")
     if p >= 0.001:
-        return f"{p:.2g}"
+        return as_html(f"{p:.2g}")
     if p < 1e-300:
-        return "&lt; 10<sup>−300</sup>"
-    digit, exponent = f"{p:.0e}".split("e-")
-    return f"{digit}·10<sup>−{int(exponent)}</sup>"
+        return html("&lt; 10<sup>−300</sup>")
+    digit, exponent = f"{p:.0e}".split("e")
+    return power_of_ten(digit, int(exponent))
 
 
-def with_unit(value: float | None, unit: str, digits: int = 3) -> str:
+def with_unit(value: float | None, unit: str, digits: int = 3) -> Html:
     """A number and its unit; none is shown for 1."""
-    return f"{number(value, digits)}{unit_suffix(unit)}"
+    return html("{}{}", number(value, digits), unit_suffix(unit))
 
 
-def unit_suffix(unit: str) -> str:
+def unit_suffix(unit: str) -> Html:
     """` m/s`, ` per V` for `1 per V`, nothing for `1`."""
     shown = unit.removeprefix("1 ") if unit.startswith("1 per") else unit
-    return f" {escape(shown)}" if shown not in ("1", "") else ""
+    return html(" {}", shown) if shown not in ("1", "") else html("")
 
 
 def polygon(x: Array, low: Array, high: Array) -> tuple[Array, Array]:

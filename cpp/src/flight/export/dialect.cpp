@@ -55,7 +55,9 @@ std::string Dialect::opening() const {
 }
 
 std::string Dialect::closing() const {
-  return fmt::format("\n{}#endif\n", cpp_ ? fmt::format("}} /* namespace {} */\n\n", name_) : "");
+  return fmt::format(
+      "\n{}#endif\n",
+      cpp_ ? fmt::format("}} /* namespace {} */\n\n", base::in_c_comment(name_)) : "");
 }
 
 std::string Dialect::define(std::string_view name, const std::vector<double>& values,

@@ -31,8 +31,8 @@ Json parse_json(std::string_view text, const std::string& source) {
     if (event != Event::key && !value.is_string()) return true;
     if (event != Event::key && event != Event::value) return true;
     const auto& said = value.get_ref<const std::string&>();
-    const bool is_free = event == Event::value &&
-                         std::ranges::find(free_texts, key) != free_texts.end();
+    const bool is_free =
+        event == Event::value && std::ranges::find(free_texts, key) != free_texts.end();
     if (!is_free && base::in_line(said) != said) {
       throw Error(fmt::format("{}: '{}' holds characters that can't be printed", source,
                               said.substr(0, 60)));

@@ -173,7 +173,7 @@ Page excuse_row(const Diagnosis& diagnosis) {
 std::string file_words(std::string_view files) {
   constexpr std::string_view between = " + ";
   const std::size_t at = files.find(between);
-  const std::string word = base::in_shell(files.substr(0, at));
+  std::string word = base::in_shell(files.substr(0, at));
   if (at == std::string_view::npos) return word;
   return word + " " + file_words(files.substr(at + between.size()));
 }

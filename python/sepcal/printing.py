@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the package writes for people: names and messages, each in one line, and the terminal."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+
+from sepcal import _core
+
+
+def _bytes(text: object) -> bytes:
+    """UTF-8; bytes of a file's name that are none stay as they are."""
+    return str(text).encode("utf-8", "surrogateescape")
+
+
+def in_line(text: object) -> str:
+    r"""One printable line: what ends a line or steers a terminal is written as \n or \x1b."""
+    return _core.in_line(_bytes(text))
+
+
+def in_shell(words: Iterable[str | os.PathLike[str]]) -> str:
+    """Words as a POSIX shell takes them."""
+    return " ".join(_core.in_shell(_bytes(os.fspath(word))) for word in words)
+
+
+def page_of(lines: Iterable[object]) -> str:
+    """Lines as a page: none of them forges another."""
+    return "\n".join(in_line(line) for line in lines)
+
+
+def show(page: str) -> None:
+    """Prints a page or JSON to standard output."""
+    sys.stdout.write(page if page.endswith("\n") else page + "\n")
+
+
+def tell(text: object) -> None:
+    """Says something on standard error, if there is one."""
+    if sys.stderr is not None:
+        print(in_line(text), file=sys.stderr)
+
+
+@contextmanager
+def told_progress(command: str) -> Iterator[Callable[[str], None]]:
+    """Gives a function that shows what is being done where standard error is a terminal."""
+    live = sys.stderr is not None and sys.stderr.isatty()
+
+    def report_progress(what: str) -> None:
+        if live:
+            print(
+                f"\r\033[Ksepcal {command}: {in_line(what)} ...",
+                end="",
+                file=sys.stderr,
+                flush=True,
+            )
+
+    try:
+        yield report_progress
+    finally:
+        if live:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
