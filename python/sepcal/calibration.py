@@ -378,7 +378,7 @@ def _is_of_aircraft(file: Path) -> bool:
     try:
         with open(file, encoding="utf-8") as opened:
             read = json.load(opened)
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return False
     return isinstance(read, dict) and ("aircraft" in read or {"path", "aero"} <= set(read))
 

@@ -80,9 +80,8 @@ def literal_names(tree: ast.AST) -> set[str]:
             for target in node.targets:
                 if isinstance(target, ast.Name):
                     (names if is_literal(node.value) else other).add(target.id)
-        elif isinstance(node, ast.arg) and node.annotation is not None:
-            if ast.unparse(node.annotation) == "LiteralString":
-                names.add(node.arg)
+        elif isinstance(node, ast.arg) and "LiteralString" in ast.dump(node):
+            names.add(node.arg)
     return names - other
 
 

@@ -49,9 +49,9 @@ ProbeBody pitot_static_body(const Calibration& calibration, const Correction& co
     body.text += "  met = met > 0.0 ? sqrt(met) : 0.0;\n";
   }
   const std::string scale = correction.added("airspeed_scale.s");
-  body.text += fmt::format("  *airspeed_cal_mps = met{}{};\n  return {};\n",
+  body.text += fmt::format("  *airspeed_cal_mps = met{}{};\n",
                            scale.empty() ? "" : fmt::format(" * (1.0{})", scale),
-                           correction.added("airspeed_bias.s"), dialect.own("ok"));
+                           correction.added("airspeed_bias.s"));
   body.trials = {{12.0, 1.2}, {18.0, 1.1}, {25.0, 1.05}};
   for (std::vector<double>& trial : body.trials) trial.resize(body.readings.size());
   return body;
@@ -95,16 +95,14 @@ ProbeBody five_hole_body(const Calibration& calibration, const Correction& corre
       "  const double w = cos({eps}) * below - sin({eps}) * side;\n"
       "  *airspeed_cal_mps = (1.0 + {lv}{ds}) * read + {bv}{dv};\n"
       "  *alpha_cal_rad = atan2(w, u);\n"
-      "  *beta_cal_rad = asin(v > 1.0 ? 1.0 : v < -1.0 ? -1.0 : v);\n"
-      "  return {ok};\n",
+      "  *beta_cal_rad = asin(v > 1.0 ? 1.0 : v < -1.0 ? -1.0 : v);\n",
       fmt::arg("la", c("lambda_alpha")), fmt::arg("ba", c("b_alpha")),
       fmt::arg("lb", c("lambda_beta")), fmt::arg("bb", c("b_beta")), fmt::arg("eps", c("eps_phi")),
       fmt::arg("lv", c("lambda_va")), fmt::arg("bv", c("b_va")),
       fmt::arg("da", sum("alpha_offset", ".k")), fmt::arg("db", sum("beta_offset", ".k")),
       fmt::arg("dp", sum("pressure_offset", "")),
       fmt::arg("rs", reading_scale.empty() ? "" : fmt::format(" * (1.0{})", reading_scale)),
-      fmt::arg("ds", sum("airspeed_scale", "")), fmt::arg("dv", sum("airspeed_bias", "")),
-      fmt::arg("ok", dialect.own("ok")));
+      fmt::arg("ds", sum("airspeed_scale", "")), fmt::arg("dv", sum("airspeed_bias", "")));
   const double ps = 95000.0;
   body.trials = {{ps + 120.0, ps, 6.0 * k_alpha, -3.6 * k_beta, 1.2},
                  {ps + 250.0, ps, -7.5 * k_alpha, 5.0 * k_beta, 1.1},

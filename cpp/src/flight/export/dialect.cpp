@@ -42,13 +42,17 @@ std::string literal(double value) {
 std::string Dialect::opening() const {
   const std::string guard = upper(name_) + (cpp_ ? "_HPP" : "_H");
   std::string text = fmt::format("#ifndef {0}\n#define {0}\n\n#include <math.h>\n\n", guard);
+  text +=
+      "#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)\n"
+      "#error \"-ffast-math takes isfinite() away, which guards this correction; leave it out\"\n"
+      "#endif\n\n";
   if (cpp_) text += fmt::format("namespace {} {{\n\n", name_);
   text += fmt::format(
       "/* What correct() returns. */\n"
       "enum {}{{\n"
       "  {} = 0, /* the outputs are set */\n"
       "  {} = 1, /* an input is no number, or there is nothing to correct */\n"
-      "  {} = 2 /* no outputs belong to these readings */\n"
+      "  {} = 2 /* no finite outputs belong to these inputs */\n"
       "}};\n\n",
       cpp_ ? "Status " : "", own("ok"), own("bad_input"), own("no_solution"));
   return text;

@@ -43,7 +43,7 @@ bool is_reserved(const std::string& name) {
       "step", "det", "change", "largest", "airspeed_mps", "airspeed_cal_mps", "pt_pa", "dpa_pa",
       "dpb_pa", "alpha_cal_rad", "beta_cal_rad", "u", "v", "w", "y", "z", "pow", "fabs", "sqrt",
       "sin", "cos", "atan2", "asin", "isfinite", "alpha", "beta", "square", "side", "below", "in",
-      "out", "got", "row"};
+      "out", "got", "row", "at", "k"};
   const bool in_capitals = std::ranges::none_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
   return in_capitals || words.contains(name) || name.starts_with("x_") ||
          name.starts_with("sepcal");

@@ -66,20 +66,37 @@ std::string explain_arguments(const ProbeBody& body, const Correction& correctio
   return text + "*/\n";
 }
 
+std::string check_finite(const std::string& value, const Dialect& dialect, const char* status) {
+  return fmt::format("  if (!isfinite({})) return {};\n", value, dialect.own(status));
+}
+
 std::string check_inputs(const ProbeBody& body, const Correction& correction,
                          const Dialect& dialect) {
-  std::vector<std::string> inputs;
+  std::string text;
   for (const Quantities& one : body.readings) {
     for (int i = 0; i < one.size; ++i) {
-      inputs.push_back(one.size == 1 ? one.argument : fmt::format("{}[{}]", one.argument, i));
+      const std::string input =
+          one.size == 1 ? one.argument : fmt::format("{}[{}]", one.argument, i);
+      text += check_finite(input, dialect, "bad_input");
     }
   }
-  for (const Driver& driver : correction.drivers) inputs.push_back(driver.argument);
-  std::string text;
-  for (const std::string& input : inputs) {
-    text += fmt::format("  if (!isfinite({})) return {};\n", input, dialect.own("bad_input"));
+  for (const Driver& driver : correction.drivers) {
+    text += check_finite(driver.argument, dialect, "bad_input");
   }
   return text;
+}
+
+/// Inputs far beyond any reading overflow on the way.
+std::string check_outputs(const ProbeBody& body, const Dialect& dialect) {
+  std::string text;
+  for (const Quantities& one : body.outputs) {
+    for (int i = 0; i < one.size; ++i) {
+      const std::string output =
+          one.size == 1 ? "*" + one.argument : fmt::format("{}[{}]", one.argument, i);
+      text += check_finite(output, dialect, "no_solution");
+    }
+  }
+  return text + fmt::format("  return {};\n", dialect.own("ok"));
 }
 
 /// What a five-hole probe reads before anything is corrected: effects may follow it.
@@ -125,7 +142,7 @@ Header header_text(const Calibration& calibration, const Dialect& dialect,
   for (const std::string& statement : correction.statements) {
     text += "  " + statement + "\n";
   }
-  text += body.text + "}\n\n";
+  text += body.text + check_outputs(body, dialect) + "}\n\n";
   text += self_test(calibration, body, correction, dialect);
   return {text + dialect.closing(), correction.left_to_others};
 }

@@ -43,7 +43,7 @@ std::string at_once(bool is_turned, const Correction& correction, const Dialect&
         fmt::format("  h_ut[{0}] = {1}[{0}][0] * u[0] + {1}[{0}][1] * u[1] + {1}[{0}][2] * u[2];\n",
                     i, dialect.constant("inverse"));
   }
-  return text + fmt::format("  return {};\n", dialect.own("ok"));
+  return text;
 }
 
 /// Newton's steps, each solved by Cramer's rule.
@@ -89,11 +89,10 @@ std::string stepwise(bool is_turned, const Correction& correction, const Dialect
       "      y[i] += change[i];\n"
       "      if (!(fabs(change[i]) <= largest)) largest = fabs(change[i]);\n"
       "    }\n"
-      "    if (largest < 1e-9) {\n"
-      "      for (i = 0; i < 3; ++i) h_ut[i] = y[i];\n";
-  text += fmt::format("      return {};\n    }}\n  }}\n  return {};\n", dialect.own("ok"),
-                      dialect.own("no_solution"));
-  return text;
+      "    if (largest < 1e-9) break;\n"
+      "  }\n";
+  text += fmt::format("  if (step == 20) return {};\n", dialect.own("no_solution"));
+  return text + "  for (i = 0; i < 3; ++i) h_ut[i] = y[i];\n";
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct ProbeBody {
   std::vector<Quantities> readings;
   std::vector<Quantities> outputs;  // headers: those of apply()
   std::vector<Constant> constants;
-  std::string text;  // of the body, after the inputs were looked at
+  std::string text;  // of the body, between the look at the inputs and that at the outputs
   std::vector<std::vector<double>>
       trials;  // three inputs for the self-test, in the readings' order
 };

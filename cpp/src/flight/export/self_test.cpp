@@ -54,6 +54,25 @@ std::vector<CorrectedColumn> correct_trials(const Calibration& calibration, cons
   return columns;
 }
 
+/// Of the inputs at[] into the outputs got[].
+std::string call_with(const ProbeBody& body, const Correction& correction, const Dialect& dialect) {
+  std::vector<std::string> arguments;
+  std::size_t at = 0;
+  for (const Quantities& one : body.readings) {
+    arguments.push_back(fmt::format("{}at[{}]", one.size == 1 ? "" : "&", at));
+    at += static_cast<std::size_t>(one.size);
+  }
+  for (std::size_t i = 0; i < correction.drivers.size(); ++i) {
+    arguments.push_back(fmt::format("at[{}]", at + i));
+  }
+  at = 0;
+  for (const Quantities& one : body.outputs) {
+    arguments.push_back(fmt::format("&got[{}]", at));
+    at += static_cast<std::size_t>(one.size);
+  }
+  return fmt::format("{}({})", dialect.own("correct"), fmt::join(arguments, ", "));
+}
+
 }  // namespace
 
 std::string self_test(const Calibration& calibration, const ProbeBody& body,
@@ -73,36 +92,32 @@ std::string self_test(const Calibration& calibration, const ProbeBody& body,
     for (const CorrectedColumn& column : corrected) numbers.push_back(literal(column.values[row]));
     expected.push_back(fmt::format("      {{{}}}", fmt::join(numbers, ", ")));
   }
-  std::vector<std::string> arguments;
-  std::size_t at = 0;
-  for (const Quantities& one : body.readings) {
-    arguments.push_back(one.size == 1 ? fmt::format("in[row][{}]", at)
-                                      : fmt::format("&in[row][{}]", at));
-    at += static_cast<std::size_t>(one.size);
-  }
-  for (std::size_t i = 0; i < correction.drivers.size(); ++i) {
-    arguments.push_back(fmt::format("in[row][{}]", at + i));
-  }
-  at = 0;
-  for (const Quantities& one : body.outputs) {
-    arguments.push_back(fmt::format("&got[{}]", at));
-    at += static_cast<std::size_t>(one.size);
-  }
-  return "/* 0 where the correction gives what sepcal gave of the same three inputs, to 1e-11. "
-         "*/\n" +
+  const std::string call = call_with(body, correction, dialect);
+  return "/* 0 where the correction gives what sepcal gave of the same three inputs, to 1e-11, "
+         "and\n"
+         "   says so where an input is no number or far too large. */\n" +
          dialect.function("int", "self_test", {}) +
          fmt::format(
              "  {0} in[3][{1}] = {{\n{2}}};\n"
              "  {0} out[3][{3}] = {{\n{4}}};\n"
-             "  double got[{3}];\n  int row;\n  int k;\n"
+             "  double at[{1}];\n  double got[{3}];\n  int row;\n  int k;\n"
              "  for (row = 0; row < 3; ++row) {{\n"
-             "    if ({5}({6}) != {7}) return 1;\n"
+             "    for (k = 0; k < {1}; ++k) at[k] = in[row][k];\n"
+             "    if ({5} != {6}) return 1;\n"
              "    for (k = 0; k < {3}; ++k) {{\n"
              "      if (!(fabs(got[k] - out[row][k]) <= 1e-11 * (1.0 + fabs(out[row][k])))) return "
              "1;\n"
+             "    }}\n  }}\n"
+             "  for (row = 0; row < {1}; ++row) {{\n"
+             "    for (k = 0; k < {1}; ++k) at[k] = k == row ? NAN : in[0][k];\n"
+             "    if ({5} != {7}) return 1;\n"
+             "    at[row] = 1e308;\n"
+             "    if ({5} != {6}) continue;\n"
+             "    for (k = 0; k < {3}; ++k) {{\n"
+             "      if (!isfinite(got[k])) return 1;\n"
              "    }}\n  }}\n  return 0;\n}}\n",
              type, inputs, fmt::join(given, ",\n"), corrected.size(), fmt::join(expected, ",\n"),
-             dialect.own("correct"), fmt::join(arguments, ", "), dialect.own("ok"));
+             call, dialect.own("ok"), dialect.own("bad_input"));
 }
 
 }  // namespace sepcal::exporting
