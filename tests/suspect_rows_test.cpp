@@ -69,6 +69,18 @@ TEST_CASE("another value is a code where it comes again and again and never stay
   CHECK(look(values, "airspeed_mps").empty());  // landed
 }
 
+TEST_CASE("a reading among others is no code, whatever its digits") {
+  std::vector<double> values(rows);
+  for (std::size_t row = 0; row < rows; ++row) {  // at rest but for a sweep to 120
+    const double phase = 0.05 * (static_cast<double>(row) - 500.0);
+    values[row] = 3.0 * std::sin(0.1 * static_cast<double>(row)) + 120.0 * std::exp(-phase * phase);
+  }
+  values[490] = 99.9;
+  CHECK(look(values, "dpb_pa").sentinels.empty());
+  values[100] = 99999.0;
+  CHECK(look(values, "dpb_pa").sentinels == RowList{100});
+}
+
 TEST_CASE("a code of a column with few levels lies beyond all of them") {
   std::vector<double> flaps(rows, 0.0);
   std::fill_n(flaps.begin() + 800, 60, 40.0);

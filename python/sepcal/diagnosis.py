@@ -69,9 +69,9 @@ class EffectFinding:
 
     @property
     def in_words(self) -> str:
-        """The status as tables show it; "not held out" is significant and yet refused."""
+        """The status as tables show it; "not held out", "too small" are significant, yet refused."""
         if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
-            return "not held out"
+            return "too small" if self.held_out_passed else "not held out"
         return {
             "found": "found",
             "slow_change": "slow change",

@@ -56,6 +56,11 @@ Bench::Bench(const DiagnosedFit& fitted, const Candidate& released, const Diagno
   null_ = find_null(room_.fit());
   if (room_.follows_path()) return;
   instruments_ = std::make_unique<InstrumentNoise>(room_, fitted.kit, null_, options.wanders);
+  const Eigen::MatrixXd inputs = room_.input_columns();
+  const Eigen::MatrixXd& corrections = room_.fit().wandering;
+  Eigen::MatrixXd slopes(room_.fit().layout.count(), inputs.cols() + corrections.cols());
+  slopes << inputs, corrections;
+  inputs_ = std::make_unique<InputNoise>(null_.white_outputs(), slopes);
 }
 
 DiagnosisWork Bench::work() const {
@@ -121,10 +126,10 @@ void Bench::test_best(Trials& trials, std::size_t most, double threshold, bool s
   // any form only where it takes more than what is simple.
   std::erase_if(chosen, [&](Trial* trial) {
     if (!trial->bounded || !is_bounded(*trial)) return false;
-    if (trial->bounded->log10_p < threshold) return false;
+    if (trial->bounded->log10_p / trial->inflation < threshold) return false;
     const double telling = is_simple(trial->candidate) ? worth_telling : of_simple;
     if (slow_too && trial->slow && trial->predicted_drop > telling) return false;
-    trial->log10_p = trial->bounded->log10_p;
+    trial->log10_p = trial->bounded->log10_p / trial->inflation;
     return true;
   });
   work_.tested += chosen.size();
@@ -155,6 +160,8 @@ void Bench::bound_all(const std::vector<Trial*>& chosen) const {
       places.push_back({trial, shape});
       projections.push_back(project_trial(room_, null_, *trial, shape));
       bases.push_back(projections.back().basis);
+      trial->inflation =
+          std::max(trial->inflation, inputs_->inflation(bases.back().dense(room_.fit().layout)));
     }
   }
   std::vector<std::size_t> order(places.size());

@@ -12,6 +12,7 @@
 
 #include "base/thread_pool.hpp"
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/input_noise.hpp"
 #include "diagnosis/instrument_noise.hpp"
 #include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/refits.hpp"
@@ -52,6 +53,7 @@ class Bench {
   Refits& refits() const { return *refits_; }
   /// None of a model with a state, whose noise remembers.
   const InstrumentNoise* instruments() const { return instruments_.get(); }
+  const InputNoise* inputs() const { return inputs_.get(); }
   const DiagnosisOptions& options() const { return options_; }
 
   /// What was done so far; count() adds what was done elsewhere.
@@ -96,6 +98,7 @@ class Bench {
   NullHypothesis null_;
   std::unique_ptr<Refits> refits_;
   std::unique_ptr<InstrumentNoise> instruments_ = {};
+  std::unique_ptr<InputNoise> inputs_ = {};
   mutable DiagnosisWork work_ = {};
 };
 

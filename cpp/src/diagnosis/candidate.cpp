@@ -310,6 +310,43 @@ MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
   return stacked;
 }
 
+MatrixXd CandidateRoom::input_columns() const {
+  if (follows_path() || noise_) return {};
+  constexpr double of_spread = 1e-4;
+  const auto model = this->model();
+  const auto last = static_cast<Index>(model->tables().parameters().size());  // the residual
+  base::ThreadPool alone(1);
+  const auto residual = [&](Record record) {
+    record.cut(fitted_.rows);
+    const model::Measurements measurements(*model, record);
+    return model::Sweep(*model, measurements, alone)
+        .tangent_columns(fitted_.fit.xi1(), fitted_.fit.xi2(), {last});
+  };
+  std::vector<VectorXd> columns;
+  VectorXd before;
+  for (const Variable& input : model->tables().inputs) {
+    if (input.name == "time" || !record_.has(input.name)) continue;
+    const auto values = record_.column(input.name);
+    const Eigen::Map<const VectorXd> known(values.data(), static_cast<Index>(values.size()));
+    const double spread = (known.array() - known.mean()).matrix().norm();
+    const double step = of_spread * spread / std::sqrt(static_cast<double>(known.size()));
+    if (!(step > 0.0) || !std::isfinite(step)) continue;
+    Record changed;
+    for (const std::string& name : record_.names()) {
+      if (name != input.name) changed.view(name, record_.column(name));
+    }
+    std::vector<double> moved(values.begin(), values.end());
+    for (double& value : moved) value += step;
+    changed.add(input.name, std::move(moved));
+    if (before.size() == 0) before = residual(record_);
+    columns.emplace_back((residual(std::move(changed)) - before) / step);
+  }
+  MatrixXd all(before.size(), static_cast<Index>(columns.size()));
+  for (Index k = 0; k < all.cols(); ++k) all.col(k) = columns[static_cast<std::size_t>(k)];
+  if (all.cols() > 0) scale_outputs(all);
+  return all;
+}
+
 std::shared_ptr<const BlockModel> CandidateRoom::model() const {
   return compose(fitted_.model, effects_, record_);
 }

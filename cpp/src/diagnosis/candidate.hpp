@@ -117,6 +117,10 @@ class CandidateRoom {
   /// where it acts on a path, along which what one row does goes on in those after it.
   const Eigen::MatrixXd* columns_of(const std::string& port) const;
 
+  /// What a change of each of the model's inputs does to every output, stacked as the tangent, by
+  /// differences; none of a model that integrates a state.
+  Eigen::MatrixXd input_columns() const;
+
   /// The time of each of the N rows [s].
   std::vector<double> times() const;
 

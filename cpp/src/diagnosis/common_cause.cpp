@@ -102,6 +102,11 @@ CommonCause find_common_cause(const MatrixXd& white, std::uint64_t seed) {
   cause.strongest = windows[static_cast<std::size_t>(window)];
   cause.outputs = name_outputs(pairs, z.row(window), strongest);
   const auto [a, b] = pairs[static_cast<std::size_t>(strongest)];
+  const auto within = [&](Index column) {
+    const Index first = row_of(cause.strongest.first, x.rows());
+    return x.col(column).segment(first, row_of(cause.strongest.last, x.rows()) - first);
+  };
+  cause.share = std::abs(within(a).dot(within(b))) / (within(a).norm() * within(b).norm());
   cause.together = x.col(a) + std::copysign(1.0, z(window, strongest)) * x.col(b);
   std::mt19937_64 generator(seed);
   double draws = 1.0;  // the record is one of them

@@ -16,7 +16,8 @@ struct CommonCause {
   double p_value = 1.0;              // corrected for pairs and windows; at least 0.001
   std::vector<std::size_t> outputs;  // that move together: at least two, else there is no test
   Window strongest = {};             // where they do so most
-  Eigen::VectorXd together = {};     // the sum of the two that do so most, the signs made equal
+  double share = 0.0;  // of the two's squares there that goes together: their correlation
+  Eigen::VectorXd together = {};  // the sum of the two that do so most, the signs made equal
 };
 
 /// `white`: whitened residuals, rows x outputs. The largest correlation is held against sets

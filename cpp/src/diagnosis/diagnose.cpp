@@ -105,6 +105,7 @@ class Recipe {
   std::vector<EffectFinding> judge(Trials& trials, double tests, bool slow_too) const;
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
+  bool takes_too_little(const EffectFinding& finding) const;
   double threshold_of(const Trials& trials, double tests) const;
   bool has(FindingStatus status) const;
   Trials::iterator find_trial(const std::string& name);
@@ -208,7 +209,7 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
       if (!finding.held_out_passed) {
         // whatever it is, it does not predict
       } else if (finding.p_adjusted < options_.significance) {
-        finding.status = FindingStatus::found;
+        if (!takes_too_little(finding)) finding.status = FindingStatus::found;
         finding.share_after_selection =
             share_after_selection(finding, options_.significance, number);
       } else if (may_be_slow(trials[i], std::log10(options_.significance / number))) {
@@ -218,6 +219,13 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
     findings.push_back(std::move(finding));
   }
   return findings;
+}
+
+/// Less than noise of the inputs and turbulence do by themselves, where a model is linearised about
+/// what was read: that is sure in a long record, and no cause.
+bool Recipe::takes_too_little(const EffectFinding& finding) const {
+  constexpr double least_taken = 0.01;
+  return !fitted_.kit.wanders.empty() && finding.held_out_gain < least_taken;
 }
 
 /// log10 of about what Holm's correction asks for, where `tests` could have been chosen.
@@ -551,8 +559,8 @@ void Recipe::conclude() {
   in_time("looking for structure", [&] {
     bench_.report_progress("looking for structure", 0.0);
     result_.omnibus = test_for_structure(bench_.room(), fitted_.kit, bench_.null(),
-                                         bench_.instruments(), options_, pool_);
-    result_.unlogged = find_unlogged(bench_.room(), bench_.null(), options_.seed);
+                                         bench_.instruments(), bench_.inputs(), options_, pool_);
+    result_.unlogged = find_unlogged(bench_.room(), bench_.null(), bench_.inputs(), options_.seed);
   });
   correct_together(options_.unexplained_below, result_.omnibus, result_.unlogged);
   if (has(FindingStatus::slow_change)) {

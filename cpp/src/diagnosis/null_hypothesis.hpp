@@ -24,6 +24,11 @@ struct NullHypothesis {
 
   const LinearisedFit& fit() const { return basis.fit(); }
   void whiten(Eigen::MatrixXd& columns) const;  // of count() rows
+
+  /// The whitened residual of each output, side by side (N x outputs).
+  Eigen::MatrixXd white_outputs() const {
+    return white_residual.reshaped(fit().layout.rows, std::ssize(fit().layout.outputs));
+  }
 };
 
 /// Without its noise. `fit` must outlive it.

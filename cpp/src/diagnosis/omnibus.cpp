@@ -164,8 +164,8 @@ double upper_normal_point(double probability) {
 }  // namespace
 
 Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
-                           const InstrumentNoise* instruments, const DiagnosisOptions& options,
-                           base::ThreadPool& pool) {
+                           const InstrumentNoise* instruments, const InputNoise* inputs,
+                           const DiagnosisOptions& options, base::ThreadPool& pool) {
   const RowLayout& layout = room.fit().layout;
   const std::vector<base::Part> windows =
       cut_windows(room, correlation_rows(layout, null.residual));
@@ -200,6 +200,9 @@ Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const Null
     if (room.follows_path() && log10_p[i] < least) {  // noise is common to all outputs there
       const double doubted = log10_block_tail(null, sets[i].basis.dense(layout));
       log10_p[i] = std::max(log10_p[i], correction + doubted);
+    }
+    if (inputs != nullptr && log10_p[i] < least) {
+      log10_p[i] /= inputs->inflation(sets[i].basis.dense(layout));
     }
     if (!(log10_p[i] < least)) continue;
     least = log10_p[i];

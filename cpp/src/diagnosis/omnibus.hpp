@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/input_noise.hpp"
 #include "diagnosis/instrument_noise.hpp"
 #include "diagnosis/null_hypothesis.hpp"
 #include "sepcal/diagnosis.hpp"
@@ -16,8 +17,8 @@ namespace sepcal::diagnosis {
 /// times; the smallest probability of these sets, corrected for their number: in noise as
 /// instruments have it, where the log's is such (`instruments`), else calibrated by simulation.
 Omnibus test_for_structure(CandidateRoom& room, const EffectKit& kit, const NullHypothesis& null,
-                           const InstrumentNoise* instruments, const DiagnosisOptions& options,
-                           base::ThreadPool& pool);
+                           const InstrumentNoise* instruments, const InputNoise* inputs,
+                           const DiagnosisOptions& options, base::ThreadPool& pool);
 
 /// The smallest straight line in time on every port that would be found nine times in ten among
 /// `candidates` of them: in noise as instruments have it, where that is known (`instruments`).

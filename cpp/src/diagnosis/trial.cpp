@@ -253,11 +253,14 @@ bool is_bounded(const Trial& trial) {
   return trial.bounded && trial.bounded->share_seen >= well_seen;
 }
 
+/// Noise that is so many times as large raises a small probability to about one over that power.
 void combine_tails(Trial& trial) {
-  trial.log10_p = trial.tails.log10_p();
-  if (!trial.bounded || !is_bounded(trial)) return;
-  trial.log10_p = is_decided_by_bounds(trial) ? trial.bounded->log10_p
-                                              : std::max(trial.log10_p, trial.bounded->log10_p);
+  double log10_p = trial.tails.log10_p();
+  if (trial.bounded && is_bounded(trial)) {
+    log10_p = is_decided_by_bounds(trial) ? trial.bounded->log10_p
+                                          : std::max(log10_p, trial.bounded->log10_p);
+  }
+  trial.log10_p = log10_p / trial.inflation;
 }
 
 bool is_decided_by_bounds(const Trial& trial) {

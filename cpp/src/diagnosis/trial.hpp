@@ -45,7 +45,8 @@ struct Trial {
   Eigen::MatrixXd covariance = {};
   NoiseTails tails = {};  // of the ratios, corrected for the scan as log10_p is
   std::optional<InstrumentTail> bounded = {};  // likewise, in noise as instruments have it
-  bool slow = false;                           // its driver changes as slowly as noise may wander
+  double inflation = 1.0;  // of the variance of its coefficients, by noise of the inputs
+  bool slow = false;       // its driver changes as slowly as noise may wander
   double predicted_drop = 0.0;
   HeldOut held_out = {};
   bool refitted = false;  // held_out is that of real fits

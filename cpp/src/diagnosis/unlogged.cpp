@@ -14,6 +14,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+/// Of the squares of two outputs, while they move together: what takes less is no finding, however
+/// sure.
+constexpr double least_share = 0.2;
+
 /// Where and in which outputs a cause shows.
 UnloggedCause place(UnloggedKind kind, double p_value, const std::vector<std::size_t>& outputs,
                     const Window& strongest, const RowLayout& layout,
@@ -31,17 +35,16 @@ UnloggedCause place(UnloggedKind kind, double p_value, const std::vector<std::si
 }  // namespace
 
 std::vector<UnloggedCause> find_unlogged(const CandidateRoom& room, const NullHypothesis& null,
-                                         std::uint64_t seed) {
+                                         const InputNoise* inputs, std::uint64_t seed) {
   std::vector<UnloggedCause> causes;
   const RowLayout& layout = room.fit().layout;
   if (layout.rows < window_steps) return causes;
-  const auto outputs = static_cast<Index>(layout.outputs.size());
-  const MatrixXd white =
-      Eigen::Map<const MatrixXd>(null.white_residual.data(), layout.rows, outputs);
+  const MatrixXd white = null.white_outputs();
   const std::vector<double> time = room.times();
   const EvenGrid grid = place_on_grid(time);
-  const CommonCause common = find_common_cause(white, seed);
-  if (!common.outputs.empty()) {
+  const CommonCause common =
+      find_common_cause(inputs == nullptr ? white : inputs->take_out(white), seed);
+  if (!common.outputs.empty() && common.share >= least_share) {
     causes.push_back(place(UnloggedKind::common_cause, common.p_value, common.outputs,
                            common.strongest, layout, time));
     const Index first = row_of(common.strongest.first, layout.rows);

@@ -7,14 +7,16 @@
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/input_noise.hpp"
 #include "diagnosis/null_hypothesis.hpp"
 #include "sepcal/diagnosis.hpp"
 
 namespace sepcal::diagnosis {
 
 /// One of each kind that the record can show, each with its own probability, significant or not.
+/// Noise of the inputs, which comes into several outputs at once, is no common cause.
 std::vector<UnloggedCause> find_unlogged(const CandidateRoom& room, const NullHypothesis& null,
-                                         std::uint64_t seed);
+                                         const InputNoise* inputs, std::uint64_t seed);
 
 /// Corrects their probabilities and that of the offsets for their number (Holm), and keeps the
 /// causes that are significant, the surest first.

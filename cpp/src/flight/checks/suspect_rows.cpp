@@ -101,6 +101,15 @@ bool comes_and_goes(const RowList& rows, std::size_t length, const Body& body, d
   });
 }
 
+/// Whether more than a few readings lie beyond it: then it is one of them, 99.9 among 95 to 120.
+bool is_within_readings(std::span<const double> values, double code, std::size_t few) {
+  const auto lies_beyond = [code](double value) {
+    return std::isfinite(value) && !is_known_code(value) &&
+           (code < 0 ? value < code : value > code);
+  };
+  return std::ranges::count_if(values, lies_beyond) > static_cast<std::ptrdiff_t>(few);
+}
+
 /// Values that stand for none where they are far from all others: what people know as a code, and
 /// others where these are few.
 std::vector<double> find_far_values(std::span<const double> values, const Body& body) {
@@ -112,6 +121,7 @@ std::vector<double> find_far_values(std::span<const double> values, const Body& 
     if (body.is_beyond(value, 1) && is_code_of(body, value)) codes.insert(value);
     if (body.is_beyond(value, 3) && others.size() <= most) others.insert(value);
   }
+  std::erase_if(codes, [&](double code) { return is_within_readings(values, code, most); });
   if (codes.size() > most) return {};
   if (others.size() <= most) codes.merge(others);
   return {codes.begin(), codes.end()};

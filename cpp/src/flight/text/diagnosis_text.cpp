@@ -44,7 +44,8 @@ std::string_view in_words(const EffectFinding& effect) {
   if (effect.status == FindingStatus::found) return "FOUND";
   if (effect.status == FindingStatus::slow_change) return "slow change";
   if (effect.status == FindingStatus::undecided) return "undecided";
-  return is_refused(effect) ? "not held out" : "not seen";
+  if (!is_refused(effect)) return "not seen";
+  return effect.held_out_passed ? "too small" : "not held out";
 }
 
 Page estimates(const EffectFinding& effect) {
@@ -102,14 +103,15 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
   if (detail != Detail::brief) text += page(" {:>9} {:>9} {:>9}", "F", "PSE", "SSE");
   text += "\n";
   std::size_t shown = 0;
-  std::size_t refused = 0;
+  bool is_unpredicted = false;
+  bool is_small = false;
   std::size_t unseen = 0;
   for (const EffectFinding& effect : effects) {
     if (shown == most_shown || effect.status == FindingStatus::cannot_be_seen) break;
     if (effect.status == FindingStatus::not_seen && !is_refused(effect) && ++unseen > most_unseen) {
       break;
     }
-    if (is_refused(effect)) ++refused;
+    if (is_refused(effect)) (effect.held_out_passed ? is_small : is_unpredicted) = true;
     text += effect_row(effect, width, detail);
     ++shown;
   }
@@ -117,8 +119,13 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
       std::ranges::count(effects, FindingStatus::cannot_be_seen, &EffectFinding::status);
   const auto others = static_cast<std::ptrdiff_t>(effects.size() - shown) - hidden;
   if (others > 0) text += page("and {} more\n", others);
-  if (refused > 0) {
+  if (is_unpredicted) {
     text += "not held out: significant, but rows left out gain no more than by chance\n";
+  }
+  if (is_small) {
+    text +=
+        "too small: significant, but it takes less than 1 % on rows held out, as errors of what "
+        "enters the model do by themselves\n";
   }
   if (hidden > 0) {
     text += page("{} cannot be seen in this flight:", hidden);

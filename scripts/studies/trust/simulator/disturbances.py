@@ -130,6 +130,17 @@ def _quantised(times: float) -> Disturb:
     return disturb
 
 
+def _noisy_inputs(log: Log) -> None:
+    """White noise of each input, which does up to one and a half times what the outputs' own does.
+
+    Louder noise bends the fit itself: errors in variables, which no test of what is left can mend.
+    """
+    for header, size in _steps(log).items():
+        if header in log.columns and header not in log.instrument.outputs:
+            loud = size * log.rng.uniform(0.3, 1.5)
+            log.columns[header] += loud * log.rng.standard_normal(log.motion.time.size)
+
+
 def _rows_an_answer(log: Log) -> int:
     """Of a sensor that answers in one row of so many, once a second or oftener."""
     step = float(log.motion.time[1] - log.motion.time[0])
@@ -219,6 +230,7 @@ DISTURBANCES: Mapping[str, Disturbance] = {
     "bursty": Disturbance(outputs="bursty"),
     "gusts": Disturbance(probes=AIR, gusty=True, wanders=_of_gusts),
     "attitude": Disturbance(probes=WITH_ATTITUDE, further=_attitude, wanders=bounds.of_attitude),
+    "noise of inputs": Disturbance(probes=WITH_ATTITUDE, further=_noisy_inputs),
     "quantised at 1 noise": Disturbance(further=_quantised(1.0)),
     "quantised at 3 noises": Disturbance(further=_quantised(3.0)),
     NOISE_HELD: Disturbance(outputs="held fivefold"),
