@@ -42,7 +42,8 @@ Page history_table(const Calibration& calibration) {
 Page restated_lines(const Calibration& calibration) {
   Page text;
   for (const Restatement& one : calibration.restated) {
-    text += page("{}{}: {}\n", text.empty() ? "\n" : "", one.name, one.sentence);
+    if (text.empty()) text += "\n";
+    text += page("{}: {}\n", one.name, one.sentence);
   }
   return text;
 }

@@ -68,7 +68,8 @@ Page note_lines(const FlightCheck& check) {
   const LogNote* before = nullptr;
   for (const LogNote& note : check.notes) {
     if (before == nullptr || before->concern != note.concern) {
-      text += page("{}{}:\n", before == nullptr ? "" : "\n", heading(note.concern));
+      if (before != nullptr) text += "\n";
+      text += page("{}:\n", heading(note.concern));
     }
     text += page("- {}\n", note.found);
     if (std::isfinite(note.first_s)) {
