@@ -69,7 +69,7 @@ class EffectFinding:
 
     @property
     def in_words(self) -> str:
-        """The status as tables show it; "not held out", "too small" are significant, yet refused."""
+        """The status as tables show it; "not held out" and "too small" are sure, yet refused."""
         if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
             return "too small" if self.held_out_passed else "not held out"
         return {
