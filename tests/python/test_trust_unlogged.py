@@ -3,7 +3,11 @@
 
 import pytest
 
+from sepcal.fitting import fit
+from sepcal.flight import Flight
 from studies.hidden_effects.cases import calibrate
+from studies.trust.asked import MODELS
+from studies.trust.by_key import fly_key
 from studies.trust.unlogged import BURST, LINE, NOTHING, fly_with, names
 
 
@@ -38,3 +42,15 @@ def test_noise_is_no_cause(noise: str, probe: str):
     """Bursts in each output alone, and a resonance: neither a common cause nor a line."""
     flight, _ = fly_with(NOTHING, probe, noise, 5, rows=300)
     assert calibrate(probe, flight).diagnose().unlogged == []
+
+
+@pytest.mark.parametrize("probe", ["five-hole", "magnetometer"])
+def test_noise_of_what_enters_the_model_is_no_cause(probe: str):
+    """Of a probe's pressures, of attitudes: it comes into several outputs by the heading."""
+    verdicts = []
+    for seed in range(871000, 871010):
+        _, flown = fly_key(("nothing", probe, "noise of inputs", 0.0, 0, seed))
+        diagnosis = fit(MODELS[probe], Flight(flown.columns)).diagnose()
+        assert [told["kind"] for told in diagnosis.unlogged] == []
+        verdicts.append(diagnosis.verdict)
+    assert verdicts.count("adequate") >= 8
