@@ -24,6 +24,7 @@ from sepcal.states_module import states_module
 from sepcal.stepwise import Stepwise, diagnosis_options
 from sepcal.tracking import Track
 from sepcal.trajectories import FlightPath
+from sepcal.whole_files import name_of
 
 if TYPE_CHECKING:
     from sepcal import _states
@@ -224,7 +225,7 @@ class AircraftFit(Fit):
     ) -> _core.Applied:
         """Copies a CSV log and adds these columns; `output` appears whole or not at all."""
         given = dict(process_noise or {})
-        return self.core.apply_to_file(os.fspath(file), os.fspath(output), given)
+        return self.core.apply_to_file(name_of(file), name_of(output), given)
 
     def smooth(
         self, process_noise: Mapping[str, float] | None = None, flight: Flight | None = None
@@ -301,7 +302,7 @@ class AircraftFit(Fit):
 
     def save(self, file: Path) -> None:
         """Writes to_json() to a file that appears whole or not at all."""
-        self.core.save(os.fspath(file))
+        self.core.save(name_of(file))
 
     def to_json(self) -> str:
         """The JSON that the app's fit writes with -o."""
@@ -402,7 +403,7 @@ def _with_fit(laid: dict[str, Any], options: FitOptions) -> _states.Options:
 
 def read_fit(file: Path) -> AircraftFit:
     """Reads what save() or the app's fit wrote. Raises Error for anything else."""
-    return AircraftFit(states_module().read(os.fspath(file)))
+    return AircraftFit(states_module().read(name_of(file)))
 
 
 def _parse(text: str) -> AircraftFit:

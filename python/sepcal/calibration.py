@@ -22,6 +22,7 @@ from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options
+from sepcal.whole_files import name_of
 
 Path = str | os.PathLike[str]
 
@@ -333,11 +334,11 @@ class Calibration(Fit):
             Error: Bad input, columns of those names that are there already, an output that can't be
                 written.
         """
-        return self.core.apply_to_file(os.fspath(file), os.fspath(output))
+        return self.core.apply_to_file(name_of(file), name_of(output))
 
     def save(self, file: Path) -> None:
         """Writes to_json() to a file that appears whole or not at all; raises Error if it can't."""
-        self.core.save(os.fspath(file))
+        self.core.save(name_of(file))
 
     def to_json(self) -> str:
         """The JSON that the app's fit writes with -o."""
@@ -369,7 +370,7 @@ def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration | AircraftFi
     """
     if _is_of_aircraft(file):
         return read_fit(file)
-    core = _core.read_calibration(os.fspath(file), to_core_effects(effects))
+    core = _core.read_calibration(name_of(file), to_core_effects(effects))
     return Calibration(core, own=effects)
 
 

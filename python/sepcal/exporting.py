@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from typing import Any, Literal
 
 from sepcal import _core
 from sepcal.calibration import Calibration, Path
 from sepcal.flight import Flight
+from sepcal.whole_files import name_of
 
 Target = Literal["c", "cpp", "px4", "ardupilot"]
 
@@ -73,7 +73,7 @@ def export(
         raise _core.Error(f"without is the text {without!r}; give a list of effects")
     written = _core.export_to_file(
         calibration.core,
-        os.fspath(file),
+        name_of(file),
         to,
         None if chosen is None else chosen._core,
         sensor,

@@ -7,6 +7,7 @@ from typing import Self
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
+from sepcal.whole_files import name_of
 
 
 class Flight(Mapping[str, Array]):
@@ -32,6 +33,8 @@ class Flight(Mapping[str, Array]):
         columns = by_name(columns)
         self._core = _core.Flight(name)
         for header in columns:
+            if not isinstance(header, str):
+                raise _core.Error(f"{name}: a column is called {header!r}; its name must be a text")
             if header == "maneuver":
                 self._core.label(to_labels(columns[header]))  # type: ignore[arg-type]
             else:
@@ -98,7 +101,7 @@ def read_csv(file: str | os.PathLike[str]) -> Flight:
         Error: No such file, binary, separated by semicolons, a column twice, a short row, no rows;
             the message names file, line and column.
     """
-    return Flight._of(_core.read_csv(os.fspath(file)))
+    return Flight._of(_core.read_csv(name_of(file)))
 
 
 def to_flight(flight: object, call: str) -> Flight:

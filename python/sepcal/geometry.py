@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from sepcal.models import Vector, _to_vector
 from sepcal.states_module import states_module
+from sepcal.whole_files import name_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +66,7 @@ def read_aircraft(file: str | os.PathLike[str]) -> Aircraft:
     Raises:
         Error: The file can't be read or is no aircraft: the entry that is wrong.
     """
-    entries = json.loads(states_module().read_aircraft(os.fspath(file)))
+    entries = json.loads(states_module().read_aircraft(name_of(file)))
     inertia = entries.get("inertia_kgm2")
     return Aircraft(
         area=entries["area_m2"],

@@ -18,6 +18,7 @@ from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask, u
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.trajectories import TrajectoryModel
+from sepcal.whole_files import name_of
 
 Executors: TypeAlias = Executor | Callable[[], Executor] | None
 
@@ -151,7 +152,7 @@ def _name(flights: Mapping[str, Source] | Sequence[Source]) -> dict[str, Source]
     for index, source in enumerate(flights):
         name = f"flight {index}"
         if isinstance(source, str | os.PathLike):
-            name = os.fspath(source)
+            name = name_of(source)
         elif isinstance(source, Flight) and source.sha256:
             name = source.name
         if name in named:

@@ -8,6 +8,17 @@ import tempfile
 from collections.abc import Mapping
 
 from sepcal import _core
+from sepcal.printing import in_line
+
+
+def name_of(file: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
+    """A file's name as the engine takes it. Raises Error for one that is no UTF-8."""
+    name = os.fsdecode(file)
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        raise _core.Error(f"{in_line(name)}: the file's name is no UTF-8; rename it") from None
+    return name
 
 
 def write_whole(texts: Mapping[str, str]) -> None:

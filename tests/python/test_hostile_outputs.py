@@ -323,3 +323,19 @@ def test_a_closed_standard_error_takes_no_file(
         ["sh", "-c", f"{APPS / 'sepcal-mag'} fit nothing.csv 2>&-"], cwd=tmp_path, check=False
     )
     assert refused.returncode == 2
+
+
+@pytest.mark.parametrize("header", [3, None, b"x", ("a",)])
+def test_a_column_s_name_must_be_a_text(flown: sepcal.SimulatedFlight, header: Any) -> None:
+    columns: dict[Any, Any] = {name: flown[name] for name in flown}
+    with pytest.raises(sepcal.Error, match="its name must be a text"):
+        sepcal.Flight({**columns, header: np.zeros(flown.rows)})
+
+
+def test_a_file_whose_name_is_no_utf_8(tmp_path: Path) -> None:
+    """One line, whichever way it is given."""
+    named = os.fsencode(tmp_path) + b"/caf\xe9.csv"
+    for file in (named, os.fsdecode(named), Path(os.fsdecode(named))):
+        for call in (sepcal.read_csv, sepcal.load):
+            with pytest.raises(sepcal.Error, match=r"caf\\xe9.csv: the file's name is no UTF-8"):
+                call(file)

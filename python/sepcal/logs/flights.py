@@ -19,7 +19,7 @@ from sepcal.logs.earth import FieldColumns, find_field
 from sepcal.logs.reading import choose_sensor, open_log, quiet
 from sepcal.logs.recording import MAGNETOMETER, Recording, Sensor
 from sepcal.logs.table import Table, build_table
-from sepcal.whole_files import write_whole
+from sepcal.whole_files import name_of, write_whole
 
 
 class LoggedFlight(Flight):
@@ -42,7 +42,7 @@ class LoggedFlight(Flight):
 
         Both appear whole or none does. Raises Error where they can't be written.
         """
-        target = os.fspath(file)
+        target = name_of(file)
         write_whole({target: to_csv(self), sidecar_of(target): to_json(self.conversion)})
 
 
@@ -87,7 +87,7 @@ def read_log(
             what its calibration needs, no reading from `start` to `end`, positions without a date,
             a day outside the field's models, no pyulog, pymavlink or pygeomag.
     """
-    return convert(open_log(os.fspath(file), cut_off, progress), sensor, start, end, date, field)
+    return convert(open_log(name_of(file), cut_off, progress), sensor, start, end, date, field)
 
 
 def convert(

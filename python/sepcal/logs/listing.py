@@ -13,6 +13,7 @@ from sepcal.logs.earth import find_field
 from sepcal.logs.reading import find_lacking, open_log
 from sepcal.logs.recording import MAGNETOMETER, Channel, Recording, Sensor
 from sepcal.printing import in_shell, page_of
+from sepcal.whole_files import name_of
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def list_log(file: str | os.PathLike[str], *, cut_off: bool = False) -> LogConte
     Raises:
         Error: As read_log() for a file that can't be read.
     """
-    return list_recording(open_log(os.fspath(file), cut_off))
+    return list_recording(open_log(name_of(file), cut_off))
 
 
 def list_recording(log: Recording) -> LogContents:

@@ -19,7 +19,7 @@ from sepcal.reporting.gather import gather
 from sepcal.reporting.page import build_page, read_plotly
 from sepcal.reporting.sections import compose
 from sepcal.reporting.trajectory import compose_flown, gather_flown
-from sepcal.whole_files import write_whole
+from sepcal.whole_files import name_of, write_whole
 
 Path = str | os.PathLike[str]
 
@@ -67,8 +67,8 @@ def report(
     if process_noise and kinds == {Calibration}:
         raise _core.Error("process_noise is for models with a state: a flight path, an aircraft")
     plotly = read_plotly()
-    told, target = progress or (lambda _: None), os.fspath(file)
-    names = [os.fspath(at) for at in files]
+    told, target = progress or (lambda _: None), name_of(file)
+    names = [name_of(at) for at in files]
     if kinds == {AircraftFit}:
         page = compose_flown(gather_flown(chain, flight, names, process_noise or {}, told), target)
     else:
