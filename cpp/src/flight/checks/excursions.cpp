@@ -54,7 +54,7 @@ double usual_near(const std::vector<double>& errors, std::size_t k) {
 double way_beside(const std::vector<double>& x, const std::vector<double>& errors, std::size_t k,
                   int side, double off) {
   const auto at = [&](int away) {
-    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + side * away);
+    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + std::ptrdiff_t{side} * away);
   };
   const bool has_beyond = side < 0 ? k >= 3 : k + 3 < x.size();
   const bool is_off = has_beyond && std::abs(errors[at(2)]) > off;
