@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
-from html import escape
 from typing import TYPE_CHECKING, Any, ClassVar
+
+from sepcal.markup import html, join
 
 Row = Mapping[str, object]
 
@@ -38,19 +39,20 @@ class Page:
 
     def _repr_html_(self) -> str:
         """A small table, for notebooks."""
-        head = "".join(f"<th>{escape(name.replace('_', ' '))}</th>" for name in self._shown)
+        head = join("", (html("<th>{}</th>", name.replace("_", " ")) for name in self._shown))
         rows = [
-            "<tr>" + "".join(f"<td>{_cell(row[name])}</td>" for name in self._shown) + "</tr>"
+            html(
+                "<tr>{}</tr>\n",
+                join("", (html("<td>{}</td>", _cell(row[name])) for name in self._shown)),
+            )
             for row in self._rows()
         ]
-        lines = [
-            f"<table><caption>{escape(self._summary())}</caption>",
-            f"<thead><tr>{head}</tr></thead>",
-            "<tbody>",
-            *rows,
-            "</tbody></table>",
-        ]
-        return "\n".join(lines)
+        return html(
+            "<table><caption>{}</caption>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>",
+            self._summary(),
+            head,
+            join("", rows),
+        )
 
     def to_frame(self) -> Any:  # noqa: ANN401
         """The same as a pandas.DataFrame, with every number. Raises ImportError without pandas."""
@@ -65,4 +67,4 @@ class Page:
 def _cell(value: object) -> str:
     if value is None or value != value:
         return "-"
-    return f"{value:.6g}" if isinstance(value, float) else escape(str(value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "sepcal/error.hpp"
 
@@ -60,7 +61,7 @@ Bench::Bench(const DiagnosedFit& fitted, const Candidate& released, const Diagno
   const Eigen::MatrixXd& corrections = room_.fit().wandering;
   Eigen::MatrixXd slopes(room_.fit().layout.count(), inputs.cols() + corrections.cols());
   slopes << inputs, corrections;
-  inputs_ = std::make_unique<InputNoise>(null_.white_outputs(), slopes);
+  inputs_ = std::make_unique<InputNoise>(null_.white_outputs(), std::move(slopes));
 }
 
 DiagnosisWork Bench::work() const {

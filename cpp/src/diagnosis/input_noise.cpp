@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "numerics/bounded_least_squares.hpp"
 
@@ -16,8 +17,8 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-InputNoise::InputNoise(const MatrixXd& white, const MatrixXd& slopes)
-    : rows_(white.rows()), slopes_(white.cols() > 1 ? slopes : MatrixXd()) {
+InputNoise::InputNoise(const MatrixXd& white, MatrixXd slopes)
+    : rows_(white.rows()), slopes_(white.cols() > 1 ? std::move(slopes) : MatrixXd()) {
   if (!is_known()) return;
   constexpr double largest = 4.0;  // of an output's rms: outliers are no variance
   constexpr double ridge = 1e-10;  // inputs that do the same share what they do

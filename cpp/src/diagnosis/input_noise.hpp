@@ -13,7 +13,7 @@ class InputNoise {
   /// `white`: whitened residuals of the outputs, N x m; `slopes`: what a unit of each input does,
   /// output after output (m N x inputs). The covariance of a row is a sum of the outputs' own
   /// variances and of those of the inputs, by least squares of the products of the outputs.
-  InputNoise(const Eigen::MatrixXd& white, const Eigen::MatrixXd& slopes);
+  InputNoise(const Eigen::MatrixXd& white, Eigen::MatrixXd slopes);
 
   /// The outputs of each row multiplied by the inverse root of its covariance: independent, and of
   /// unit size. Without inputs as they are.

@@ -11,10 +11,10 @@ from typing import LiteralString
 
 from sepcal import _core
 from sepcal.diagnosis import EffectFinding
+from sepcal.markup import Html, html, join
 from sepcal.printing import in_shell
 from sepcal.reporting import tables
 from sepcal.reporting.gather import Material
-from sepcal.reporting.markup import Html, html, join
 from sepcal.reporting.words import number, with_unit
 from sepcal.results import Fit
 

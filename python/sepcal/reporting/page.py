@@ -19,7 +19,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
-from sepcal.reporting.markup import Html, as_html, html, join
+from sepcal.markup import Html, as_html, html, join
 
 ROUNDING = 1e-4  # of an array's spread: float32 may change no value by more
 

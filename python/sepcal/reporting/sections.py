@@ -7,12 +7,12 @@ import numpy as np
 
 from sepcal import _core
 from sepcal._core import ChannelMisfit
+from sepcal.markup import Html, html
 from sepcal.reporting import advice, tables, words
 from sepcal.reporting.figures_cause import draw_added_variable, draw_channel
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall
 from sepcal.reporting.figures_fit import Channel, draw_overlay
 from sepcal.reporting.gather import Material
-from sepcal.reporting.markup import Html, html
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.sections_flight import show_coverage, show_noise
 from sepcal.reporting.thin import say_thinned

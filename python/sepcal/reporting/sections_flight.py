@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from sepcal.columns import Array
+from sepcal.markup import Html, html
 from sepcal.reporting import tables, words
 from sepcal.reporting.figures_flight import (
     covered_cells,
@@ -16,7 +17,6 @@ from sepcal.reporting.figures_flight import (
 )
 from sepcal.reporting.figures_noise import draw_autocorrelation, draw_quantiles, draw_spectrum
 from sepcal.reporting.gather import Material
-from sepcal.reporting.markup import Html, html
 from sepcal.reporting.page import Figure, Grid, Section
 
 UNEVEN = 0.1  # share of the median interval: sampling that varies by more is uneven

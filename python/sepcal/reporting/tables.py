@@ -13,7 +13,7 @@ from sepcal._core import Combination, HistoryEntry, Parameter
 from sepcal.calibration import Calibration
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import EffectFinding
-from sepcal.reporting.markup import Html, html, join
+from sepcal.markup import Html, html, join
 from sepcal.reporting.words import (
     MEANINGS,
     estimate,

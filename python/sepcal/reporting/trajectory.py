@@ -19,13 +19,13 @@ from sepcal.aircraft_fits import AircraftFit
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.flight import Flight
+from sepcal.markup import Html, html
 from sepcal.printing import in_shell
 from sepcal.reporting import advice, tables, words
 from sepcal.reporting.figures_cause import draw_channel
 from sepcal.reporting.figures_error import draw_heat_strip
 from sepcal.reporting.figures_fit import Channel, Run, draw_overlay
 from sepcal.reporting.figures_states import draw_beside_zero, draw_with_band
-from sepcal.reporting.markup import Html, html
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.thin import Rows, say_thinned
 from sepcal.smoothing import Smoothed

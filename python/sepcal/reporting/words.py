@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sepcal.columns import Array
-from sepcal.reporting.markup import Html, as_html, html
+from sepcal.markup import Html, as_html, html
 
 INK, QUIET, RULE = "#1c2127", "#5c6670", "#e6e9ec"
 MEASURED, MODELLED, ALARM = "#9aa3ab", "#2463a8", "#b83a26"

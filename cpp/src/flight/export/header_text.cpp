@@ -66,6 +66,14 @@ std::string explain_arguments(const ProbeBody& body, const Correction& correctio
   return text + "*/\n";
 }
 
+/// Each number of an argument; one alone is had by `alone`.
+std::vector<std::string> numbers_of(const Quantities& one, const char* alone) {
+  if (one.size == 1) return {alone + one.argument};
+  std::vector<std::string> numbers;
+  for (int i = 0; i < one.size; ++i) numbers.push_back(fmt::format("{}[{}]", one.argument, i));
+  return numbers;
+}
+
 std::string check_finite(const std::string& value, const Dialect& dialect, const char* status) {
   return fmt::format("  if (!isfinite({})) return {};\n", value, dialect.own(status));
 }
@@ -74,9 +82,7 @@ std::string check_inputs(const ProbeBody& body, const Correction& correction,
                          const Dialect& dialect) {
   std::string text;
   for (const Quantities& one : body.readings) {
-    for (int i = 0; i < one.size; ++i) {
-      const std::string input =
-          one.size == 1 ? one.argument : fmt::format("{}[{}]", one.argument, i);
+    for (const std::string& input : numbers_of(one, "")) {
       text += check_finite(input, dialect, "bad_input");
     }
   }
@@ -90,9 +96,7 @@ std::string check_inputs(const ProbeBody& body, const Correction& correction,
 std::string check_outputs(const ProbeBody& body, const Dialect& dialect) {
   std::string text;
   for (const Quantities& one : body.outputs) {
-    for (int i = 0; i < one.size; ++i) {
-      const std::string output =
-          one.size == 1 ? "*" + one.argument : fmt::format("{}[{}]", one.argument, i);
+    for (const std::string& output : numbers_of(one, "*")) {
       text += check_finite(output, dialect, "no_solution");
     }
   }
