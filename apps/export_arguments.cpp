@@ -20,7 +20,22 @@ void ExportArguments::add_to(CLI::App& verb) {
           "--sensor", read_sensor,
           "which sensor, as the autopilot counts [its first]; of a header, its names end so")
       ->type_name("N");
-  verb.add_option("--device-id", device_id_, "of PX4: the sensor's CAL_MAGn_ID")->type_name("ID");
+  verb.add_option(
+          "--device-id", device_id_,
+          "of PX4: the sensor's CAL_MAGn_ID, or the pressure sensor's id, which says its kind")
+      ->type_name("ID");
+  verb.add_option("--airspeed-sensor", airspeed_sensor_,
+                  "of a tube: membrane, or sdp3x (SDP31, 32, 33) [by the device id or the log]")
+      ->type_name("KIND");
+  verb.add_option(
+          "--cal-air", cal_air_,
+          "of PX4 with an SDP3x: CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m], CAL_AIR_TUBED_MM [the "
+          "log's, else 0,0.2,1.5]")
+      ->type_name("MODEL,LENGTH,DIAMETER");
+  verb.add_option("--logged-airspeed", logged_airspeed_,
+                  "what a logged airspeed is: true or equivalent, which autopilots call indicated "
+                  "[true]")
+      ->type_name("KIND");
   verb.add_option("--mounting", mounting_,
                   "of PX4: how the sensor is turned, where the log has it turned into body axes "
                   "[deg]")
@@ -47,6 +62,15 @@ ExportOptions ExportArguments::resolve() const {
         static_cast<std::uint32_t>(parse_whole_number("--device-id", device_id_, highest));
   }
   if (!in_use_.empty()) options.in_use = parse_value("--in-use", in_use_);
+  if (!airspeed_sensor_.empty()) {
+    options.airspeed_sensor = choice_of<AirspeedSensor>("--airspeed-sensor", airspeed_sensor_);
+  }
+  if (!cal_air_.empty()) {
+    options.cal_air = parse_triple("--cal-air", cal_air_, "0,0.2,1.5 (model, metres, millimetres)");
+  }
+  if (!logged_airspeed_.empty()) {
+    options.logged_airspeed = choice_of<LoggedAirspeed>("--logged-airspeed", logged_airspeed_);
+  }
   if (!mounting_.empty()) {
     options.mounting =
         parse_triple("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");

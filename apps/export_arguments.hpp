@@ -22,6 +22,9 @@ class ExportArguments {
   std::string target_;
   std::string device_id_;
   std::string in_use_;
+  std::string airspeed_sensor_;
+  std::string cal_air_;
+  std::string logged_airspeed_;
   std::string mounting_;
   std::optional<std::uint32_t> sensor_;
   ExportOptions options_;  // what needs no more than CLI11's reading

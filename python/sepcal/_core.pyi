@@ -91,12 +91,14 @@ __all__: list[str] = [
     "prepare_columns",
     "prepare_flight",
     "profile_intervals",
+    "px4_pressure_sensor",
     "python_model",
     "quantiles",
     "read_calibration",
     "read_csv",
     "scalar_example_1",
     "scalar_example_2",
+    "sdp3x_pressure",
     "simulate",
     "smooth",
     "spectrum",
@@ -2867,8 +2869,14 @@ def export_to_file(
     ]
     | None,
     arg7: typing.SupportsFloat | typing.SupportsIndex | None,
-    arg8: collections.abc.Sequence[str],
-    arg9: bool,
+    arg8: str,
+    arg9: str | None,
+    arg10: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ]
+    | None,
+    arg11: collections.abc.Sequence[str],
+    arg12: bool,
 ) -> Exported: ...
 def fit(
     arg0: Model,
@@ -3000,6 +3008,9 @@ def profile_intervals(
     arg6: typing.SupportsFloat | typing.SupportsIndex,
     arg7: collections.abc.Sequence[str],
 ) -> Intervals: ...
+def px4_pressure_sensor(
+    arg0: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[str, bool] | None: ...
 def python_model(
     arg0: str,
     arg1: typing.Annotated[
@@ -3026,6 +3037,12 @@ def read_calibration(
 def read_csv(arg0: str) -> Flight: ...
 def scalar_example_1() -> Model: ...
 def scalar_example_2() -> Model: ...
+def sdp3x_pressure(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> typing.Any: ...
 def simulate(
     arg0: str,
     arg1: str,

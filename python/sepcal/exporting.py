@@ -41,6 +41,9 @@ def export(
     device_id: int | None = None,
     mounting: Sequence[float] | None = None,
     in_use: float | None = None,
+    logged_airspeed: Literal["true", "equivalent"] | str = "true",
+    airspeed_sensor: Literal["membrane", "sdp3x"] | str | None = None,
+    cal_air: Sequence[float] | None = None,
     without: Sequence[str] = (),
     force: bool = False,
 ) -> Exported:
@@ -55,9 +58,14 @@ def export(
         to: "c" or "cpp", a header with the whole correction; "px4" or "ardupilot", parameters.
         flight: To fit anew and to compare on [the one that was fitted].
         sensor: Which, as the autopilot counts [its first]; of a header, its names end so.
-        device_id: Of PX4, the sensor's CAL_MAGn_ID.
+        device_id: Of PX4, the sensor's CAL_MAGn_ID, or the pressure sensor's id, which says its
+            kind.
         mounting: Of PX4, roll, pitch, yaw [deg] by which the flight's readings were turned.
         in_use: Of a logged airspeed, the ARSPD_RATIO or ASPD_SCALE_n that it was read with.
+        logged_airspeed: What it is: "true", or "equivalent", which autopilots call indicated.
+        airspeed_sensor: Of a tube, "membrane" or "sdp3x" (SDP31, 32, 33) [by device_id or the log].
+        cal_air: Of PX4 with an SDP3x, its CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m] and CAL_AIR_TUBED_MM
+            [mm] [the log's, else 0, 0.2, 1.5].
         without: Effects to leave out; the rest is fitted anew.
         force: Exports also what did not converge, is not all determined, or is at a bound.
 
@@ -69,6 +77,11 @@ def export(
     turned = None if mounting is None else [float(angle) for angle in mounting]
     if turned is not None and len(turned) != 3:
         raise _core.Error("mounting is not three angles; give roll, pitch, yaw in degrees")
+    air = None if cal_air is None else [float(value) for value in cal_air]
+    if air is not None and len(air) != 3:
+        raise _core.Error(
+            "cal_air is not three numbers; give CAL_AIR_CMODEL, CAL_AIR_TUBELEN, CAL_AIR_TUBED_MM"
+        )
     if isinstance(without, str):
         raise _core.Error(f"without is the text {without!r}; give a list of effects")
     written = _core.export_to_file(
@@ -80,6 +93,9 @@ def export(
         device_id,
         turned,
         in_use,
+        logged_airspeed,
+        airspeed_sensor,
+        air,
         list(without),
         force,
     )

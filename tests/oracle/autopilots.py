@@ -116,6 +116,46 @@ def px4_airspeed(
     return calibrated * np.sqrt(SEA_LEVEL_DENSITY / density)
 
 
+def flow_of_sdp3x(pressure: Array, density: Array) -> Array:
+    """Flow through an SDP31, 32 or 33, as both autopilots have it; never below zero."""
+    flow = 300.805 - 300.878 / (0.00344205 * pressure**0.68698 + 1)
+    return np.maximum(flow * 1.29 / density, 0.0)
+
+
+def px4_sdp3x(
+    pressure: Array,
+    static: Array,
+    kelvin: Array,
+    *,
+    model: int = 0,
+    length: float = 0.2,
+    diameter_mm: float = 1.5,
+) -> Array:
+    """PX4's indicated airspeed [m/s] of an SDP3x' pressure [Pa], as calc_IAS_corrected() does."""
+    density = static / (287.1 * kelvin)
+    if model == 2:
+        viscosity = (18.205 + 0.0484 * (kelvin - 293.15)) * 1e-6
+        root = np.sqrt(1 + 8 * pressure / 59.3319) - 1
+        area = np.pi * (diameter_mm / 1000) ** 4 * density * pressure
+        share = -64 * length * viscosity * 4.79e-7 * root / area
+        return np.sqrt(2 * pressure / (1 + np.where(np.abs(share) < 1, share, 0)) / 1.225)
+    corrected = pressure * 96600 / static
+    flow = flow_of_sdp3x(corrected, density)
+    pitot = (0.0032 * flow**2 + 0.0123 * flow + 1) * 1.29 / density
+    tube = flow * 0.674 / 450 * length * density / 1.29
+    total = corrected + tube + (0 if model == 1 else pitot)
+    return np.sqrt(2 * total / 1.225) + 0.125 * flow
+
+
+def ardupilot_sdp3x(pressure: Array, static: Array, kelvin: Array, ratio: float) -> Array:
+    """What ArduPilot's driver hands on for an SDP3x' pressure; times the ratio, its root is EAS."""
+    density = static / (287.1 * kelvin)
+    flow = flow_of_sdp3x(pressure, density)
+    pitot = 28557670.0 - 28557670.0 / (1 + (flow / 5027611.0) ** 1.227924)
+    uncorrected = (pressure + pitot) / 1.225
+    return (np.sqrt(uncorrected * ratio) + 0.0331582 * flow) ** 2 / ratio
+
+
 def level_heading(field: Array, roll: Array, pitch: Array) -> Array:
     """Magnetic heading [rad] of fields (N, 3) in body axes, turned level by roll and pitch."""
     x, y, z = field.T

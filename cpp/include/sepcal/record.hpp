@@ -32,6 +32,10 @@ class Record {
   Record& view(std::string name, std::span<const double> values,
                std::shared_ptr<const void> owner = nullptr);
 
+  /// Puts other values in a column's place, as many, which the record owns. Throws Error for a name
+  /// that is not there and for another length.
+  Record& replace(std::string_view name, std::vector<double> values);
+
   /// Says that the columns are mapped from files and may be longer than memory. `release` is told
   /// the rows [first, last) that a pass has done with, from any thread, so that their pages can go
   /// (madvise with MADV_DONTNEED); it may be told of rows that another thread still reads. A fit of

@@ -28,6 +28,19 @@ Record& Record::view(std::string name, std::span<const double> values,
   return *this;
 }
 
+Record& Record::replace(std::string_view name, std::vector<double> values) {
+  const std::span<const double> before = column(name);
+  if (values.size() != before.size()) {
+    throw Error("column '" + std::string(name) + "' has " + std::to_string(before.size()) +
+                " values, and " + std::to_string(values.size()) + " are to replace them");
+  }
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  Column& column = *std::ranges::find(columns_, name, &Column::name);
+  column.values = *owned;
+  column.owner = owned;
+  return *this;
+}
+
 Record& Record::map(std::function<void(std::size_t first, std::size_t last)> release) {
   release_ = std::move(release);
   return *this;

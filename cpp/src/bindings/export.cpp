@@ -2,6 +2,7 @@
 // A calibration as something that a vehicle loads.
 #include "sepcal/flight/export.hpp"
 
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <map>
@@ -32,19 +33,27 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
                           const std::string& target, const std::optional<Flight>& flight,
                           std::optional<int> sensor, std::optional<std::uint32_t> device_id,
                           std::optional<std::array<double, 3>> mounting,
-                          std::optional<double> in_use, const std::vector<std::string>& without,
-                          bool force) {
+                          std::optional<double> in_use, const std::string& logged_airspeed,
+                          const std::optional<std::string>& airspeed_sensor,
+                          std::optional<std::array<double, 3>> cal_air,
+                          const std::vector<std::string>& without, bool force) {
   const Released released;
   const auto to = choice_of<ExportTarget>("to", target);
-  Exported exported = sepcal::export_to_file(calibration, flight ? &*flight : nullptr,
-                                             {.target = to,
-                                              .sensor = sensor,
-                                              .device_id = device_id,
-                                              .in_use = in_use,
-                                              .mounting = mounting,
-                                              .without = without,
-                                              .force = force},
-                                             output);
+  std::optional<AirspeedSensor> tube;
+  if (airspeed_sensor) tube = choice_of<AirspeedSensor>("airspeed_sensor", *airspeed_sensor);
+  Exported exported = sepcal::export_to_file(
+      calibration, flight ? &*flight : nullptr,
+      {.target = to,
+       .sensor = sensor,
+       .device_id = device_id,
+       .in_use = in_use,
+       .logged_airspeed = choice_of<LoggedAirspeed>("logged_airspeed", logged_airspeed),
+       .airspeed_sensor = tube,
+       .cal_air = cal_air,
+       .mounting = mounting,
+       .without = without,
+       .force = force},
+      output);
   ExportedFile result{.output = output,
                       .text = std::move(exported.text),
                       .parameters = {},
@@ -55,6 +64,13 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
                       .page = without_last_end(to_text(exported, output))};
   for (const VehicleParameter& one : exported.parameters) result.parameters[one.name] = one.value;
   return result;
+}
+
+/// sepcal.logs: the name of a tube's sensor and whether air flows through it; None: not known.
+std::optional<std::pair<std::string, bool>> pressure_sensor(std::uint32_t device_id) {
+  const auto sensor = px4_pressure_sensor(device_id);
+  if (!sensor) return std::nullopt;
+  return std::pair(std::string(sensor->name), sensor->kind == AirspeedSensor::sdp3x);
 }
 
 }  // namespace
@@ -93,6 +109,8 @@ void define_export(py::module_& module) {
       .copied()
       .finish();
   module.def("export_to_file", &write_export);
+  module.def("px4_pressure_sensor", &pressure_sensor);
+  module.def("sdp3x_pressure", py::vectorize(&sdp3x_pressure));
 }
 
 }  // namespace sepcal::bindings

@@ -45,7 +45,7 @@ def read(file: str, cut_off: bool, progress: Callable[[str], None]) -> Recording
         form="DataFlash",
         vehicle=vehicle,
         span=span,
-        sensors=(*read_compasses(log, parameters), *read_tubes(log)),
+        sensors=(*read_compasses(log, parameters), *read_tubes(log, parameters)),
         attitude=_read_attitude(log),
         velocity=_read_velocity(log, parameters),
         rates=log.first_of(("IMU",), "GyrX", "GyrY", "GyrZ", done="the gyroscope's own bias stays"),

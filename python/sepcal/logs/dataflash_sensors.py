@@ -5,14 +5,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from sepcal import _core
 from sepcal.columns import Array
 from sepcal.logs import ardupilot_compass
 from sepcal.logs.dataflash_columns import Messages
 from sepcal.logs.dataflash_messages import DataFlash
 from sepcal.logs.parameters import Parameters
-from sepcal.logs.recording import MAGNETOMETER, TUBE, Sensor, make_channel
+from sepcal.logs.recording import MAGNETOMETER, TUBE, Channel, Sensor, make_channel
 
 MILLIGAUSS = 10.0  # to a microtesla
+SDP3X = 6  # of ARSPD_TYPE
+DEFAULT_RATIO = 1.9936  # of ARSPD_RATIO
+KELVIN = 273.15
 LATEST = 0.5  # [s]: a reading's own stamp may be so much older than its message's
 
 
@@ -63,19 +67,23 @@ def _reading_times(messages: Messages, times: Array) -> tuple[Array, tuple[str, 
     return taken, (f"at the time S of the reading, {before}",)
 
 
-def read_tubes(log: DataFlash) -> list[Sensor]:
-    """Pitot-static tubes by their differential pressure."""
+def read_tubes(log: DataFlash, parameters: Parameters) -> list[Sensor]:
+    """Pitot-static tubes by the differential pressure at their sensors."""
     sensors = []
     for instance, messages in enumerate(log.instances("ARSP", "ASP2")):
         if "DiffPress" not in messages or not messages["DiffPress"].any():
             continue
-        done = (
+        times = log.times(messages)
+        kind = f"{'ARSPD' if instance == 0 else f'ARSPD{instance + 1}'}_TYPE"
+        pressure = messages["DiffPress"]
+        done: tuple[str, ...] = ()
+        if parameters.first(kind) == SDP3X:
+            pressure, done = _undo_flow(log, messages, times, parameters, kind)
+        done += (
             "less the offset that the autopilot found on the ground",
             "no ratio: ARSPD_RATIO makes the autopilot's airspeed of it",
         )
-        times = log.times(messages)
-        source = f"{messages.name}.DiffPress"
-        channel = make_channel(source, times, messages["DiffPress"], done)
+        channel = make_channel(f"{messages.name}.DiffPress", times, pressure, done)
         if channel is None:
             continue
         own = {}
@@ -83,5 +91,27 @@ def read_tubes(log: DataFlash) -> list[Sensor]:
             warm = make_channel(f"{messages.name}.Temp", times, messages["Temp"])
             if warm is not None:
                 own["temp_degc"] = warm
-        sensors.append(Sensor(f"pitot{instance}", TUBE, channel, "dp_pa", own))
+        title = ""
+        if kind in parameters:
+            types = parameters.at(kind, channel.times)
+            own["arspd_type"] = Channel(kind, channel.times, types[:, None])
+            title = f"{kind} {types[0]:.0f}"
+        sensors.append(Sensor(f"pitot{instance}", TUBE, channel, "dp_pa", own, title))
     return sensors
+
+
+def _undo_flow(
+    log: DataFlash, messages: Messages, times: Array, parameters: Parameters, kind: str
+) -> tuple[Array, tuple[str, ...]]:
+    """The pressure at an SDP3x, to which ArduPilot's driver added what the flow loses, and how."""
+    baro = log.first_of(("BARO",), "Press")
+    if baro is None or "Temp" not in messages:
+        said = "what the flow through the sensor loses stays in it: no BARO.Press or Temp undoes it"
+        return messages["DiffPress"], (said,)
+    ratio = parameters.at(kind.replace("TYPE", "RATIO"), times, DEFAULT_RATIO)
+    static = np.interp(times, baro.times, baro.values[:, 0])
+    handed_on = messages["DiffPress"]
+    raw = _core.sdp3x_pressure(np.abs(handed_on), ratio, static, messages["Temp"] + KELVIN)
+    return np.copysign(raw, handed_on), (
+        f"undone: what ArduPilot adds for the flow through an SDP3x, by {ratio[0]:g} as the ratio",
+    )

@@ -108,7 +108,7 @@ def _drivers_of(log: Recording, sensor: Sensor) -> dict[str, Channel]:
     drivers = {**log.drivers, **sensor.own}
     if sensor.kind == MAGNETOMETER:
         return {h: c for h, c in drivers.items() if h not in ("ps_pa", "rho_kgpm3")}
-    if "rho_kgpm3" in drivers:
+    if "rho_kgpm3" in drivers and "cal_air_cmodel" not in sensor.own:  # a flow's losses need it
         drivers.pop("ps_pa", None)
     return drivers
 

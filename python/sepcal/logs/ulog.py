@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sepcal.columns import Array
-from sepcal.logs import clock, modes
+from sepcal.logs import clock, modes, px4_airspeed
 from sepcal.logs.recording import TUBE, Channel, Labels, Recording, Sensor, Utc, make_channel
 from sepcal.logs.ulog_magnetometers import read_magnetometers
 from sepcal.logs.ulog_topics import Topic, ULog
@@ -131,7 +131,11 @@ def _read_tubes(log: ULog) -> list[Sensor]:
             warm = topic.channel("temperature", kept=topic["temperature"] > COLDEST)
             if warm is not None and warm.values.any():
                 own["temp_degc"] = warm
-        tubes.append(Sensor(f"pitot{len(tubes)}", TUBE, readings, "dp_pa", own))
+        devices = topic.devices()
+        device = 0 if devices is None else int(devices[0])
+        readings, settings, title = px4_airspeed.describe(device, readings, log.parameters)
+        own |= settings
+        tubes.append(Sensor(f"pitot{len(tubes)}", TUBE, readings, "dp_pa", own, title))
     if not tubes:
         for topic in log.topics("airspeed"):
             column = topic.first("true_airspeed_m_s", "true_airspeed_unfiltered_m_s")

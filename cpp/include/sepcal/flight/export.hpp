@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sepcal/choices.hpp"
@@ -27,15 +28,59 @@ struct ChoiceNames<ExportTarget> {
   static constexpr std::array<std::string_view, 4> names{"c", "cpp", "px4", "ardupilot"};
 };
 
+/// The sensor at a tube, as the autopilots tell them apart.
+enum class AirspeedSensor {
+  membrane,  // MS4525, MS5525, ETS, ASP5033, ...: its pressure is taken as it is
+  sdp3x,     // SDP31, SDP32, SDP33: air flows through it, and what that loses is added
+};
+
+template <>
+struct ChoiceNames<AirspeedSensor> {
+  static constexpr std::array<std::string_view, 2> names{"membrane", "sdp3x"};
+};
+
+/// A pressure sensor that PX4 has a driver for.
+struct PressureSensor {
+  std::string_view name;  // "SDP33"
+  AirspeedSensor kind;
+};
+
+/// Of a device id as PX4 logs it, whose third byte says what it is; nothing for an unknown one.
+std::optional<PressureSensor> px4_pressure_sensor(std::uint32_t device_id);
+
+/// The pressure [Pa] at an SDP3x, of what ArduPilot's driver made of it for an ARSPD_RATIO: the
+/// DiffPress of its logs. `static_pressure` in Pa, `temperature` of the sensor in K.
+double sdp3x_pressure(double handed_on, double ratio, double static_pressure, double temperature);
+
+/// What a logged airspeed is.
+enum class LoggedAirspeed {
+  true_airspeed,
+  equivalent,  // what an autopilot calls indicated or calibrated: at sea level's density
+};
+
+template <>
+struct ChoiceNames<LoggedAirspeed> {
+  static constexpr std::array<std::string_view, 2> names{"true", "equivalent"};
+};
+
 struct ExportOptions {
   ExportTarget target = ExportTarget::c;
   /// Which of the vehicle's sensors, as the target counts: n of PX4's CAL_MAGn (from 0) and
   /// ASPD_SCALE_n (from 1), 1 to 3 of ArduPilot's compasses, 1 or 2 of its airspeeds. Unset: the
   /// first. Of a header a number that its names end in, or none.
   std::optional<int> sensor = {};
-  std::optional<std::uint32_t> device_id = {};  // PX4's CAL_MAGn_ID
+  /// PX4's CAL_MAGn_ID; of a tube, the id of its pressure sensor, which says what kind it is.
+  std::optional<std::uint32_t> device_id = {};
   /// ARSPD_RATIO or ASPD_SCALE_n with which a logged airspeed was read.
   std::optional<double> in_use = {};
+  LoggedAirspeed logged_airspeed = LoggedAirspeed::true_airspeed;
+  /// Of a tube. Unset: by device_id, else by the flight's columns air_device_id (PX4) or arspd_type
+  /// (ArduPilot), else a membrane, which a note says.
+  std::optional<AirspeedSensor> airspeed_sensor = {};
+  /// Of PX4 with an SDP3x: CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m], CAL_AIR_TUBED_MM [mm]. Unset: the
+  /// flight's columns cal_air_cmodel, cal_air_tubelen_m and cal_air_tubed_mm, else PX4's defaults,
+  /// 0, 0.2 and 1.5.
+  std::optional<std::array<double, 3>> cal_air = {};
   /// Of PX4, roll, pitch, yaw [deg]: how the sensor is mounted, where the log's readings were
   /// turned into body axes already. Unset: not turned.
   std::optional<std::array<double, 3>> mounting = {};

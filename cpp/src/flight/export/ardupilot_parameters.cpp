@@ -53,15 +53,14 @@ std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
   return parameters;
 }
 
-std::vector<VehicleParameter> ardupilot_airspeed(const HeldAirspeed& held,
+std::vector<VehicleParameter> ardupilot_airspeed(const HeldAirspeed& held, const TubeReader& reader,
                                                  const ExportOptions& options) {
   const int sensor = sensor_of(options, 1, 2, "ArduPilot's airspeeds");
   const std::string name = sensor == 1 ? "ARSPD" : "ARSPD" + std::to_string(sensor);
-  const double in_use = options.in_use.value_or(plain_ratio);
-  const std::vector<VehicleParameter> parameters{
-      {name + "_RATIO", in_use * held.factor * held.factor},
-      {name + "_OFFSET", held.offset * plain_ratio / in_use}};
+  const double plain = plain_ratio_of(reader.sensor.flows());
+  std::vector<VehicleParameter> parameters{{name + "_RATIO", plain * held.factor * held.factor}};
   check_range(parameters.front(), 1.0, 4.0);
+  if (reader.has_offset) parameters.push_back({name + "_OFFSET", held.offset});
   return parameters;
 }
 

@@ -18,9 +18,11 @@
 #include "flight/export/parameters.hpp"
 #include "flight/export/provenance.hpp"
 #include "flight/export/refusals.hpp"
+#include "flight/export/tube_reader.hpp"
 #include "flight/export/vehicle_notes.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/flight/output_file.hpp"
+#include "sepcal/flight/read_as.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal {
@@ -94,40 +96,66 @@ void write_parameters(const std::vector<std::string>& comment, const ExportOptio
                       : ardupilot_text(exported.parameters, comment);
 }
 
-/// What the autopilot holds of `base`; returns what that loses against `given`.
-ExportLoss export_parameters(const Calibration& given, const Calibration& base,
-                             const FlightAtHand& flight, const ExportOptions& options,
-                             Exported& exported) {
-  check_held(base, options.target);
+/// What an autopilot holds, beside its parameters.
+struct OnAutopilot {
+  ExportLoss loss;
+  std::vector<std::string> told = {};  // what a person must know, a line each
+};
+
+OnAutopilot export_field(const Calibration& given, const Calibration& base,
+                         const FlightAtHand& flight, const ExportOptions& options,
+                         Exported& exported) {
   const bool refits = needs_refit(base);
   Calibration held = base;
   if (refits) {
     held = refit_held(base, flight.need("what an autopilot holds is fitted anew: that"), options);
     if (!options.force) check_fit_for_use(held, "what the autopilot can hold of the calibration");
   }
-  const bool px4 = options.target == ExportTarget::px4;
-  ExportLoss loss;
-  if (held.probe->app() == "sepcal-mag") {
-    const HeldField field = held_field(held);
-    exported.parameters =
-        px4 ? px4_magnetometer(field, options) : ardupilot_compass(field, options);
-    if (flight.find() != nullptr) loss = field_loss(given, held, field, *flight.find());
-    drop_rotation(refits, loss);
-  } else {
-    if (options.in_use && !reads_airspeed(given, *flight.find())) {
-      throw OptionError(
-          {Option{"in_use"}, " is of a logged airspeed, and what was read is dp_pa; leave it out"});
-    }
-    const HeldAirspeed airspeed = held_airspeed(held);
-    exported.parameters =
-        px4 ? px4_airspeed(airspeed, options) : ardupilot_airspeed(airspeed, options);
-    loss = airspeed_loss(given, held, airspeed, *flight.find());
-    drop_bias(base, airspeed, loss);
-  }
-  for (const std::string& effect : options.without) loss.dropped.push_back("the effect " + effect);
-  exported.left_to_others = effects_on_the_world(base);
+  const HeldField field = held_field(held);
+  exported.parameters = options.target == ExportTarget::px4 ? px4_magnetometer(field, options)
+                                                            : ardupilot_compass(field, options);
+  OnAutopilot there;
+  if (flight.find() != nullptr) there.loss = field_loss(given, held, field, *flight.find());
+  drop_rotation(refits, there.loss);
+  there.told = field_notes(held, options);
   exported.calibration = std::move(held);
-  return loss;
+  return there;
+}
+
+OnAutopilot export_airspeed(const Calibration& given, const Calibration& base,
+                            const FlightAtHand& at_hand, const ExportOptions& options,
+                            Exported& exported) {
+  const Flight& flight = at_hand.need("what an autopilot holds is fitted anew: that");
+  std::vector<std::string> unused;
+  const ReadFlight read = read_as(flight, verbs::choice_for(base, flight, unused));
+  const ChosenTubeReader chosen = choose_tube_reader(read.flight, options);
+  FittedAirspeed fitted = fit_airspeed(base, flight, chosen.reader, options);
+  if (!options.force) {
+    check_fit_for_use(fitted.calibration, "what the autopilot can hold of the calibration");
+  }
+  exported.parameters = options.target == ExportTarget::px4
+                            ? px4_airspeed(fitted.held, options)
+                            : ardupilot_airspeed(fitted.held, chosen.reader, options);
+  OnAutopilot there{.loss = airspeed_loss(given, fitted, chosen.reader, flight)};
+  drop_bias(base, fitted.held, chosen.reader, there.loss);
+  there.told = airspeed_notes(chosen, options);
+  exported.calibration = std::move(fitted.calibration);
+  return there;
+}
+
+/// What the autopilot holds of `base`, and what that loses against `given`.
+OnAutopilot export_parameters(const Calibration& given, const Calibration& base,
+                              const FlightAtHand& flight, const ExportOptions& options,
+                              Exported& exported) {
+  check_held(base, options.target);
+  const bool is_field = base.probe->app() == "sepcal-mag";
+  OnAutopilot there = is_field ? export_field(given, base, flight, options, exported)
+                               : export_airspeed(given, base, flight, options, exported);
+  for (const std::string& effect : options.without) {
+    there.loss.dropped.push_back("the effect " + effect);
+  }
+  exported.left_to_others = effects_on_the_world(base);
+  return there;
 }
 
 /// The calibration without some of its effects: fitted, unless what an autopilot holds will be.
@@ -167,15 +195,13 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
     return exported;
   }
   const Calibration base = exported.calibration;
-  ExportLoss loss = export_parameters(given, base, at_hand, options, exported);
-  const std::vector<std::string> told =
-      vehicle_notes(exported.calibration, at_hand.find(), options);
+  OnAutopilot there = export_parameters(given, base, at_hand, options, exported);
   std::vector<std::string> comment =
       provenance(vehicle_title(exported.calibration, options), given, exported.calibration);
-  std::ranges::copy(loss_lines(loss), std::back_inserter(comment));
-  exported.loss = std::move(loss);
-  std::ranges::copy(told, std::back_inserter(comment));
-  std::ranges::copy(told, std::back_inserter(exported.notes));
+  std::ranges::copy(loss_lines(there.loss), std::back_inserter(comment));
+  exported.loss = std::move(there.loss);
+  std::ranges::copy(there.told, std::back_inserter(comment));
+  std::ranges::copy(there.told, std::back_inserter(exported.notes));
   write_parameters(comment, options, exported);
   return exported;
 }

@@ -59,34 +59,6 @@ bool is_zero_of_tube(const Calibration& calibration, const EffectSetting& settin
   return setting.name == constant_offset && !calibration.options.own_effects.contains(setting.name);
 }
 
-void forget(std::string_view prefix, FitOptions& fit) {
-  const auto erase = [prefix](auto& map) {
-    std::erase_if(map, [prefix](const auto& entry) { return entry.first.starts_with(prefix); });
-  };
-  erase(fit.bounds);
-  erase(fit.fixed);
-  erase(fit.prior);
-  erase(fit.start);
-  erase(fit.sampling_distribution);
-}
-
-/// Keeps of the options what is said of the parameters of another model and of the effects.
-void keep_known(const Tables& model, CalibrationOptions& options) {
-  std::vector<std::string> parameters;
-  for (const Variable& one : model.parameters()) parameters.push_back(one.name);
-  const auto is_foreign = [&](const auto& entry) {
-    const bool of_effect = std::ranges::any_of(options.effects, [&](const EffectSetting& effect) {
-      return entry.first.starts_with(effect.name + ".");
-    });
-    return !of_effect && std::ranges::find(parameters, entry.first) == parameters.end();
-  };
-  std::erase_if(options.fit.bounds, is_foreign);
-  std::erase_if(options.fit.fixed, is_foreign);
-  std::erase_if(options.fit.prior, is_foreign);
-  std::erase_if(options.fit.start, is_foreign);
-  std::erase_if(options.fit.sampling_distribution, is_foreign);
-}
-
 /// What a fit held at a value stays: an entry of the symmetric C for a scale or a soft iron.
 void hold_entries(const Calibration& calibration, std::map<std::string, double>& fixed) {
   constexpr std::array<std::pair<const char*, const char*>, 6> entries{{{"lambda_x", "c_xx"},
@@ -103,6 +75,33 @@ void hold_entries(const Calibration& calibration, std::map<std::string, double>&
 }
 
 }  // namespace
+
+void forget(std::string_view prefix, FitOptions& fit) {
+  const auto erase = [prefix](auto& map) {
+    std::erase_if(map, [prefix](const auto& entry) { return entry.first.starts_with(prefix); });
+  };
+  erase(fit.bounds);
+  erase(fit.fixed);
+  erase(fit.prior);
+  erase(fit.start);
+  erase(fit.sampling_distribution);
+}
+
+void keep_known(const Tables& model, CalibrationOptions& options) {
+  std::vector<std::string> parameters;
+  for (const Variable& one : model.parameters()) parameters.push_back(one.name);
+  const auto is_foreign = [&](const auto& entry) {
+    const bool of_effect = std::ranges::any_of(options.effects, [&](const EffectSetting& effect) {
+      return entry.first.starts_with(effect.name + ".");
+    });
+    return !of_effect && std::ranges::find(parameters, entry.first) == parameters.end();
+  };
+  std::erase_if(options.fit.bounds, is_foreign);
+  std::erase_if(options.fit.fixed, is_foreign);
+  std::erase_if(options.fit.prior, is_foreign);
+  std::erase_if(options.fit.start, is_foreign);
+  std::erase_if(options.fit.sampling_distribution, is_foreign);
+}
 
 void check_held(const Calibration& calibration, ExportTarget target) {
   std::vector<std::string> homeless;
@@ -162,20 +161,9 @@ CalibrationOptions options_without(const Calibration& base, const std::vector<st
 Calibration refit_held(const Calibration& calibration, const Flight& flight,
                        const ExportOptions& options) {
   CalibrationOptions held = options_without(calibration, {}, options.progress);
-  std::shared_ptr<const Probe> probe = calibration.probe;
-  if (is_magnetometer(calibration)) {
-    probe = symmetric_magnetometer(probe);
-    hold_entries(calibration, held.fit.fixed);
-    held.free.clear();
-  } else {
-    const auto has_zero = [](const EffectSetting& one) { return one.name == constant_offset; };
-    if (std::ranges::none_of(held.effects, has_zero)) {
-      held.effects.push_back({.name = constant_offset});
-    }
-    forget("c_va", held.fit);
-    std::erase(held.free, "c_va");
-    held.fit.fixed["c_va"] = 0.0;
-  }
+  const std::shared_ptr<const Probe> probe = symmetric_magnetometer(calibration.probe);
+  hold_entries(calibration, held.fit.fixed);
+  held.free.clear();
   keep_known(probe->model().tables(), held);
   return verbs::calibrate(probe, verbs::prepare(calibration, flight), held);
 }
@@ -206,12 +194,6 @@ HeldField held_field(const Calibration& calibration) {
     held.unit = motor->unit;
   }
   return held;
-}
-
-HeldAirspeed held_airspeed(const Calibration& calibration) {
-  const double s = calibration.fit["s_va"].value;
-  const double offset = calibration.fit[std::string(constant_offset) + ".s"].value;
-  return {.factor = 1.0 / s, .offset = -offset * s * s};
 }
 
 }  // namespace sepcal::exporting

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/export.hpp"
@@ -23,12 +25,6 @@ struct HeldField {
   double unit = 1.0;        // of the column, in A or of full throttle
 };
 
-/// V = factor sqrt(2 (dp - offset) / rho), dp the pressure [Pa] behind the airspeed as read.
-struct HeldAirspeed {
-  double factor = 1.0;
-  double offset = 0.0;  // Pa
-};
-
 /// Throws Error that names the first effect which `target` (with words) can't follow.
 void check_held(const Calibration& calibration, ExportTarget target);
 
@@ -38,17 +34,21 @@ std::vector<std::string> effects_on_the_world(const Calibration& calibration);
 /// Whether the calibration must be fitted anew to be held.
 bool needs_refit(const Calibration& calibration);
 
-/// The best that is held, on a flight: of a magnetometer in a known field with a symmetric C, of a
-/// tube without c_va and with a constant offset of its pressure.
+/// The best that is held of a magnetometer in a known field, on a flight: with a symmetric C.
 Calibration refit_held(const Calibration& calibration, const Flight& flight,
                        const ExportOptions& options);
 
 /// Of what refit_held() gave, or of a magnetometer against the field's strength.
 HeldField held_field(const Calibration& calibration);
-HeldAirspeed held_airspeed(const Calibration& calibration);
 
 /// Options for a fit without some of the base's effects, from where it ended.
 CalibrationOptions options_without(const Calibration& base, const std::vector<std::string>& effects,
                                    const FitProgress& progress);
+
+/// Forgets what the options say of parameters that begin so.
+void forget(std::string_view prefix, FitOptions& fit);
+
+/// Keeps of the options what is said of the parameters of another model and of the effects.
+void keep_known(const Tables& model, CalibrationOptions& options);
 
 }  // namespace sepcal::exporting

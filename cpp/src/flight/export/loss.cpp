@@ -74,15 +74,29 @@ double residual_of(const Calibration& calibration, const verbs::PreparedFlight& 
   return std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
 }
 
-/// What both have in common.
-ExportLoss residual_loss(const Calibration& full, const Calibration& refitted,
-                         const Flight& flight) {
-  ExportLoss loss{.flight = flight.name()};
-  const verbs::PreparedFlight prepared = verbs::prepare(full, flight);
+/// What both have in common; `anew`: the flight as the other was fitted to it.
+ExportLoss residual_loss(const Calibration& full, const verbs::PreparedFlight& prepared,
+                         const Calibration& refitted, const verbs::PreparedFlight& anew) {
+  ExportLoss loss{.flight = prepared.flight.name()};
   loss.residual_before = residual_of(full, prepared);
-  loss.residual_after = residual_of(refitted, prepared);
+  loss.residual_after = residual_of(refitted, anew);
   loss.residual_unit = full.probe->model().tables().outputs.front().unit;
   return loss;
+}
+
+ExportLoss residual_loss(const Calibration& full, const Calibration& refitted,
+                         const Flight& flight) {
+  const verbs::PreparedFlight prepared = verbs::prepare(full, flight);
+  return residual_loss(full, prepared, refitted, prepared);
+}
+
+std::vector<double> pick(const Record& record, const char* name,
+                         const std::vector<std::size_t>& rows) {
+  const std::span<const double> all = record.column(name);
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const std::size_t row : rows) values.push_back(all[row]);
+  return values;
 }
 
 /// As the calibration reads its flight.
@@ -114,14 +128,18 @@ Columns correct(const HeldField& held, const ProbeReadings& readings, const Flig
   return columns;
 }
 
-Columns correct(const HeldAirspeed& held, const ProbeReadings& readings) {
-  Columns columns{{"airspeed", {}}};
-  const auto read = readings.record.column("airspeed");
-  const auto rho = readings.record.column("rho");
-  for (std::size_t row = 0; row < read.size(); ++row) {
-    const double square = read[row] * read[row] - 2.0 * held.offset / rho[row];
-    columns[0].values.push_back(readings.valid[row] ? held.factor * std::sqrt(std::max(0.0, square))
-                                                    : not_a_number);
+Columns correct(const HeldAirspeed& held, const TubeReader& reader, const ProbeReadings& readings,
+                const Flight& read) {
+  std::vector<std::size_t> valid;
+  for (std::size_t row = 0; row < readings.valid.size(); ++row) {
+    if (readings.valid[row]) valid.push_back(row);
+  }
+  Columns columns{{"airspeed", std::vector<double>(readings.valid.size(), not_a_number)}};
+  Record record;
+  for (const char* name : {"airspeed", "rho"}) record.add(name, pick(readings.record, name, valid));
+  const std::vector<TubeRow> rows = tube_rows(reader, read, record, valid);
+  for (std::size_t i = 0; i < valid.size(); ++i) {
+    columns[0].values[valid[i]] = corrected(held, reader.sensor, rows[i]);
   }
   return columns;
 }
@@ -180,11 +198,13 @@ ExportLoss field_loss(const Calibration& full, const Calibration& refitted, cons
   return loss;
 }
 
-ExportLoss airspeed_loss(const Calibration& full, const Calibration& refitted,
-                         const HeldAirspeed& held, const Flight& flight) {
-  ExportLoss loss = residual_loss(full, refitted, flight);
+ExportLoss airspeed_loss(const Calibration& full, const FittedAirspeed& fitted,
+                         const TubeReader& reader, const Flight& flight) {
+  ExportLoss loss =
+      residual_loss(full, verbs::prepare(full, flight), fitted.calibration, fitted.prepared);
   const ReadFlight read = read_flight(full, flight);
-  compare_airspeeds({apply(full, flight), correct(held, readings_of(full, read.flight, flight))},
+  const ProbeReadings readings = readings_of(full, read.flight, flight);
+  compare_airspeeds({apply(full, flight), correct(fitted.held, reader, readings, read.flight)},
                     loss);
   return loss;
 }

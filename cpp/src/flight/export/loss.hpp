@@ -3,14 +3,15 @@
 #pragma once
 
 #include "flight/export/held.hpp"
+#include "flight/export/held_airspeed.hpp"
 
 namespace sepcal::exporting {
 
 /// `full` is the calibration on the flight, `refitted` what the vehicle's is taken from.
 ExportLoss field_loss(const Calibration& full, const Calibration& refitted, const HeldField& held,
                       const Flight& flight);
-ExportLoss airspeed_loss(const Calibration& full, const Calibration& refitted,
-                         const HeldAirspeed& held, const Flight& flight);
+ExportLoss airspeed_loss(const Calibration& full, const FittedAirspeed& fitted,
+                         const TubeReader& reader, const Flight& flight);
 
 /// Of a header: the two calibrations' corrected columns.
 ExportLoss refit_loss(const Calibration& full, const Calibration& refitted, const Flight& flight);

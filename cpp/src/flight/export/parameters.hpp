@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flight/export/held.hpp"
+#include "flight/export/held_airspeed.hpp"
 
 namespace sepcal::exporting {
 
@@ -22,7 +23,7 @@ std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
                                                 const ExportOptions& options);
 
 /// 1 or 2: ARSPD_RATIO, ARSPD2_RATIO.
-std::vector<VehicleParameter> ardupilot_airspeed(const HeldAirspeed& held,
+std::vector<VehicleParameter> ardupilot_airspeed(const HeldAirspeed& held, const TubeReader& reader,
                                                  const ExportOptions& options);
 
 /// 0 to 3: CAL_MAG0_XOFF. R is taken as none.
@@ -48,5 +49,8 @@ std::string float_text(double value);
 
 inline constexpr double sea_level_density = 1.225;  // kg/m^3, of both autopilots
 inline constexpr double plain_ratio = 2.0 / sea_level_density;
+
+/// ARSPD_RATIO of a perfect tube: an SDP3x's driver hands on its pressure over sea_level_density.
+constexpr double plain_ratio_of(bool sdp3x) { return sdp3x ? 2.0 : plain_ratio; }
 
 }  // namespace sepcal::exporting

@@ -73,10 +73,8 @@ std::vector<VehicleParameter> px4_magnetometer(const HeldField& in_body,
 
 std::vector<VehicleParameter> px4_airspeed(const HeldAirspeed& held, const ExportOptions& options) {
   const int number = sensor_of(options, 1, 3, "PX4's airspeeds");
-  const double in_use = options.in_use.value_or(1.0);
   const std::vector<VehicleParameter> parameters{
-      {"ASPD_SCALE_" + std::to_string(number), in_use * held.factor},
-      {"SENS_DPRES_OFF", held.offset / (in_use * in_use)}};
+      {"ASPD_SCALE_" + std::to_string(number), held.factor}, {"SENS_DPRES_OFF", held.offset}};
   check_range(parameters.front(), 0.5, 2.0);
   return parameters;
 }

@@ -65,9 +65,15 @@ void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
   const auto idle = [](const char* option, const std::string& of) {
     throw OptionError({Option{option}, " is of " + of + "; leave it out"});
   };
-  if (options.device_id && !px4_field) idle("device_id", "PX4's magnetometers");
+  const bool px4_airspeed = airspeed && options.target == ExportTarget::px4;
+  if (options.device_id && !px4_field && !px4_airspeed) idle("device_id", "PX4's sensors");
   if (options.mounting && !px4_field) idle("mounting", "PX4's magnetometers");
   if (options.in_use && !airspeed) idle("in_use", "an autopilot's airspeed");
+  if (options.airspeed_sensor && !airspeed) idle("airspeed_sensor", "an autopilot's airspeed");
+  if (options.cal_air && !px4_airspeed) idle("cal_air", "PX4's airspeed");
+  if (options.logged_airspeed != LoggedAirspeed::true_airspeed && !airspeed) {
+    idle("logged_airspeed", "an autopilot's airspeed");
+  }
   if (options.in_use && !(std::isfinite(*options.in_use) && *options.in_use > 0)) {
     throw OptionError({Option{"in_use"}, fmt::format(" is {}; give the ratio or the scale, above "
                                                      "zero",

@@ -48,23 +48,6 @@ void note_ardupilot_field(const HeldField& held, std::vector<std::string>& notes
   }
 }
 
-void note_airspeed(bool as_speed, const ExportOptions& options, std::vector<std::string>& notes) {
-  const bool px4 = options.target == ExportTarget::px4;
-  if (as_speed && !options.in_use) {
-    notes.push_back(fmt::format(
-        "what was read is a logged airspeed, taken as the true one, sqrt(2 dp / rho), by {}; give "
-        "the one in use where the autopilot that logged it had another",
-        px4 ? "an ASPD_SCALE of 1" : fmt::format("an ARSPD_RATIO of {:.4g}", plain_ratio)));
-  }
-  notes.emplace_back(
-      px4 ? "PX4 keeps the scale where ASPD_SCALE_APPLY is 0; add the offset to what was taken off "
-            "the logged pressure already; from 2026 on PX4 has CAL_DPRESn_OFF for SENS_DPRES_OFF"
-          : "ArduPilot keeps the ratio where AUTOCAL is 0, and the offset where SKIP_CAL is 1, "
-            "else "
-            "it measures that at each start; add the offset to what was taken off the logged "
-            "pressure already");
-}
-
 /// Of a sensor whose readings the calibration turns into body axes first.
 void note_mounting(const Mounting& mounting, const ExportOptions& options,
                    std::vector<std::string>& notes) {
@@ -79,12 +62,6 @@ void note_mounting(const Mounting& mounting, const ExportOptions& options,
 
 }  // namespace
 
-bool reads_airspeed(const Calibration& calibration, const Flight& flight) {
-  std::vector<std::string> unused;
-  const ReadFlight read = read_as(flight, verbs::choice_for(calibration, flight, unused));
-  return files::find_quantity(read.flight, "airspeed", files::UnitKind::speed).has_value();
-}
-
 std::string vehicle_title(const Calibration& calibration, const ExportOptions& options) {
   const bool px4 = options.target == ExportTarget::px4;
   const bool field = calibration.probe->app() == "sepcal-mag";
@@ -95,13 +72,8 @@ std::string vehicle_title(const Calibration& calibration, const ExportOptions& o
                      options.sensor.value_or(px4 && field ? 0 : 1));
 }
 
-std::vector<std::string> vehicle_notes(const Calibration& calibration, const Flight* flight,
-                                       const ExportOptions& options) {
+std::vector<std::string> field_notes(const Calibration& calibration, const ExportOptions& options) {
   std::vector<std::string> notes;
-  if (calibration.probe->app() != "sepcal-mag") {
-    note_airspeed(flight != nullptr && reads_airspeed(calibration, *flight), options, notes);
-    return notes;
-  }
   const HeldField held = held_field(calibration);
   const bool px4 = options.target == ExportTarget::px4;
   if (px4) {
@@ -117,6 +89,38 @@ std::vector<std::string> vehicle_notes(const Calibration& calibration, const Fli
                     held.motor == Motor::current ? "the battery's current" : "the throttle",
                     px4 ? "magnetometer" : "compass"));
   }
+  return notes;
+}
+
+std::vector<std::string> airspeed_notes(const ChosenTubeReader& chosen,
+                                        const ExportOptions& options) {
+  const bool px4 = options.target == ExportTarget::px4;
+  const TubeReader& reader = chosen.reader;
+  std::vector<std::string> notes = chosen.notes;
+  if (reader.has_airspeed && !options.in_use) {
+    const bool is_true = reader.logged == LoggedAirspeed::true_airspeed;
+    notes.push_back(fmt::format(
+        "what was read is a logged airspeed, taken as the {} one, read with {}; give the one in "
+        "use "
+        "where the autopilot that logged it had another",
+        is_true ? "true" : "equivalent",
+        px4 ? "an ASPD_SCALE of 1"
+            : fmt::format("an ARSPD_RATIO of {:.4g}", plain_ratio_of(reader.sensor.flows()))));
+  }
+  if (px4) {
+    notes.emplace_back(
+        "ASPD_SCALE_n holds from the next start of the autopilot on, and stays where "
+        "ASPD_SCALE_APPLY is 0");
+    notes.emplace_back(
+        "add the offset to what was taken off the logged pressure already; from 2026 on PX4 has "
+        "CAL_DPRESn_OFF for SENS_DPRES_OFF");
+    return notes;
+  }
+  notes.emplace_back("ArduPilot keeps the ratio where AUTOCAL is 0");
+  notes.emplace_back(reader.has_offset
+                         ? "it keeps the offset where SKIP_CAL is 1, else it measures that at each "
+                           "start; add the offset to what was taken off the logged pressure already"
+                         : "it sets an SDP3x's offset to zero, so that none is in the file");
   return notes;
 }
 
@@ -136,10 +140,12 @@ void drop_rotation(bool is_known, ExportLoss& loss) {
       loss.rotation_deg));
 }
 
-void drop_bias(const Calibration& full, const HeldAirspeed& held, ExportLoss& loss) {
+void drop_bias(const Calibration& full, const HeldAirspeed& held, const TubeReader& reader,
+               ExportLoss& loss) {
   loss.dropped.push_back(fmt::format(
-      "the airspeed's constant c_va, {:.3g} m/s, for which a pressure offset of {:.3g} Pa stands",
-      full.fit["c_va"].value, held.offset));
+      "the airspeed's constant c_va, {:.3g} m/s, for which {}", full.fit["c_va"].value,
+      reader.has_offset ? fmt::format("a pressure offset of {:.3g} Pa stands", held.offset)
+                        : "nothing stands"));
 }
 
 }  // namespace sepcal::exporting
