@@ -218,4 +218,14 @@ TEST_CASE("a run goes on where a label changes and ends at a gap") {
   CHECK(describe(find_runs(timeless)) == "[0,2) [2,4) ");
 }
 
+TEST_CASE("a column's values are replaced, as many") {
+  Record record;
+  record.add("a", {1.0, 2.0}).add("b", {3.0, 4.0});
+  record.replace("a", {5.0, 6.0});
+  CHECK(record.column("a")[1] == 6.0);
+  CHECK(record.column("b")[1] == 4.0);
+  CHECK_THROWS_WITH_AS(record.replace("c", {1.0, 2.0}), Contains("'c' is missing"), Error);
+  CHECK_THROWS_WITH_AS(record.replace("a", {1.0}), Contains("has 2 values, and 1"), Error);
+}
+
 }  // namespace record_test
