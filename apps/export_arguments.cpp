@@ -36,6 +36,12 @@ void ExportArguments::add_to(CLI::App& verb) {
                   "what a logged airspeed is: true or equivalent, which autopilots call indicated "
                   "[true]")
       ->type_name("KIND");
+  verb.add_option("--rotation", rotation_,
+                  "of a magnetometer for an autopilot, which can't turn it: keep, the calibration "
+                  "as it is less its rotation (the symmetric factor of C^-1), or refit, the "
+                  "symmetric matrix that fits the flight best [the better by its largest error of "
+                  "heading]")
+      ->type_name("HOW");
   verb.add_option("--mounting", mounting_,
                   "of PX4: how the sensor is turned, where the log has it turned into body axes "
                   "[deg]")
@@ -71,6 +77,7 @@ ExportOptions ExportArguments::resolve() const {
   if (!logged_airspeed_.empty()) {
     options.logged_airspeed = choice_of<LoggedAirspeed>("--logged-airspeed", logged_airspeed_);
   }
+  if (!rotation_.empty()) options.rotation = choice_of<ExportRotation>("--rotation", rotation_);
   if (!mounting_.empty()) {
     options.mounting =
         parse_triple("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");

@@ -26,6 +26,7 @@ class ExportArguments {
   std::string cal_air_;
   std::string logged_airspeed_;
   std::string mounting_;
+  std::string rotation_;
   std::optional<std::uint32_t> sensor_;
   ExportOptions options_;  // what needs no more than CLI11's reading
 };

@@ -2217,6 +2217,8 @@ class Exported:
         "text",
         "parameters",
         "loss",
+        "rotation",
+        "other_loss",
         "left_to_others",
         "notes",
         "json",
@@ -2251,6 +2253,11 @@ class Exported:
         What a person must know or do, one line each.
         """
     @property
+    def other_loss(self) -> ExportLoss | None:
+        """
+        What the other one would lose; None where that is not known.
+        """
+    @property
     def output(self) -> str:
         """
         The file.
@@ -2264,6 +2271,11 @@ class Exported:
     def parameters(self) -> dict[str, float]:
         """
         Of an autopilot, by name.
+        """
+    @property
+    def rotation(self) -> str | None:
+        """
+        Of a magnetometer that the calibration turns: keep or refit, else None.
         """
     @property
     def text(self) -> str:
@@ -2877,6 +2889,7 @@ def export_to_file(
     | None,
     arg11: collections.abc.Sequence[str],
     arg12: bool,
+    arg13: str | None,
 ) -> Exported: ...
 def fit(
     arg0: Model,

@@ -46,11 +46,12 @@ def export(
     cal_air: Sequence[float] | None = None,
     without: Sequence[str] = (),
     force: bool = False,
+    rotation: Literal["keep", "refit"] | str | None = None,
 ) -> Exported:
     """Writes what a vehicle loads of a calibration; the file appears whole or not at all.
 
-    An autopilot holds less than a calibration: the best that it holds is fitted to the flight, and
-    `loss` says what that costs.
+    An autopilot holds less than a calibration: the best that it holds is kept of it or fitted to
+    the flight, and `loss` says what that costs.
 
     Args:
         calibration: Of a magnetometer, a Pitot-static tube or, for a header, a five-hole probe.
@@ -68,6 +69,9 @@ def export(
             [mm] [the log's, else 0, 0.2, 1.5].
         without: Effects to leave out; the rest is fitted anew.
         force: Exports also what did not converge, is not all determined, or is at a bound.
+        rotation: Of a magnetometer for an autopilot, which can't turn it: "keep", the calibration
+            as it is less its rotation, or "refit", the symmetric matrix that fits the flight best
+            [the better by its largest error of heading; without a flight "keep"].
 
     Raises:
         Error: A calibration that no vehicle should load, an effect that the vehicle can't follow, a
@@ -98,5 +102,6 @@ def export(
         air,
         list(without),
         force,
+        rotation,
     )
     return Exported(written)

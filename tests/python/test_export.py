@@ -18,6 +18,7 @@ from oracle.model import Array
 from recorded import find_fixture
 
 SINGLE = 3e-7  # relative, of numbers that a float holds, over a few operations
+REFIT = ("--rotation", "refit")
 READERS = {"px4": autopilots.read_px4, "ardupilot": autopilots.read_ardupilot}
 
 
@@ -65,7 +66,7 @@ def fit_motor(bench: Bench, header: str, size: float) -> Log:
 def test_a_field_is_what_the_best_symmetric_matrix_gives(magnetometer: Bench, target: str) -> None:
     """The matrix fitted anew in NumPy, by maximum likelihood."""
     log = magnetometer.read_log()
-    export(magnetometer, target)
+    export(magnetometer, target, *REFIT)
     C, n, _ = autopilots.fit_symmetric(true_field(log), read_raw(log))
     expected = (read_raw(log) - n) @ np.linalg.inv(C).T
     found = corrected_by(target, magnetometer.folder / "vehicle", read_raw(log))
@@ -78,7 +79,7 @@ def test_the_motors_field_is_compensated(
     magnetometer: Bench, target: str, header: str, kind: int
 ) -> None:
     log = fit_motor(magnetometer, header, 0.4 if header == "current_a" else 6.0)
-    export(magnetometer, target, calibration="motor.json")
+    export(magnetometer, target, *REFIT, calibration="motor.json")
     driver = log.column(header)
     C, n, kappa = autopilots.fit_symmetric(true_field(log), read_raw(log), driver)
     expected = (read_raw(log) - n - np.outer(driver, kappa)) @ np.linalg.inv(C).T
@@ -214,7 +215,7 @@ def test_a_motor_beside_the_strength(magnetometer: Bench) -> None:
 def test_the_loss_is_true(magnetometer: Bench, target: str) -> None:
     """Heading, strength, rotation and residuals again, by the exported numbers and by apply."""
     log = fit_motor(magnetometer, "current_a", 0.4)
-    loss = export(magnetometer, target, calibration="motor.json").result["loss"]
+    loss = export(magnetometer, target, *REFIT, calibration="motor.json").result["loss"]
     driver, raw = log.column("current_a"), read_raw(log)
     held = corrected_by(target, magnetometer.folder / "vehicle", raw, motor=driver)
     done = magnetometer.run("apply", "flight.csv", "motor.json", "-o", "applied.csv")
@@ -421,7 +422,7 @@ def test_a_compass_scale_that_ardupilot_would_ignore(magnetometer: Bench) -> Non
     C, n, _ = autopilots.fit_symmetric(true_field(log), read_raw(log))
     W = np.linalg.inv(C)
     for target in READERS:
-        done = export(magnetometer, target, calibration="half.json")
+        done = export(magnetometer, target, *REFIT, calibration="half.json")
         found = corrected_by(target, magnetometer.folder / "vehicle", read_raw(log))
         assert_allclose(found, (read_raw(log) - n) @ W.T, atol=SINGLE * 200)
     said = f"to be scaled by {np.trace(W) / 3:.4g}, and ArduPilot ignores a COMPASS_SCALE outside"
@@ -451,6 +452,8 @@ def test_usage(bench: Bench) -> None:
         (("--to", "c", "--device-id", "7"), ("--device-id", "leave it out")),
         (("--to", "c", "--mounting", "0,0,90"), ("--mounting", "leave it out")),
         (("--to", "c", "--in-use", "2"), ("--in-use", "leave it out")),
+        (("--to", "c", "--rotation", "keep"), ("--rotation", "leave it out")),
+        (("--to", "px4", "--rotation", "turn"), ("--rotation 'turn' is unknown", "'refit'")),
         (("--to", "c", "--sensor", "x"), ("--sensor",)),
     ):
         assert_refused(bench, "export", "base.json", *more, words=words)
@@ -471,7 +474,7 @@ def test_the_flight_that_is_not_there(magnetometer: Bench) -> None:
     (magnetometer.folder / "copy.csv").write_bytes(magnetometer.flight.read_bytes())
     log.put(5, "mx_ut", "12.5")
     magnetometer.flight.write_text(log.text())  # changed since
-    command = ("export", "base.json", "--to", "px4")
+    command = ("export", "base.json", "--to", "px4", *REFIT)
     assert_refused(magnetometer, *command, words=("flight.csv is not there as it was fitted",))
     magnetometer.flight.unlink()
     assert_refused(magnetometer, *command, words=("flight.csv is not there as it was fitted",))
@@ -483,9 +486,9 @@ def test_several_flights(magnetometer: Bench) -> None:
     fitted = magnetometer.run("fit", "flight.csv", "second.csv", "--own", "n_x", "-o", "joint.json")
     assert fitted.code == 0, fitted.err
     command = ("export", "joint.json")
-    assert_refused(
-        magnetometer, *command, "--to", "px4", words=("2 flights jointly", "fit one of them alone")
-    )
+    words = ("2 flights jointly", "fit one of them alone")
+    assert_refused(magnetometer, *command, "--to", "px4", *REFIT, words=words)
+    assert_refused(magnetometer, *command, "--to", "px4", words=("2 flights; give the one",))
     assert_refused(magnetometer, *command, "--to", "c", words=("2 flights", "second.csv"))
     done = magnetometer.run("export", "joint.json", "second.csv", "--to", "c", "-o", "second.h")
     assert done.code == 0, done.err
@@ -505,7 +508,7 @@ def test_recorded_magnetometer(tmp_path: Path, target: str) -> None:
         "fit", flight, "--field", "19.72,-1.41,49.44", "--effect", "bias[current_a]", "-o", "m.json"
     )
     assert fitted.code == 0, fitted.err
-    done = export(bench, target, calibration="m.json")
+    done = export(bench, target, *REFIT, calibration="m.json")
     log = Log(flight)
     raw = 100 * np.column_stack([log.column(f"m{axis}_gauss") for axis in "xyz"])
     found = corrected_by(target, tmp_path / "vehicle", raw, motor=log.column("current_a"))
@@ -604,11 +607,14 @@ def test_python_does_the_same(magnetometer: Bench) -> None:
     calibration = sepcal.load(magnetometer.folder / "base.json")
     flight = sepcal.read_csv(magnetometer.flight)
     with pytest.raises(sepcal.Error, match="is not there as it was fitted"):
-        sepcal.export(calibration, magnetometer.folder / "python", "px4")
+        sepcal.export(calibration, magnetometer.folder / "python", "px4", rotation="refit")
     written = sepcal.export(
         calibration, magnetometer.folder / "python", "px4", flight=flight, sensor=1, device_id=7
     )
     app = export(magnetometer, "px4", "--sensor", "1", "--device-id", "7")
+    assert written.rotation == app.result["rotation"]
+    assert written.other_loss is not None
+    assert written.other_loss.heading_rms_deg == app.result["other_loss"]["heading_rms_deg"]
     assert written.parameters == app.result["parameters"]
     assert written.loss is not None
     assert written.loss.heading_rms_deg == app.result["loss"]["heading_rms_deg"]
@@ -616,5 +622,7 @@ def test_python_does_the_same(magnetometer: Bench) -> None:
     assert written.page in str(written)
     with pytest.raises(sepcal.Error, match="three angles"):
         sepcal.export(calibration, "x", "px4", flight=flight, mounting=(1.0, 2.0))
+    with pytest.raises(sepcal.Error, match="rotation 'turn' is unknown"):
+        sepcal.export(calibration, magnetometer.folder / "python", "px4", rotation="turn")
     with pytest.raises(sepcal.Error, match="to 'x' is unknown"):
         sepcal.export(calibration, magnetometer.folder / "python", "x", flight=flight)

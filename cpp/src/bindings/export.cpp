@@ -22,6 +22,8 @@ struct ExportedFile {
   std::string text;
   std::map<std::string, double> parameters;
   std::optional<ExportLoss> loss;
+  std::optional<std::string> rotation;
+  std::optional<ExportLoss> other_loss;
   std::vector<std::string> left_to_others;
   std::vector<std::string> notes;
   std::string json;
@@ -36,11 +38,14 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
                           std::optional<double> in_use, const std::string& logged_airspeed,
                           const std::optional<std::string>& airspeed_sensor,
                           std::optional<std::array<double, 3>> cal_air,
-                          const std::vector<std::string>& without, bool force) {
+                          const std::vector<std::string>& without, bool force,
+                          const std::optional<std::string>& rotation) {
   const Released released;
   const auto to = choice_of<ExportTarget>("to", target);
   std::optional<AirspeedSensor> tube;
   if (airspeed_sensor) tube = choice_of<AirspeedSensor>("airspeed_sensor", *airspeed_sensor);
+  std::optional<ExportRotation> how;
+  if (rotation) how = choice_of<ExportRotation>("rotation", *rotation);
   Exported exported = sepcal::export_to_file(
       calibration, flight ? &*flight : nullptr,
       {.target = to,
@@ -50,6 +55,7 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
        .logged_airspeed = choice_of<LoggedAirspeed>("logged_airspeed", logged_airspeed),
        .airspeed_sensor = tube,
        .cal_air = cal_air,
+       .rotation = how,
        .mounting = mounting,
        .without = without,
        .force = force},
@@ -58,10 +64,13 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
                       .text = std::move(exported.text),
                       .parameters = {},
                       .loss = exported.loss,
+                      .rotation = {},
+                      .other_loss = exported.other_loss,
                       .left_to_others = exported.left_to_others,
                       .notes = exported.notes,
                       .json = to_json(exported, output),
                       .page = without_last_end(to_text(exported, output))};
+  if (exported.rotation) result.rotation = to_string(*exported.rotation);
   for (const VehicleParameter& one : exported.parameters) result.parameters[one.name] = one.value;
   return result;
 }
@@ -101,6 +110,10 @@ void define_export(py::module_& module) {
       .field("text", &ExportedFile::text, "All that is in it.")
       .field("parameters", &ExportedFile::parameters, "Of an autopilot, by name.")
       .field("loss", &ExportedFile::loss, "None where nothing was changed.")
+      .field("rotation", &ExportedFile::rotation,
+             "Of a magnetometer that the calibration turns: keep or refit, else None.")
+      .field("other_loss", &ExportedFile::other_loss,
+             "What the other one would lose; None where that is not known.")
       .field("left_to_others", &ExportedFile::left_to_others,
              "Effects that act on the reference or the wind: no part of a correction.")
       .field("notes", &ExportedFile::notes, "What a person must know or do, one line each.")

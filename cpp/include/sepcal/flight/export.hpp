@@ -63,6 +63,18 @@ struct ChoiceNames<LoggedAirspeed> {
   static constexpr std::array<std::string_view, 2> names{"true", "equivalent"};
 };
 
+/// What an autopilot's symmetric matrix is, where the calibration turns the sensor too (a
+/// magnetometer in a known field): h = C^-1 (m - n), C^-1 = Q S, Q a rotation.
+enum class ExportRotation {
+  keep,   // S and n: the calibration as it is, less its rotation Q
+  refit,  // the symmetric matrix, with its n, that fits the flight best
+};
+
+template <>
+struct ChoiceNames<ExportRotation> {
+  static constexpr std::array<std::string_view, 2> names{"keep", "refit"};
+};
+
 struct ExportOptions {
   ExportTarget target = ExportTarget::c;
   /// Which of the vehicle's sensors, as the target counts: n of PX4's CAL_MAGn (from 0) and
@@ -81,8 +93,10 @@ struct ExportOptions {
   /// flight's columns cal_air_cmodel, cal_air_tubelen_m and cal_air_tubed_mm, else PX4's defaults,
   /// 0, 0.2 and 1.5.
   std::optional<std::array<double, 3>> cal_air = {};
-  /// Of PX4, roll, pitch, yaw [deg]: how the sensor is mounted, where the log's readings were
-  /// turned into body axes already. Unset: not turned.
+  /// Unset: the one with the smaller largest error of heading, of which keep takes no flight.
+  std::optional<ExportRotation> rotation = {};
+  /// Of PX4, roll, pitch, yaw [deg]: how the sensor is mounted. Where the calibration does not turn
+  /// the readings itself, they were logged in body axes. Unset: as the calibration has it.
   std::optional<std::array<double, 3>> mounting = {};
   std::vector<std::string> without = {};  // effects that are left out; the rest is fitted anew
   bool force = false;                     // exports also what is not fit to be used
@@ -120,6 +134,8 @@ struct Exported {
   std::vector<VehicleParameter> parameters = {};  // of an autopilot, in the file's order
   std::vector<std::string> left_to_others = {};   // effects that act on the reference or the wind
   std::optional<ExportLoss> loss = {};            // none where nothing was changed
+  std::optional<ExportRotation> rotation = {};    // that was taken, where there was a choice
+  std::optional<ExportLoss> other_loss = {};      // of the other one; none where it has none
   std::vector<std::string> notes = {};            // one line each, for people
 };
 

@@ -14,6 +14,7 @@
 #include "flight/export/bodies.hpp"
 #include "flight/export/fit_for_use.hpp"
 #include "flight/export/header_text.hpp"
+#include "flight/export/held_rotation.hpp"
 #include "flight/export/loss.hpp"
 #include "flight/export/parameters.hpp"
 #include "flight/export/provenance.hpp"
@@ -21,6 +22,7 @@
 #include "flight/export/tube_reader.hpp"
 #include "flight/export/vehicle_notes.hpp"
 #include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/read_as.hpp"
 #include "sepcal/option_error.hpp"
@@ -34,8 +36,8 @@ namespace {
 /// The flight that is given, or the one that the calibration names, where it is there unchanged.
 class FlightAtHand {
  public:
-  FlightAtHand(const Calibration& calibration, const Flight* given)
-      : fitted_(calibration.flight), flight_(given) {
+  FlightAtHand(const Calibration& calibration, const Flight* given, bool one_of_several)
+      : fitted_(calibration.flight), flight_(given), one_of_several_(one_of_several) {
     if (flight_ != nullptr || fitted_.sha256.empty()) return;
     std::error_code unreadable;
     if (!std::filesystem::is_regular_file(fitted_.file, unreadable)) return;
@@ -46,6 +48,9 @@ class FlightAtHand {
   }
 
   const Flight* find() const { return flight_; }
+
+  /// Of flights that were fitted jointly.
+  bool is_one_of_several() const { return one_of_several_; }
 
   /// Throws Error where there is none.
   const Flight& need(const std::string& for_what) const {
@@ -60,6 +65,7 @@ class FlightAtHand {
   FittedFlight fitted_;
   std::shared_ptr<const Flight> named_;
   const Flight* flight_;
+  bool one_of_several_;
 };
 
 std::string_view instrument(const Calibration& calibration) {
@@ -103,22 +109,23 @@ struct OnAutopilot {
 };
 
 OnAutopilot export_field(const Calibration& given, const Calibration& base,
-                         const FlightAtHand& flight, const ExportOptions& options,
+                         const FlightAtHand& flight, const ExportOptions& asked,
                          Exported& exported) {
-  const bool refits = needs_refit(base);
-  Calibration held = base;
-  if (refits) {
-    held = refit_held(base, flight.need("what an autopilot holds is fitted anew: that"), options);
-    if (!options.force) check_fit_for_use(held, "what the autopilot can hold of the calibration");
+  if (asked.rotation == ExportRotation::refit) {
+    flight.need("what an autopilot holds is fitted anew: that");
   }
+  const std::optional<VehicleMounting> mounting = vehicle_mounting(base, asked);
+  ExportOptions options = asked;
+  if (mounting) options.mounting = mounting->angles;
+  OnAutopilot there;
+  Calibration held;
+  there.loss = hold_field({given, base, flight.find(), flight.is_one_of_several(), mounting},
+                          options, held, exported);
   const HeldField field = held_field(held);
   exported.parameters = options.target == ExportTarget::px4 ? px4_magnetometer(field, options)
                                                             : ardupilot_compass(field, options);
-  OnAutopilot there;
-  if (flight.find() != nullptr) there.loss = field_loss(given, held, field, *flight.find());
-  drop_rotation(refits, there.loss);
-  there.told = field_notes(held, options);
   exported.calibration = std::move(held);
+  there.told = field_notes(given, exported, options, mounting);
   return there;
 }
 
@@ -158,12 +165,13 @@ OnAutopilot export_parameters(const Calibration& given, const Calibration& base,
   return there;
 }
 
-/// The calibration without some of its effects: fitted, unless what an autopilot holds will be.
+/// The calibration without some of its effects: fitted, unless that is done of what an autopilot
+/// holds alone.
 void leave_out(const Calibration& given, const FlightAtHand& at_hand, const ExportOptions& options,
                Exported& exported) {
   const Flight& flight = at_hand.need("a fit without an effect");
   CalibrationOptions fewer = options_without(given, options.without, options.progress);
-  if (!is_header(options.target) && needs_refit(given)) {
+  if (!is_header(options.target) && given.probe->app() != "sepcal-mag") {
     exported.calibration.options = std::move(fewer);
     return;
   }
@@ -177,15 +185,13 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
 }  // namespace
 
 Exported export_calibration(const Calibration& calibration, const Flight* flight,
-                            const ExportOptions& asked) {
-  refuse_five_hole(calibration, asked);
-  refuse_idle(calibration, asked);
-  ExportOptions options = asked;
-  if (!options.mounting) options.mounting = mounting_of(calibration);
+                            const ExportOptions& options) {
+  refuse_five_hole(calibration, options);
+  refuse_idle(calibration, options);
   const Calibration given = of_one_flight(calibration, flight, options);
   check_without(given, options.without);
   if (!options.force) check_fit_for_use(given, "the calibration");
-  const FlightAtHand at_hand(given, flight);
+  const FlightAtHand at_hand(given, flight, joint_setup(*calibration.probe) != nullptr);
   Exported exported{.target = options.target, .calibration = given};
   if (flight != nullptr) verbs::note_other_flight(given, *flight, exported.notes);
   if (!options.without.empty()) leave_out(given, at_hand, options, exported);
@@ -200,6 +206,7 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
       provenance(vehicle_title(exported.calibration, options), given, exported.calibration);
   std::ranges::copy(loss_lines(there.loss), std::back_inserter(comment));
   exported.loss = std::move(there.loss);
+  std::ranges::copy(rotation_lines(exported), std::back_inserter(comment));
   std::ranges::copy(there.told, std::back_inserter(comment));
   std::ranges::copy(there.told, std::back_inserter(exported.notes));
   write_parameters(comment, options, exported);

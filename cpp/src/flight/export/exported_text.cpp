@@ -49,6 +49,7 @@ std::string to_text(const Exported& exported, const std::string& output) {
                  exported.loss->flight);
   }
   for (const std::string& line : loss_lines(*exported.loss)) text += page("  {}\n", line);
+  for (const std::string& line : rotation_lines(exported)) text += page("  {}\n", line);
   return text.text();
 }
 
@@ -69,6 +70,9 @@ std::string to_json(const Exported& exported, const std::string& output) {
        {"held", std::move(estimates)},
        {"left_to_others", exported.left_to_others},
        {"loss", exported.loss ? write_loss(*exported.loss) : files::Json(nullptr)},
+       {"rotation", exported.rotation ? files::Json(to_string(*exported.rotation)) : files::Json()},
+       {"other_loss",
+        exported.other_loss ? write_loss(*exported.other_loss) : files::Json(nullptr)},
        {"status", to_string(fit.status)},
        {"message", fit.message}});
 }

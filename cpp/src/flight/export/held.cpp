@@ -59,32 +59,21 @@ bool is_zero_of_tube(const Calibration& calibration, const EffectSetting& settin
   return setting.name == constant_offset && !calibration.options.own_effects.contains(setting.name);
 }
 
-/// What a fit held at a value stays: an entry of the symmetric C for a scale or a soft iron.
-void hold_entries(const Calibration& calibration, std::map<std::string, double>& fixed) {
-  constexpr std::array<std::pair<const char*, const char*>, 6> entries{{{"lambda_x", "c_xx"},
-                                                                        {"lambda_y", "c_yy"},
-                                                                        {"lambda_z", "c_zz"},
-                                                                        {"alpha_xy", "c_xy"},
-                                                                        {"alpha_xz", "c_xz"},
-                                                                        {"alpha_yz", "c_yz"}}};
-  const Eigen::Matrix3d C = polar(field_matrix(calibration).C.inverse()).symmetric.inverse();
-  const std::array values{C(0, 0), C(1, 1), C(2, 2), C(0, 1), C(0, 2), C(1, 2)};
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (fixed.contains(entries[i].first)) fixed[entries[i].second] = values[i];
-  }
-}
-
 }  // namespace
 
-void forget(std::string_view prefix, FitOptions& fit) {
+void forget_ranges(std::string_view prefix, FitOptions& fit) {
   const auto erase = [prefix](auto& map) {
     std::erase_if(map, [prefix](const auto& entry) { return entry.first.starts_with(prefix); });
   };
   erase(fit.bounds);
-  erase(fit.fixed);
   erase(fit.prior);
   erase(fit.start);
   erase(fit.sampling_distribution);
+}
+
+void forget(std::string_view prefix, FitOptions& fit) {
+  forget_ranges(prefix, fit);
+  std::erase_if(fit.fixed, [&](const auto& entry) { return entry.first.starts_with(prefix); });
 }
 
 void keep_known(const Tables& model, CalibrationOptions& options) {
@@ -143,8 +132,16 @@ std::vector<std::string> effects_on_the_world(const Calibration& calibration) {
   return names;
 }
 
-bool needs_refit(const Calibration& calibration) {
-  return calibration.probe->name() != "magnetometer-norm";
+bool is_of_known_field(const Calibration& calibration) {
+  return calibration.probe->name() == "magnetometer";
+}
+
+std::vector<std::string> motor_effects(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const EffectSetting& setting : calibration.options.effects) {
+    if (motor_of(calibration, setting) != nullptr) names.push_back(setting.name);
+  }
+  return names;
 }
 
 CalibrationOptions options_without(const Calibration& base, const std::vector<std::string>& effects,
@@ -158,20 +155,10 @@ CalibrationOptions options_without(const Calibration& base, const std::vector<st
   return options;
 }
 
-Calibration refit_held(const Calibration& calibration, const Flight& flight,
-                       const ExportOptions& options) {
-  CalibrationOptions held = options_without(calibration, {}, options.progress);
-  const std::shared_ptr<const Probe> probe = symmetric_magnetometer(calibration.probe);
-  hold_entries(calibration, held.fit.fixed);
-  held.free.clear();
-  keep_known(probe->model().tables(), held);
-  return verbs::calibrate(probe, verbs::prepare(calibration, flight), held);
-}
-
 HeldField held_field(const Calibration& calibration) {
   const Eigen::VectorXd values = own_values(calibration);
   HeldField held;
-  if (needs_refit(calibration)) {
+  if (is_of_known_field(calibration)) {
     held.W = SymmetricMagnetometer::matrix(values).inverse();
     held.n = values.segment<3>(6);
   } else {

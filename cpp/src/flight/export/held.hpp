@@ -31,21 +31,21 @@ void check_held(const Calibration& calibration, ExportTarget target);
 /// Effects that act on the reference or the wind, not on the reading.
 std::vector<std::string> effects_on_the_world(const Calibration& calibration);
 
-/// Whether the calibration must be fitted anew to be held.
-bool needs_refit(const Calibration& calibration);
+/// Whether it is of a magnetometer against a known field, which shows how the sensor is turned.
+bool is_of_known_field(const Calibration& calibration);
 
-/// The best that is held of a magnetometer in a known field, on a flight: with a symmetric C.
-Calibration refit_held(const Calibration& calibration, const Flight& flight,
-                       const ExportOptions& options);
+/// Effects that the motors' columns drive.
+std::vector<std::string> motor_effects(const Calibration& calibration);
 
-/// Of what refit_held() gave, or of a magnetometer against the field's strength.
+/// Of what keep_held() or refit_kept() gave, or of a magnetometer against the field's strength.
 HeldField held_field(const Calibration& calibration);
 
 /// Options for a fit without some of the base's effects, from where it ended.
 CalibrationOptions options_without(const Calibration& base, const std::vector<std::string>& effects,
                                    const FitProgress& progress);
 
-/// Forgets what the options say of parameters that begin so.
+/// Forgets what the options say of parameters that begin so; of ranges all but fixed values.
+void forget_ranges(std::string_view prefix, FitOptions& fit);
 void forget(std::string_view prefix, FitOptions& fit);
 
 /// Keeps of the options what is said of the parameters of another model and of the effects.

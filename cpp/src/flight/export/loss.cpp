@@ -10,7 +10,7 @@
 
 #include "base/thread_pool.hpp"
 #include "flight/export/bodies.hpp"
-#include "flight/export/polar.hpp"
+#include "flight/export/kept_field.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/flight/apply.hpp"
@@ -87,7 +87,10 @@ ExportLoss residual_loss(const Calibration& full, const verbs::PreparedFlight& p
 ExportLoss residual_loss(const Calibration& full, const Calibration& refitted,
                          const Flight& flight) {
   const verbs::PreparedFlight prepared = verbs::prepare(full, flight);
-  return residual_loss(full, prepared, refitted, prepared);
+  if (mounting_of(full) == mounting_of(refitted)) {
+    return residual_loss(full, prepared, refitted, prepared);
+  }
+  return residual_loss(full, prepared, refitted, verbs::prepare(refitted, flight));
 }
 
 std::vector<double> pick(const Record& record, const char* name,
@@ -189,10 +192,10 @@ void compare_airspeeds(const BothCorrected& both, ExportLoss& loss) {
 ExportLoss field_loss(const Calibration& full, const Calibration& refitted, const HeldField& held,
                       const Flight& flight) {
   ExportLoss loss = residual_loss(full, refitted, flight);
-  const bool rotation_is_known = needs_refit(full);
-  if (rotation_is_known) loss.rotation_deg = polar(field_matrix(full).C.inverse()).angle * degrees;
+  const bool rotation_is_known = is_of_known_field(full);
+  if (rotation_is_known) loss.rotation_deg = angle_of(lost_rotation(full, refitted));
   const ReadFlight read = read_flight(full, flight);
-  const ProbeReadings readings = readings_of(full, read.flight, flight);
+  const ProbeReadings readings = readings_of(refitted, read.flight, flight);
   compare_fields({apply(full, flight), correct(held, readings, read.flight)}, read.flight,
                  rotation_is_known, loss);
   return loss;
@@ -215,7 +218,7 @@ ExportLoss refit_loss(const Calibration& full, const Calibration& refitted, cons
   held.resize(full.probe->corrected_headers().size());
   const BothCorrected both(apply(full, flight), std::move(held));
   if (full.probe->app() == "sepcal-mag") {
-    compare_fields(both, read_flight(full, flight).flight, needs_refit(full), loss);
+    compare_fields(both, read_flight(full, flight).flight, is_of_known_field(full), loss);
   } else {
     compare_airspeeds(both, loss);
   }

@@ -26,7 +26,7 @@ std::vector<VehicleParameter> ardupilot_compass(const HeldField& held,
 std::vector<VehicleParameter> ardupilot_airspeed(const HeldAirspeed& held, const TubeReader& reader,
                                                  const ExportOptions& options);
 
-/// 0 to 3: CAL_MAG0_XOFF. R is taken as none.
+/// 0 to 3: CAL_MAG0_XOFF. R is the mounting, which CAL_MAG0_ROT numbers or says to be custom.
 std::vector<VehicleParameter> px4_magnetometer(const HeldField& held, const ExportOptions& options);
 
 /// 1 to 3: ASPD_SCALE_1. SENS_DPRES_OFF is every sensor's.

@@ -37,7 +37,8 @@ std::vector<std::string> provenance(const std::string& what, const Calibration& 
 std::vector<std::string> loss_lines(const ExportLoss& loss) {
   std::vector<std::string> lines;
   for (const std::string& dropped : loss.dropped) lines.push_back("dropped: " + dropped);
-  if (!std::isnan(loss.rotation_deg) && std::isnan(loss.heading_rms_deg)) {
+  const bool compared = loss.rows > 0;
+  if (compared && !std::isnan(loss.rotation_deg) && std::isnan(loss.heading_rms_deg)) {
     lines.emplace_back("heading: not known, as roll and pitch are not logged");
   }
   if (loss.heading_largest_deg <= rounding) {
@@ -62,6 +63,27 @@ std::vector<std::string> loss_lines(const ExportLoss& loss) {
     lines.push_back(fmt::format("residual: {:.4g} {} before, {:.4g} {} after", loss.residual_before,
                                 loss.residual_unit, loss.residual_after, loss.residual_unit));
   }
+  return lines;
+}
+
+std::vector<std::string> rotation_lines(const Exported& exported) {
+  if (!exported.rotation) return {};
+  const bool kept = *exported.rotation == ExportRotation::keep;
+  std::vector<std::string> lines{
+      kept ? "rotation keep: the calibration as it is, less its rotation"
+           : "rotation refit: the symmetric matrix that fits the flight best"};
+  if (!exported.other_loss) return lines;
+  const ExportLoss& other = *exported.other_loss;
+  std::string line = fmt::format("by {} instead:", kept ? "refit" : "keep");
+  if (!std::isnan(other.heading_rms_deg)) {
+    line += fmt::format(" heading rms {:.3g} deg, at most {:.3g} deg;", other.heading_rms_deg,
+                        other.heading_largest_deg);
+  }
+  line += other.strength_rms_ut <= rounding
+              ? " field's strength the calibration's;"
+              : fmt::format(" field's strength rms {:.3g} uT;", other.strength_rms_ut);
+  lines.push_back(
+      fmt::format("{} residual {:.4g} {}", line, other.residual_after, other.residual_unit));
   return lines;
 }
 

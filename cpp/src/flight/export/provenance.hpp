@@ -16,4 +16,8 @@ std::vector<std::string> provenance(const std::string& what, const Calibration& 
 /// What a vehicle's user must know, a line each; `loss` too.
 std::vector<std::string> loss_lines(const ExportLoss& loss);
 
+/// Of a magnetometer that the calibration turns: what was done with that, and what the other way
+/// would lose. Empty of any other.
+std::vector<std::string> rotation_lines(const Exported& exported);
+
 }  // namespace sepcal::exporting

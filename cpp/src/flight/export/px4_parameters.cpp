@@ -4,13 +4,14 @@
 // calibrated one, dp less SENS_DPRES_OFF.
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <optional>
 
 #include "base/escaping.hpp"
+#include "flight/export/numbered_rotations.hpp"
 #include "flight/export/parameters.hpp"
+#include "flight/probes/mounting.hpp"
 
 namespace sepcal::exporting {
 namespace {
@@ -26,25 +27,28 @@ void add_triple(std::vector<VehicleParameter>& parameters, const std::string& se
   }
 }
 
-/// R' of the mounting: from body axes into the sensor's.
-Eigen::Matrix3d into_sensor(const std::array<double, 3>& mounting) {
-  constexpr double radian = std::numbers::pi / 180.0;
-  const auto [roll, pitch, yaw] = mounting;
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(yaw * radian, Eigen::Vector3d::UnitZ()) *
-                             Eigen::AngleAxisd(pitch * radian, Eigen::Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(roll * radian, Eigen::Vector3d::UnitX()))
-                                .toRotationMatrix();
-  return R.transpose();
-}
-
 /// What is known in body axes, in the sensor's.
 HeldField turned(HeldField held, const ExportOptions& options) {
   if (!options.mounting) return held;
-  const Eigen::Matrix3d R = into_sensor(*options.mounting);
+  const Eigen::Matrix3d R = probes::turn_by(*options.mounting).transpose();
   held.W = R * held.W * R.transpose();
   held.n = R * held.n;
   held.kappa = R * held.kappa;
   return held;
+}
+
+/// Which of the numbered rotations R is; by its angles where it is none.
+void add_mounting(const std::string& sensor, const Mounting& mounting,
+                  std::vector<VehicleParameter>& parameters) {
+  const std::optional<int> number = number_of(mounting);
+  parameters.push_back(
+      {sensor + "_ROT", static_cast<double>(number.value_or(custom_rotation)), true});
+  if (number) return;
+  constexpr std::array names{"_ROLL", "_PITCH", "_YAW"};
+  const Mounting angles = probes::angles_of(probes::turn_by(mounting));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    parameters.push_back({sensor + names[i], angles[i]});
+  }
 }
 
 }  // namespace
@@ -66,6 +70,7 @@ std::vector<VehicleParameter> px4_magnetometer(const HeldField& in_body,
   }
   add_triple(parameters, sensor, "ODIAG", {held.W(0, 1), held.W(0, 2), held.W(1, 2)});
   add_triple(parameters, sensor, "COMP", -gauss * power * held.kappa);
+  if (options.mounting) add_mounting(sensor, *options.mounting, parameters);
   if (held.motor == Motor::none) return parameters;
   parameters.push_back({"CAL_MAG_COMP_TYP", held.motor == Motor::current ? 2.0 : 1.0, true});
   return parameters;

@@ -23,7 +23,9 @@ Calibration of_one_flight(const Calibration& calibration, const Flight* flight,
   const JointSetup* const joint = joint_setup(*calibration.probe);
   if (joint == nullptr) return calibration;
   const auto files = joint->flights | std::views::transform(&JoinedFlight::file);
-  const bool fits_anew = !is_header(options.target) && needs_refit(calibration);
+  const bool keeps =
+      calibration.probe->app() == "sepcal-mag" && options.rotation != ExportRotation::refit;
+  const bool fits_anew = !is_header(options.target) && !keeps;
   if (fits_anew || !options.without.empty()) {
     throw Error(fmt::format(
         "the calibration is of {} flights jointly, and what is fitted anew is of one: fit one of "
@@ -73,6 +75,9 @@ void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
   if (options.cal_air && !px4_airspeed) idle("cal_air", "PX4's airspeed");
   if (options.logged_airspeed != LoggedAirspeed::true_airspeed && !airspeed) {
     idle("logged_airspeed", "an autopilot's airspeed");
+  }
+  if (options.rotation && (is_header(options.target) || !is_of_known_field(calibration))) {
+    idle("rotation", "a magnetometer in a known field, for an autopilot");
   }
   if (options.in_use && !(std::isfinite(*options.in_use) && *options.in_use > 0)) {
     throw OptionError({Option{"in_use"}, fmt::format(" is {}; give the ratio or the scale, above "

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "flight/export/bodies.hpp"
+#include "flight/export/numbered_rotations.hpp"
 #include "flight/export/parameters.hpp"
 #include "flight/files/headers.hpp"
+#include "flight/probes/mounting.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/flight/read_as.hpp"
 
@@ -48,16 +50,70 @@ void note_ardupilot_field(const HeldField& held, std::vector<std::string>& notes
   }
 }
 
-/// Of a sensor whose readings the calibration turns into body axes first.
-void note_mounting(const Mounting& mounting, const ExportOptions& options,
-                   std::vector<std::string>& notes) {
-  const bool px4 = options.target == ExportTarget::px4;
-  const std::string parameter =
-      px4 ? fmt::format("CAL_MAG{}_ROT", options.sensor.value_or(0)) : "the compass's ORIENT";
+std::string words_of(const Mounting& mounting) {
+  return fmt::format("roll {:.6g}, pitch {:.6g}, yaw {:.6g} deg", mounting[0], mounting[1],
+                     mounting[2]);
+}
+
+/// How far what the fit found lies from the numbered mounting that is taken for it.
+std::string name_apart(const VehicleMounting& mounting) {
+  if (!mounting.found || !mounting.number) return "";
+  return fmt::format("; the fit found it {:.2g} +- {:.1g} deg from that", mounting.apart,
+                     mounting.standard_error);
+}
+
+/// What CAL_MAGn_ROT means, and where it is of no use.
+void note_px4_mounting(const VehicleMounting& mounting, int sensor,
+                       std::vector<std::string>& notes) {
+  if (mounting.number) {
+    const NumberedRotation rotation = nearest_rotation(probes::turn_by(mounting.angles));
+    notes.push_back(fmt::format(
+        "CAL_MAG{0}_ROT is {1}, {2}{3}: right for a sensor outside the autopilot; one inside has "
+        "-1, which PX4 sees to, and turns with SENS_BOARD_ROT, so that this has to be {1} then. "
+        "CAL_MAG{0}_ROLL, PITCH and YAW, where there are any, must be 0",
+        sensor, *mounting.number, name_of(rotation), name_apart(mounting)));
+    return;
+  }
   notes.push_back(fmt::format(
-      "the sensor is turned by roll {:.6g}, pitch {:.6g}, yaw {:.6g} deg: {} has to say "
-      "so, which is not in the file",
-      mounting[0], mounting[1], mounting[2], parameter));
+      "CAL_MAG{0}_ROT is {1}, custom, as no mounting in steps of 45 deg is near: CAL_MAG{0}_ROLL, "
+      "PITCH and YAW hold {2} of a sensor outside the autopilot, from PX4 1.15 on; an older one "
+      "takes {1} for no turn",
+      sensor, custom_rotation, words_of(mounting.angles)));
+}
+
+/// The rotation that keep leaves out has a home in a newer PX4.
+void note_custom_angles(const Calibration& given, const Calibration& held,
+                        const VehicleMounting& mounting, int sensor,
+                        std::vector<std::string>& notes) {
+  constexpr double as_good_as_none = 0.01;  // deg
+  const Eigen::Matrix3d lost = lost_rotation(given, held);
+  if (angle_of(lost) < as_good_as_none) return;
+  const Mounting angles = probes::angles_of(lost * probes::turn_by(mounting.angles));
+  notes.push_back(fmt::format(
+      "PX4 from 1.15 on has a home for the rotation of a sensor outside it: with CAL_MAG{0}_ROT "
+      "{1}, CAL_MAG{0}_ROLL {2:.4f}, CAL_MAG{0}_PITCH {3:.4f} and CAL_MAG{0}_YAW {4:.4f} beside "
+      "these numbers nothing is lost",
+      sensor, custom_rotation, angles[0], angles[1], angles[2]));
+}
+
+/// ArduPilot's readings are turned when they are logged: what is found is on top of that.
+void note_ardupilot_mounting(const VehicleMounting& mounting, const ExportOptions& options,
+                             std::vector<std::string>& notes) {
+  const int sensor = options.sensor.value_or(1);
+  const std::string orient =
+      fmt::format("COMPASS_ORIENT{}", sensor == 1 ? "" : std::to_string(sensor));
+  std::string what =
+      fmt::format("101, with CUST_ROT_ENABLE 1 and CUST_ROT1_ROLL, PITCH and YAW of {}",
+                  words_of(mounting.angles));
+  if (mounting.number) {
+    const NumberedRotation rotation = nearest_rotation(probes::turn_by(mounting.angles));
+    what = fmt::format("{}, {}{}", *mounting.number, name_of(rotation), name_apart(mounting));
+  }
+  notes.push_back(fmt::format(
+      "the logged readings are turned once more, and these numbers hold behind that: where {0} was "
+      "0 when they were logged, of a compass outside the autopilot, set {0} to {1}; it is not in "
+      "the file",
+      orient, what));
 }
 
 }  // namespace
@@ -72,7 +128,10 @@ std::string vehicle_title(const Calibration& calibration, const ExportOptions& o
                      options.sensor.value_or(px4 && field ? 0 : 1));
 }
 
-std::vector<std::string> field_notes(const Calibration& calibration, const ExportOptions& options) {
+std::vector<std::string> field_notes(const Calibration& given, const Exported& exported,
+                                     const ExportOptions& options,
+                                     const std::optional<VehicleMounting>& mounting) {
+  const Calibration& calibration = exported.calibration;
   std::vector<std::string> notes;
   const HeldField held = held_field(calibration);
   const bool px4 = options.target == ExportTarget::px4;
@@ -81,7 +140,15 @@ std::vector<std::string> field_notes(const Calibration& calibration, const Expor
   } else {
     note_ardupilot_field(held, notes);
   }
-  if (const auto mounting = mounting_of(calibration)) note_mounting(*mounting, options, notes);
+  const int number = options.sensor.value_or(0);
+  if (mounting && px4) {
+    note_px4_mounting(*mounting, number, notes);
+    if (exported.rotation == ExportRotation::keep) {
+      note_custom_angles(given, calibration, *mounting, number, notes);
+    }
+  } else if (mounting) {
+    note_ardupilot_mounting(*mounting, options, notes);
+  }
   if (held.motor != Motor::none) {
     notes.push_back(
         fmt::format("{} is set, which switches the compensation by {} on for every {}",

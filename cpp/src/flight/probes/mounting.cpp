@@ -77,20 +77,22 @@ Matrix3d nearest_turn(const Matrix3d& A, bool proper) {
   return U * signs.asDiagonal() * V.transpose();
 }
 
-/// Of a rotation [deg], to a tenth; -0 is 0.
-Angles angles_of(const Matrix3d& R) {
-  const auto rounded = [](double radians) {
-    return std::round(10.0 * radians / degree) / 10.0 + 0.0;
-  };
-  return {rounded(std::atan2(R(2, 1), R(2, 2))),
-          rounded(-std::asin(std::clamp(R(2, 0), -1.0, 1.0))),
-          rounded(std::atan2(R(1, 0), R(0, 0)))};
+/// -0 is 0.
+Angles to_a_tenth(Angles angles) {
+  for (double& angle : angles) angle = std::round(10.0 * angle) / 10.0 + 0.0;
+  return angles;
 }
 
 }  // namespace
 
 Matrix3d turn_by(const Angles& angles) {
   return body_to_ned(angles[0] * degree, angles[1] * degree, angles[2] * degree);
+}
+
+Angles angles_of(const Matrix3d& R) {
+  return {std::atan2(R(2, 1), R(2, 2)) / degree,
+          -std::asin(std::clamp(R(2, 0), -1.0, 1.0)) / degree,
+          std::atan2(R(1, 0), R(0, 0)) / degree};
 }
 
 std::string name_angles(const Angles& angles) {
@@ -113,7 +115,7 @@ std::optional<FoundMounting> find_mounting(const Record& record) {
     found.mirrored = A.determinant() < 0;
   }
   const Matrix3d R = nearest_turn(A, true).transpose();
-  found.angles = angles_of(R);
+  found.angles = to_a_tenth(angles_of(R));
   found.turn = Eigen::AngleAxisd(R).angle() / degree;
   const double squares = mm - 2.0 * (A.transpose() * mh).trace() + (A * hh * A.transpose()).trace();
   found.rmse = std::sqrt(std::max(0.0, squares) / (3.0 * rows));

@@ -18,6 +18,9 @@ using Angles = std::array<double, 3>;  // roll, pitch, yaw [deg]
 /// R (3 x 3), from the sensor's axes to the body's.
 Eigen::Matrix3d turn_by(const Angles& angles);
 
+/// Of a rotation, roll and yaw within +-180, pitch within +-90 deg.
+Angles angles_of(const Eigen::Matrix3d& R);
+
 /// "0,0,30", as a person types them.
 std::string name_angles(const Angles& angles);
 
