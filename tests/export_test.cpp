@@ -39,6 +39,23 @@ double value_of(const Exported& exported, const std::string& name) {
   return found->value;
 }
 
+/// Against the field itself: C = diag(1.25, 0.8, 1) after the rotations of eta [rad].
+Calibration make_turned_magnetometer(const std::array<double, 3>& eta,
+                                     const Mounting& mounting = {}) {
+  return make_calibration(magnetometer_probe(std::nullopt, mounting), {{"lambda_x", 0.25},
+                                                                       {"lambda_y", -0.2},
+                                                                       {"lambda_z", 0.0},
+                                                                       {"n_x", 10.0},
+                                                                       {"n_y", -20.0},
+                                                                       {"n_z", 30.0},
+                                                                       {"alpha_xy", 0.0},
+                                                                       {"alpha_xz", 0.0},
+                                                                       {"alpha_yz", 0.0},
+                                                                       {"eta_x", eta[0]},
+                                                                       {"eta_y", eta[1]},
+                                                                       {"eta_z", eta[2]}});
+}
+
 ExportOptions to(ExportTarget target) { return {.target = target, .force = true}; }
 
 }  // namespace
@@ -89,6 +106,47 @@ TEST_CASE("a matrix is a rotation after a symmetric one") {
   CHECK((parts.symmetric - S).norm() < 1e-14);
 }
 
+TEST_CASE("without a flight a calibration is kept, a refit refused") {
+  const Calibration straight = make_turned_magnetometer({0.0, 0.0, 0.0});
+  const Exported exported = export_calibration(straight, nullptr, to(ExportTarget::px4));
+  CHECK(exported.rotation == ExportRotation::keep);
+  CHECK_FALSE(exported.other_loss.has_value());
+  CHECK(value_of(exported, "CAL_MAG0_XSCALE") == doctest::Approx(0.8));
+  CHECK(value_of(exported, "CAL_MAG0_YSCALE") == doctest::Approx(1.25));
+  CHECK(value_of(exported, "CAL_MAG0_XODIAG") == doctest::Approx(0.0));
+  CHECK(value_of(exported, "CAL_MAG0_XOFF") == doctest::Approx(0.1));
+  CHECK(exported.loss->rotation_deg == doctest::Approx(0.0));
+  ExportOptions refit = to(ExportTarget::px4);
+  refit.rotation = ExportRotation::refit;
+  check_refused([&] { export_calibration(straight, nullptr, refit); }, {"fitted anew", "flight"});
+  const Exported turned = export_calibration(make_turned_magnetometer({0.0, 0.0, 0.02}), nullptr,
+                                             to(ExportTarget::px4));
+  CHECK(turned.loss->rotation_deg > 0.5);
+}
+
+TEST_CASE("a sensor on its head, a quarter turned, has its number and its axes") {
+  const Calibration turned = make_turned_magnetometer({0.0, 0.0, 0.0}, {180.0, 0.0, 90.0});
+  const Exported exported = export_calibration(turned, nullptr, to(ExportTarget::px4));
+  CHECK(value_of(exported, "CAL_MAG0_ROT") == 10.0);  // x_body = y, y_body = x, z_body = -z
+  CHECK(value_of(exported, "CAL_MAG0_XOFF") == doctest::Approx(-0.2));
+  CHECK(value_of(exported, "CAL_MAG0_YOFF") == doctest::Approx(0.1));
+  CHECK(value_of(exported, "CAL_MAG0_ZOFF") == doctest::Approx(-0.3));
+  CHECK(value_of(exported, "CAL_MAG0_XSCALE") == doctest::Approx(1.25));
+  CHECK(value_of(exported, "CAL_MAG0_YSCALE") == doctest::Approx(0.8));
+}
+
+TEST_CASE("a mounting within 5 deg of a multiple of 45 is that one, else custom") {
+  const auto rotation = [](double yaw) {
+    const Calibration turned = make_turned_magnetometer({0.0, 0.0, 0.0}, {0.0, 0.0, yaw});
+    return value_of(export_calibration(turned, nullptr, to(ExportTarget::px4)), "CAL_MAG0_ROT");
+  };
+  CHECK(rotation(40.1) == 1.0);
+  CHECK(rotation(49.9) == 1.0);
+  CHECK(rotation(39.9) == 100.0);
+  CHECK(rotation(-45.0) == 7.0);
+  CHECK(rotation(450.0) == 2.0);
+}
+
 TEST_CASE("a header says what its names begin with") {
   ExportOptions options = to(ExportTarget::c);
   options.sensor = 2;
@@ -112,6 +170,8 @@ TEST_CASE("what is not fit to be used is refused, and no file is left") {
   refuse({.target = ExportTarget::px4, .sensor = 4, .force = true}, {"sensor 4", "0 to 3"});
   refuse({.target = ExportTarget::c, .without = {"bias[x]"}, .force = true}, {"without bias[x]"});
   refuse({.target = ExportTarget::ardupilot, .device_id = 3, .force = true}, {"device_id", "PX4"});
+  refuse({.target = ExportTarget::px4, .rotation = ExportRotation::keep, .force = true},
+         {"rotation", "known field"});
 }
 
 }  // namespace export_test

@@ -144,7 +144,7 @@ Calibration keep_held(const Calibration& calibration,
   const auto own = static_cast<int>(SymmetricMagnetometer::linear.size());
   const int own_before = calibration.probe->model().tables().n_1();
   kept.fit.n_1 = calibration.fit.n_1 - own_before + own;
-  restate_options(calibration, mounting && *mounting != *mounting_of(calibration), kept);
+  restate_options(calibration, mounting && mounting != mounting_of(calibration), kept);
   return kept;
 }
 
