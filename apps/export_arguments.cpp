@@ -43,8 +43,8 @@ void ExportArguments::add_to(CLI::App& verb) {
                   "heading]")
       ->type_name("HOW");
   verb.add_option("--mounting", mounting_,
-                  "of PX4: how the sensor is turned, where the log has it turned into body axes "
-                  "[deg]")
+                  "of PX4: how the sensor is turned, for CAL_MAGn_ROT, where the log has it turned "
+                  "into body axes [deg]")
       ->type_name("ROLL,PITCH,YAW");
   verb.add_option("--in-use", in_use_,
                   "of a logged airspeed: the ARSPD_RATIO or ASPD_SCALE_n that it was read with")

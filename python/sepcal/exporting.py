@@ -61,7 +61,8 @@ def export(
         sensor: Which, as the autopilot counts [its first]; of a header, its names end so.
         device_id: Of PX4, the sensor's CAL_MAGn_ID, or the pressure sensor's id, which says its
             kind.
-        mounting: Of PX4, roll, pitch, yaw [deg] by which the flight's readings were turned.
+        mounting: Of PX4, roll, pitch, yaw [deg] by which the flight's readings were turned, for
+            CAL_MAGn_ROT.
         in_use: Of a logged airspeed, the ARSPD_RATIO or ASPD_SCALE_n that it was read with.
         logged_airspeed: What it is: "true", or "equivalent", which autopilots call indicated.
         airspeed_sensor: Of a tube, "membrane" or "sdp3x" (SDP31, 32, 33) [by device_id or the log].

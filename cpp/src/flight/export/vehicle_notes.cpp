@@ -58,8 +58,10 @@ std::string words_of(const Mounting& mounting) {
 /// How far what the fit found lies from the numbered mounting that is taken for it.
 std::string name_apart(const VehicleMounting& mounting) {
   if (!mounting.found || !mounting.number) return "";
-  return fmt::format("; the fit found it {:.2g} +- {:.1g} deg from that", mounting.apart,
-                     mounting.standard_error);
+  const std::string error = mounting.standard_error > 0.0
+                                ? fmt::format(" +- {:.1g}", mounting.standard_error)
+                                : std::string();
+  return fmt::format("; the fit found it {:.2g}{} deg from that", mounting.apart, error);
 }
 
 /// What CAL_MAGn_ROT means, and where it is of no use.
