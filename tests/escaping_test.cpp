@@ -4,13 +4,16 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/page.hpp"
+#include "flight/export/driver_names.hpp"
 
 namespace escaping_test {
 
@@ -53,6 +56,8 @@ TEST_CASE("a line holds nothing that ends it or steers a terminal") {
   CHECK(in_line("a\nb\x1b[1m") == "a\\nb\\x1b[1m");
   CHECK(in_line("\xe2\x80\xae"
                 "gpj.exe \xe2\x81\xa9") == "\\xe2\\x80\\xaegpj.exe \\xe2\\x81\\xa9");
+  CHECK(in_line("\xd8\x9c"
+                "1") == "\\xd8\\x9c1");  // U+061C, which turns the direction of writing too
   CHECK(in_line("\xe2\x82\xac \xe2\x80\x94") == "\xe2\x82\xac \xe2\x80\x94");
   std::mt19937_64 generator(1);
   for (int i = 0; i < 2000; ++i) {
@@ -89,6 +94,29 @@ std::string as_the_shell_reads(const std::string& word) {
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) read += static_cast<char>(c);
   pclose(pipe);
   return read;
+}
+
+TEST_CASE("a column's name is an identifier of C and C++") {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  std::mt19937_64 generator(4);
+  std::vector<std::string> headers{"NAN",   "INFINITY", "int", "co_await", "restrict", "asm",
+                                   "linux", "main",     "at",  "k",        "x_1",      "_Bool",
+                                   "EOF",   "A",        "_",   "__LINE__", "1x",       "sepcal_"};
+  for (const std::string& taken : headers) CHECK(sepcal::exporting::identifier(taken) != taken);
+  headers.insert(headers.end(), {"", "a__b", "\xc3\xbc", std::string(1000, 'x')});
+  for (int i = 0; i < 2000; ++i) headers.push_back(hostile(generator));
+  for (const std::string& header : headers) {
+    CAPTURE(header);
+    const std::string name = sepcal::exporting::identifier(header);
+    CHECK(is_letter(name.front()));
+    CHECK(name.front() != '_');
+    CHECK(
+        std::ranges::all_of(name, [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); }));
+    const bool has_small = std::ranges::any_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
+    CHECK(has_small);  // macros have none
+  }
 }
 
 TEST_CASE("a word is the same to the shell") {

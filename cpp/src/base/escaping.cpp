@@ -18,12 +18,13 @@ bool is_separator_or_direction(std::string_view character) {
   return second == 0x81 && third >= 0xA6 && third <= 0xA9;
 }
 
-/// Whether a character ends a line or steers a terminal: C0, DEL, C1, and the above.
+/// Whether a character ends a line or steers a terminal: C0, DEL, C1, U+061C, and the above.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character.front());
   if (character.size() == 1) return first < 0x20 || first == 0x7F;
   if (character.size() == 2) {
-    return first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+    const auto second = static_cast<unsigned char>(character[1]);
+    return (first == 0xC2 && second < 0xA0) || (first == 0xD8 && second == 0x9C);
   }
   return is_separator_or_direction(character);
 }
