@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sepcal import _core
+from sepcal.printing import as_utf8
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -98,8 +99,11 @@ def take_drivers(
 
 
 def to_labels(labels: Iterable[object]) -> list[str]:
-    """One text a row."""
-    return [str(label) for label in labels]
+    """One text a row. Raises Error for one that no UTF-8 is of."""
+    texts = [str(label) for label in labels]
+    for text in set(texts):
+        as_utf8("the label", text)
+    return texts
 
 
 def labels_in(columns: Columns) -> list[str]:

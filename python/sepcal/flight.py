@@ -7,6 +7,7 @@ from typing import Self
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
+from sepcal.printing import as_utf8, in_line
 from sepcal.whole_files import name_of
 
 
@@ -24,17 +25,19 @@ class Flight(Mapping[str, Array]):
         name: What messages call the flight.
 
     Raises:
-        Error: A column of another length, without a name, not one-dimensional or not of numbers.
+        Error: A column of another length, without a name, not one-dimensional or not of numbers; a
+            name or a label that no UTF-8 is of.
     """
 
     def __init__(
         self, columns: Columns, maneuver: Iterable[object] | None = None, name: str = "flight"
     ) -> None:
         columns = by_name(columns)
-        self._core = _core.Flight(name)
+        self._core = _core.Flight(as_utf8("the flight's name", name))
         for header in columns:
             if not isinstance(header, str):
                 raise _core.Error(f"{name}: a column is called {header!r}; its name must be a text")
+            as_utf8(f"{name}: the column's name", header)
             if header == "maneuver":
                 self._core.label(to_labels(columns[header]))  # type: ignore[arg-type]
             else:
@@ -88,7 +91,7 @@ class Flight(Mapping[str, Array]):
 
     def __repr__(self) -> str:
         headers = ", ".join(self.columns)
-        return f"<{type(self).__name__} {self.name!r}: {self.rows} rows of {headers}>"
+        return in_line(f"<{type(self).__name__} {self.name!r}: {self.rows} rows of {headers}>")
 
 
 def read_csv(file: str | os.PathLike[str]) -> Flight:

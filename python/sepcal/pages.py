@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sepcal.markup import html, join
+from sepcal.printing import in_line
 
 Row = Mapping[str, object]
 
@@ -35,7 +36,7 @@ class Page:
         return self.text
 
     def __repr__(self) -> str:
-        return f"<sepcal.{type(self).__name__} {self._summary()}>"
+        return in_line(f"<sepcal.{type(self).__name__} {self._summary()}>")
 
     def _repr_html_(self) -> str:
         """A small table, for notebooks."""

@@ -11,19 +11,23 @@ from contextlib import contextmanager
 from sepcal import _core
 
 
-def _bytes(text: object) -> bytes:
-    """UTF-8; bytes of a file's name that are none stay as they are."""
-    return str(text).encode("utf-8", "surrogateescape")
-
-
 def in_line(text: object) -> str:
     r"""One printable line: what ends a line or steers a terminal is written as \n or \x1b."""
-    return _core.in_line(_bytes(text))
+    return _core.in_line(str(text))
+
+
+def as_utf8(what: str, text: str) -> str:
+    """The text, which C++ takes as it is. Raises Error for one that no UTF-8 is of."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise _core.Error(f"{what} '{in_line(text)}' is no UTF-8; call it otherwise") from None
+    return text
 
 
 def in_shell(words: Iterable[str | os.PathLike[str]]) -> str:
     """Words as a POSIX shell takes them."""
-    return " ".join(_core.in_shell(_bytes(os.fspath(word))) for word in words)
+    return " ".join(_core.in_shell(os.fspath(word)) for word in words)
 
 
 def page_of(lines: Iterable[object]) -> str:

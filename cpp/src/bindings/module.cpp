@@ -10,19 +10,34 @@
 namespace sepcal::bindings {
 namespace {
 
-/// sepcal.Error, with the text of the C++ one.
+/// As UTF-8. Bytes of a file's name that are none stay as they are, and halves of pairs become
+/// such.
+std::string bytes_of(const py::str& text) {
+  for (const char* const errors : {"surrogateescape", "surrogatepass"}) {
+    PyObject* const encoded = PyUnicode_AsEncodedString(text.ptr(), "utf-8", errors);
+    if (encoded != nullptr) return py::reinterpret_steal<py::bytes>(encoded);
+    PyErr_Clear();
+  }
+  return {};
+}
+
+/// sepcal.Error, with the text of the C++ one; that of one which Python raised is a line too.
 void define_error(py::module_& module) {
   const auto& error = py::register_exception<sepcal::Error>(module, "Error", PyExc_ValueError);
   error.attr("__module__") = "sepcal";
   error.attr("__doc__") =
       "Bad input or misuse: one line that names the culprit and the way out.\n\n"
       "Non-convergence is no error: it is the `status` of a fit.";
+  const auto text_of = [](const py::object& self) {
+    const py::object said = py::handle(PyExc_ValueError).attr("__str__")(self);
+    return base::in_line(bytes_of(py::str(said)));
+  };
+  error.attr("__str__") = py::cpp_function(text_of, py::name("__str__"), py::is_method(error));
 }
 
-/// Of bytes, as a file's name in Python may hold what is no UTF-8.
 void define_escaping(py::module_& module) {
-  module.def("in_line", [](const py::bytes& text) { return base::in_line(std::string(text)); });
-  module.def("in_shell", [](const py::bytes& text) { return base::in_shell(std::string(text)); });
+  module.def("in_line", [](const py::str& text) { return base::in_line(bytes_of(text)); });
+  module.def("in_shell", [](const py::str& text) { return base::in_shell(bytes_of(text)); });
 }
 
 }  // namespace
