@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""HTML that no name can break: what isn't HTML is escaped wherever it enters."""
+"""HTML that no name can break: what isn't HTML is escaped wherever it enters, and in figures."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from html import escape
 from typing import LiteralString
+
+from sepcal.printing import in_line
 
 
 class Html(str):
@@ -15,8 +17,18 @@ class Html(str):
 
 
 def as_html(value: object) -> Html:
-    """A value as markup: itself where it is markup, else its escaped text."""
-    return value if isinstance(value, Html) else Html(escape(str(value)))
+    """A value as markup: itself where it is markup, else its escaped text, printable line by line.
+
+    A name that turned the direction of writing would change how its neighbours read.
+    """
+    if isinstance(value, Html):
+        return value
+    return Html(escape("\n".join(map(in_line, str(value).split("\n")))))
+
+
+def in_figure(text: object) -> str:
+    """A name in one of Plotly's texts, which take some elements of HTML."""
+    return escape(in_line(text))
 
 
 def html(template: LiteralString, *values: object) -> Html:

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 import numpy as np
 
 from sepcal._core import Misfit
+from sepcal.markup import in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
@@ -57,12 +57,12 @@ def draw_waterfall(steps: list[Step], floor: float | None, unit: str) -> Figure:
         })  # fmt: skip
         notes.append({
             "xref": "paper", "x": 1, "y": floor, "xanchor": "right", "yanchor": "bottom",
-            "text": f"noise floor {words.number(floor)} {escape(unit)}",
+            "text": f"noise floor {words.number(floor)} {in_figure(unit)}",
             "showarrow": False, "font": {"color": words.ALARM, "size": 12},
         })  # fmt: skip
     ticks = words.axis(
         tickvals=list(range(len(steps))),
-        ticktext=[escape(step.label) for step in steps],
+        ticktext=[in_figure(step.label) for step in steps],
         tickfont={"size": 13},
         showgrid=False,
         range=[-0.6, max(len(steps), 2) - 0.05],  # room for the noise floor's words at the right
@@ -105,14 +105,14 @@ def draw_heat_strip(where: list[Misfit], outputs: list[str], floors: list[float]
         ]
     )
     ratio = values / np.array(floors)[:, None]
-    ticks = [escape(shorten(at)) for at in stretches]
+    ticks = [in_figure(shorten(at)) for at in stretches]
     legible = len(stretches) <= LEGIBLE
     trace: dict[str, Any] = {
         "type": "heatmap", "z": ratio, "zmin": 1, "zmax": max(2.0, float(np.nanmax(ratio))),
         "x": list(range(len(stretches))), "y": list(range(len(outputs))), "xgap": 2, "ygap": 2,
         "colorscale": [[0, "#f2f5f7"], [0.35, "#f6c98f"], [0.7, "#dd7447"], [1, "#a32a1c"]],
         "customdata": [
-            [f"{escape(outputs[i])}, {ticks[j]}: {words.number(values[i, j])}"
+            [f"{in_figure(outputs[i])}, {ticks[j]}: {words.number(values[i, j])}"
              for j in range(len(ticks))]
             for i in range(len(outputs))
         ],
@@ -130,7 +130,7 @@ def draw_heat_strip(where: list[Misfit], outputs: list[str], floors: list[float]
             tickvals=list(range(len(ticks))), ticktext=ticks, tickangle=-35, showgrid=False,
         ),
         yaxis=words.axis(
-            tickvals=list(range(len(outputs))), ticktext=[escape(o) for o in outputs],
+            tickvals=list(range(len(outputs))), ticktext=[in_figure(o) for o in outputs],
             autorange="reversed", showgrid=False, ticks="",
         ),
     )  # fmt: skip

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 import numpy as np
 
 from sepcal.columns import Array
+from sepcal.markup import in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 from sepcal.reporting.thin import Rows, keep_extremes
@@ -125,6 +125,6 @@ def _name(run: Run) -> dict[str, Any]:
     """A maneuver's name above the picture."""
     return {
         "x": 0.5 * (run[1] + run[2]), "xref": "x", "y": 1.0, "yref": "paper", "yanchor": "bottom",
-        "xanchor": "left", "text": escape(run[0].replace("_", " ")), "textangle": -35,
+        "xanchor": "left", "text": in_figure(run[0].replace("_", " ")), "textangle": -35,
         "showarrow": False, "font": {"size": 11, "color": words.QUIET},
     }  # fmt: skip

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import math
-from html import escape
 from typing import Any
 
 import numpy as np
 
 from sepcal.columns import Array
-from sepcal.markup import Html, as_html, html
+from sepcal.markup import Html, as_html, html, in_figure
 
 INK, QUIET, RULE = "#1c2127", "#5c6670", "#e6e9ec"
 MEASURED, MODELLED, ALARM = "#9aa3ab", "#2463a8", "#b83a26"
@@ -143,7 +142,7 @@ def band(x: Array, low: Array, high: Array, colour: str, **more: object) -> dict
 def axis(title: str = "", **more: object) -> dict[str, Any]:
     """A quiet axis; the title is text."""
     return {
-        "title": {"text": escape(title), "standoff": 6},
+        "title": {"text": in_figure(title), "standoff": 6},
         "gridcolor": RULE,
         "zeroline": False,
         "linecolor": "#b9c1c8",
@@ -167,7 +166,7 @@ def layout(height: int, title: str = "", **more: object) -> dict[str, Any]:
         "paper_bgcolor": "#fff",
         "plot_bgcolor": "#fff",
         "margin": {"l": 56, "r": 14, "t": 34 if title else 24, "b": 42},
-        "title": {"text": escape(title), "x": 0, "xref": "paper", "font": {"size": 13}},
+        "title": {"text": in_figure(title), "x": 0, "xref": "paper", "font": {"size": 13}},
         "hoverlabel": {"font": {"size": 12}},
         "hovermode": "closest",
         "showlegend": False,
