@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-REPORTING = ROOT / "python" / "sepcal" / "reporting"
+PACKAGE = ROOT / "python" / "sepcal"
 
 # Files that may write to a stream, and nothing else in apps/ or the library.
 WRITERS = {"apps/terminal.cpp", "apps/interrupt.cpp"}
@@ -22,6 +22,7 @@ STREAM = re.compile(
     r"fmt::print\(|std::cout|std::cerr|std::clog|\bstd::fputs\(|\bstd::puts\(|\bstd::v?f?printf\("
     r"|\bstd::fwrite\([^;]*std(out|err)|::write\(STD"
 )
+FILE_WRITERS = {"cpp/src/flight/files/output_file.cpp", "cpp/src/base/spool.cpp"}
 PAGES = ("cpp/src/flight/text/*.cpp", "cpp/src/flight/*/*_text.cpp")
 
 
@@ -62,6 +63,48 @@ def find_unescaped_comments(sources: Iterator[tuple[str, str]]) -> list[str]:
     return found
 
 
+def find_joined_comments(sources: Iterator[tuple[str, str]]) -> list[str]:
+    """The same by +, +=, << and append()."""
+    comment = r'"[^"\n]*(?:/\* ?|# | \* )"'
+    between = r"(?:\s*(?:\)|\+|<<|;\s*\w+\s*(?:\+=|<<)))+\s*"
+    joined = re.compile(comment + between + r"(?!(?:base::)?in_(?:c_comment|line)\()[A-Za-z_]")
+    return [f"{name}: {match[0]}" for name, text in sources for match in joined.finditer(text)]
+
+
+def find_own_files(sources: Iterator[tuple[str, str]]) -> list[str]:
+    """Files that are written by themselves, not as an OutputFile."""
+    writing = re.compile(
+        r"std::w?o?fstream|fmt::output_file|fopen\([^;]*\"[wa][^;]*;|\bopen\([^;]*O_(WRONLY|RDWR)"
+    )
+    return [
+        f"{name}: {match[0]}"
+        for name, text in sources
+        if name not in FILE_WRITERS
+        for match in writing.finditer(text)
+    ]
+
+
+def find_json_by_hand(sources: Iterator[tuple[str, str]]) -> list[str]:
+    """JSON in a literal: its library writes it, which escapes."""
+    return [
+        f"{name}: {match[0]}"
+        for name, text in sources
+        for match in re.finditer(r'"[^"\n]*\\": ?(?:\\"|\{\}|")[^\n]*', text)
+        if "give a JSON object" not in match[0]  # in a message
+    ]
+
+
+def find_unquoted_commands(sources: Iterator[tuple[str, str]]) -> list[str]:
+    """Statements that show a command with something in it that the shell would read."""
+    found = []
+    for name, text in sources:
+        for statement in re.split(r";\s*\n", text):
+            command = re.search(r'"[^"\n]*next: [^"\n]*\{\}', statement)
+            if command and "in_shell(" not in statement:
+                found.append(f"{name}: {command[0]}")
+    return found
+
+
 def python_trees(folder: Path) -> Iterator[tuple[str, ast.Module]]:
     for file in sorted(folder.rglob("*.py")):
         yield file.name, ast.parse(file.read_text())
@@ -92,6 +135,8 @@ def find_raw_html(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
         if name in ("markup.py", "page.py"):  # where it is made; the frame of the page
             continue
         for function in [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]:
+            if function.name == "__repr__":  # "<sepcal.Fit ...>"
+                continue
             known = literal_names(function)
             for node in ast.walk(function):
                 if isinstance(node, ast.JoinedStr):
@@ -110,6 +155,63 @@ def find_raw_html(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
     return found
 
 
+MARKUP = re.compile(r"</?[a-z][^<]*>|&[a-z]+;")
+
+
+def literal_of(node: ast.expr) -> str:
+    return str(node.value) if is_literal(node) and isinstance(node, ast.Constant) else ""
+
+
+def find_joined_html(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
+    """Markup that is put together by +, %, format() or replace(), and escape() by hand."""
+    found = []
+    for name, tree in trees:
+        if name in ("markup.py", "page.py"):
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Mod):
+                if any(MARKUP.search(literal_of(side)) for side in (node.left, node.right)):
+                    found.append(f"{name}:{node.lineno}: markup by an operator")
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                filled = node.func.attr in ("format", "join", "replace", "format_map")
+                if filled and MARKUP.search(literal_of(node.func.value)):
+                    found.append(f"{name}:{node.lineno}: markup by {node.func.attr}()")
+            elif isinstance(node, ast.ImportFrom) and node.module == "html":
+                found.append(f"{name}:{node.lineno}: html by hand")
+    return found
+
+
+def find_python_files(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
+    """Files that are written by themselves, not by write_whole()."""
+    found = []
+    for name, tree in trees:
+        if name == "whole_files.py":
+            continue
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.Call):
+                continue
+            called = ast.unparse(node.func)
+            modes = [literal_of(at) for at in (*node.args[1:2], *(k.value for k in node.keywords))]
+            opens = called.split(".")[-1] in ("open", "fdopen") and any(
+                re.fullmatch(r"[rbt]*[wax+][rwabtx+]*", mode) for mode in modes
+            )
+            nowhere = "devnull" in ast.unparse(node)
+            if (opens and not nowhere) or called.endswith((".write_text", ".write_bytes")):
+                found.append(f"{name}:{node.lineno}: {called}()")
+    return found
+
+
+def find_python_json(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
+    """JSON in a text that is filled in."""
+    return [
+        f"{name}:{node.lineno}: JSON by hand"
+        for name, tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.JoinedStr)
+        and any(re.search(r'"\w+": ?', str(getattr(part, "value", ""))) for part in node.values)
+    ]
+
+
 def find_prints(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
     """Places in the package that write to the terminal by themselves."""
     found = []
@@ -118,7 +220,9 @@ def find_prints(trees: Iterator[tuple[str, ast.Module]]) -> list[str]:
             continue
         for node in ast.walk(tree):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in (
-                "print", "sys.stdout.write", "sys.stderr.write", "shlex.quote", "shlex.join",
+                "print", "pprint.pprint", "shlex.quote", "shlex.join", "warnings.warn", "os.write",
+                "sys.stdout.write", "sys.stdout.writelines", "sys.stdout.buffer.write",
+                "sys.stderr.write", "sys.stderr.writelines", "sys.stderr.buffer.write",
             ):  # fmt: skip
                 found.append(f"{name}:{node.lineno}: {ast.unparse(node.func)}()")
     return found
@@ -136,12 +240,34 @@ def test_comments_are_escaped() -> None:
     assert find_unescaped_comments(cpp_sources("cpp/src/flight/export/*.cpp")) == []
 
 
+EVERYWHERE = ("apps/*.cpp", "apps/*.hpp", "cpp/src/**/*.cpp", "cpp/src/**/*.hpp")
+
+
+def test_comments_are_not_joined() -> None:
+    assert find_joined_comments(cpp_sources("cpp/src/flight/export/*.cpp")) == []
+
+
+def test_files_are_written_in_one_place() -> None:
+    assert find_own_files(cpp_sources(*EVERYWHERE)) == []
+    assert find_python_files(python_trees(PACKAGE)) == []
+
+
+def test_json_is_written_by_its_library() -> None:
+    assert find_json_by_hand(cpp_sources(*EVERYWHERE)) == []
+    assert find_python_json(python_trees(PACKAGE)) == []
+
+
+def test_commands_are_quoted() -> None:
+    assert find_unquoted_commands(cpp_sources(*EVERYWHERE)) == []
+
+
 def test_markup_is_made_of_literals() -> None:
-    assert find_raw_html(python_trees(REPORTING)) == []
+    assert find_raw_html(python_trees(PACKAGE)) == []
+    assert find_joined_html(python_trees(PACKAGE)) == []
 
 
 def test_the_package_prints_in_one_place() -> None:
-    assert find_prints(python_trees(ROOT / "python" / "sepcal")) == []
+    assert find_prints(python_trees(PACKAGE)) == []
 
 
 PLANTED_CPP = [
@@ -150,13 +276,38 @@ PLANTED_CPP = [
     (find_unescaped_pages, 'text += fmt::format("{}\\n", name);'),
     (find_unescaped_comments, 'text += fmt::format("/* {} */\\n", effect);\n'),
     (find_unescaped_comments, 'text += fmt::format("# {}\\n", line);\n'),
+    (find_joined_comments, 'text += "/* " + effect + " */";'),
+    (find_joined_comments, 'text += " * "; text += line;'),
+    (find_joined_comments, 'text += std::string("# ") + line + "\\n";'),
+    (find_joined_comments, 'out << "# " << line;'),
+    (find_own_files, 'std::ofstream(file) << fmt::format("# {}\\n", name);'),
+    (find_own_files, 'std::FILE* out = std::fopen(file.c_str(), "w");'),
+    (find_own_files, "auto out = fmt::output_file(file);"),
+    (find_streams, 'fmt::print(out, "# {}\\n", name);'),
+    (find_streams, 'std::fprintf(out, "# %s", name.c_str());'),
+    (find_json_by_hand, 'text += "{\\"name\\": \\"" + name + "\\"}";'),
+    (find_json_by_hand, 'text += fmt::format("\\"name\\": {}", name);'),
+    (find_unquoted_commands, 'text += page("next: sepcal-mag add {}\\n", file);\n'),
 ]
 PLANTED_PYTHON = [
     (find_raw_html, 'def f(x): return f"<b>{x}</b>"'),
     (find_raw_html, "def f(x): return Html(x)"),
     (find_raw_html, 'def f(x): return html("<b>" + x + "</b>")'),
     (find_raw_html, 'def f(x):\n    t = "<b>" + x\n    return html(t)'),
+    (find_joined_html, 'def f(x): return "<b>" + x'),
+    (find_joined_html, 'def f(x): return x + "</td>"'),
+    (find_joined_html, 'def f(x): return "<b>%s</b>" % x'),
+    (find_joined_html, 'def f(x): return "<b>{}</b>".format(x)'),
+    (find_joined_html, 'def f(x): return "<br>".join(x)'),
+    (find_joined_html, "from html import escape"),
+    (find_python_files, 'def f(x): open("report.html", "w").write(x)'),
+    (find_python_files, 'def f(x): open("report.html", mode="a", encoding="utf-8").write(x)'),
+    (find_python_files, 'def f(x): Path("report.html").write_text(x)'),
+    (find_python_json, """def f(x): return f'{{"name": "{x}"}}'"""),
     (find_prints, "def f(x): print(x)"),
+    (find_prints, "def f(x): print(x, file=sys.stderr)"),
+    (find_prints, "def f(x): sys.stderr.write(x)"),
+    (find_prints, "def f(x): warnings.warn(x)"),
 ]
 
 

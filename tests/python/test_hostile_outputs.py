@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import json
 import os
-import random
 import re
+import shutil
 import subprocess
 from collections.abc import Iterator
 from html.parser import HTMLParser
@@ -23,22 +23,105 @@ import pytest
 import headers
 import sepcal
 from apps import APPS, run
+from hostile import STRAY, find_unprintable, hostile_words, may_not_be_printed
+from sepcal.markup import as_html, html, in_figure
+from sepcal.printing import in_line, in_shell
 
-PIECES = [
-    "*/", "/*", "*", "/", "\\", "\\\n", "\n", "\r", "\t", "??/", "??/\n", "'", '"', "`", "$(id)",
-    "\x1b[31m", "\x1b]0;title\x07", "\x7f", "\x9b", "\u2028", "\u202e", "\u2066", "#", "#if 1",
-    "a b", "<b>", "</script>", "<img src=x onerror=alert(1)>", "&lt;", "%s", "{0}",
-    "ARMING_CHECK,0", "1\t1\tSYS_AUTOSTART\t4001\t6", "int evil(void){return 1;}",
-    "status: converged", "ü", "é", "x",
-]  # fmt: skip
 COUNT = 2000
-AT_ONCE = 10  # of them in one export
+AT_ONCE = 40  # of them in one export
 CASES = Path(__file__).resolve().parents[2].parent / "shared" / "cases" / "outputs"
 
 
-def hostile_words(count: int, seed: int) -> list[str]:
-    draw = random.Random(seed)
-    return ["".join(draw.choices(PIECES, k=draw.randint(1, 6))) for _ in range(count)]
+def without_controls(word: str) -> str:
+    """What is left of a name that is printed, wherever the rest of it went."""
+    return "".join(c for c in word if not may_not_be_printed(c))
+
+
+def test_a_line_of_a_terminal() -> None:
+    for word in [*hostile_words(COUNT, 1), *STRAY, "\U0001f680\ud83d"]:
+        line = in_line(word)
+        assert_printable(line)
+        assert "\n" not in line
+        assert in_line(line) == line
+        letters = iter(line)
+        assert all(c in letters for c in without_controls(word))  # in their order
+    assert in_line("\udce9") == "\\xe9"  # a byte of a file's name
+
+
+def test_a_word_of_a_shell(tmp_path: Path) -> None:
+    """Bash reads 2,000 commands; what each prints is the word again, and nothing else was run."""
+    if shutil.which("bash") is None:
+        pytest.skip("no bash on this machine")
+    words = [word.replace("\0", "") for word in hostile_words(COUNT, 2)]  # no word has a NUL
+    script = "\n".join(f"printf '%s\\0' {in_shell([word])}" for word in words)
+    assert_printable(script)
+    done = subprocess.run(
+        ["bash"], input=script.encode(), capture_output=True, check=False, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.decode().split("\0")[:-1] == words
+    assert [*tmp_path.iterdir()] == []
+
+
+class Texts(HTMLParser):
+    """The text of each element, the value of each attribute, and what else there is."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.texts: list[str] = []
+        self.values: list[str | None] = []
+        self.tags: set[str] = set()
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Begins a text."""
+        self.tags.add(tag)
+        assert [name for name, _ in attrs] == ["title"]
+        self.values += [value for _, value in attrs]
+        self.texts.append("")
+
+    def handle_data(self, data: str) -> None:
+        """Goes on."""
+        self.texts[-1] += data
+
+
+def test_text_and_attributes_of_html() -> None:
+    """A parser gives the names back as they are printed."""
+    words = hostile_words(COUNT, 3)
+    page = "".join(html('<p title="{}">{}</p>', word, word) for word in words)
+    assert_printable(page)
+    told = ["\n".join(map(in_line, word.split("\n"))) for word in words]
+    found = Texts(page)
+    assert found.tags == {"p"}
+    assert found.texts == told
+    assert found.values == told
+    single = "".join(html("<p title='{}'>{}</p>", word, word) for word in words)
+    assert Texts(single).values == told
+    for word in words:
+        assert not re.search(r"[<>\"'\n]", in_figure(word))
+        assert as_html(as_html(word)) == as_html(word)
+
+
+def test_labels_of_a_page_and_of_json(flown: sepcal.SimulatedFlight) -> None:
+    """2,000 labels of one flight: a line each of the page, and JSON gives them back."""
+    words = [f"{word}{at}" for at, word in enumerate(hostile_words(COUNT, 4))]
+    model = sepcal.Magnetometer(field=(19.7, -1.4, 49.4))
+    base = sepcal.fit(model, flown)
+    longer = sepcal.simulate(sepcal.Magnetometer(), rows=2 * COUNT, seed=4)
+    labels = [words[row // 2] for row in range(2 * COUNT)]
+    flight = sepcal.Flight({header: longer[header] for header in longer}, maneuver=labels)
+    compared = base.compare(flight)
+    page = str(compared)
+    assert_printable(page)
+    lines = page.splitlines()
+    segments = [misfit.segment for misfit in compared.where]
+    assert [*dict.fromkeys(segments)] == words
+    shown = [line for line in lines if line.startswith(in_line(words[5]))]
+    assert len(shown) == segments.count(words[5])
+    assert page.count("\n") + 1 == len(lines) < len(segments) + 60
+    told = json.loads(compared.to_json())
+    assert [misfit["segment"] for misfit in told["where"]] == segments
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +160,7 @@ def export(folder: Path, target: str, calibration: dict[str, Any], words: list[s
 
 def assert_printable(*pages: str) -> None:
     for page in pages:
-        assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]", page)
+        assert find_unprintable(page) == []
 
 
 def strip_comments(code: str) -> str:
@@ -95,7 +178,7 @@ def test_comments_never_become_code(
     for first in range(0, COUNT, AT_ONCE):
         text = export(tmp_path, target, calibrations[target], words[first : first + AT_ONCE])
         assert strip_comments(text) == plain
-        if first % 400 == 0:
+        if first % 400 == 0:  # the others are the same but for comments
             (tmp_path / "header.h").write_text(text)
             for standard in headers.STANDARDS[target]:
                 headers.build(tmp_path / "header.h", target, standard)
@@ -108,7 +191,7 @@ def test_comments_never_become_parameters(
     target: str, parse: Any, calibrations: dict[str, dict[str, Any]], tmp_path: Path
 ) -> None:
     def parameters(text: str) -> list[list[str]]:
-        lines = re.split(r"[\n\r\x0b\x0c\x85\u2028\u2029]", text)
+        lines = re.split(r"[\n\r\x0b\x0c\x1c-\x1e\x85\u2028\u2029]", text)
         return [parse(line) for line in lines if line and not line.startswith("#")]
 
     plain = parameters(export(tmp_path, target, calibrations[target], ["flight.csv"]))
@@ -199,7 +282,9 @@ def test_no_name_becomes_markup(flown: sepcal.SimulatedFlight, tmp_path: Path) -
     known = elements_of(write_report(flown, iter([]), tmp_path, hostile=False))
     for seed in range(3):
         words = iter([word.replace(",", ".") for word in hostile_words(40, seed=10 + seed)])
-        shown = elements_of(write_report(flown, words, tmp_path, hostile=True))
+        page = write_report(flown, words, tmp_path, hostile=True)
+        assert_printable(page)
+        shown = elements_of(page)
         assert shown.found <= known.found
         assert shown.scripts == known.scripts
 
@@ -323,6 +408,42 @@ def test_a_closed_standard_error_takes_no_file(
         ["sh", "-c", f"{APPS / 'sepcal-mag'} fit nothing.csv 2>&-"], cwd=tmp_path, check=False
     )
     assert refused.returncode == 2
+
+
+@pytest.mark.parametrize("word", [*STRAY, "a\udce9b"])
+def test_a_name_that_no_utf_8_is_of(flown: sepcal.SimulatedFlight, word: str) -> None:
+    """Python's texts hold halves of pairs and stray bytes of files' names."""
+    columns = {name: flown[name] for name in flown}
+    labels = [word] * flown.rows
+    for call in (
+        lambda: sepcal.Flight(columns, name=word),
+        lambda: sepcal.Flight({**columns, word: np.zeros(flown.rows)}),
+        lambda: sepcal.Flight(columns, maneuver=labels),
+        lambda: sepcal.Flight({**columns, "maneuver": labels}),
+    ):
+        with pytest.raises(sepcal.Error, match="is no UTF-8; call it otherwise") as refused:
+            call()
+        assert_printable(str(refused.value))
+
+
+def test_what_python_refuses_is_one_printable_line(flown: sepcal.SimulatedFlight) -> None:
+    """Also where the message quotes a name that is not."""
+    assert str(sepcal.Error("a\nb\x1b[2J\ud800")) == r"a\nb\x1b[2J\xed\xa0\x80"
+    columns = {name: flown[name] for name in flown}
+    with pytest.raises(sepcal.Error) as refused:
+        sepcal.Flight({**columns, "c\n": np.zeros((2, 2))}, name="a\nb\u202e")
+    assert str(refused.value).startswith(r"a\nb\xe2\x80\xae: column 'c\n' has the shape")
+
+
+def test_what_repr_says_is_one_printable_line(flown: sepcal.SimulatedFlight) -> None:
+    columns = {name: flown[name] for name in flown}
+    columns["c\n\x1b[2J"] = np.cumsum(np.random.default_rng(3).normal(size=flown.rows))
+    flight = sepcal.Flight(columns, name="f\u202e")
+    model = sepcal.Magnetometer(field=(19.7, -1.4, 49.4))
+    base = sepcal.fit(model, flight, effects=["bias[c\n\x1b[2J]"])
+    for result in (flight, base, base.compare(), sepcal.check(model, flight)):
+        assert "\n" not in repr(result)
+        assert_printable(repr(result))
 
 
 @pytest.mark.parametrize("header", [3, None, b"x", ("a",)])
