@@ -2,8 +2,8 @@
 """A fuzzer without coverage: seeds, mutations of them, and what was new about an answer.
 
 A target takes bytes and returns what kind of answer they got; bytes with an answer of a new kind
-are mutated further. What the target raises is a finding, and so are 10 s of work for one input and more
-memory than the limit: the input is kept and the exit status is 1.
+are mutated further. What the target raises is a finding, and so are 10 s of work for one input and
+more memory than the limit: the input is kept and the exit status is 1.
 
     FUZZER.py SECONDS KEPT FINDINGS [SEED_FOLDER]...
     FUZZER.py FILE...        those inputs alone
@@ -138,7 +138,7 @@ class Fuzzer:
         try:
             with limited(LONGEST):
                 kind = self.target(data)
-        except BaseException:
+        except (Exception, SystemExit):
             traceback.print_exc()
             name = self.findings / f"finding-{hashlib.sha256(data).hexdigest()[:16]}"
             at_work.rename(name)
@@ -149,11 +149,12 @@ class Fuzzer:
         return is_new
 
     def run(self, seeds: list[bytes], kept: Path, seconds: float, draw: random.Random) -> None:
-        """Seeds, then mutations until the time is up."""
+        """Seeds, then mutations until the time is up, which a slow target's seeds may take."""
         end = time.monotonic() + seconds
         known = set(seeds)
         for seed in seeds:
-            self.try_(seed)
+            if time.monotonic() < end:
+                self.try_(seed)
         while time.monotonic() < end:
             data = mutate(draw.choice(seeds), seeds, draw)
             if self.try_(data) and data not in known:
@@ -164,7 +165,7 @@ class Fuzzer:
 
 
 def main(target: Target, seeds: Sequence[bytes] = ()) -> None:
-    """Runs what the command line asks for. `seeds` join those of the folders; the first is plain."""
+    """Runs what the command line asks for. `seeds` join those of the folders."""
     faulthandler.enable()
     resource.setrlimit(resource.RLIMIT_AS, (LARGEST, resource.RLIM_INFINITY))
     first, *rest = sys.argv[1:]
@@ -177,7 +178,8 @@ def main(target: Target, seeds: Sequence[bytes] = ()) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     number = int.from_bytes(os.urandom(4), "little")
     print(f"seed {number}")
-    inputs = [*seeds, *(data for folder in (*folders, kept) for data in read_folder(folder))]
+    inputs = [*(data for folder in folders for data in read_folder(folder)), *seeds]
+    inputs += read_folder(kept)
     fuzzer = Fuzzer(target, findings)
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)

@@ -23,6 +23,7 @@ import pytest
 import headers
 import sepcal
 from apps import APPS, run
+from browser import find_browser, show
 from hostile import STRAY, find_unprintable, hostile_words, may_not_be_printed
 from sepcal.markup import as_html, html, in_figure
 from sepcal.printing import in_line, in_shell
@@ -287,6 +288,29 @@ def test_no_name_becomes_markup(flown: sepcal.SimulatedFlight, tmp_path: Path) -
         shown = elements_of(page)
         assert shown.found <= known.found
         assert shown.scripts == known.scripts
+
+
+def test_no_script_of_a_name_runs(flown: sepcal.SimulatedFlight, tmp_path: Path) -> None:
+    """In a browser: each of them would set the page's title."""
+    pytest.importorskip("plotly")
+    find_browser()
+    run = "document.title='OWNED'"
+    scripts = [
+        f"<script>{run}</script>", f"</script><script>{run}</script>", f"<svg/onload={run}>",
+        f"</title><script>{run}</script>", f"<img src=x onerror={run}>",
+        f'" onmouseover="{run}" autofocus="', f"<a href='javascript:{run}'>x</a>",
+        f"<iframe srcdoc='<script>parent.{run}</script>'>", f"--><script>{run}</script>",
+        f"]]><script>{run}</script>", f"<details open ontoggle={run}>",
+    ]  # fmt: skip
+    for first in range(0, len(scripts), 4):
+        words = iter([*scripts[first:], *scripts] * 2)
+        write_report(flown, words, tmp_path, hostile=True)
+        document, root, complaints = show(tmp_path / "report.html", tmp_path / "profile")
+        title = re.search(r"<title>(.*?)</title>", document, re.DOTALL)
+        assert title
+        assert not title[1].startswith("OWNED")
+        assert "data-problems" not in root
+        assert complaints == []
 
 
 def test_no_name_forges_a_line(flown: sepcal.SimulatedFlight, tmp_path: Path) -> None:

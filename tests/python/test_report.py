@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ import numpy as np
 import pytest
 
 import sepcal
+from browser import show
 from sepcal.reporting import words
 from sepcal.reporting.page import read_plotly
 
@@ -306,26 +306,9 @@ def test_names_from_a_file_are_text(tmp_path: Path) -> None:
         assert raw not in html.replace(read_plotly(), "")
 
 
-def find_browser() -> str | None:
-    names = ("chromium", "chromium-browser", "google-chrome", "chrome")
-    return next((path for name in names if (path := shutil.which(name))), None)
-
-
 def test_a_browser_draws_every_figure(page: Written, tmp_path: Path) -> None:
     """Headless Chromium, without a network: all figures drawn, no script error, no complaint."""
-    browser = find_browser()
-    if browser is None:
-        pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)")
-    shown = subprocess.run(
-        [browser, "--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-         "--host-resolver-rules=MAP * ~NOTFOUND", f"--user-data-dir={tmp_path}",
-         "--virtual-time-budget=60000", "--window-size=1200,900", "--dump-dom",
-         page.file.as_uri()],
-        capture_output=True, text=True, check=False, timeout=240,
-    )  # fmt: skip
-    root = re.search(r"<html[^>]*>", shown.stdout)
-    assert root is not None, shown.stderr[-2000:]
-    assert "data-problems" not in root[0]
-    assert f'data-drawn="{page.html.count("data-figure=")}"' in root[0]
-    complaints = [line for line in shown.stderr.splitlines() if "CONSOLE" in line]
+    _, root, complaints = show(page.file, tmp_path)
+    assert "data-problems" not in root
+    assert f'data-drawn="{page.html.count("data-figure=")}"' in root
     assert complaints == []
