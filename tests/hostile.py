@@ -38,10 +38,10 @@ MARKS = "\u061c\u200e\u200f"  # of directions too
 
 
 def hostile_words(count: int, seed: int, pieces: list[str] = PIECES) -> list[str]:
-    """Each of one to six pieces; every piece stands alone in one of them first."""
+    """Each of one to six pieces; of so many that all have room, each piece alone comes first."""
     draw = random.Random(seed)
     drawn = ["".join(draw.choices(pieces, k=draw.randint(1, 6))) for _ in range(count)]
-    return [*pieces, *drawn][:count]
+    return [*pieces, *drawn][:count] if count > 2 * len(pieces) else drawn
 
 
 def may_not_be_printed(character: str) -> bool:
