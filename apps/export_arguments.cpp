@@ -49,6 +49,8 @@ void ExportArguments::add_to(CLI::App& verb) {
   verb.add_option("--in-use", in_use_,
                   "of a logged airspeed: the ARSPD_RATIO or ASPD_SCALE_n that it was read with")
       ->type_name("VALUE");
+  verb.add_flag("--single,--float", options_.single,
+                "of a header: computes in float, for a processor that has no double");
   verb.add_option("--without", options_.without,
                   "leaves an effect out and fits the rest anew; may be repeated")
       ->type_name("E")

@@ -3,7 +3,9 @@
 
 import re
 import shutil
+import struct
 import subprocess
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -18,15 +20,21 @@ SUFFIX = {"c": "c", "cpp": "cpp"}
 C_MAIN = """#include "{header}"
 #include <stdio.h>
 int main(void) {{
-  double in[{inputs}];
-  double out[{outputs}];
+  double read;
+  {kind} in[{inputs}];
+  {kind} out[{outputs}];
   int k;
   if ({self_test}() != 0) return 3;
   for (;;) {{
-    for (k = 0; k < {inputs}; ++k) if (scanf("%lf", &in[k]) != 1) return 0;
+    for (k = 0; k < {inputs}; ++k) {{
+      if (scanf("%lf", &read) != 1) return 0;
+      in[k] = ({kind})read;
+    }}
     int status = {correct}({arguments});
     printf("%d", status);
-    for (k = 0; k < {outputs}; ++k) printf(" %.17g", status == 0 ? out[k] : NAN);
+    for (k = 0; k < {outputs}; ++k) {{
+      printf(" %.17g", status == 0 || status == 3 ? (double)out[k] : (double)NAN);
+    }}
     printf("\\n");
   }}
 }}
@@ -41,13 +49,35 @@ def compiler_of(target: str) -> str:
     return found
 
 
+def kind_of(text: str) -> str:
+    """What the correction computes in, "double" or "float"."""
+    return "float" if re.search(r"^(static const|inline constexpr) float", text, re.M) else "double"
+
+
+def origins_of(text: str) -> dict[str, float]:
+    """What is taken away from drivers before they become floats, by the driver's argument."""
+    found = re.findall(r"double (?:sepcal\w+_)?origin_(\w+) = ([^;]+);", text)
+    return {f"{name}_less_origin": float(value) for name, value in found}
+
+
+def constants_crc(text: str) -> int:
+    """The CRC-32 of the constants, by zlib."""
+    definitions = r"^(?:static const|inline constexpr) (double|float) [^=]*= ([^;]*);"
+    numbers = b"".join(
+        struct.pack("<" + kind[0], float(value))
+        for kind, values in re.findall(definitions, text, re.M)
+        for value in re.findall(r"-?[0-9][0-9.e+-]*", values)
+    )
+    return zlib.crc32(numbers)
+
+
 def arguments_of(text: str) -> list[tuple[str, int, bool]]:
     """Name, size and whether it is an output, of the correction's arguments in order."""
     heads = re.findall(r"^(?:static )?inline \w+ \w*correct\(([^{]*)\) \{$", text, re.MULTILINE)
     assert len(heads) == 1
     found = []
     for argument in re.split(r",\s+", heads[0].strip()):
-        const, _, rest = argument.rpartition("double ")
+        const, _, rest = argument.rpartition(f"{kind_of(text)} ")
         size = 3 if rest.endswith("[3]") else 1
         name = rest.removesuffix("[3]").removeprefix("*")
         found.append((name, size, rest.startswith("*") or (size == 3 and "const" not in const)))
@@ -85,13 +115,15 @@ def build(header: Path, target: str, standard: str) -> Path:
             header=header.name,
             inputs=inputs,
             outputs=outputs,
+            kind=kind_of(text),
             self_test=f"{prefix}self_test",
             correct=f"{prefix}correct",
             arguments=", ".join(arguments),
         )
     )
     program = header.parent / f"{header.stem}_{target}_{standard.replace('+', 'x')}"
-    command = [compiler_of(target), f"-std={standard}", *STRICT, "-O1"]
+    narrow = ("-Wdouble-promotion", "-Wfloat-conversion") if kind_of(text) == "float" else ()
+    command = [compiler_of(target), f"-std={standard}", *STRICT, *narrow, "-O1"]
     done = subprocess.run(
         [*command, "-o", str(program), str(main), "-lm"],
         capture_output=True,

@@ -2890,6 +2890,7 @@ def export_to_file(
     arg11: collections.abc.Sequence[str],
     arg12: bool,
     arg13: str | None,
+    arg14: bool,
 ) -> Exported: ...
 def fit(
     arg0: Model,

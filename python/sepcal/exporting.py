@@ -47,6 +47,7 @@ def export(
     without: Sequence[str] = (),
     force: bool = False,
     rotation: Literal["keep", "refit"] | str | None = None,
+    single: bool = False,
 ) -> Exported:
     """Writes what a vehicle loads of a calibration; the file appears whole or not at all.
 
@@ -73,6 +74,7 @@ def export(
         rotation: Of a magnetometer for an autopilot, which can't turn it: "keep", the calibration
             as it is less its rotation, or "refit", the symmetric matrix that fits the flight best
             [the better by its largest error of heading; without a flight "keep"].
+        single: Of a header: it computes in float, for a processor that has no double.
 
     Raises:
         Error: A calibration that no vehicle should load, an effect that the vehicle can't follow, a
@@ -104,5 +106,6 @@ def export(
         list(without),
         force,
         rotation,
+        single,
     )
     return Exported(written)

@@ -183,7 +183,8 @@ def test_what_is_no_number(magnetometer: Bench) -> None:
     fit(magnetometer, ("bias[current_a]",))
     magnetometer.run("export", "e.json", "--to", "c", "-o", "sensor.h")
     program = headers.build(magnetometer.folder / "sensor.h", "c", "c99")
-    rows = np.array([[20.0, 1.0, 40.0, 5.0], [np.nan, 1.0, 40.0, 5.0], [20.0, 1.0, 40.0, np.inf]])
+    a = float(np.median(magnetometer.read_log().column("current_a")))
+    rows = np.array([[20.0, 1.0, 40.0, a], [np.nan, 1.0, 40.0, a], [20.0, 1.0, 40.0, np.inf]])
     status, _ = headers.run_rows(program, rows)
     assert list(status) == [0, 1, 1]
 

@@ -39,7 +39,7 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
                           const std::optional<std::string>& airspeed_sensor,
                           std::optional<std::array<double, 3>> cal_air,
                           const std::vector<std::string>& without, bool force,
-                          const std::optional<std::string>& rotation) {
+                          const std::optional<std::string>& rotation, bool single) {
   const Released released;
   const auto to = choice_of<ExportTarget>("to", target);
   std::optional<AirspeedSensor> tube;
@@ -57,6 +57,7 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
        .cal_air = cal_air,
        .rotation = how,
        .mounting = mounting,
+       .single = single,
        .without = without,
        .force = force},
       output);

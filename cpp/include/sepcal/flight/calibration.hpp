@@ -3,6 +3,7 @@
 // need nothing but this and a flight. It is what BASE.json holds.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -74,6 +75,9 @@ struct Calibration {
   std::vector<FlightDeparture> departures = {};  // of a joint fit, in the order of its flights
   std::vector<std::string> notes = {};           // one line each, for people; not part of the JSON
   std::string file = {};                         // that it was read from; empty: it was just fitted
+  /// Of each channel that an effect on the reading follows: its least and its greatest value in the
+  /// rows that were fitted, in the unit used inside. A file of before has none.
+  std::map<std::string, Interval> driver_ranges = {};
 };
 
 /// Fits `probe` to `flight`. Throws Error for bad input (prepare_five_hole() and its like), fewer

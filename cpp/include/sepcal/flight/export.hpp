@@ -98,6 +98,7 @@ struct ExportOptions {
   /// Of PX4, roll, pitch, yaw [deg]: how the sensor is mounted. Where the calibration does not turn
   /// the readings itself, they were logged in body axes. Unset: as the calibration has it.
   std::optional<std::array<double, 3>> mounting = {};
+  bool single = false;  // of a header: it computes in float, for a unit that has no double
   std::vector<std::string> without = {};  // effects that are left out; the rest is fitted anew
   bool force = false;                     // exports also what is not fit to be used
   FitProgress progress = {};

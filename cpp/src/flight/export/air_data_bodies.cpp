@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "flight/export/bodies.hpp"
+#include "flight/export/driver_origin.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
@@ -37,15 +38,17 @@ ProbeBody pitot_static_body(const Calibration& calibration, const Correction& co
       "  double met;\n  if (!(airspeed_mps > 0.0)) return {};\n  met = (airspeed_mps - {}) / {};\n",
       dialect.own("bad_input"), dialect.constant("c_va"), dialect.constant("s_va"));
   if (correction.has("pressure_offset.s")) {
-    const bool is_driver = std::ranges::find(correction.drivers, "rho_kgpm3", &Driver::argument) !=
-                           correction.drivers.end();
-    if (!is_driver) {
+    const auto driver = std::ranges::find(correction.drivers, "rho_kgpm3", &Driver::known);
+    std::string rho = "rho_kgpm3";
+    if (driver == correction.drivers.end()) {
       body.readings.push_back(
           {"rho_kgpm3", 1, {"rho_kgpm3"}, "kg/m^3, density; 1.225 if not known"});
+    } else {
+      rho = whole_of(driver->argument, driver->origin);
     }
-    body.text += fmt::format("  if (!(rho_kgpm3 > 0.0)) return {};\n", dialect.own("bad_input"));
-    body.text += fmt::format("  met = met * met + 2.0 * (0.0{}) / rho_kgpm3;\n",
-                             correction.added("pressure_offset.s"));
+    body.text += fmt::format("  if (!({} > 0.0)) return {};\n", rho, dialect.own("bad_input"));
+    body.text += fmt::format("  met = met * met + 2.0 * (0.0{}) / {};\n",
+                             correction.added("pressure_offset.s"), rho);
     body.text += "  met = met > 0.0 ? sqrt(met) : 0.0;\n";
   }
   const std::string scale = correction.added("airspeed_scale.s");
@@ -64,11 +67,22 @@ ProbeBody five_hole_body(const Calibration& calibration, const Correction& corre
   const double k_beta = settings.at("k_beta").front();
   ProbeBody body;
   body.summary = "true airspeed, angle of attack and of sideslip at the probe, in body axes";
-  body.readings = {{"pt_pa", 1, {"pt_pa"}, "Pa, total pressure"},
-                   {"ps_pa", 1, {"ps_pa"}, "Pa, static pressure"},
-                   {"dpa_pa", 1, {"dpa_pa"}, "Pa, of the angle-of-attack ports"},
-                   {"dpb_pa", 1, {"dpb_pa"}, "Pa, of the sideslip ports"},
-                   {"rho_kgpm3", 1, {"rho_kgpm3"}, "kg/m^3, density of the air"}};
+  if (dialect.is_single()) {  // a float holds 1e5 Pa to 0.004 Pa
+    body.readings = {{"pt_less_ps_pa",
+                      1,
+                      {"pt_pa", "ps_pa"},
+                      "Pa, total less static pressure, as the sensor or double arithmetic has it",
+                      true}};
+  } else {
+    body.readings = {{"pt_pa", 1, {"pt_pa"}, "Pa, total pressure"},
+                     {"ps_pa", 1, {"ps_pa"}, "Pa, static pressure"}};
+  }
+  for (const Quantities& one :
+       {Quantities{"dpa_pa", 1, {"dpa_pa"}, "Pa, of the angle-of-attack ports"},
+        Quantities{"dpb_pa", 1, {"dpb_pa"}, "Pa, of the sideslip ports"},
+        Quantities{"rho_kgpm3", 1, {"rho_kgpm3"}, "kg/m^3, density of the air"}}) {
+    body.readings.push_back(one);
+  }
   body.outputs = {{"airspeed_cal_mps", 1, {"airspeed_cal_mps"}, "m/s, the true airspeed"},
                   {"alpha_cal_rad", 1, {"alpha_cal_rad"}, "rad, angle of attack"},
                   {"beta_cal_rad", 1, {"beta_cal_rad"}, "rad, angle of sideslip"}};

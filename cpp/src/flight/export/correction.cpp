@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/escaping.hpp"
 #include "flight/catalogue/effect_channels.hpp"
+#include "flight/export/bodies.hpp"
 #include "flight/export/driver_names.hpp"
+#include "flight/export/driver_origin.hpp"
 #include "sepcal/natural_spline.hpp"
 #include "sepcal/option_error.hpp"
 
@@ -42,12 +45,24 @@ const std::map<std::string, const char*, std::less<>>& stranded() {
   return effects;
 }
 
+/// A channel less its origin, as an expression in the function's body.
+struct Followed {
+  std::string expression;
+  double origin = 0.0;
+  bool is_computed = false;  // of several readings
+
+  std::string whole() const { return whole_of(expression, origin); }
+};
+
 class Description {
  public:
   Description(const Calibration& calibration, const Dialect& dialect)
-      : calibration_(calibration), dialect_(dialect) {}
+      : calibration_(calibration),
+        dialect_(dialect),
+        turned_(mounting_of(calibration).value_or(Mounting{}) != Mounting{}) {}
 
   Correction make() {
+    find_origins();
     const auto& table = catalogue::effect_table(calibration_.probe->name());
     for (const EffectSetting& setting : calibration_.options.effects) {
       const EffectName name = parse_effect_name(setting.name);
@@ -73,27 +88,129 @@ class Description {
  private:
   double value(const std::string& parameter) const { return calibration_.fit[parameter].value; }
 
-  /// The channel as an expression; what isn't at hand becomes an argument.
-  std::string channel(const std::string& name, const std::vector<double>& trial = {}) {
-    const auto& readings = names_of_readings(calibration_.probe->name());
-    if (const auto found = readings.find(name); found != readings.end()) return found->second;
+  /// The channel; what isn't at hand becomes an argument.
+  Followed follow(const std::string& name, const std::vector<double>& trial = {}) {
+    const Followed followed = at_hand(name).value_or(Followed{});
+    if (!followed.expression.empty()) {
+      guard(name, followed);
+      return followed;
+    }
+    const auto& driver = driver_of(name, trial);
+    const Followed argument{driver.argument, driver.origin};
+    guard(name, argument);
+    return argument;
+  }
+
+  /// A channel that is a reading, or follows from some.
+  std::optional<Followed> at_hand(const std::string& name) {
+    const std::string_view probe = calibration_.probe->name();
+    const bool is_total = name == "pt" || name == "pt_pa";
+    if (dialect_.is_single() && probe == "five-hole" && is_total) {
+      const Driver& ps = driver_of("ps", {});
+      return Followed{fmt::format("({} + pt_less_ps_pa)", ps.argument), ps.origin, true};
+    }
+    const auto& readings = names_of_readings(probe, dialect_.is_single());
+    const auto found = readings.find(name);
+    if (found == readings.end()) return std::nullopt;
+    const std::string_view axes = "xyz";
+    if (turned_ && name.size() == 2 && name[0] == 'm') {
+      const auto i = axes.find(name[1]);
+      return Followed{fmt::format("({0}[{1}][0] * m_ut[0] + {0}[{1}][1] * m_ut[1] + "
+                                  "{0}[{1}][2] * m_ut[2])",
+                                  dialect_.constant("turn"), i),
+                      0.0, true};
+    }
+    return Followed{found->second, 0.0, found->second.ends_with("_read")};
+  }
+
+  const Driver& driver_of(const std::string& name, const std::vector<double>& trial) {
     const KnownChannel* const known = find_known(name);
     const auto there = std::ranges::find_if(result_.drivers, [&](const Driver& one) {
-      return one.channel == name || (known != nullptr && one.argument == known->argument);
+      return one.channel == name || (known != nullptr && one.known == known->argument);
     });
-    if (there != result_.drivers.end()) return there->argument;
+    if (there != result_.drivers.end()) return *there;
     Driver driver{.channel = name, .argument = identifier(name), .comment = "as it was logged"};
     driver.trial = trial.empty() ? std::vector{0.5, 0.2, 2.0} : trial;
     if (known != nullptr) {
-      driver.argument = known->argument;
+      driver.argument = driver.known = known->argument;
       driver.comment = known->unit;
       driver.is_state = true;
       driver.trial = {known->trial.begin(), known->trial.end()};
     }
+    if (const Interval* const range = range_of(name)) {
+      const double span = range->upper - range->lower;
+      driver.trial = {range->lower + 0.3 * span, range->lower + 0.85 * span,
+                      range->lower + 0.15 * span};
+    }
+    if (const auto origin = origins_.find(canonical(name)); origin != origins_.end()) {
+      driver.origin = origin->second;
+      if (driver.origin != 0.0) driver.argument += origin_suffix;
+    }
     const auto same = [&](const Driver& other) { return other.argument == driver.argument; };
     while (std::ranges::any_of(result_.drivers, same)) driver.argument += "_in";
     result_.drivers.push_back(driver);
-    return driver.argument;
+    return result_.drivers.back();
+  }
+
+  /// Where the fit saw the channel; nullptr where the calibration does not say.
+  const Interval* range_of(const std::string& name) const {
+    const auto found = calibration_.driver_ranges.find(name);
+    return found == calibration_.driver_ranges.end() ? nullptr : &found->second;
+  }
+
+  void guard(const std::string& name, const Followed& followed) {
+    const auto same = [&](const auto& one) { return one.channel == name; };
+    if (std::ranges::any_of(result_.guards, same)) return;
+    const Interval* const range = range_of(name);
+    if (range != nullptr && range->lower < range->upper) {
+      result_.guards.push_back({.channel = name,
+                                .expression = followed.expression,
+                                .origin = followed.origin,
+                                .range = *range,
+                                .is_computed = followed.is_computed});
+      return;
+    }
+    const std::string why =
+        range == nullptr
+            ? "over which values the fit saw it is not known"
+            : fmt::format("on the flight that was fitted it was constant, {:.6g}", range->lower);
+    const std::string line = fmt::format("{} is not guarded: {}", name, why);
+    if (std::ranges::find(result_.unguarded, line) == result_.unguarded.end()) {
+      result_.unguarded.push_back(line);
+    }
+  }
+
+  /// One name for what is one argument.
+  static std::string canonical(const std::string& name) {
+    if (name == "pt" || name == "pt_pa") return "ps_pa";
+    const KnownChannel* const known = find_known(name);
+    return known != nullptr ? std::string(known->argument) : name;
+  }
+
+  /// Where each driver is counted from, so that a float holds it.
+  void find_origins() {
+    if (!dialect_.is_single()) return;
+    const auto& readings = names_of_readings(calibration_.probe->name(), true);
+    for (const EffectSetting& setting : calibration_.options.effects) {
+      const EffectName name = parse_effect_name(setting.name);
+      const bool is_counted = name.shape == Shape::power || name.shape == Shape::product ||
+                              name.shape == Shape::spline || name.shape == Shape::levels;
+      const auto& table = catalogue::effect_table(calibration_.probe->name());
+      if (!is_counted || catalogue::acts_on_the_world(table, name)) continue;
+      for (const std::string& channel : driver_channels(name)) {
+        if (channel == "time" || readings.contains(channel)) continue;
+        const Interval* const range = range_of(channel);
+        if (range == nullptr) {
+          throw OptionError(
+              {fmt::format("{}: over which values the fit saw it is not in the calibration, and a "
+                           "header in float takes that; fit the flight again, give it after the "
+                           "calibration, or leave out ",
+                           channel),
+               Option{"single"}});
+        }
+        origins_.try_emplace(canonical(channel), origin_of(*range));
+      }
+    }
   }
 
   std::string constant(const std::string& name, std::vector<double> values,
@@ -103,7 +220,11 @@ class Description {
   }
 
   std::string local(const std::string& expression, const std::string& comment) {
-    const std::string name = fmt::format("x_{}", number_);
+    return named(fmt::format("x_{}", number_), expression, comment);
+  }
+
+  std::string named(const std::string& name, const std::string& expression,
+                    const std::string& comment) {
     result_.statements.push_back(fmt::format("const double {} = {}; /* {} */", name, expression,
                                              base::in_c_comment(comment)));
     return name;
@@ -155,7 +276,7 @@ class Description {
   }
 
   std::string exponent(const EffectSetting& setting, const EffectName& name) {
-    const std::string d = channel(name.base);
+    const std::string d = follow(name.base).whole();
     const std::string n = constant(fmt::format("n_{}", number_),
                                    {value(setting.name + ".exponent")}, setting.name + ", 1");
     return local(fmt::format("{0} > 0.0 ? pow({0}, {1}) : 0.0", d, n), setting.name);
@@ -163,34 +284,102 @@ class Description {
 
   /// (d - centre)^k - mean, d a channel or a product of channels.
   std::string power(const EffectSetting& setting, const EffectName& name) {
+    if (name.shape == Shape::product) return product(setting, name);
     const double centre = setting.centre.value_or(0.0);
+    const double mean = setting.mean.value_or(0.0);
     const double reach = std::max(1.0, 0.1 * std::abs(centre));
-    const bool product = name.shape == Shape::product;
-    std::string d;
-    if (product) {
-      std::vector<std::string> factors;
-      for (const ChannelFactor& factor : name.factors) {
-        const std::string one = channel(factor.channel);
-        for (int i = 0; i < factor.power; ++i) {
-          factors.push_back(factor.absolute ? fmt::format("fabs({})", one) : one);
-        }
+    const Followed d =
+        follow(name.base, {centre + 0.5 * reach, centre - reach, centre + 2.0 * reach});
+    if (centre == 0.0 && d.origin != 0.0) {
+      return local(about_origin(setting, d, name.number, mean), setting.name);
+    }
+    const std::string one = less_centre(setting, d.expression, centre - d.origin);
+    const std::vector<std::string> factors(static_cast<std::size_t>(name.number), one);
+    return local(less_mean(setting, fmt::format("{}", fmt::join(factors, " * ")), mean),
+                 setting.name);
+  }
+
+  std::string less_centre(const EffectSetting& setting, const std::string& d, double centre) {
+    if (centre == 0.0) return d;
+    return fmt::format("({} - {})", d,
+                       constant(fmt::format("centre_{}", number_), {centre},
+                                setting.name + ": where its driver counts from"));
+  }
+
+  std::string less_mean(const EffectSetting& setting, const std::string& x, double mean) {
+    if (mean == 0.0) return x;
+    return x + " - " +
+           constant(fmt::format("mean_{}", number_), {mean},
+                    setting.name + ": of its driver's power on the flight");
+  }
+
+  /// (origin + d)^k - mean as a polynomial of d, so that no large number is taken from another.
+  std::string about_origin(const EffectSetting& setting, const Followed& d, int power,
+                           double mean) {
+    std::vector<double> c = powers_about(d.origin, power);
+    c.front() -= mean;
+    return horner(constant(fmt::format("powers_{}", number_), c,
+                           setting.name + ": coefficients of its driver's powers, lowest first"),
+                  0, static_cast<std::size_t>(power), d.expression);
+  }
+
+  std::string product(const EffectSetting& setting, const EffectName& name) {
+    const double centre = setting.centre.value_or(0.0);
+    const double mean = setting.mean.value_or(0.0);
+    std::vector<Followed> followed;
+    for (const ChannelFactor& factor : name.factors) followed.push_back(follow(factor.channel));
+    const auto is_far = [](const Followed& one) { return one.origin != 0.0; };
+    if (std::ranges::any_of(followed, is_far)) {
+      return product_about_origins(setting, name, followed, centre + mean);
+    }
+    std::vector<std::string> factors;
+    for (std::size_t i = 0; i < followed.size(); ++i) {
+      const ChannelFactor& factor = name.factors[i];
+      const std::string& one = followed[i].expression;
+      for (int k = 0; k < factor.power; ++k) {
+        factors.push_back(factor.absolute ? fmt::format("fabs({})", one) : one);
       }
-      d = fmt::format("{}", fmt::join(factors, " * "));
-    } else {
-      d = channel(name.base, {centre + 0.5 * reach, centre - reach, centre + 2.0 * reach});
     }
-    if (centre != 0.0) {
-      d = fmt::format("({} - {})", d,
-                      constant(fmt::format("centre_{}", number_), {centre},
-                               setting.name + ": where its driver counts from"));
+    const std::string d = fmt::format("{}", fmt::join(factors, " * "));
+    return local(less_mean(setting, less_centre(setting, d, centre), mean), setting.name);
+  }
+
+  /// A product less its value at the origins, step by step: with f = F + e each factor's value at
+  /// its origin and what it changes, fg - FG = (f - F) g + F (g - G).
+  std::string product_about_origins(const EffectSetting& setting, const EffectName& name,
+                                    const std::vector<Followed>& followed, double less) {
+    double at_origins = 1.0;
+    std::string change;
+    for (std::size_t i = 0; i < followed.size(); ++i) {
+      const ChannelFactor& factor = name.factors[i];
+      const std::string of = fmt::format("{}_{}", number_, i + 1);
+      const double origin = factor.absolute ? std::abs(followed[i].origin) : followed[i].origin;
+      std::vector<double> c = powers_about(origin, factor.power);
+      const double there = c.front();
+      c.front() = 0.0;
+      const std::string e = named(
+          fmt::format("x_{}", of),
+          horner(constant("powers_" + of, c, setting.name + ": coefficients of a factor's powers"),
+                 0, static_cast<std::size_t>(factor.power), argument_of(factor, followed[i])),
+          factor.channel);
+      change = change.empty() ? e
+                              : fmt::format("({}) * ({} + {}) + {} * {}", change, e,
+                                            number_text(there), number_text(at_origins), e);
+      at_origins *= there;
     }
-    const std::vector<std::string> factors(static_cast<std::size_t>(product ? 1 : name.number), d);
-    std::string x = fmt::format("{}", fmt::join(factors, " * "));
-    if (const double mean = setting.mean.value_or(0.0); mean != 0.0) {
-      x += " - " + constant(fmt::format("mean_{}", number_), {mean},
-                            setting.name + ": of its driver's power on the flight");
-    }
-    return local(x, setting.name);
+    return local(fmt::format("{} + {}", change,
+                             constant(fmt::format("mean_{}", number_), {at_origins - less},
+                                      setting.name + ": its driver at the origins, less its mean")),
+                 setting.name);
+  }
+
+  /// A factor's channel less its origin; |channel| less |origin|.
+  static std::string argument_of(const ChannelFactor& factor, const Followed& d) {
+    if (!factor.absolute) return d.expression;
+    if (d.origin == 0.0) return fmt::format("fabs({})", d.expression);
+    const std::string g = fmt::format("{}{}", d.origin < 0.0 ? "-" : "", d.expression);
+    const std::string origin = number_text(std::abs(d.origin));
+    return fmt::format("({0} >= -{1} ? {0} : -2.0 * {1} - ({0}))", g, origin);
   }
 
   /// A natural spline for every component: the sum of its functions less their means.
@@ -200,9 +389,10 @@ class Description {
     const std::vector<double>& knots = setting.knots;
     const double first = knots.front();
     const double span = knots.back() - first;
-    const std::string d =
-        channel(name.base, {first + 0.3 * span, first + 0.85 * span, first - 0.1 * span});
-    const std::string k = constant(fmt::format("knots_{}", number_), knots, setting.name);
+    const Followed d =
+        follow(name.base, {first + 0.3 * span, first + 0.85 * span, first - 0.1 * span});
+    const std::string k =
+        constant(fmt::format("knots_{}", number_), less(knots, d.origin), setting.name);
     for (const std::string& component : components) {
       std::vector<double> values(knots.size(), 0.0);
       double mean = 0.0;
@@ -222,19 +412,25 @@ class Description {
       const std::string said = fmt::format("{}.{} at the knots, {}", setting.name, component, unit);
       share(name.port + "." + component,
             fmt::format(
-                "{}({}, {}, {}, {}, {})", dialect_.own("spline"), d, knots.size(), k,
+                "{}({}, {}, {}, {}, {})", dialect_.own("spline"), d.expression, knots.size(), k,
                 constant("values_" + of, values, said),
                 constant("curvatures_" + of, curvatures,
                          fmt::format("{}.{}, second derivatives there", setting.name, component))));
     }
   }
 
+  static std::vector<double> less(std::vector<double> values, double origin) {
+    for (double& value : values) value -= origin;
+    return values;
+  }
+
   /// For every component the constant of the level that the channel is on.
   void add_levels(const EffectSetting& setting, const EffectName& name,
                   const std::vector<std::string>& components) {
     const std::vector<double>& from = name.thresholds;
-    const std::string d = channel(name.base, {from.front() - 1.0, from.front(), from.back() + 1.0});
-    const std::string limits = constant(fmt::format("from_{}", number_), from, setting.name);
+    const Followed d = follow(name.base, {from.front() - 1.0, from.front(), from.back() + 1.0});
+    const std::string limits =
+        constant(fmt::format("from_{}", number_), less(from, d.origin), setting.name);
     const auto element = [](const std::string& array, std::size_t size, std::size_t j) {
       return size > 1 ? fmt::format("{}[{}]", array, j) : array;
     };
@@ -252,7 +448,7 @@ class Description {
                    fmt::format("{}.{} from there on, {}", setting.name, component, unit));
       std::string value = "0.0";
       for (std::size_t j = 0; j < from.size(); ++j) {
-        value = fmt::format("{} >= {} ? {} : {}", d, element(limits, from.size(), j),
+        value = fmt::format("{} >= {} ? {} : {}", d.expression, element(limits, from.size(), j),
                             element(s, from.size(), j), value);
       }
       share(name.port + "." + component, fmt::format("({})", value));
@@ -269,26 +465,39 @@ class Description {
     } else if (setting.name == "pressure_offset") {
       add_coefficients(setting, setting.name, {"s"}, "");
     } else if (setting.name == "density_error") {
-      const std::string x = local(fmt::format("0.5 / {}", channel("temperature")), setting.name);
+      const std::string x =
+          local(fmt::format("0.5 / {}", follow("temperature").whole()), setting.name);
       add_coefficients(setting, five_hole ? "reading_scale" : "airspeed_scale", {"s"}, x);
     } else if (setting.name == "compressibility") {
-      const std::string x = local(
-          "sqrt(1.4 * ps_pa / rho_kgpm3) * sqrt(5.0 * (pow(pressure / ps_pa + 1.0, 2.0 / 7.0) - "
-          "1.0)) / sqrt(2.0 * pressure / rho_kgpm3) - 1.0",
-          setting.name);
+      const std::string x = local(compressible(), setting.name);
       add_coefficients(setting, "airspeed_scale", {"s"}, x);
     } else if (setting.name == "angle_loss") {
+      follow("alpha");
+      follow("beta");
       const std::string along = local("cos(alpha_read) * cos(beta_read)", setting.name);
       add_coefficients(setting, "airspeed_scale", {"s"}, fmt::format("(1.0 - {0} * {0})", along));
     } else if (setting.name == "upwash" || setting.name == "sidewash") {
       const bool up = setting.name == "upwash";
-      const std::string x =
-          local(fmt::format("{} / sqrt(2.0 * pressure / rho_kgpm3)", channel(up ? "q" : "p")),
-                setting.name);
+      const std::string x = local(
+          fmt::format("{} / sqrt(2.0 * pressure / rho_kgpm3)", follow(up ? "q" : "p").whole()),
+          setting.name);
       add_coefficients(setting, up ? "alpha_offset" : "beta_offset", {"k"}, x);
     } else {
       refuse(setting.name, "its correction is not written for a vehicle");
     }
+  }
+
+  /// The airspeed of compressible air over that of incompressible air, less one. In float what is
+  /// taken from one is computed without it.
+  std::string compressible() {
+    const std::string ps = follow("ps").whole();
+    follow("rho");
+    const std::string share = dialect_.is_single()
+                                  ? fmt::format("expm1(2.0 / 7.0 * log1p(pressure / {}))", ps)
+                                  : fmt::format("(pow(pressure / {} + 1.0, 2.0 / 7.0) - 1.0)", ps);
+    return fmt::format(
+        "sqrt(1.4 * {} / rho_kgpm3) * sqrt(5.0 * {}) / sqrt(2.0 * pressure / rho_kgpm3) - 1.0", ps,
+        share);
   }
 
   void add_cubic() {
@@ -309,6 +518,8 @@ class Description {
 
   const Calibration& calibration_;
   const Dialect& dialect_;
+  bool turned_;  // the sensor, against the body's axes in which a fit has its readings
+  std::map<std::string, double> origins_;  // by canonical()
   Correction result_;
   int number_ = 0;  // of the effect
 };

@@ -9,6 +9,7 @@
 
 #include "flight/export/dialect.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/quantity.hpp"
 
 namespace sepcal::exporting {
 
@@ -19,6 +20,17 @@ struct Driver {
   std::string comment;             // "rad/s"; "as it was logged" of a column
   bool is_state = false;           // a quantity in the unit used inside, not a column
   std::vector<double> trial = {};  // three values for the self-test
+  double origin = 0.0;             // that the caller takes away before it becomes a float
+  std::string known = {};          // KnownChannel::argument, where it is one
+};
+
+/// What an effect follows, as far as the fit saw it.
+struct Guard {
+  std::string channel;     // "current_a", "alpha"
+  std::string expression;  // of the channel less `origin`, in the function's body
+  double origin = 0.0;
+  Interval range = {};       // of the channel
+  bool is_computed = false;  // of several readings, so that it rounds
 };
 
 struct Constant {
@@ -30,6 +42,8 @@ struct Constant {
 
 struct Correction {
   std::vector<Driver> drivers;
+  std::vector<Guard> guards;
+  std::vector<std::string> unguarded;  // arguments, and why, in words
   std::vector<Constant> constants;
   std::vector<std::string> statements;           // "const double x_1 = ...;"
   std::map<std::string, std::string> shares;     // by "port.component": a sum, as an expression

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/escaping.hpp"
+#include "flight/export/single_precision.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
@@ -20,23 +21,29 @@ std::string upper(std::string text) {
   return text;
 }
 
-std::string row_of(const std::vector<double>& values, std::size_t first, std::size_t last) {
+}  // namespace
+
+std::string Dialect::row_of(const std::vector<double>& values, std::size_t first,
+                            std::size_t last) const {
   std::vector<std::string> numbers;
   for (std::size_t i = first; i < last; ++i) numbers.push_back(literal(values[i]));
   return fmt::format("{{{}}}", fmt::join(numbers, ", "));
 }
 
-}  // namespace
-
-std::string literal(double value) {
+std::string Dialect::literal(double value) const {
   if (!std::isfinite(value)) {
     throw Error(
         "the calibration has a number that is none: what is each flight's own is known only of "
         "the flights that were fitted; give one of them");
   }
-  std::string text = fmt::format("{}", value);
+  std::string text =
+      single_ ? fmt::format("{}", static_cast<float>(to_single(value))) : fmt::format("{}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
+  return text + (single_ ? "f" : "");
+}
+
+std::string Dialect::in_precision(const std::string& code) const {
+  return single_ ? in_single_precision(code) : code;
 }
 
 std::string Dialect::opening() const {
@@ -52,9 +59,10 @@ std::string Dialect::opening() const {
       "enum {}{{\n"
       "  {} = 0, /* the outputs are set */\n"
       "  {} = 1, /* an input is no number, or there is nothing to correct */\n"
-      "  {} = 2 /* no finite outputs belong to these inputs */\n"
+      "  {} = 2, /* no finite outputs belong to these inputs */\n"
+      "  {} = 3 /* the outputs are set, but a driver is beyond what the fit saw of it */\n"
       "}};\n\n",
-      cpp_ ? "Status " : "", own("ok"), own("bad_input"), own("no_solution"));
+      cpp_ ? "Status " : "", own("ok"), own("bad_input"), own("no_solution"), own("outside"));
   return text;
 }
 
@@ -64,22 +72,44 @@ std::string Dialect::closing() const {
       cpp_ ? fmt::format("}} /* namespace {} */\n\n", base::in_c_comment(name_)) : "");
 }
 
+std::string Dialect::define_as(std::string_view type, std::string_view name,
+                               const std::string& values, std::string_view comment) const {
+  return fmt::format("/* {} */\n{} {} {}{};\n", base::in_c_comment(comment),
+                     cpp_ ? "inline constexpr" : "static const", type,
+                     cpp_ ? std::string(name) : own(name), values);
+}
+
 std::string Dialect::define(std::string_view name, const std::vector<double>& values,
                             std::size_t columns, std::string_view comment) const {
-  std::string text =
-      fmt::format("/* {} */\n{} double {}", base::in_c_comment(comment),
-                  cpp_ ? "inline constexpr" : "static const", cpp_ ? std::string(name) : own(name));
+  const std::string_view type = single_ ? "float" : "double";
   if (values.size() == 1 && columns == 0) {
-    return text + fmt::format(" = {};\n", literal(values.front()));
+    return define_as(type, name, fmt::format(" = {}", literal(values.front())), comment);
   }
   if (columns == 0) {
-    return text + fmt::format("[{}] = {};\n", values.size(), row_of(values, 0, values.size()));
+    const std::string row = row_of(values, 0, values.size());
+    return define_as(type, name, fmt::format("[{}] = {}", values.size(), row), comment);
   }
   std::vector<std::string> rows;
   for (std::size_t first = 0; first < values.size(); first += columns) {
     rows.push_back("    " + row_of(values, first, first + columns));
   }
-  return text + fmt::format("[{}][{}] = {{\n{}}};\n", rows.size(), columns, fmt::join(rows, ",\n"));
+  return define_as(type, name,
+                   fmt::format("[{}][{}] = {{\n{}}}", rows.size(), columns, fmt::join(rows, ",\n")),
+                   comment);
+}
+
+std::string Dialect::define_double(std::string_view name, double value,
+                                   std::string_view comment) const {
+  const Dialect in_double(cpp_, false, name_);
+  return define_as("double", name, fmt::format(" = {}", in_double.literal(value)), comment);
+}
+
+std::string Dialect::define_identity(std::string_view id, std::uint32_t crc) const {
+  return define_as("char", "calibration_id", fmt::format("[{}] = \"{}\"", id.size() + 1, id),
+                   "the SHA-256 of the calibration's JSON") +
+         define_as("unsigned long", "crc", fmt::format(" = 0x{:08X}UL", crc),
+                   "the CRC-32 of the constants above, in their order, each as its bytes from the "
+                   "lowest");
 }
 
 std::string Dialect::function(std::string_view type, std::string_view name,

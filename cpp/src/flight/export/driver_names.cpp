@@ -39,11 +39,13 @@ bool is_reserved(const std::string& name) {
       "near", "main", "std",
       // of the correction itself
       "A", "J", "F", "constants", "spline", "correct", "self_test", "ok", "bad_input",
-      "no_solution", "h_ut", "m_ut", "alpha_read", "beta_read", "pressure", "read", "met", "i", "j",
-      "step", "det", "change", "largest", "airspeed_mps", "airspeed_cal_mps", "pt_pa", "dpa_pa",
-      "dpb_pa", "alpha_cal_rad", "beta_cal_rad", "u", "v", "w", "y", "z", "pow", "fabs", "sqrt",
-      "sin", "cos", "atan2", "asin", "isfinite", "alpha", "beta", "square", "side", "below", "in",
-      "out", "got", "row", "at", "k"};
+      "no_solution", "outside", "calibration_id", "crc", "is_extrapolated", "pt_less_ps_pa", "h_ut",
+      "m_ut", "alpha_read", "beta_read", "pressure", "read", "met", "i", "j", "step", "det",
+      "change", "largest", "airspeed_mps", "airspeed_cal_mps", "pt_pa", "dpa_pa", "dpb_pa",
+      "alpha_cal_rad", "beta_cal_rad", "u", "v", "w", "y", "z", "pow", "fabs", "sqrt", "sin", "cos",
+      "atan2", "asin", "isfinite", "expm1", "log1p", "powf", "fabsf", "sqrtf", "sinf", "cosf",
+      "atan2f", "asinf", "expm1f", "log1pf", "alpha", "beta", "square", "side", "below", "in",
+      "out", "got", "says", "size", "status", "row", "at", "k"};
   const bool in_capitals = std::ranges::none_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
   return in_capitals || words.contains(name) || name.starts_with("x_") ||
          name.starts_with("sepcal");
@@ -58,7 +60,8 @@ const KnownChannel* find_known(std::string_view channel) {
   return found == known_channels.end() ? nullptr : found;
 }
 
-const std::map<std::string, std::string, std::less<>>& names_of_readings(std::string_view probe) {
+const std::map<std::string, std::string, std::less<>>& names_of_readings(std::string_view probe,
+                                                                         bool single) {
   static const std::map<std::string, std::string, std::less<>> field{
       {"mx", "m_ut[0]"},    {"my", "m_ut[1]"},    {"mz", "m_ut[2]"},
       {"mx_ut", "m_ut[0]"}, {"my_ut", "m_ut[1]"}, {"mz_ut", "m_ut[2]"}};
@@ -69,7 +72,12 @@ const std::map<std::string, std::string, std::less<>>& names_of_readings(std::st
       {"ps", "ps_pa"},         {"dpa", "dpa_pa"},     {"dpb", "dpb_pa"},
       {"rho", "rho_kgpm3"},    {"pt_pa", "pt_pa"},    {"ps_pa", "ps_pa"},
       {"dpa_pa", "dpa_pa"},    {"dpb_pa", "dpb_pa"},  {"rho_kgpm3", "rho_kgpm3"}};
-  if (probe == "five-hole") return ports;
+  static const auto ports_in_single = [] {
+    auto names = ports;
+    for (const char* pressure : {"pt", "ps", "pt_pa", "ps_pa"}) names.erase(pressure);
+    return names;
+  }();
+  if (probe == "five-hole") return single ? ports_in_single : ports;
   return probe == "pitot-static" ? tube : field;
 }
 

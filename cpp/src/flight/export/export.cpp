@@ -21,6 +21,8 @@
 #include "flight/export/refusals.hpp"
 #include "flight/export/tube_reader.hpp"
 #include "flight/export/vehicle_notes.hpp"
+#include "flight/files/sha256.hpp"
+#include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/flight/joint.hpp"
 #include "sepcal/flight/output_file.hpp"
@@ -84,13 +86,34 @@ std::string header_name(const Calibration& calibration, const ExportOptions& opt
   return fmt::format("sepcal_{}_{}", name, *options.sensor);
 }
 
-void export_header(const Calibration& given, const Calibration& held, const ExportOptions& options,
-                   Exported& exported) {
-  const Dialect dialect(options.target == ExportTarget::cpp, header_name(held, options));
+std::string id_of(const Calibration& calibration) {
+  const std::string json = to_json(calibration);
+  files::Sha256 sha;
+  sha.absorb(json.data(), json.size());
+  return sha.finish();
+}
+
+/// Where drivers were seen, of a calibration from before it said so, as far as its flight is there.
+void fill_ranges(Calibration& calibration, const FlightAtHand& at_hand) {
+  const bool lacks = calibration.driver_ranges.empty() && !calibration.options.effects.empty();
+  const Flight* const flight = at_hand.find();
+  if (!lacks || flight == nullptr || calibration.flight.sha256.empty()) return;
+  if (flight->sha256() != calibration.flight.sha256) return;
+  const EffectiveFlight effective =
+      verbs::with_effects_of(calibration, verbs::prepare(calibration, *flight));
+  calibration.driver_ranges = verbs::ranges_of_drivers(
+      calibration.probe->name(), calibration.options.effects,
+      effective.prepared.record.select(calibration.options.fit.stage_two_segments));
+}
+
+void export_header(const Calibration& given, const Calibration& held, const std::string& id,
+                   const ExportOptions& options, Exported& exported) {
+  const Dialect dialect(options.target == ExportTarget::cpp, options.single,
+                        header_name(held, options));
   std::vector<std::string> comment =
       provenance(fmt::format("The correction of {}", instrument(held)), given, held);
   if (exported.loss) std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
-  Header header = header_text(held, dialect, comment);
+  Header header = header_text(held, dialect, id, comment);
   exported.text = std::move(header.text);
   exported.left_to_others = std::move(header.left_to_others);
 }
@@ -196,8 +219,11 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
   if (flight != nullptr) verbs::note_other_flight(given, *flight, exported.notes);
   if (!options.without.empty()) leave_out(given, at_hand, options, exported);
   if (is_header(options.target)) {
-    const Calibration held = exported.calibration;
-    export_header(given, held, options, exported);
+    Calibration held = exported.calibration;
+    const std::string id = id_of(options.without.empty() ? calibration : held);
+    describe_correction(held, {false, false, {}});  // refuses what no flight mends
+    fill_ranges(held, at_hand);
+    export_header(given, held, id, options, exported);
     return exported;
   }
   const Calibration base = exported.calibration;

@@ -7,6 +7,9 @@
 #include <algorithm>
 
 #include "base/escaping.hpp"
+#include "flight/export/crc32.hpp"
+#include "flight/export/driver_origin.hpp"
+#include "flight/export/guards.hpp"
 #include "flight/export/probe_body.hpp"
 #include "flight/export/self_test.hpp"
 
@@ -52,18 +55,46 @@ std::string spline_function(const Dialect& dialect) {
          "         (x - inside) * slope;\n}\n\n";
 }
 
-std::string explain_arguments(const ProbeBody& body, const Correction& correction) {
+std::string explain(const Driver& driver) {
+  const std::string what =
+      driver.is_state ? driver.comment : fmt::format("{}, {}", driver.channel, driver.comment);
+  if (driver.origin == 0.0) return what;
+  return fmt::format(
+      "{}, less {}: take that away before it becomes a float, which has no digits "
+      "for the whole",
+      what, driver.origin);
+}
+
+std::string explain_guards(const Correction& correction, const Dialect& dialect) {
+  std::string text;
+  if (!correction.guards.empty()) {
+    text += fmt::format(
+        "   Beyond what the fit saw it returns {}. The outputs are set, but by a\n"
+        "   curve that nobody saw there. Seen was:\n",
+        dialect.own("outside"));
+  }
+  for (const Guard& guard : correction.guards) {
+    text += fmt::format("     {} from {:.6g} to {:.6g}\n", in_c_comment(guard.channel),
+                        guard.range.lower, guard.range.upper);
+  }
+  for (const std::string& line : correction.unguarded) {
+    text += fmt::format("   {}.\n", in_c_comment(line));
+  }
+  return text;
+}
+
+std::string explain_arguments(const ProbeBody& body, const Correction& correction,
+                              const Dialect& dialect) {
   std::string text = "/* " + in_c_comment(body.summary) + ".\n";
   const auto add = [&](const std::string& name, const std::string& what) {
     text += fmt::format("     {}: {}\n", in_c_comment(name), in_c_comment(what));
   };
   for (const Quantities& one : body.readings) add(one.argument, one.comment);
   for (const Driver& driver : correction.drivers) {
-    add(driver.argument,
-        driver.is_state ? driver.comment : fmt::format("{}, {}", driver.channel, driver.comment));
+    add(driver.argument, explain(driver));
   }
   for (const Quantities& one : body.outputs) add(one.argument, "output, " + one.comment);
-  return text + "*/\n";
+  return text + explain_guards(correction, dialect) + "*/\n";
 }
 
 /// Each number of an argument; one alone is had by `alone`.
@@ -93,41 +124,76 @@ std::string check_inputs(const ProbeBody& body, const Correction& correction,
 }
 
 /// Inputs far beyond any reading overflow on the way.
-std::string check_outputs(const ProbeBody& body, const Dialect& dialect) {
+std::string check_outputs(const ProbeBody& body, const Correction& correction,
+                          const Dialect& dialect) {
   std::string text;
   for (const Quantities& one : body.outputs) {
     for (const std::string& output : numbers_of(one, "*")) {
       text += check_finite(output, dialect, "no_solution");
     }
   }
-  return text + fmt::format("  return {};\n", dialect.own("ok"));
+  if (correction.guards.empty()) return text + fmt::format("  return {};\n", dialect.own("ok"));
+  return text + fmt::format("  return is_extrapolated ? {} : {};\n", dialect.own("outside"),
+                            dialect.own("ok"));
 }
 
 /// What a five-hole probe reads before anything is corrected: effects may follow it.
 std::string read_angles(const Calibration& calibration, const Dialect& dialect) {
   if (calibration.probe->name() != "five-hole") return "";
   return fmt::format(
-      "  const double pressure = pt_pa - ps_pa;\n"
+      "  const double pressure = {};\n"
       "  if (!(pressure > 0.0) || !(rho_kgpm3 > 0.0)) return {};\n"
       "  const double alpha_read = dpa_pa / ({} * pressure);\n"
       "  const double beta_read = dpb_pa / ({} * pressure);\n",
-      dialect.own("bad_input"), dialect.constant("k_alpha"), dialect.constant("k_beta"));
+      dialect.is_single() ? "pt_less_ps_pa" : "pt_pa - ps_pa", dialect.own("bad_input"),
+      dialect.constant("k_alpha"), dialect.constant("k_beta"));
 }
 
-std::string define_constants(const ProbeBody& body, const Correction& correction,
-                             const Dialect& dialect) {
-  std::string text = dialect.is_cpp() ? "namespace constants {\n\n" : "";
-  for (const auto* const list : {&body.constants, &correction.constants}) {
-    for (const Constant& one : *list) {
-      text += dialect.define(one.name, one.values, one.columns, one.comment);
+/// Each with its bytes into the CRC.
+class Constants {
+ public:
+  explicit Constants(const Dialect& dialect) : dialect_(dialect) {}
+
+  void add(const std::vector<Constant>& list) {
+    for (const Constant& one : list) {
+      text_ += dialect_.define(one.name, one.values, one.columns, one.comment);
+      for (const double value : one.values) {
+        if (dialect_.is_single()) {
+          crc_.absorb(static_cast<float>(value));
+        } else {
+          crc_.absorb(value);
+        }
+      }
     }
   }
-  return text + (dialect.is_cpp() ? "\n} /* namespace constants */\n\n" : "\n");
-}
+
+  void add_origins(const std::vector<Driver>& drivers) {
+    for (const Driver& one : drivers) {
+      if (one.origin == 0.0) continue;
+      std::string of = one.argument;
+      of.erase(of.rfind(origin_suffix), origin_suffix.size());
+      text_ += dialect_.define_double("origin_" + of, one.origin,
+                                      one.channel + ": what to take away from it");
+      crc_.absorb(one.origin);
+    }
+  }
+
+  std::string text(const std::string& id) const {
+    const bool cpp = dialect_.is_cpp();
+    return (cpp ? "namespace constants {\n\n" : "") + text_ +
+           (cpp ? "\n} /* namespace constants */\n\n" : "\n") +
+           dialect_.define_identity(id, crc_.value()) + "\n";
+  }
+
+ private:
+  const Dialect& dialect_;
+  std::string text_;
+  Crc32 crc_;
+};
 
 }  // namespace
 
-Header header_text(const Calibration& calibration, const Dialect& dialect,
+Header header_text(const Calibration& calibration, const Dialect& dialect, const std::string& id,
                    const std::vector<std::string>& comment) {
   const Correction correction = describe_correction(calibration, dialect);
   const ProbeBody body = body_of(calibration, correction, dialect);
@@ -138,16 +204,21 @@ Header header_text(const Calibration& calibration, const Dialect& dialect,
         fmt::format(" * {}: on the reference or the wind, not on the reading: no part of this\n",
                     in_c_comment(effect));
   }
-  text += " */\n" + dialect.opening() + define_constants(body, correction, dialect);
-  if (correction.has_splines) text += spline_function(dialect);
-  text += explain_arguments(body, correction);
-  text += dialect.function(dialect.status_type(), "correct", arguments_of(body, correction));
-  text += check_inputs(body, correction, dialect) + read_angles(calibration, dialect);
-  for (const std::string& statement : correction.statements) {
-    text += "  " + statement + "\n";
-  }
-  text += body.text + check_outputs(body, dialect) + "}\n\n";
-  text += self_test(calibration, body, correction, dialect);
+  Constants constants(dialect);
+  constants.add(body.constants);
+  constants.add(correction.constants);
+  constants.add(guard_constants(correction, dialect));
+  constants.add_origins(correction.drivers);
+  text += " */\n" + dialect.opening() + constants.text(id);
+  std::string code;
+  if (correction.has_splines) code += spline_function(dialect);
+  code += explain_arguments(body, correction, dialect);
+  code += dialect.function(dialect.status_type(), "correct", arguments_of(body, correction));
+  code += check_inputs(body, correction, dialect) + read_angles(calibration, dialect);
+  code += guard_statement(correction, dialect);
+  for (const std::string& statement : correction.statements) code += "  " + statement + "\n";
+  code += body.text + check_outputs(body, correction, dialect) + "}\n\n";
+  text += dialect.in_precision(code) + self_test(calibration, body, correction, dialect);
   return {text + dialect.closing(), correction.left_to_others};
 }
 

@@ -14,8 +14,9 @@ struct Header {
   std::vector<std::string> left_to_others;  // effects on the reference or the wind
 };
 
-/// `comment`: lines at its head. Throws Error for an effect that can't be followed on board.
-Header header_text(const Calibration& calibration, const Dialect& dialect,
+/// `id`: of the calibration, 64 hexadecimal digits. `comment`: lines at its head. Throws Error for
+/// an effect that can't be followed on board.
+Header header_text(const Calibration& calibration, const Dialect& dialect, const std::string& id,
                    const std::vector<std::string>& comment);
 
 }  // namespace sepcal::exporting

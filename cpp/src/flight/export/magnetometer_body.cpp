@@ -88,9 +88,13 @@ std::string stepwise(bool is_turned, const Correction& correction, const Dialect
       "    for (i = 0; i < 3; ++i) {\n"
       "      y[i] += change[i];\n"
       "      if (!(fabs(change[i]) <= largest)) largest = fabs(change[i]);\n"
-      "    }\n"
-      "    if (largest < 1e-9) break;\n"
-      "  }\n";
+      "    }\n";
+  // In float a step of 1e-5 of the field is the last: the next would be its square, far below what
+  // rounds.
+  text += dialect.is_single()
+              ? "    if (largest <= 1e-5 * (fabs(y[0]) + fabs(y[1]) + fabs(y[2]))) break;\n"
+              : "    if (largest < 1e-9) break;\n";
+  text += "  }\n";
   text += fmt::format("  if (step == 20) return {};\n", dialect.own("no_solution"));
   return text + "  for (i = 0; i < 3; ++i) h_ut[i] = y[i];\n";
 }

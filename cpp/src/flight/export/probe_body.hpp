@@ -16,6 +16,7 @@ struct Quantities {
   int size = 1;                      // 3: an array
   std::vector<std::string> headers;  // of a log: "mx_ut", ...
   std::string comment;               // "uT, the field as read, x y z"
+  bool is_difference = false;        // the first header's column less the second's
 };
 
 struct ProbeBody {

@@ -70,6 +70,7 @@ void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
   const bool px4_airspeed = airspeed && options.target == ExportTarget::px4;
   if (options.device_id && !px4_field && !px4_airspeed) idle("device_id", "PX4's sensors");
   if (options.mounting && !px4_field) idle("mounting", "PX4's magnetometers");
+  if (options.single && !is_header(options.target)) idle("single", "a header, c or cpp");
   if (options.in_use && !airspeed) idle("in_use", "an autopilot's airspeed");
   if (options.airspeed_sensor && !airspeed) idle("airspeed_sensor", "an autopilot's airspeed");
   if (options.cal_air && !px4_airspeed) idle("cal_air", "PX4's airspeed");

@@ -4,54 +4,71 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "flight/export/trials.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/apply.hpp"
 
 namespace sepcal::exporting {
 namespace {
 
-constexpr std::size_t trial_rows = 3;
+constexpr std::size_t plain_rows = 3;
 
-/// The trials as a flight, under the names that apply() reads.
-Flight trial_flight(const ProbeBody& body, const Correction& correction) {
-  Flight flight("the self-test");
-  std::size_t column = 0;
-  for (const Quantities& one : body.readings) {
-    for (const std::string& header : one.headers) {
-      std::vector<double> values;
-      for (std::size_t row = 0; row < trial_rows; ++row) values.push_back(body.trials[row][column]);
-      flight.add(header, std::move(values));
-      ++column;
-    }
-  }
-  for (const Driver& driver : correction.drivers) {
-    std::string header = driver.is_state ? driver.argument : driver.channel;
-    if (driver.channel == "roll" || driver.channel == "pitch" || driver.channel == "yaw") {
-      header = driver.channel;  // no state of a correction: found by its whole name
-    }
-    if (flight.find(header) == nullptr) flight.add(header, driver.trial);
-  }
-  return flight;
-}
-
-/// The corrected trials, by output and row.
-std::vector<CorrectedColumn> correct_trials(const Calibration& calibration, const ProbeBody& body,
-                                            const Correction& correction) {
+std::vector<CorrectedColumn> correct_trials(const Calibration& calibration, const Trials& trials) {
   Calibration alone = calibration;
   alone.options.log = {};  // of another log
-  std::vector<CorrectedColumn> columns = apply(alone, trial_flight(body, correction));
-  for (const CorrectedColumn& column : columns) {
-    for (const double value : column.values) {
-      if (!std::isfinite(value)) {
-        throw Error(
-            "the calibration corrects plain readings to what is no number, so that it can't be "
-            "exported; look at its parameters and fit it again");
-      }
+  return apply(alone, trials.flight());
+}
+
+bool is_corrected(const std::vector<CorrectedColumn>& columns, std::size_t row) {
+  return std::ranges::all_of(
+      columns, [row](const CorrectedColumn& one) { return std::isfinite(one.values[row]); });
+}
+
+/// What the rows are corrected to, a number an output. Rows beyond what the fit saw in which
+/// nothing can be corrected are dropped. Throws Error where that holds of a plain one.
+std::vector<CorrectedColumn> expected_of(const Calibration& calibration, Trials& trials) {
+  std::vector<CorrectedColumn> columns = correct_trials(calibration, trials);
+  for (std::size_t row = trials.rows(); row-- > 0;) {
+    if (is_corrected(columns, row)) continue;
+    if (row < plain_rows) {
+      throw Error(
+          "the calibration corrects plain readings to what is no number, so that it can't be "
+          "exported; look at its parameters and fit it again");
+    }
+    trials.drop(row);
+    for (CorrectedColumn& column : columns) {
+      column.values.erase(column.values.begin() + static_cast<std::ptrdiff_t>(row));
     }
   }
   return columns;
+}
+
+/// By how much an output may be off, each: in double 1e-11 of 1 and the largest, in float 1e-6 of
+/// the largest reading and output in its unit, of an angle 1e-6 rad.
+std::vector<double> tolerances(const ProbeBody& body, const Trials& trials,
+                               const std::vector<CorrectedColumn>& expected, bool single) {
+  std::vector<double> sizes;
+  for (const CorrectedColumn& column : expected) {
+    double largest = 1.0;
+    for (const double value : column.values) largest = std::max(largest, std::abs(value));
+    sizes.push_back(largest);
+  }
+  const Quantities& read = body.readings.front();
+  if (body.outputs.front().size == 3) {  // a field: its components are one quantity
+    double largest = std::ranges::max(sizes);
+    for (std::size_t row = 0; row < trials.rows(); ++row) {
+      const std::vector<double> inputs = trials.inputs(row);
+      for (int i = 0; i < read.size; ++i) {
+        largest = std::max(largest, std::abs(inputs[static_cast<std::size_t>(i)]));
+      }
+    }
+    std::ranges::fill(sizes, largest);
+  }
+  for (double& size : sizes) size *= single ? 1e-6 : 1e-11;
+  return sizes;
 }
 
 /// Of the inputs at[] into the outputs got[].
@@ -73,51 +90,75 @@ std::string call_with(const ProbeBody& body, const Correction& correction, const
   return fmt::format("{}({})", dialect.own("correct"), fmt::join(arguments, ", "));
 }
 
+std::string row_of(const std::vector<double>& values, const Dialect& dialect) {
+  std::vector<std::string> numbers;
+  for (const double value : values) numbers.push_back(dialect.literal(value));
+  return fmt::format("{{{}}}", fmt::join(numbers, ", "));
+}
+
 }  // namespace
 
 std::string self_test(const Calibration& calibration, const ProbeBody& body,
                       const Correction& correction, const Dialect& dialect) {
-  const std::vector<CorrectedColumn> corrected = correct_trials(calibration, body, correction);
-  const std::string type = dialect.is_cpp() ? "constexpr double" : "static const double";
-  std::size_t inputs = correction.drivers.size();
-  for (const Quantities& one : body.readings) inputs += static_cast<std::size_t>(one.size);
+  const bool single = dialect.is_single();
+  Trials trials(calibration, body, correction, single);
+  const std::vector<CorrectedColumn> corrected = expected_of(calibration, trials);
   std::vector<std::string> given;
   std::vector<std::string> expected;
-  for (std::size_t row = 0; row < trial_rows; ++row) {
-    std::vector<std::string> numbers;
-    for (const double value : body.trials[row]) numbers.push_back(literal(value));
-    for (const Driver& driver : correction.drivers) numbers.push_back(literal(driver.trial[row]));
-    given.push_back(fmt::format("      {{{}}}", fmt::join(numbers, ", ")));
-    numbers.clear();
-    for (const CorrectedColumn& column : corrected) numbers.push_back(literal(column.values[row]));
-    expected.push_back(fmt::format("      {{{}}}", fmt::join(numbers, ", ")));
+  std::vector<std::string> statuses;
+  for (std::size_t row = 0; row < trials.rows(); ++row) {
+    given.push_back("      " + row_of(trials.inputs(row), dialect));
+    std::vector<double> outputs;
+    for (const CorrectedColumn& column : corrected) outputs.push_back(column.values[row]);
+    expected.push_back("      " + row_of(outputs, dialect));
+    statuses.push_back(dialect.own(trials.is_outside(row) ? "outside" : "ok"));
   }
-  const std::string call = call_with(body, correction, dialect);
-  return "/* 0 where the correction gives what sepcal gave of the same three inputs, to 1e-11, "
-         "and\n"
-         "   says so where an input is no number or far too large. */\n" +
+  const std::string kind = dialect.is_cpp() ? "constexpr" : "static const";
+  const std::string type = single ? "float" : "double";
+  return (single ? "/* 0 where the correction gives what sepcal gave of the same inputs, to a "
+                   "millionth of\n"
+                   "   the largest reading and output (of an angle to 1e-6 rad),"
+                 : "/* 0 where the correction gives what sepcal gave of the same inputs, to 1e-11 "
+                   "of the\n"
+                   "   largest,") +
+         std::string(
+             " says so where a driver is beyond what the fit saw, and where an input\n"
+             "   is no number or far too large. */\n") +
          dialect.function("int", "self_test", {}) +
          fmt::format(
-             "  {0} in[3][{1}] = {{\n{2}}};\n"
-             "  {0} out[3][{3}] = {{\n{4}}};\n"
-             "  double at[{1}];\n  double got[{3}];\n  int row;\n  int k;\n"
-             "  for (row = 0; row < 3; ++row) {{\n"
-             "    for (k = 0; k < {1}; ++k) at[k] = in[row][k];\n"
-             "    if ({5} != {6}) return 1;\n"
-             "    for (k = 0; k < {3}; ++k) {{\n"
-             "      if (!(fabs(got[k] - out[row][k]) <= 1e-11 * (1.0 + fabs(out[row][k])))) return "
-             "1;\n"
+             "  {kind} {type} in[{rows}][{inputs}] = {{\n{given}}};\n"
+             "  {kind} {type} out[{rows}][{outputs}] = {{\n{expected}}};\n"
+             "  {kind} int says[{rows}] = {{{says}}};\n"
+             "  {kind} {type} size[{outputs}] = {sizes};\n"
+             "  {type} at[{inputs}];\n  {type} got[{outputs}];\n"
+             "  int row;\n  int k;\n  int status;\n"
+             "  for (row = 0; row < {rows}; ++row) {{\n"
+             "    for (k = 0; k < {inputs}; ++k) at[k] = in[row][k];\n"
+             "    for (k = 0; k < {outputs}; ++k) got[k] = NAN;\n"
+             "    if ({call} != says[row]) return 1;\n"
+             "    for (k = 0; k < {outputs}; ++k) {{\n"
+             "      if (!({abs}(got[k] - out[row][k]) <= size[k])) return 1;\n"
              "    }}\n  }}\n"
-             "  for (row = 0; row < {1}; ++row) {{\n"
-             "    for (k = 0; k < {1}; ++k) at[k] = k == row ? NAN : in[0][k];\n"
-             "    if ({5} != {7}) return 1;\n"
-             "    at[row] = 1e308;\n"
-             "    if ({5} != {6}) continue;\n"
-             "    for (k = 0; k < {3}; ++k) {{\n"
+             "  for (row = 0; row < {inputs}; ++row) {{\n"
+             "    for (k = 0; k < {inputs}; ++k) at[k] = k == row ? NAN : in[0][k];\n"
+             "    if ({call} != {bad_input}) return 1;\n"
+             "    at[row] = {largest};\n"
+             "    status = {call};\n"
+             "    if (status != {ok} && status != {outside}) continue;\n"
+             "    for (k = 0; k < {outputs}; ++k) {{\n"
              "      if (!isfinite(got[k])) return 1;\n"
              "    }}\n  }}\n  return 0;\n}}\n",
-             type, inputs, fmt::join(given, ",\n"), corrected.size(), fmt::join(expected, ",\n"),
-             call, dialect.own("ok"), dialect.own("bad_input"));
+             fmt::arg("kind", kind), fmt::arg("type", type), fmt::arg("rows", trials.rows()),
+             fmt::arg("inputs", trials.inputs(0).size()), fmt::arg("outputs", corrected.size()),
+             fmt::arg("given", fmt::join(given, ",\n")),
+             fmt::arg("expected", fmt::join(expected, ",\n")),
+             fmt::arg("says", fmt::join(statuses, ", ")),
+             fmt::arg("sizes", row_of(tolerances(body, trials, corrected, single), dialect)),
+             fmt::arg("call", call_with(body, correction, dialect)),
+             fmt::arg("abs", single ? "fabsf" : "fabs"),
+             fmt::arg("largest", single ? "1e38f" : "1e308"), fmt::arg("ok", dialect.own("ok")),
+             fmt::arg("outside", dialect.own("outside")),
+             fmt::arg("bad_input", dialect.own("bad_input")));
 }
 
 }  // namespace sepcal::exporting

@@ -40,6 +40,9 @@ Calibration read(const Json& root) {
   calibration.fit.rows = calibration.flight.rows_used;
   calibration.derived = read_derived(root.at("derived"));
   if (root.contains("restated")) calibration.restated = read_restated(root.at("restated"));
+  if (root.contains("driver_ranges")) {
+    calibration.driver_ranges = read_ranges(root.at("driver_ranges"));
+  }
   calibration.history = read_history(root.at("history"));
   return calibration;
 }
@@ -81,6 +84,9 @@ std::string to_json(const Calibration& calibration) {
   write_estimates(calibration.fit, root);
   root["derived"] = write_derived(calibration.derived);
   if (!calibration.restated.empty()) root["restated"] = write_restated(calibration.restated);
+  if (!calibration.driver_ranges.empty()) {
+    root["driver_ranges"] = write_ranges(calibration.driver_ranges);
+  }
   write_rest(calibration.fit, calibration.options.fit, root);
   root["history"] = write_history(calibration.history);
   return text_of(root);

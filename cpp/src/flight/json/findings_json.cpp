@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/json/findings_json.hpp"
 
+#include "sepcal/error.hpp"
+
 namespace sepcal::json {
 
 Json write_misfit(const Misfit& misfit) {
@@ -66,6 +68,25 @@ std::vector<Restatement> read_restated(const Json& object) {
     restated.push_back(std::move(one));
   }
   return restated;
+}
+
+/// {channel: [least, greatest]}.
+Json write_ranges(const std::map<std::string, Interval>& ranges) {
+  Json object = Json::object();
+  for (const auto& [channel, range] : ranges) object[channel] = {range.lower, range.upper};
+  return object;
+}
+
+std::map<std::string, Interval> read_ranges(const Json& object) {
+  std::map<std::string, Interval> ranges;
+  for (const auto& [channel, range] : entries_of(object)) {
+    const Interval read{range.at(0).get<double>(), range.at(1).get<double>()};
+    if (!(read.lower <= read.upper)) {
+      throw Error("the range of the driver " + channel + " ends before it begins");
+    }
+    ranges[channel] = read;
+  }
+  return ranges;
 }
 
 Json write_history(const std::vector<HistoryEntry>& history) {

@@ -3,6 +3,8 @@
 // effects, combinations that are not or hardly determined. Readers throw as nlohmann::json does.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "flight/json/output_values.hpp"
@@ -19,6 +21,9 @@ std::vector<Derived> read_derived(const Json& object);
 
 Json write_restated(const std::vector<Restatement>& restated);
 std::vector<Restatement> read_restated(const Json& object);
+
+Json write_ranges(const std::map<std::string, Interval>& ranges);
+std::map<std::string, Interval> read_ranges(const Json& object);
 
 Json write_history(const std::vector<HistoryEntry>& history);
 std::vector<HistoryEntry> read_history(const Json& list);

@@ -17,6 +17,7 @@
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/probes/sampled_rows.hpp"
 #include "flight/verbs/default_bounds.hpp"
+#include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
@@ -131,6 +132,8 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
   fitted.rows_used = fit.rows;
   std::vector<Derived> derived = derive(*probe, fit);
   std::vector<Restatement> restated = probe->restate(fit);
+  std::map<std::string, Interval> ranges = ranges_of_drivers(
+      probe->name(), held.effects, record.select(held.fit.stage_two_segments));
   return {std::move(probe),
           std::move(held),
           std::move(fitted),
@@ -139,7 +142,9 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
           std::move(restated),
           {},
           {},
-          flight.prepared.notes};
+          flight.prepared.notes,
+          {},
+          std::move(ranges)};
 }
 
 /// What looks at whole columns can't be done where these may be longer than memory.

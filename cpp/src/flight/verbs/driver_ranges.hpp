@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Over which values a fit saw what its effects follow: beyond them a curve is a guess.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/flight/probe.hpp"
+#include "sepcal/named_effects.hpp"
+
+namespace sepcal::verbs {
+
+/// The least and the greatest value in the record's segments of each channel that an effect on the
+/// reading follows, in the record's unit. `record` as the model with its effects takes it; time
+/// and what the record lacks are left out.
+std::map<std::string, Interval> ranges_of_drivers(std::string_view probe,
+                                                  const std::vector<EffectSetting>& settings,
+                                                  const Record& record);
+
+}  // namespace sepcal::verbs
