@@ -27,6 +27,7 @@ LONG = {
     "test_monte_carlo_cluster",
     "test_own_state_model",
     "test_recorded_probes",
+    "test_random_exports",
     "test_report",
     "test_same_diagnoses",
     "test_studies",

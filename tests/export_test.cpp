@@ -157,6 +157,17 @@ TEST_CASE("a header says what its names begin with") {
   CHECK_FALSE(exported.loss.has_value());
 }
 
+TEST_CASE("a header in float has floats, and of an autopilot there is none") {
+  ExportOptions options = to(ExportTarget::cpp);
+  options.single = true;
+  const std::string text = export_calibration(make_magnetometer(), nullptr, options).text;
+  CHECK(text.find("inline constexpr float n[3] = {10.0f, -20.0f, 30.0f};") != std::string::npos);
+  CHECK(text.find("double") == std::string::npos);
+  options.target = ExportTarget::px4;
+  check_refused([&] { export_calibration(make_magnetometer(), nullptr, options); },
+                {"single is of a header"});
+}
+
 TEST_CASE("what is not fit to be used is refused, and no file is left") {
   const TemporaryFolder folder;
   const std::string output = (folder.path() / "vehicle.h").string();

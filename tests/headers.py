@@ -56,7 +56,7 @@ def kind_of(text: str) -> str:
 
 def origins_of(text: str) -> dict[str, float]:
     """What is taken away from drivers before they become floats, by the driver's argument."""
-    found = re.findall(r"double (?:sepcal\w+_)?origin_(\w+) = ([^;]+);", text)
+    found = re.findall(r"double (?:sepcal\w+?_)?origin_(\w+) = ([^;]+);", text)
     return {f"{name}_less_origin": float(value) for name, value in found}
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Exported headers: clean under strict compilers, equal to apply; their self-test can fail."""
 
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -187,6 +188,32 @@ def test_what_is_no_number(magnetometer: Bench) -> None:
     rows = np.array([[20.0, 1.0, 40.0, a], [np.nan, 1.0, 40.0, a], [20.0, 1.0, 40.0, np.inf]])
     status, _ = headers.run_rows(program, rows)
     assert list(status) == [0, 1, 1]
+
+
+def test_a_reading_that_no_field_gives(magnetometer: Bench) -> None:
+    """Of m = h - 0.01 h^2 none is above 25 uT; apply leaves that row empty, and no other.
+
+    h = (1 - sqrt(1 - 0.04 m)) / 0.02.
+    """
+    fit(magnetometer, ("cubic_nonlinearity",))
+    calibration = json.loads((magnetometer.folder / "e.json").read_text())
+    for parameter in calibration["parameters"].values():
+        parameter["value"] = 0.0
+    calibration["parameters"]["cubic_nonlinearity.c_x"]["value"] = -0.01
+    (magnetometer.folder / "e.json").write_text(json.dumps(calibration))
+    log = magnetometer.read_log()
+    m = np.resize([10.0, 60.0, -30.0, 24.9, 26.0], len(log.rows))
+    log.replace("mx_ut", m)
+    magnetometer.flight.write_text(log.text())
+    h = (1.0 - np.sqrt(np.where(m > 25.0, np.nan, 1.0 - 0.04 * m))) / 0.02
+    corrected = applied(magnetometer)
+    assert_allclose(corrected[:, 0], h, rtol=1e-9)
+    done = magnetometer.run("export", "e.json", "--to", "c", "-o", "sensor.h", "--force")
+    assert done.code == 0, done.err
+    program = headers.build(magnetometer.folder / "sensor.h", "c", "c99")
+    status, found = headers.run_rows(program, np.column_stack([m, np.zeros((len(m), 2))]))
+    assert list(status[:5]) == [0, 2, 0, 0, 2]
+    assert_allclose(found[:, 0], h, rtol=1e-9)
 
 
 def test_a_still_probe(pitot: Bench) -> None:

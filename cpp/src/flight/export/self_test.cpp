@@ -134,13 +134,13 @@ std::string self_test(const Calibration& calibration, const ProbeBody& body,
              "  int row;\n  int k;\n  int status;\n"
              "  for (row = 0; row < {rows}; ++row) {{\n"
              "    for (k = 0; k < {inputs}; ++k) at[k] = in[row][k];\n"
-             "    for (k = 0; k < {outputs}; ++k) got[k] = NAN;\n"
+             "    for (k = 0; k < {outputs}; ++k) got[k] = {none};\n"
              "    if ({call} != says[row]) return 1;\n"
              "    for (k = 0; k < {outputs}; ++k) {{\n"
              "      if (!({abs}(got[k] - out[row][k]) <= size[k])) return 1;\n"
              "    }}\n  }}\n"
              "  for (row = 0; row < {inputs}; ++row) {{\n"
-             "    for (k = 0; k < {inputs}; ++k) at[k] = k == row ? NAN : in[0][k];\n"
+             "    for (k = 0; k < {inputs}; ++k) at[k] = k == row ? {none} : in[0][k];\n"
              "    if ({call} != {bad_input}) return 1;\n"
              "    at[row] = {largest};\n"
              "    status = {call};\n"
@@ -156,6 +156,9 @@ std::string self_test(const Calibration& calibration, const ProbeBody& body,
              fmt::arg("sizes", row_of(tolerances(body, trials, corrected, single), dialect)),
              fmt::arg("call", call_with(body, correction, dialect)),
              fmt::arg("abs", single ? "fabsf" : "fabs"),
+             fmt::arg("none", single             ? "NAN"
+                              : dialect.is_cpp() ? "double(NAN)"
+                                                 : "(double)NAN"),
              fmt::arg("largest", single ? "1e38f" : "1e308"), fmt::arg("ok", dialect.own("ok")),
              fmt::arg("outside", dialect.own("outside")),
              fmt::arg("bad_input", dialect.own("bad_input")));

@@ -99,7 +99,8 @@ MatrixXd matrix_of(const Json& rows, Index n) {
 Json point(const std::vector<std::string>& names, const VectorXd& values) {
   Json object = Json::object();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    object[names[i]] = number(values[static_cast<Index>(i)]);
+    const auto at = static_cast<Index>(i);
+    object[names[i]] = at < values.size() ? number(values[at]) : Json(nullptr);
   }
   return object;
 }

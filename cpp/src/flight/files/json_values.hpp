@@ -59,7 +59,7 @@ Json matrix(const Eigen::MatrixXd& values);
 /// Throws Error unless the rows are `n` of `n` numbers.
 Eigen::MatrixXd matrix_of(const Json& rows, Eigen::Index n);
 
-/// {"lambda_alpha": 0.1, ...}: a point with its names, in order.
+/// {"lambda_alpha": 0.1, ...}: a point with its names, in order; null where it ends before them.
 Json point(const std::vector<std::string>& names, const Eigen::VectorXd& values);
 Eigen::VectorXd point_of(const std::vector<std::string>& names, const Json& object);
 

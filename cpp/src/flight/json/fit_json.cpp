@@ -196,8 +196,11 @@ void write_estimates(const Fit& fit, Json& root) {
 
 void write_rest(const Fit& fit, const FitOptions& options, Json& root) {
   const std::vector<Index> estimated = estimated_indices(fit);
+  const auto n = static_cast<Index>(fit.parameters.size());
+  const Eigen::MatrixXd correlation =
+      fit.correlation.rows() == n ? fit.correlation : Eigen::MatrixXd::Constant(n, n, undefined);
   root["correlation"] = {{"names", estimated_names(fit)},
-                         {"matrix", matrix(fit.correlation(estimated, estimated))}};
+                         {"matrix", matrix(correlation(estimated, estimated))}};
   root["unobservable"] = write_combinations(fit.identifiability.unobservable);
   root["weak"] = write_combinations(fit.identifiability.weak);
   root["cost"] = number(fit.cost);

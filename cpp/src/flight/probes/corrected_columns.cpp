@@ -170,6 +170,8 @@ std::vector<CorrectedColumn> probes::correct_field(const ProbeReadings& readings
   MatrixXd rates = MatrixXd::Zero(rows, 3);
   const bool stepwise = !effects.terms.empty();
   const bool with_rates = reads_rates(effects);
+  const bool by_differences = with_rates && !body_rates(readings.record);
+  std::vector<bool> solved(readings.valid.size(), !stepwise);
   double before = infinity;
   for (int step = 0; step < (stepwise ? most_steps : 1); ++step) {
     MatrixXd changed = h;
@@ -192,16 +194,19 @@ std::vector<CorrectedColumn> probes::correct_field(const ProbeReadings& readings
       const Matrix3d slope = by_field.row(i).reshaped(3, 3).transpose();
       const Vector3d change = (at + slope).partialPivLu().solve(-missing);
       changed.row(i) += change.transpose();
-      longest = std::max(longest, change.cwiseAbs().maxCoeff());
+      const double size = change.cwiseAbs().maxCoeff();
+      if (stepwise) solved[row] = by_differences || (change.allFinite() && size < tolerance);
+      if (!solved[row] || by_differences) longest = std::max(longest, size);
     }
-    if (step > 1 && longest >= before) break;  // a noisy rate by differences doesn't settle
+    // A noisy rate by differences doesn't settle, and one row's field is another's rate.
+    if (by_differences && step > 1 && longest >= before) break;
     h = changed;
     if (longest < tolerance) break;
     before = longest;
   }
   auto columns = empty_columns(headers, m[0].size());
   for (std::size_t i = 0; i < m[0].size(); ++i) {
-    if (!readings.valid[i]) continue;
+    if (!readings.valid[i] || !solved[i]) continue;  // no field gives what was read
     for (std::size_t axis = 0; axis < 3; ++axis) {
       columns[axis].values[i] = h(static_cast<Index>(i), static_cast<Index>(axis));
     }
