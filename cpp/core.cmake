@@ -8,6 +8,7 @@ string(REGEX MATCH "\n\\[core\\][^\n]*\n[^\n]*\npublic = \\[([^]]*)\\]" core_roo
 string(REGEX MATCHALL "[a-z_/]+" core_headers "${CMAKE_MATCH_1}")
 list(TRANSFORM core_headers PREPEND include/sepcal/)
 list(TRANSFORM core_headers APPEND .hpp)
+list(APPEND core_headers include/sepcal/core_c.h)
 
 add_library(sepcal_core INTERFACE)
 add_library(sepcal::core ALIAS sepcal_core)

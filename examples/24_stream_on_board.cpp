@@ -5,26 +5,9 @@
 #include <cstdio>
 #include <sepcal/core.hpp>
 
-using namespace sepcal;
+#include "24_wind_box.hpp"
 
-/// An airspeed indicator and a compass against the ground velocity: scale, wind, heading error.
-struct WindBox {
-  static constexpr std::array inputs{Quantity{"v", "m/s"}, Quantity{"psi", "rad"}};
-  static constexpr std::array outputs{Quantity{"vn", "m/s"}, Quantity{"ve", "m/s"}};
-  static constexpr std::array<Quantity, 3> linear{{{"scale", "1"}, {"w_n", "m/s"}, {"w_e", "m/s"}}};
-  static constexpr std::array nonlinear{Quantity{"heading", "rad", -0.5, 0.5}};
-  template <class U, class X>
-  Affine<X, 2, 3> at(const Vec<U, 2>& u, const Vec<X, 1>& xi2) const {
-    using std::cos;
-    using std::sin;
-    const X north = u[0] * cos(u[1] + xi2[0]);
-    const X east = u[0] * sin(u[1] + xi2[0]);
-    Affine<X, 2, 3> z;
-    z.A << north, X(Real<X>(1)), X(Real<X>(0)), east, X(Real<X>(0)), X(Real<X>(1));
-    z.b << north, east;
-    return z;
-  }
-};
+using namespace sepcal;
 
 using Start = TwoStageStart<WindBox, 60, 3, float>;
 using Form = InformationForm<Start::n, float>;

@@ -33,7 +33,7 @@ class House:
 
     def room_of(self, include: str) -> str | None:
         """The room of a header as it is included; None for one that isn't ours."""
-        name = include.removesuffix(".hpp")
+        name = include.removesuffix(".hpp").removesuffix(".h")
         if name.startswith("sepcal/"):
             return self.of_public.get(name.removeprefix("sepcal/"))
         room = str(Path(name).parent)

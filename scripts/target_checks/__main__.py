@@ -15,6 +15,7 @@ from pathlib import Path
 
 from target_checks.bad_records import check_bad_records
 from target_checks.corrections import check_corrections, check_headers, write_headers
+from target_checks.from_c import check_from_c
 from target_checks.images import check_images, measure_images
 from target_checks.machines import Checks
 from target_checks.recursion import check_recursion
@@ -27,6 +28,7 @@ CHECKS = (
     check_recursion,
     check_streams,
     check_bad_records,
+    check_from_c,
 )
 
 

@@ -13,11 +13,13 @@ from target_checks.machines import KINDS, Checks, Reader, last_digits, run_both,
 
 
 def write_headers(folder: Path) -> None:
-    """Exports the calibrations as C headers, for scripts/target to build."""
+    """Exports the calibrations as C headers in double and float, for scripts/target to build."""
     folder.mkdir(parents=True, exist_ok=True)
     for probe in apply_all():
-        file = folder / (probe.name.replace(" ", "_").replace("-", "_").lower() + ".h")
-        sepcal.export(probe.calibration, file, to="c", force=True)
+        stem = probe.name.replace(" ", "_").replace("-", "_").lower()
+        for single, kind in ((False, ""), (True, "_float")):
+            file = folder / f"{stem}{kind}.h"
+            sepcal.export(probe.calibration, file, to="c", single=single, force=True)
 
 
 def check_headers(folder: Path, checks: Checks) -> list[str]:
