@@ -57,7 +57,7 @@ def find_unescaped_comments(sources: Iterator[tuple[str, str]]) -> list[str]:
     found = []
     for name, text in sources:
         for statement in re.split(r";\s*\n", text):
-            opens = re.search(r'"[^"\n]*(/\*|# )[^"\n]*\{\}', statement)
+            opens = re.search(r'"(?:[^"\n]*(?:/\*|# )[^"\n]*| \* )\{\}', statement)
             if opens and not re.search(r"in_c_comment\(|in_line\(", statement):
                 found.append(f"{name}: {opens[0]}")
     return found
@@ -276,6 +276,7 @@ PLANTED_CPP = [
     (find_unescaped_pages, 'text += fmt::format("{}\\n", name);'),
     (find_unescaped_comments, 'text += fmt::format("/* {} */\\n", effect);\n'),
     (find_unescaped_comments, 'text += fmt::format("# {}\\n", line);\n'),
+    (find_unescaped_comments, 'for (auto& line : lines) text += fmt::format(" * {}\\n", line);\n'),
     (find_joined_comments, 'text += "/* " + effect + " */";'),
     (find_joined_comments, 'text += " * "; text += line;'),
     (find_joined_comments, 'text += std::string("# ") + line + "\\n";'),
