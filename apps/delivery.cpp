@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "delivery.hpp"
 
+#include <filesystem>
 #include <utility>
 
 namespace sepcal::app {
@@ -14,6 +15,11 @@ int exit_code(FitStatus status) {
     default:
       return 5;
   }
+}
+
+bool is_there(const std::string& file) {
+  std::error_code ignored;
+  return !file.empty() && std::filesystem::exists(file, ignored);
 }
 
 Delivery::Delivery(Wishes wishes, const std::vector<std::string>& inputs)

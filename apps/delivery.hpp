@@ -20,6 +20,9 @@ inline Detail detail_of(bool explain) { return explain ? Detail::explained : Det
 /// 0 converged, 4 not identifiable, 5 not converged.
 int exit_code(FitStatus status);
 
+/// Whether a file of that name is there to be read; what can't be told is not.
+bool is_there(const std::string& file);
+
 class Delivery {
  public:
   struct Wishes {

@@ -5,7 +5,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 
-#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -361,7 +360,7 @@ class AircraftApp {
   int simulate() const {
     if (!truth_.empty()) check_not_input(wishes_.output, truth_);
     OutputFile output(wishes_.output);
-    const bool given = !truth_.empty() && std::filesystem::exists(truth_);
+    const bool given = is_there(truth_);
     const SimulationOrder order = simulation_.resolve();
     AircraftTruth truth =
         parse_aircraft_truth(given ? files::read_text_file(truth_, "as a truth file") : "{}",

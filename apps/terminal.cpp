@@ -5,6 +5,10 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string_view>
 
 #include "sepcal/error.hpp"
 
@@ -13,6 +17,46 @@ namespace sepcal::app {
 using base::page;
 
 namespace {
+
+constexpr int no_memory = 2;  // bad input: less of it would do
+
+std::string_view program = "sepcal";
+std::terminate_handler usual_end = &std::abort;
+
+/// Where no exception can be caught.
+[[noreturn]] void end_without_memory() {
+  for (const std::string_view part : {program, std::string_view(": memory ran out\n")}) {
+    [[maybe_unused]] const auto said = ::write(STDERR_FILENO, part.data(), part.size());
+  }
+  ::_exit(no_memory);
+}
+
+/// Memory that runs out in a destructor, as of JSON, can't be caught either.
+[[noreturn]] void end_uncaught() {
+  if (const std::exception_ptr failure = std::current_exception()) {
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+      end_without_memory();
+    } catch (...) {  // a fault of the program: the system says so
+    }
+  }
+  usual_end();
+  std::abort();
+}
+
+/// The libraries set themselves up before main, outside of any try.
+void prepare(int argc, char** argv, char** /*environment*/) {
+  if (argc > 0) program = std::string_view(argv[0]);
+  program.remove_prefix(program.rfind('/') + 1);
+  std::set_new_handler(&end_without_memory);
+  usual_end = std::set_terminate(&end_uncaught);
+}
+
+#ifdef __linux__
+/// What stands in this section runs first in a program, before any library's own start.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first)(int, char**, char**) = &prepare;
+#endif
 
 /// A file that is opened while a stream is closed takes its number, and what is said then goes into
 /// the file. Nothing can be printed on what stands in for standard output: that is told as before.
@@ -27,12 +71,13 @@ void open_streams() {
 }  // namespace
 
 int start(const char* app, const std::function<int()>& perform) try {
+  std::set_new_handler(nullptr);
   open_streams();
   return perform();
 } catch (...) {
   std::fputs(app, stderr);
   std::fputs(": memory ran out\n", stderr);
-  return 2;
+  return no_memory;
 }
 
 void print(const std::string& result) {

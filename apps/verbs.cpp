@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -226,7 +225,7 @@ int Verbs::simulate(SimulationOrder order) const {
                             arguments_.output, arguments_.truth));
   }
   OutputFile output(arguments_.output);
-  const bool given = !arguments_.truth.empty() && std::filesystem::exists(arguments_.truth);
+  const bool given = is_there(arguments_.truth);
   std::optional<OutputFile> truth;
   if (!arguments_.truth.empty() && !given) truth.emplace(arguments_.truth);
   order.source = given ? arguments_.truth : "simulate";

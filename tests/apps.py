@@ -7,8 +7,10 @@ The apps are looked for in $SEPCAL_APPS, by default build/apps in the checkout.
 import json
 import os
 import re
+import resource
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -159,6 +161,17 @@ class Bench:
     def fit(self, *arguments: str | Path, flight: str = "flight.csv") -> Outcome:
         """Runs `fit --json` with the options that it can't do without."""
         return self.run("fit", flight, "--json", *self.options, *arguments)
+
+
+@contextmanager
+def small_files(largest: int) -> Iterator[None]:
+    """No file of this process may grow beyond so many bytes; Python ignores the signal."""
+    old, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (old, hard))
 
 
 def values_of(result: dict[str, Any]) -> NDArray[np.float64]:

@@ -268,6 +268,41 @@ TEST_CASE("symbolic links are followed, also to a file that isn't there yet") {
   }
 }
 
+TEST_CASE("a loop of symbolic links is refused and stays") {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("round", folder.path() / "there");
+  std::filesystem::create_symlink("there", folder.path() / "round");
+  std::filesystem::create_symlink("self", folder.path() / "self");
+  for (const char* name : {"there", "self"}) {
+    CAPTURE(name);
+    CHECK_THROWS_WITH_AS(OutputFile{folder.path() / name},
+                         Contains("is a loop of symbolic links; name a file"), Error);
+    CHECK(std::filesystem::is_symlink(folder.path() / name));
+  }
+  CHECK_FALSE(sepcal::is_same_file(folder.path() / "there", folder.path() / "self"));
+  CHECK(count_files(folder.path()) == 3);
+}
+
+TEST_CASE("a name that is too long is refused before the work") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH_AS(OutputFile{folder.path() / std::string(300, 'x')},
+                       Contains("can't be written: File name too long"), Error);
+}
+
+TEST_CASE("of several texts all files are written or none") {
+  const TemporaryFolder folder;
+  const auto old = folder.write("old", "one");
+  const auto one = (folder.path() / "one").string();
+  const auto two = (folder.path() / "two").string();
+  CHECK_THROWS_WITH_AS(sepcal::write_whole({{one, "new"}, {two + "/three", "new"}}),
+                       Contains("isn't there"), Error);
+  CHECK(read_bytes(old) == "old");
+  CHECK(count_files(folder.path()) == 1);
+  sepcal::write_whole({{one, "1"}, {two, "2"}});
+  CHECK(read_bytes(one) == "1");
+  CHECK(read_bytes(two) == "2");
+}
+
 TEST_CASE("a name without a folder goes to the current one") {
   const TemporaryFolder folder;
   const auto before = std::filesystem::current_path();

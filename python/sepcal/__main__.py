@@ -33,27 +33,61 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, in_line(f"{self.prog}: {message}; --help shows how") + "\n")
 
 
+def open_streams() -> None:
+    """Opens nothing in a closed stream's place: a file would take its number, and what is said.
+
+    Python itself gives such a stream as None, and then to argparse.
+    """
+    for stream, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(stream)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is the stream's own
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "r+", encoding="utf-8"))  # noqa: SIM115
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit code."""
+    open_streams()
     parser = Parser(prog="sepcal", description="Beside sepcal-pitot and sepcal-mag.")
     parser.add_argument("--version", action="version", version=f"sepcal {_core.__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     for command in COMMANDS:
         command.add_to(commands)
-    chosen = parser.parse_args(arguments)
+    asked = "sepcal"
     try:
-        code = int(chosen.run(chosen))
-        sys.stdout.flush()
-        return code
+        try:
+            chosen = parser.parse_args(arguments)
+            asked += f" {chosen.command}"
+            return int(chosen.run(chosen))
+        finally:
+            sys.stdout.flush()
     except BrokenPipeError:  # as of "| head": who reads has enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return 0
+    except OSError as error:
+        drop_output()
+        culprit = error.filename or "standard output can't be written"
+        return refuse(f"{asked}: {culprit}: {error.strerror}")
+    except MemoryError:
+        return refuse(f"{asked}: memory ran out")
     except _core.Error as error:
-        tell(f"sepcal {chosen.command}: {error}")
-        return BAD_INPUT
+        return refuse(f"{asked}: {error}")
     except KeyboardInterrupt:
-        tell(f"sepcal {chosen.command}: stopped by Ctrl-C; no file was written")
+        tell(f"{asked}: stopped by Ctrl-C; no file was written")
         return INTERRUPTED
+
+
+def drop_output() -> None:
+    """Lets what waits for standard output go, where Python would fail once more as it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def refuse(what: str) -> int:
+    """Says so in one line."""
+    tell(what)
+    return BAD_INPUT
 
 
 if __name__ == "__main__":

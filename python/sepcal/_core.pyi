@@ -69,6 +69,8 @@ __all__: list[str] = [
     "certify",
     "channels",
     "check",
+    "check_not_input",
+    "check_output",
     "effects",
     "example_in_five_states",
     "example_in_three_states",
@@ -102,6 +104,7 @@ __all__: list[str] = [
     "simulate",
     "smooth",
     "spectrum",
+    "write_whole",
 ]
 
 class Options:
@@ -2866,6 +2869,8 @@ def certify(
 ) -> Certificate: ...
 def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
 def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
+def check_not_input(arg0: str, arg1: str) -> None: ...
+def check_output(arg0: str) -> None: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def example_in_five_states() -> TwoStepProblem: ...
 def example_in_three_states() -> TwoStepProblem: ...
@@ -3092,6 +3097,7 @@ def spectrum(
     ],
     arg2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+def write_whole(arg0: collections.abc.Mapping[str, str]) -> None: ...
 
 SIGNIFICANT_BELOW: float = 0.05
 VISIBLE_FROM: float = 0.05

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping
 
 from sepcal import _core
@@ -23,37 +22,12 @@ def name_of(file: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
 
 def write_whole(texts: Mapping[str, str]) -> None:
     """Writes each file's text; raises Error, with nothing written or altered, where it can't."""
-    drafts: dict[str, str] = {}
-    writing = ""
-    try:
-        for writing, text in texts.items():
-            if os.path.isdir(writing):
-                raise _core.Error(f"{writing} is a folder; name a file in it")
-            folder = os.path.dirname(os.path.abspath(writing))
-            handle, drafts[writing] = tempfile.mkstemp(dir=folder, prefix=".sepcal-")
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as out:
-                out.write(text)
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(drafts[writing], 0o666 & ~mask)
-        for writing in texts:
-            os.replace(drafts[writing], writing)
-            del drafts[writing]
-    except OSError as error:
-        raise _core.Error(f"{writing} can't be written: {error.strerror}") from error
-    finally:
-        for draft in drafts.values():
-            os.unlink(draft)
+    _core.write_whole(dict(texts))
 
 
 def refuse_outputs(outputs: tuple[str, ...], inputs: tuple[str, ...]) -> None:
-    """Raises Error for an output whose folder isn't there, or that is an input."""
-    for output in outputs:
-        folder = os.path.dirname(output) or "."
-        if not os.path.isdir(folder):
-            raise _core.Error(f"{output}: folder '{folder}' isn't there; make it first")
-        for read in inputs:
-            if os.path.exists(output) and os.path.exists(read) and os.path.samefile(output, read):
-                raise _core.Error(
-                    f"{output}: it is an input, and writing there would lose it; name another file"
-                )
+    """Raises Error for an output that is an input or can't be written."""
+    for output in map(name_of, outputs):
+        for read in map(name_of, inputs):
+            _core.check_not_input(output, read)
+        _core.check_output(output)

@@ -2,6 +2,7 @@
 #include "base/thread_pool.hpp"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace sepcal::base {
@@ -72,8 +73,11 @@ void ThreadPool::keep(const std::exception_ptr& failure) {
 }
 
 void ThreadPool::start_workers() {
-  while (static_cast<int>(workers_.size()) + 1 < threads_) {
-    workers_.emplace_back([this] { work(); });
+  try {
+    while (static_cast<int>(workers_.size()) + 1 < threads_) {
+      workers_.emplace_back([this] { work(); });
+    }
+  } catch (const std::system_error&) {  // no more of them here and now: those that run do it all
   }
 }
 

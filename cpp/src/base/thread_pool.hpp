@@ -19,7 +19,8 @@ constexpr int most_threads = 1024;
 
 class ThreadPool {
  public:
-  /// `threads` of them, the caller's included; 0: as many as the machine has cores.
+  /// `threads` of them, the caller's included; 0: as many as the machine has cores. Fewer work
+  /// where the system starts no more.
   explicit ThreadPool(int threads);
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;

@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -21,6 +22,7 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/joint.hpp"
+#include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "structs.hpp"
@@ -82,6 +84,15 @@ Flight unpickled(const PickledFlight& state) {
   return flight;
 }
 
+/// Opens an output and lets it go, which leaves nothing; not a pipe, whose reader would take that
+/// for the end. Throws Error where it can't be written.
+void check_output(const std::string& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_other(status)) return;
+  const OutputFile opened(file);
+}
+
 void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
       .def(py::init<std::string>())
@@ -96,6 +107,11 @@ void define_flights(py::module_& module) {
       .def_property_readonly("headers", &headers)
       .def_property_readonly("maneuvers", &maneuvers)
       .def(py::pickle(&pickled, &unpickled));
+  module.def("write_whole", &write_whole, WithoutGil());
+  module.def("check_output", &check_output);
+  module.def("check_not_input", [](const std::string& output, const std::string& input) {
+    check_not_input(output, input);
+  });
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <ostream>
 #include <streambuf>
 #include <string>
@@ -18,7 +19,8 @@ class OutputFile : private std::streambuf {
   /// Opens the nameless file (Linux's O_TMPFILE; where the disc has none, a hidden one beside the
   /// target), so that a target that can't be written is known before the long work.
   /// A symbolic link is followed; a device or pipe (/dev/stdout) is written directly. Throws Error
-  /// where the target's folder isn't there, the target is a folder, or writing isn't permitted.
+  /// where the target's folder isn't there, the target is a folder or a loop of symbolic links, or
+  /// writing isn't permitted.
   explicit OutputFile(std::filesystem::path target);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -60,6 +62,9 @@ class OutputFile : private std::streambuf {
   std::vector<char> pending_;
   std::ostream stream_;
 };
+
+/// Writes {file: text}; throws Error, with nothing written or altered, where one can't be written.
+void write_whole(const std::map<std::string, std::string>& texts);
 
 /// Whether both paths lead to one file, by whatever names and links; it need not be there yet.
 bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other);

@@ -10,12 +10,12 @@ namespace sepcal::files {
 
 bool is_valid(const Flight::Column& column, const Unit* unit, std::size_t row) {
   const double value = column.values[row];
-  return std::isfinite(unit == nullptr ? value : unit->convert(value));
+  return is_reading(unit == nullptr ? value : unit->convert(value));
 }
 
 std::string describe_cell(const Flight::Column& column, std::size_t row) {
   const double value = column.values[row];
-  if (std::isfinite(value)) return fmt::format("holds {}, too large to convert", value);
+  if (std::isfinite(value)) return fmt::format("holds {}, too large to compute with", value);
   if (!column.first_text) return fmt::format("holds {}", value);
   if (column.first_text->row != row) return "holds text";
   std::string_view text = column.first_text->text;

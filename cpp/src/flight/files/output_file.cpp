@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <list>
 #include <system_error>
 #include <utility>
 
@@ -53,6 +54,8 @@ OutputFile::OutputFile(std::filesystem::path target)
   pending_.reserve(buffer_size);
   struct stat old{};
   if (::stat(named_.c_str(), &old) != 0) {
+    if (errno == ELOOP) fail("is a loop of symbolic links; name a file", 0);
+    if (errno != ENOENT && errno != ENOTDIR) fail("can't be written", errno);
     if (!named_.has_filename()) fail("names no file; end the path with a file's name", 0);
     open_beside_target();
     return;
@@ -171,6 +174,13 @@ void OutputFile::fail(const std::string& what, int error) {
   abandon();
   throw Error(error == 0 ? fmt::format("{}: {}", named_.string(), what)
                          : fmt::format("{}: {}: {}", named_.string(), what, std::strerror(error)));
+}
+
+void write_whole(const std::map<std::string, std::string>& texts) {
+  std::list<OutputFile> files;
+  for (const auto& [file, text] : texts) files.emplace_back(file).write(text);
+  for (OutputFile& file : files) file.flush();
+  for (OutputFile& file : files) file.commit();
 }
 
 bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other) {

@@ -9,6 +9,7 @@
 
 #include "base/gaps.hpp"
 #include "flight/files/headers.hpp"
+#include "flight/files/invalid_cells.hpp"
 
 namespace sepcal::logs {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr std::size_t shortest_part = 10;  // rows
 constexpr double least_gap = 1.0;          // s
 
-/// What time does in the rows that hold a number, in the column's own unit.
+/// What time does in the rows that hold a reading, in the column's own unit.
 struct Clock {
   std::vector<std::size_t> restarts;  // rows before which time runs back
   bool to_the_start = true;           // each of them to the first half of the part before it
@@ -29,7 +30,7 @@ Clock read_clock(std::span<const double> time) {
   double before = std::numeric_limits<double>::quiet_NaN();
   double began = before;
   for (std::size_t row = 0; row < time.size(); ++row) {
-    if (!std::isfinite(time[row])) continue;
+    if (!files::is_reading(time[row])) continue;
     if (time[row] < before) {
       clock.restarts.push_back(row);
       clock.shortest = std::min(clock.shortest, before - time[row]);
@@ -77,7 +78,7 @@ void join_clock(Flight& flight, std::vector<std::string>& notes) {
       ++restart;
     }
     joined[row] += offset;
-    if (std::isfinite(joined[row])) last = joined[row];
+    if (files::is_reading(joined[row])) last = joined[row];
   }
   const std::string header = logged->column->header;
   notes.push_back(fmt::format(

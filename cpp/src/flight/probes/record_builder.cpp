@@ -205,7 +205,7 @@ void RecordBuilder::keep_valid() {
   for (const std::string_view name : checked_) quantities.push_back(&logged(name));
   const auto find_invalid = [&quantities](std::size_t row) {
     return std::ranges::find_if(quantities, [row](const LoggedQuantity* quantity) {
-      return !std::isfinite(quantity->at(row));
+      return !files::is_reading(quantity->at(row));
     });
   };
   keep_or_refuse([&](std::size_t row) { return find_invalid(row) == quantities.end(); },
@@ -376,12 +376,12 @@ void RecordBuilder::take_quantities() {
   for (const auto& [name, value] : computed_) add(name, value);
 }
 
-/// Each reading is finite; what is computed of them need not be: 1e300 Pa at 1e-300 K.
+/// Each is a reading; what is computed of them need not be: 1e100 Pa at 1e-300 K.
 void RecordBuilder::check_computed() const {
   for (const auto& [name, value] : computed_) {
     const auto column = record_.column(name);
     const KeptRows indices(column.size(), release_of(flight_));
-    const auto bad = indices.find_if_not([&](std::size_t i) { return std::isfinite(column[i]); });
+    const auto bad = indices.find_if_not([&](std::size_t i) { return files::is_reading(column[i]); });
     if (!bad) continue;
     throw Error(fmt::format("{}: {} is computed from this row's readings as {}; check them",
                             flight_.locate(rows_.at(*bad)), name, column[*bad]));
