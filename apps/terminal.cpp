@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -21,6 +22,7 @@ namespace {
 constexpr int no_memory = 2;  // bad input: less of it would do
 
 std::string_view program = "sepcal";
+std::atomic<bool> memory_ran_out = false;
 std::terminate_handler usual_end = &std::abort;
 
 /// Where no exception can be caught.
@@ -31,16 +33,25 @@ std::terminate_handler usual_end = &std::abort;
   ::_exit(no_memory);
 }
 
+/// As without a handler; but who has to end the program then knows why.
+void refuse_memory() {
+  memory_ran_out = true;
+  throw std::bad_alloc();
+}
+
+bool is_out_of_memory(const std::exception_ptr& failure) {
+  try {
+    if (failure) std::rethrow_exception(failure);
+  } catch (const std::bad_alloc&) {
+    return true;
+  } catch (...) {  // a fault of the program
+  }
+  return false;
+}
+
 /// Memory that runs out in a destructor, as of JSON, can't be caught either.
 [[noreturn]] void end_uncaught() {
-  if (const std::exception_ptr failure = std::current_exception()) {
-    try {
-      std::rethrow_exception(failure);
-    } catch (const std::bad_alloc&) {
-      end_without_memory();
-    } catch (...) {  // a fault of the program: the system says so
-    }
-  }
+  if (memory_ran_out || is_out_of_memory(std::current_exception())) end_without_memory();
   usual_end();
   std::abort();
 }
@@ -71,7 +82,7 @@ void open_streams() {
 }  // namespace
 
 int start(const char* app, const std::function<int()>& perform) try {
-  std::set_new_handler(nullptr);
+  std::set_new_handler(&refuse_memory);
   open_streams();
   return perform();
 } catch (...) {

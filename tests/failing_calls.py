@@ -26,6 +26,14 @@ LIBRARY = APPS.parent / "tests" / "failing" / "libfailing_calls.so"
 APP = "sepcal-pitot"
 ROWS = 40
 BAD_INPUT = 2
+# Libraries that don't take a refusal, and where. Their frames are named in docs/testing.md.
+UNAVOIDABLE = {
+    "libgfortran.so": "sets itself up before main",
+    "libgomp.so": "sets itself up before main",
+    "libglog.so": "asks for the user's name before main",
+    "libcrypto.so": "goes on without a lock that it could not make",
+    "Eigen::": "DenseStorage::resize frees what the destructor then frees again",
+}
 COMMON = ("libfailing_calls.so", "libc.so", "libstdc++.so", "libgcc_s.so", "ld-linux")
 # The loader's own exit code, for what it can't load before the app is there.
 LOADER = 127
@@ -72,13 +80,37 @@ class Ending:
         return [frame for frame in frames if not frame.startswith(COMMON)]
 
     @property
-    def library(self) -> str:
-        """The library at fault: it crashed, or set itself up before main; empty: the app is."""
-        frames = self.frames
-        is_own = not frames or frames[0].startswith(APP)
-        before_main = not any(frame.startswith(APP) for frame in frames)
-        crashed = self.code < 0 and not is_own
-        return frames[0] if crashed or (frames and before_main) else ""
+    def culprit(self) -> str:
+        """The innermost frame at fault by its name, where a crash or an exit names one."""
+        if self.code not in (BAD_INPUT, LOADER) and self.code != 0:
+            for frame in self.frames:
+                if not (name := name_of(frame)).startswith(("std::", "void std::", "operator")):
+                    return name
+        return ""
+
+    @property
+    def in_library(self) -> bool:
+        """Whether it is a library's fault that can't be helped."""
+        return self.culprit.startswith(tuple(UNAVOIDABLE))
+
+
+def name_of(frame: str) -> str:
+    """The function of a frame of the app, by its symbols; of another module the frame itself.
+
+    A library of templates is compiled into the app: its functions have its namespace.
+    """
+    found = re.fullmatch(rf"{APP} (\S+)\+0x(\w+)", frame)
+    if not found:
+        return frame
+    symbol, offset = found.groups()
+    if symbol == "?":
+        at = hex(int(offset, 16) - 1)
+        command = ["addr2line", "-f", "-e", str(APPS / APP), at]
+        symbol = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()[
+            0
+        ]
+    shown = subprocess.run(["c++filt", symbol], capture_output=True, text=True, check=True).stdout
+    return re.sub(r"^(void|bool|int|auto) ", "", shown.strip())[:120]
 
 
 @dataclass
@@ -97,7 +129,7 @@ class Tally:
         self.runs += 1
         self.unreached += not ending.reached
         if ending.fault:
-            (self.in_libraries if ending.library else self.faults).append(ending)
+            (self.in_libraries if ending.in_library else self.faults).append(ending)
         elif ending.code == 0:
             self.succeeded += 1
         else:
@@ -208,7 +240,7 @@ def show(faults: list[Ending]) -> None:
     """Each kind of fault once, with where it was."""
     kinds: dict[tuple[str, str], list[str]] = collections.defaultdict(list)
     for one in faults:
-        said = one.library or (one.frames[0] if one.code < 0 and one.frames else one.err[:200])
+        said = one.culprit or one.err[:200]
         kinds[one.fault, said].append(one.fails)
     for (fault, said), failing in sorted(kinds.items(), key=lambda entry: -len(entry[1])):
         print(f"    {len(failing)} x {fault} in {said!r}; first: {failing[0]}", flush=True)

@@ -88,3 +88,23 @@ def test_a_fault_is_seen(verbs: dict[str, Verb]) -> None:
     assert judge(-11, line, old) == "crash: signal 11"
     assert judge(1, line, old) == "exit code 1"
     assert "left in the folder" in judge(2, line, old, part=b"")
+
+
+def test_a_library_is_told_from_the_app() -> None:
+    """By the innermost frame of a crash that is not the C library's."""
+
+    def crash(*frames: str) -> failing_calls.Ending:
+        log = (
+            "failed\n  libfailing_calls.so malloc+0x9\ncrashed: signal 11\n  libc.so.6 abort+0xd3\n"
+        )
+        log += "".join(f"  {frame}\n" for frame in frames)
+        return failing_calls.Ending("allocation:1", -11, "", True, "crash: signal 11", log)
+
+    own, main = f"{APP} _ZN6sepcal8read_csvEv+0x9", f"{APP} main+0x4"
+    eigen = f"{APP} _ZN5Eigen6ResizeEv+0x4"
+    vector = f"{APP} _ZNSt6vectorIdSaIdEED2Ev+0x4"
+    assert crash("libgomp.so.1 ?+0x31", main).in_library
+    assert crash(eigen, own, main).in_library
+    assert not crash(own, eigen, main).in_library
+    assert not crash(vector, own, main).in_library
+    assert not crash("libceres.so.3 ?+0x1", own, main).in_library

@@ -102,13 +102,13 @@ std::pair<Tracked, std::vector<std::string>> track_on(
     int every) {
   TrackedAircraft tracked =
       track_aircraft(fitted, flight,
-                     {.how = {.method = choice_of<TrackMethod>("method", method),
-                              .noise = noise,
-                              .process_noise = process_noise,
-                              .initial_states = initial_states,
-                              .iterations = iterations,
-                              .forgetting = forgetting,
-                              .every = every},
+                     {.how = TrackOptions{.method = choice_of<TrackMethod>("method", method),
+                                          .noise = noise,
+                                          .process_noise = process_noise,
+                                          .initial_states = initial_states,
+                                          .iterations = iterations,
+                                          .forgetting = forgetting,
+                                          .every = every},
                       .start_rows = start_rows});
   Tracked result{std::move(tracked.track), {}};
   result.track.rows = tracked.flight_rows;

@@ -147,7 +147,7 @@ void read_truth(std::string_view json, std::string_view model, Outputs outputs,
 template <class Truth>
 std::string write_truth(std::string_view model, const Truth& truth, const files::Json& options,
                         Outputs outputs) {
-  files::Json root;
+  files::Json root = files::Json::object();
   root["model"] = model;
   root["parameters"] = truth.parameters;
   root["options"] = options;

@@ -58,7 +58,7 @@ AircraftFit describe(const Flight& flight, AircraftOptions options, Fit fit) {
   }
   if (options.model != AircraftModel::aero) options.calibration.fit.samples = 0;
   return {.options = std::move(options),
-          .flight = {flight.name(), digest_of(flight), flight.rows(), fit.rows},
+          .flight = FittedFlight{flight.name(), digest_of(flight), flight.rows(), fit.rows},
           .equations = {},
           .fit = std::move(fit)};
 }

@@ -66,7 +66,7 @@ void read_model(const Json& object, AircraftOptions& options) {
 }
 
 Json write_fitted(const AircraftFit& fitted) {
-  Json root;
+  Json root = Json::object();
   root["schema_version"] = schema_version;
   root["model"] = to_string(fitted.options.model);
   root["method"] = method_of(fitted);

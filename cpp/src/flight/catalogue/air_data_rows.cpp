@@ -10,11 +10,11 @@ Port on_input(const std::string& name, const std::string& unit, double plausible
 }
 
 PortRow wind_row(const std::vector<Port::Component>& components, double plausible) {
-  return {.port = {.name = "wind",
-                   .unit = "m/s",
-                   .components = components,
-                   .plausible = plausible,
-                   .causes = time_and_place()},
+  return {.port = Port{.name = "wind",
+                       .unit = "m/s",
+                       .components = components,
+                       .plausible = plausible,
+                       .causes = time_and_place()},
           .sentence = "the wind changes",
           .acts_on = ActsOn::world,
           .forms = {{any_driver, "W + s x (n, e)"},
@@ -68,21 +68,21 @@ PortRow pressure_offset_row(const std::vector<Form>& forms) {
 
 EffectRow pressure_zero_row(const std::string& equation) {
   const Port port = pressure_offset();
-  return {.entry = {port.name, equation, "density", port.unit},
+  return {.entry = CataloguedEffect{port.name, equation, "density", port.unit},
           .sentence = "the zero of the pressure difference is off",
           .maker = without_driver(constant_on(port)),
           .better_with = {"rho"}};
 }
 
 EffectRow icing_ramp_row(const std::string& equation, const Port& airspeed_scale) {
-  return {.entry = {"icing_ramp", equation, "time", "1 per s"},
+  return {.entry = CataloguedEffect{"icing_ramp", equation, "time", "1 per s"},
           .sentence = "the airspeed's scale drifts steadily from some time on",
           .channels = {"time"},
           .maker = renamed("airspeed_scale[ramp(time)]", airspeed_scale)};
 }
 
 EffectRow water_blockage_row(const std::string& equation, const Port& airspeed_scale) {
-  return {.entry = {"water_blockage", equation, "time", "1"},
+  return {.entry = CataloguedEffect{"water_blockage", equation, "time", "1"},
           .sentence = "the airspeed's scale changes at one time",
           .channels = {"time"},
           .maker = renamed("airspeed_scale[step(time)]", airspeed_scale)};

@@ -28,7 +28,8 @@ PortRow axis_scale_row(const Port& axis_scale, const std::string& equation) {
 }
 
 EffectRow bias_step_row(const Port& bias) {
-  return {.entry = {"bias_step", "m + s from t0 on (x, y, z), t0 by a scan", "time", "uT"},
+  return {.entry = CataloguedEffect{"bias_step", "m + s from t0 on (x, y, z), t0 by a scan", "time",
+                                    "uT"},
           .sentence = "something was switched on that bends the field",
           .channels = {"time"},
           .maker = renamed("bias[step(time)]", bias)};
@@ -36,7 +37,8 @@ EffectRow bias_step_row(const Port& bias) {
 
 EffectRow warm_up_row(const Port& bias) {
   return {
-      .entry = {"warm_up", "m + s exp(-(t - t_first) / tau) (x, y, z), tau fitted", "time", "uT"},
+      .entry = CataloguedEffect{"warm_up", "m + s exp(-(t - t_first) / tau) (x, y, z), tau fitted",
+                                "time", "uT"},
       .sentence = "the sensor's bias settles after it is switched on",
       .channels = {"time"},
       .maker = renamed("bias[decay(time)]", bias)};

@@ -65,7 +65,7 @@ Port g_sensitivity() {
 
 EffectRow constant_row(const Port& port, const std::string& equation, const std::string& sentence,
                        const std::vector<std::string>& channels = {}) {
-  return {.entry = {port.name, equation, "none", port.unit},
+  return {.entry = CataloguedEffect{port.name, equation, "none", port.unit},
           .sentence = sentence,
           .channels = channels,
           .maker = constant_on(port)};
@@ -73,7 +73,7 @@ EffectRow constant_row(const Port& port, const std::string& equation, const std:
 
 EffectRow step_row(const std::string& name, const Port& port, const std::string& equation,
                    const std::string& sentence) {
-  return {.entry = {name, equation, "time", port.unit},
+  return {.entry = CataloguedEffect{name, equation, "time", port.unit},
           .sentence = sentence,
           .channels = {"time"},
           .maker = renamed(port.name + "[step(time)]", port)};
@@ -187,7 +187,7 @@ EffectTable path_effects() {
                "the gyros' bias changes at one time"),
       step_row("accel_bias_step", accel_bias, "(ax, ay, az) as read + s after t0",
                "the accelerometers' bias changes at one time"),
-      {.entry = {"imu_late", "the inertial unit late by tau", "none", "s"},
+      {.entry = CataloguedEffect{"imu_late", "the inertial unit late by tau", "none", "s"},
        .sentence = "the inertial unit's time is late",
        .channels = {"time"},
        .maker =
@@ -219,19 +219,19 @@ EffectTable aircraft_effects() {
                       {.port = accel_bias,
                        .sentence = "the accelerometers' bias changes",
                        .forms = {{any_driver, "(ax, ay, az) as read + s x"}}}});
-  table.effects = {{.entry = {"controls_late", "the controls late by tau", "none", "s"},
-                    .sentence = "the controls' time is late",
-                    .channels = {"time"},
-                    .maker = [](const BlockModel& model, EffectSetting& setting, Record& record) {
-                      std::vector<std::string> controls;
-                      for (const Variable& input : model.tables().inputs) {
-                        for (const char* control : {"elevator", "aileron", "rudder", "throttle"}) {
-                          if (input.name == control) controls.push_back(input.name);
-                        }
-                      }
-                      return in_time(Delay::Kind::inputs_late, longest_offset, controls)(
-                          model, setting, record);
-                    }}};
+  table.effects = {
+      {.entry = CataloguedEffect{"controls_late", "the controls late by tau", "none", "s"},
+       .sentence = "the controls' time is late",
+       .channels = {"time"},
+       .maker = [](const BlockModel& model, EffectSetting& setting, Record& record) {
+         std::vector<std::string> controls;
+         for (const Variable& input : model.tables().inputs) {
+           for (const char* control : {"elevator", "aileron", "rudder", "throttle"}) {
+             if (input.name == control) controls.push_back(input.name);
+           }
+         }
+         return in_time(Delay::Kind::inputs_late, longest_offset, controls)(model, setting, record);
+       }}};
   std::ranges::copy(late_readings(), std::back_inserter(table.effects));
   table.channels = channels();
   return table;

@@ -100,9 +100,9 @@ void OutputFile::open_beside_target() {
 template <class Take>
 void OutputFile::take_hidden_name(const Take& take, const char* failure) {
   for (int attempt = 0;; ++attempt) {
-    const auto name = folder_of(target_) / fmt::format(".sepcal-{}-{}.part", ::getpid(), attempt);
+    auto name = folder_of(target_) / fmt::format(".sepcal-{}-{}.part", ::getpid(), attempt);
     if (take(name.c_str())) {
-      hidden_ = name;
+      hidden_ = std::move(name);  // a copy could find no memory, and nobody would remove the file
       return;
     }
     if (errno != EEXIST) fail(failure, errno);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/files/sha256.hpp"
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
 #include <array>
+#include <new>
 #include <string_view>
 
 #include "sepcal/error.hpp"
@@ -20,6 +22,10 @@ void require(bool success) {
 void Sha256::Free::operator()(evp_md_ctx_st* context) const { EVP_MD_CTX_free(context); }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+#if OPENSSL_VERSION_NUMBER >= 0x30000000L
+  // Without memory for its own context libcrypto doesn't say so and crashes at the first digest.
+  if (OSSL_LIB_CTX_get0_global_default() == nullptr) throw std::bad_alloc();
+#endif
   require(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
 }
 

@@ -75,7 +75,7 @@ void check_version(const Json& version, const std::string& source) {
 }  // namespace
 
 std::string to_json(const Calibration& calibration) {
-  Json root;
+  Json root = Json::object();
   root["schema_version"] = schema_version;
   root["model"] = calibration.probe->name();
   root["inputs"] = write_inputs(calibration.flight);

@@ -44,7 +44,7 @@ Json write_notes(const std::vector<LogNote>& notes) {
 }  // namespace
 
 std::string to_json(const FlightCheck& check) {
-  Json root;
+  Json root = Json::object();
   root["schema_version"] = schema_version;
   root["model"] = check.model;
   root["inputs"] = {{"file", check.file},

@@ -7,7 +7,7 @@ namespace sepcal {
 using namespace json;  // this room's own
 
 std::string to_json(const Comparison& comparison) {
-  Json root;
+  Json root = Json::object();
   root["schema_version"] = schema_version;
   root["model"] = comparison.model;
   root["inputs"] = {{"file", comparison.flight.file},

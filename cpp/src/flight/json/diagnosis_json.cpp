@@ -98,7 +98,7 @@ Json write_injection(const Injection& injection) {
 
 std::string to_json(const FlightDiagnosis& result) {
   const Diagnosis& diagnosis = result.diagnosis;
-  Json root;
+  Json root = Json::object();
   root["schema_version"] = schema_version;
   root["model"] = result.model;
   root["inputs"] = {{"file", result.flight.file},

@@ -19,7 +19,7 @@ FlightIntervals find_intervals(const Calibration& calibration, const Flight& fli
   options.unsampled = initial_corrections(effective.effects);
   return {
       .model = std::string(calibration.probe->name()),
-      .flight = {flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows},
+      .flight = FittedFlight{flight.name(), flight.sha256(), flight.rows(), calibration.fit.rows},
       .status = calibration.fit.status,
       .message = calibration.fit.message,
       .at_bound = names_at_bound(calibration.fit),
