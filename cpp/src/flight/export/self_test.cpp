@@ -14,8 +14,6 @@
 namespace sepcal::exporting {
 namespace {
 
-constexpr std::size_t plain_rows = 3;
-
 std::vector<CorrectedColumn> correct_trials(const Calibration& calibration, const Trials& trials) {
   Calibration alone = calibration;
   alone.options.log = {};  // of another log

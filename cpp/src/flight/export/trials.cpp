@@ -11,8 +11,6 @@
 namespace sepcal::exporting {
 namespace {
 
-constexpr std::size_t plain_rows = 3;
-
 double setting_of(const Calibration& calibration, const char* name) {
   const auto settings = calibration.probe->settings();
   const auto found = settings.find(name);

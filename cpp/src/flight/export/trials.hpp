@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "sepcal/flight/flight.hpp"
 
 namespace sepcal::exporting {
+
+inline constexpr std::size_t plain_rows = 3;  // the first ones, which no guard finds
 
 class Trials {
  public:

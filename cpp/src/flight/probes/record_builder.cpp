@@ -381,7 +381,8 @@ void RecordBuilder::check_computed() const {
   for (const auto& [name, value] : computed_) {
     const auto column = record_.column(name);
     const KeptRows indices(column.size(), release_of(flight_));
-    const auto bad = indices.find_if_not([&](std::size_t i) { return files::is_reading(column[i]); });
+    const auto bad =
+        indices.find_if_not([&](std::size_t i) { return files::is_reading(column[i]); });
     if (!bad) continue;
     throw Error(fmt::format("{}: {} is computed from this row's readings as {}; check them",
                             flight_.locate(rows_.at(*bad)), name, column[*bad]));

@@ -132,8 +132,8 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
   fitted.rows_used = fit.rows;
   std::vector<Derived> derived = derive(*probe, fit);
   std::vector<Restatement> restated = probe->restate(fit);
-  std::map<std::string, Interval> ranges = ranges_of_drivers(
-      probe->name(), held.effects, record.select(held.fit.stage_two_segments));
+  std::map<std::string, Interval> ranges =
+      ranges_of_drivers(probe->name(), held.effects, record.select(held.fit.stage_two_segments));
   return {std::move(probe),
           std::move(held),
           std::move(fitted),
