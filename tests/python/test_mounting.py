@@ -208,8 +208,8 @@ def test_an_autopilot_is_told_of_the_mounting(tmp_path: Path):
     fit(tmp_path, "--mounting", "0,0,90", "-o", "m.json")
     names = ("CAL_MAG0_XOFF", "CAL_MAG0_YOFF", "CAL_MAG0_ZOFF")
     for target, said, offsets in (
-        ("px4", "CAL_MAG0_ROT has to say so", HARD_IRON @ turn(0, 0, 90) / 100),
-        ("ardupilot", "the compass's ORIENT has to say so", -10 * HARD_IRON),
+        ("px4", "CAL_MAG0_ROT", HARD_IRON @ turn(0, 0, 90) / 100),
+        ("ardupilot", "COMPASS_ORIENT", -10 * HARD_IRON),
     ):
         done = run(
             APP, "export", "m.json", "--to", target, "-o", "v", "--json", folder=tmp_path

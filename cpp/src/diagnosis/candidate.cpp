@@ -7,7 +7,6 @@
 
 #include "base/parts_of_record.hpp"
 #include "diagnosis/innovation_rows.hpp"
-#include "diagnosis/smooth_inputs.hpp"
 #include "effects/driven_rows.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
@@ -214,15 +213,6 @@ void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool)
     tangent.rightCols<1>() +=
         values_.at(released.coefficients[static_cast<std::size_t>(k)].name) * tangent.col(at);
   }
-  if (!noise_) {  // the residual stays that of the readings
-    smooth_inputs_ = smooth_inputs(record_, fitted_.model->tables());
-    Record smooth = with_smooth_inputs();
-    smooth.cut(fitted_.rows);
-    const model::Measurements smoothed(*model, smooth);
-    columns.pop_back();
-    tangent.leftCols(tangent.cols() - 1) =
-        model::Sweep(*model, smoothed, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
-  }
   const auto count = static_cast<double>(layout.rows);
   for (int j = 0; j < tables.n_z(); ++j) {
     const auto& output = tables.outputs[static_cast<std::size_t>(j)];
@@ -242,12 +232,6 @@ void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool)
   linearisation_.residual = tangent.rightCols<1>();
   if (own > 0) release(released, tangent.middleCols(tangent.cols() - 1 - own, own));
   tangent.conservativeResize(Eigen::NoChange, tangent.cols() - 1 - own);
-}
-
-Record CandidateRoom::with_smooth_inputs() const {
-  Record record = record_;
-  for (const auto& [name, values] : smooth_inputs_) record.replace(name, values);
-  return record;
 }
 
 void CandidateRoom::release(const Candidate& released, const MatrixXd& columns) {
@@ -311,7 +295,7 @@ MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
   base::ParameterValues values = values_;
   values.insert(shapes.begin(), shapes.end());
   if (path_) return path_columns(change_by(added, values, names));
-  Record rows = with_smooth_inputs();
+  Record rows = record_;
   rows.cut(fitted_.rows);
   const model::Measurements measurements(*model, rows);
   const std::vector<Variable> parameters = model->tables().parameters();

@@ -144,9 +144,6 @@ class CandidateRoom {
                        const std::vector<std::string>& names) const;
   Eigen::MatrixXd path_columns(const PathChange& change) const;
   Columns drive_path(const PathChange& change, const Eigen::MatrixXd& phi) const;
-  /// record_ with the inputs that columns are made of.
-  Record with_smooth_inputs() const;
-
   Eigen::MatrixXd composed_columns(const std::vector<Effect>& added,
                                    const base::ParameterValues& shapes,
                                    const std::vector<std::string>& names) const;
@@ -162,7 +159,6 @@ class CandidateRoom {
   std::vector<Effect> effects_;  // that the fit has
   base::ParameterValues values_;
   LinearisedFit linearisation_;
-  std::map<std::string, std::vector<double>> smooth_inputs_ = {};
   Record used_;                                      // the rows of record_ that are fitted
   std::optional<PathNoise> noise_;                   // in which a filter follows the path
   std::shared_ptr<const BlockModel> followed_ = {};  // with effects, where it integrates a state
