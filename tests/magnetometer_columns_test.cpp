@@ -152,9 +152,9 @@ TEST_CASE("applying a magnetometer calibration needs its readings only") {
 TEST_CASE("a number that is too large in the unit used inside is none") {
   Log log = make_magnetometer_log();
   log.rename("mx_ut", "mx_gauss")["mx_gauss"][2] = 1e308;  // 1 gauss is 100 uT
-  CHECK_THROWS_WITH_AS(sepcal::prepare_attitude_independent(log.build(), 50.0),
-                       Contains("log row 2: column 'mx_gauss' holds 1e+308, too large to compute with"),
-                       Error);
+  CHECK_THROWS_WITH_AS(
+      sepcal::prepare_attitude_independent(log.build(), 50.0),
+      Contains("log row 2: column 'mx_gauss' holds 1e+308, too large to compute with"), Error);
   const auto prepared =
       sepcal::prepare_attitude_independent(log.build(), 50.0, {.drop_invalid = true});
   CHECK(prepared.rows_used() == 4);
