@@ -29,6 +29,8 @@
 #endif
 #endif
 
+/* NOLINTBEGIN(bugprone-macro-parentheses, readability-identifier-naming): of C, whose names have no
+   namespace, and macros of types */
 /* What a correction returns. */
 enum {
   SEPCAL_CORRECTION_OK = 0,
@@ -142,5 +144,6 @@ enum {
   void name##_solution(const name* squares, scalar* out);                                  \
   void name##_standard_errors(const name* squares, scalar* out);                           \
   SEPCAL_C_END
+/* NOLINTEND(bugprone-macro-parentheses, readability-identifier-naming) */
 
 #endif

@@ -142,7 +142,7 @@ class Stream {
   }
 
   M model_;
-  typename Start::Outputs noise_;
+  Start::Outputs noise_;
   Start start_;
   std::optional<JointFilter<M, Form>> filter_;
 };
@@ -237,6 +237,7 @@ class LeastSquares {
   }                                                                                               \
   static_assert(true)
 
+// NOLINTBEGIN(bugprone-macro-parentheses): of types
 /// Defines what SEPCAL_C_LEAST_SQUARES(name, ...) declared.
 #define SEPCAL_C_DEFINE_LEAST_SQUARES(name)                                                    \
   using name##_object =                                                                        \
@@ -256,3 +257,4 @@ class LeastSquares {
     sepcal::from_c::give(sepcal::from_c::in<name##_object>(squares).standard_errors(), out);   \
   }                                                                                            \
   static_assert(true)
+// NOLINTEND(bugprone-macro-parentheses)

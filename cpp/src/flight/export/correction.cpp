@@ -90,13 +90,13 @@ class Description {
 
   /// The channel; what isn't at hand becomes an argument.
   Followed follow(const std::string& name, const std::vector<double>& trial = {}) {
-    const Followed followed = at_hand(name).value_or(Followed{});
+    Followed followed = at_hand(name).value_or(Followed{});
     if (!followed.expression.empty()) {
       guard(name, followed);
       return followed;
     }
     const auto& driver = driver_of(name, trial);
-    const Followed argument{driver.argument, driver.origin};
+    Followed argument{driver.argument, driver.origin};
     guard(name, argument);
     return argument;
   }

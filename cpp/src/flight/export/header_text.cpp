@@ -56,7 +56,7 @@ std::string spline_function(const Dialect& dialect) {
 }
 
 std::string explain(const Driver& driver) {
-  const std::string what =
+  std::string what =
       driver.is_state ? driver.comment : fmt::format("{}, {}", driver.channel, driver.comment);
   if (driver.origin == 0.0) return what;
   return fmt::format(
