@@ -17,12 +17,12 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "python" / "sepcal"
 
 # Files that may write to a stream, and nothing else in apps/ or the library.
-WRITERS = {"apps/terminal.cpp", "apps/interrupt.cpp"}
+WRITERS = r"^apps/(terminal|interrupt)\.cpp$"
 STREAM = re.compile(
     r"fmt::print\(|std::cout|std::cerr|std::clog|\bstd::fputs\(|\bstd::puts\(|\bstd::v?f?printf\("
     r"|\bstd::fwrite\([^;]*std(out|err)|::write\(STD"
 )
-FILE_WRITERS = {"cpp/src/flight/files/output_file.cpp", "cpp/src/base/spool.cpp"}
+FILE_WRITERS = r"^cpp/src/(flight/files/output_file|base/spool)\.cpp$"
 PAGES = ("cpp/src/flight/text/*.cpp", "cpp/src/flight/*/*_text.cpp")
 
 
@@ -32,77 +32,69 @@ def cpp_sources(*patterns: str) -> Iterator[tuple[str, str]]:
             yield str(file.relative_to(ROOT)), file.read_text()
 
 
-def find_streams(sources: Iterator[tuple[str, str]]) -> list[str]:
-    """Places that write to the terminal by themselves."""
+def places(
+    sources: Iterator[tuple[str, str]], pattern: str | re.Pattern[str], exempt: str = ""
+) -> list[str]:
+    """Where the pattern stands, in files whose names do not match the other one."""
     return [
         f"{name}: {match[0]}"
         for name, text in sources
-        if name not in WRITERS
-        for match in STREAM.finditer(text)
+        if not (exempt and re.search(exempt, name))
+        for match in re.finditer(pattern, text)
     ]
+
+
+def statements(sources: Iterator[tuple[str, str]], opens: str, safe: str) -> list[str]:
+    """What opens a statement's text where nothing in the statement makes that safe."""
+    return [
+        f"{name}: {match[0]}"
+        for name, text in sources
+        for statement in re.split(r";\s*\n", text)
+        if (match := re.search(opens, statement)) and not re.search(safe, statement)
+    ]
+
+
+def find_streams(sources: Iterator[tuple[str, str]]) -> list[str]:
+    """Places that write to the terminal by themselves."""
+    return places(sources, STREAM, WRITERS)
 
 
 def find_unescaped_pages(sources: Iterator[tuple[str, str]]) -> list[str]:
-    """Pages that are put together without base::page()."""
-    return [
-        f"{name}: {match[0]}"
-        for name, text in sources
-        for match in re.finditer(r"fmt::(format|join)\(|std::to_string\(|ostringstream", text)
-        if not name.endswith("header_text.cpp")  # C, not a page
-    ]
+    """Pages that are put together without base::page(); a header's text is C, not a page."""
+    made = r"fmt::(format|join)\(|std::to_string\(|ostringstream"
+    return places(sources, made, r"header_text\.cpp$")
 
 
 def find_unescaped_comments(sources: Iterator[tuple[str, str]]) -> list[str]:
     """Statements that put something into a comment of C, or of a parameter file, as it is."""
-    found = []
-    for name, text in sources:
-        for statement in re.split(r";\s*\n", text):
-            opens = re.search(r'"(?:[^"\n]*(?:/\*|# )[^"\n]*| \* )\{\}', statement)
-            if opens and not re.search(r"in_c_comment\(|in_line\(", statement):
-                found.append(f"{name}: {opens[0]}")
-    return found
+    comment = r'"(?:[^"\n]*(?:/\*|# )[^"\n]*| \* )\{\}'
+    return statements(sources, comment, r"in_c_comment\(|in_line\(")
 
 
 def find_joined_comments(sources: Iterator[tuple[str, str]]) -> list[str]:
     """The same by +, +=, << and append()."""
     comment = r'"[^"\n]*(?:/\* ?|# | \* )"'
     between = r"(?:\s*(?:\)|\+|<<|;\s*\w+\s*(?:\+=|<<)))+\s*"
-    joined = re.compile(comment + between + r"(?!(?:base::)?in_(?:c_comment|line)\()[A-Za-z_]")
-    return [f"{name}: {match[0]}" for name, text in sources for match in joined.finditer(text)]
+    return places(sources, comment + between + r"(?!(?:base::)?in_(?:c_comment|line)\()[A-Za-z_]")
 
 
 def find_own_files(sources: Iterator[tuple[str, str]]) -> list[str]:
     """Files that are written by themselves, not as an OutputFile."""
-    writing = re.compile(
+    writing = (
         r"std::w?o?fstream|fmt::output_file|fopen\([^;]*\"[wa][^;]*;|\bopen\([^;]*O_(WRONLY|RDWR)"
     )
-    return [
-        f"{name}: {match[0]}"
-        for name, text in sources
-        if name not in FILE_WRITERS
-        for match in writing.finditer(text)
-    ]
+    return places(sources, writing, FILE_WRITERS)
 
 
 def find_json_by_hand(sources: Iterator[tuple[str, str]]) -> list[str]:
-    """JSON in a literal: its library writes it, which escapes."""
-    return [
-        f"{name}: {match[0]}"
-        for name, text in sources
-        for match in re.finditer(r'"[^"\n]*\\": ?(?:\\"|\{\}|")[^\n]*', text)
-        if "give a JSON object" not in match[0]  # in a message
-    ]
+    """JSON in a literal, but for a message's: its library writes it, which escapes."""
+    written = places(sources, r'"[^"\n]*\\": ?(?:\\"|\{\}|")[^\n]*')
+    return [place for place in written if "give a JSON object" not in place]
 
 
 def find_unquoted_commands(sources: Iterator[tuple[str, str]]) -> list[str]:
     """Statements that show a command with something in it that the shell would read."""
-    found = []
-    for name, text in sources:
-        for statement in re.split(r";\s*\n", text):
-            command = re.search(r'"[^"\n]*next: [^"\n]*\{\}', statement)
-            if command and "in_shell(" not in statement:
-                found.append(f"{name}: {command[0]}")
-    return found
+    return statements(sources, r'"[^"\n]*next: [^"\n]*\{\}', r"in_shell\(")
 
 
 def python_trees(folder: Path) -> Iterator[tuple[str, ast.Module]]:

@@ -47,11 +47,15 @@ def test_all_of_them_run() -> None:
     assert sorted(name.removeprefix("fuzz_") for name in built[1].split()) == fuzzers("fuzz_*.cpp")
 
 
-def run_fuzzer(folder: Path, body: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """A fuzzer of a target of these lines, for a second."""
+def for_seconds(seconds: int, folder: Path) -> tuple[str | Path, ...]:
+    return str(seconds), folder / "kept", folder / "findings"
+
+
+def run_fuzzer(folder: Path, body: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """A fuzzer of a target of these lines; it stops at a finding, long before its 30 s."""
     script = folder / "fuzz_planted.py"
     script.write_text(f"import sys\nsys.path.insert(0, {str(FUZZ)!r})\nimport mutation\n{body}\n")
-    command = [sys.executable, script, *(arguments or ("1", folder / "kept", folder / "findings"))]
+    command = [sys.executable, script, *(arguments or for_seconds(30, folder))]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 
 
@@ -79,7 +83,8 @@ def test_a_hang_is_found(tmp_path: Path) -> None:
 
 
 def test_what_finds_nothing_says_how_much_it_tried(tmp_path: Path) -> None:
-    done = run_fuzzer(tmp_path, "mutation.main(lambda data: len(data) % 7, [b'plain'])")
+    body = "mutation.main(lambda data: len(data) % 7, [b'plain'])"
+    done = run_fuzzer(tmp_path, body, *for_seconds(1, tmp_path))
     assert done.returncode == 0, done.stderr
     tried = re.search(r"^stat::number_of_executed_units: (\d+)$", done.stdout, re.MULTILINE)
     assert tried

@@ -2,6 +2,7 @@
 // Calibrations with three effects each, applied on board: the centres of the drivers, a model's
 // parameters, rows; out come each row's status and what it was corrected to, in SCALAR.
 #include "calibrated.hpp"
+#include "compass_parameters.h"
 #include "link.hpp"
 
 namespace {
@@ -38,30 +39,7 @@ void write_field(const Corrected& corrected) {
   target::write_all(corrected.h);
 }
 
-constexpr std::array<std::string_view, 24> of_compass{"lambda_x",
-                                                      "lambda_y",
-                                                      "lambda_z",
-                                                      "n_x",
-                                                      "n_y",
-                                                      "n_z",
-                                                      "bias[current_a].x",
-                                                      "bias[current_a].y",
-                                                      "bias[current_a].z",
-                                                      "axis_scale[temp_degc].x",
-                                                      "axis_scale[temp_degc].y",
-                                                      "axis_scale[temp_degc].z",
-                                                      "cubic_nonlinearity.d_x",
-                                                      "cubic_nonlinearity.d_y",
-                                                      "cubic_nonlinearity.d_z",
-                                                      "cubic_nonlinearity.c_x",
-                                                      "cubic_nonlinearity.c_y",
-                                                      "cubic_nonlinearity.c_z",
-                                                      "eta_x",
-                                                      "eta_y",
-                                                      "eta_z",
-                                                      "alpha_xy",
-                                                      "alpha_xz",
-                                                      "alpha_yz"};
+constexpr std::array<std::string_view, 24> of_compass{COMPASS_PARAMETERS};
 
 void correct_compass() {
   const double current = read();

@@ -6,30 +6,9 @@
 
 #include <stddef.h>
 
-static const char* const of_compass[24] = {"lambda_x",
-                                           "lambda_y",
-                                           "lambda_z",
-                                           "n_x",
-                                           "n_y",
-                                           "n_z",
-                                           "bias[current_a].x",
-                                           "bias[current_a].y",
-                                           "bias[current_a].z",
-                                           "axis_scale[temp_degc].x",
-                                           "axis_scale[temp_degc].y",
-                                           "axis_scale[temp_degc].z",
-                                           "cubic_nonlinearity.d_x",
-                                           "cubic_nonlinearity.d_y",
-                                           "cubic_nonlinearity.d_z",
-                                           "cubic_nonlinearity.c_x",
-                                           "cubic_nonlinearity.c_y",
-                                           "cubic_nonlinearity.c_z",
-                                           "eta_x",
-                                           "eta_y",
-                                           "eta_z",
-                                           "alpha_xy",
-                                           "alpha_xz",
-                                           "alpha_yz"};
+#include "compass_parameters.h"
+
+static const char* const of_compass[] = {COMPASS_PARAMETERS};
 
 static compass mag;
 static probe air;

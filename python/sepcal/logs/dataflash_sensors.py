@@ -74,11 +74,12 @@ def read_tubes(log: DataFlash, parameters: Parameters) -> list[Sensor]:
         if "DiffPress" not in messages or not messages["DiffPress"].any():
             continue
         times = log.times(messages)
-        kind = f"{'ARSPD' if instance == 0 else f'ARSPD{instance + 1}'}_TYPE"
+        name = "ARSPD" if instance == 0 else f"ARSPD{instance + 1}"
+        kind = f"{name}_TYPE"
         pressure = messages["DiffPress"]
         done: tuple[str, ...] = ()
         if parameters.first(kind) == SDP3X:
-            pressure, done = _undo_flow(log, messages, times, parameters, kind)
+            pressure, done = _undo_flow(log, messages, times, parameters, name)
         done += (
             "less the offset that the autopilot found on the ground",
             "no ratio: ARSPD_RATIO makes the autopilot's airspeed of it",
@@ -101,14 +102,14 @@ def read_tubes(log: DataFlash, parameters: Parameters) -> list[Sensor]:
 
 
 def _undo_flow(
-    log: DataFlash, messages: Messages, times: Array, parameters: Parameters, kind: str
+    log: DataFlash, messages: Messages, times: Array, parameters: Parameters, name: str
 ) -> tuple[Array, tuple[str, ...]]:
     """The pressure at an SDP3x, to which ArduPilot's driver added what the flow loses, and how."""
     baro = log.first_of(("BARO",), "Press")
     if baro is None or "Temp" not in messages:
         said = "what the flow through the sensor loses stays in it: no BARO.Press or Temp undoes it"
         return messages["DiffPress"], (said,)
-    ratio = parameters.at(kind.replace("TYPE", "RATIO"), times, DEFAULT_RATIO)
+    ratio = parameters.at(f"{name}_RATIO", times, DEFAULT_RATIO)
     static = np.interp(times, baro.times, baro.values[:, 0])
     handed_on = messages["DiffPress"]
     raw = _core.sdp3x_pressure(np.abs(handed_on), ratio, static, messages["Temp"] + KELVIN)

@@ -53,7 +53,6 @@ AirspeedReader AirspeedReader::px4(const std::array<double, 3>& cal_air) {
                     diameter_mm));
   }
   AirspeedReader reader;
-  reader.flows_ = true;
   reader.model_ = static_cast<FlowModel>(static_cast<int>(model));
   reader.length_ = length;
   reader.diameter_ = 1e-3 * diameter_mm;
@@ -62,14 +61,13 @@ AirspeedReader AirspeedReader::px4(const std::array<double, 3>& cal_air) {
 
 AirspeedReader AirspeedReader::ardupilot() {
   AirspeedReader reader;
-  reader.flows_ = true;
   reader.model_ = FlowModel::ardupilot;
   return reader;
 }
 
 IndicatedAirspeed AirspeedReader::indicate(double dp, const Air& air) const {
   if (!(dp > 0.0)) return {};
-  if (!flows_) return {.scaled = speed_of(dp)};
+  if (!flows()) return {.scaled = speed_of(dp)};
   if (model_ == FlowModel::ardupilot) return indicate_ardupilot(dp, density_of(air));
   return indicate_px4(dp, air);
 }
@@ -101,7 +99,7 @@ double AirspeedReader::less_along_tube(double dp, const Air& air) const {
 double AirspeedReader::pressure_behind(double airspeed, double factor, const Air& air) const {
   if (!(airspeed > 0.0)) return 0.0;
   const double plain = 0.5 * sea_level_density * airspeed * airspeed / (factor * factor);
-  if (!flows_) return plain;
+  if (!flows()) return plain;
   const auto read = [&](double dp) {
     const IndicatedAirspeed one = indicate(dp, air);
     return factor * one.scaled + one.added;

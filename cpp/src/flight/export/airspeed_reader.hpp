@@ -4,6 +4,9 @@
 // what is lost in the tube and at its tip before the root, and a velocity after it.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "sepcal/flight/export.hpp"
 
 namespace sepcal::exporting {
@@ -20,7 +23,7 @@ struct IndicatedAirspeed {
   double added = 0.0;
 };
 
-/// PX4's CAL_AIR_CMODEL.
+/// How the flow through an SDP3x is corrected: PX4's CAL_AIR_CMODEL, or ArduPilot's one way.
 enum class FlowModel {
   pitot = 0,      // Drotek's tube with its tip
   no_pitot = 1,   // without the tip's loss
@@ -42,7 +45,7 @@ class AirspeedReader {
   static AirspeedReader ardupilot();
 
   /// Whether air flows through the sensor.
-  bool flows() const { return flows_; }
+  bool flows() const { return model_.has_value(); }
 
   /// Of a differential pressure [Pa]; 0 of one that is not above zero.
   IndicatedAirspeed indicate(double dp, const Air& air) const;
@@ -54,10 +57,9 @@ class AirspeedReader {
   IndicatedAirspeed indicate_px4(double dp, const Air& air) const;
   double less_along_tube(double dp, const Air& air) const;
 
-  bool flows_ = false;
-  FlowModel model_ = FlowModel::pitot;
-  double length_ = 0.0;    // of the tubes [m]
-  double diameter_ = 0.0;  // [m]
+  std::optional<FlowModel> model_ = {};  // none of a membrane
+  double length_ = 0.0;                  // of the tubes [m]
+  double diameter_ = 0.0;                // [m]
 };
 
 }  // namespace sepcal::exporting

@@ -31,9 +31,9 @@ class LoggedAir {
     if (pressure_.empty() && temperature_.empty()) refuse("neither is logged");
     air.pressure = pressure_.empty() ? 0.0 : pressure_[row];
     air.temperature = temperature_.empty() ? 0.0 : temperature_[row];
-    const double gas = probes::density_of_air(1.0, 1.0);  // 1 / R
-    if (pressure_.empty()) air.pressure = density * air.temperature / gas;
-    if (temperature_.empty()) air.temperature = air.pressure * gas / density;
+    const double unit = probes::density_of_air(1.0, 1.0);  // of 1 Pa at 1 K
+    if (pressure_.empty()) air.pressure = density / unit * air.temperature;
+    if (temperature_.empty()) air.temperature = unit / density * air.pressure;
     if (!(air.pressure > 0.0) || !(air.temperature > 0.0) || !std::isfinite(air.pressure) ||
         !std::isfinite(air.temperature)) {
       refuse(fmt::format("{} has none", flight_.locate(row)));

@@ -84,9 +84,10 @@ class SensorOfFlight {
     const bool px4 = options_.target == ExportTarget::px4;
     notes.push_back(fmt::format(
         "{}, and its pressure is taken as it is: with an SDP31, 32 or 33 {} adds what the flow "
-        "through it loses, and this scale is wrong by up to a third; then give the airspeed sensor "
-        "sdp3x{}",
-        what, px4 ? "PX4" : "ArduPilot", px4 ? ", or the sensor's device id" : ""));
+        "through it loses, and {}; then give the airspeed sensor sdp3x{}",
+        what, px4 ? "PX4" : "ArduPilot",
+        px4 ? "this scale is too large by a quarter to a half" : "this ratio is 1 to 5 % off",
+        px4 ? ", or the sensor's device id" : ""));
   }
 
   const Flight& flight_;
