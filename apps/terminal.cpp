@@ -44,7 +44,8 @@ bool is_out_of_memory(const std::exception_ptr& failure) {
     if (failure) std::rethrow_exception(failure);
   } catch (const std::bad_alloc&) {
     return true;
-  } catch (...) {  // a fault of the program
+  } catch (...) {
+    return false;  // a fault of the program
   }
   return false;
 }
