@@ -23,10 +23,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// What the model with the fit's effects and these predicts, less the measurements: rows x n_z.
+/// What the model with the fit's effects and these predicts of a record, less the measurements:
+/// rows x n_z.
 class Prediction {
  public:
-  Prediction(const DiagnosedFit& fitted, const std::string& effects) : record_(fitted.record) {
+  Prediction(const DiagnosedFit& fitted, const std::string& effects, Record record)
+      : record_(std::move(record)) {
     std::vector<EffectSetting> settings = fitted.effects;
     for (const std::string& name : split_effects(effects)) settings.push_back({.name = name});
     model_ =
@@ -110,7 +112,7 @@ void check_columns(const DiagnosedFit& fitted, diagnosis::CandidateRoom& room,
   const diagnosis::Candidate candidate = room.make(name);
   const std::vector<Index> rows = inner_rows(fitted, candidate);
   const std::vector<double>& shapes = candidate.shape.values;
-  Prediction prediction(fitted, name);
+  Prediction prediction(fitted, name, room.regressors());
   REQUIRE(!candidate.coefficients.empty());
   for (const double shape : {shapes.front(), shapes[shapes.size() / 2], shapes.back()}) {
     CAPTURE(shape);

@@ -7,6 +7,7 @@
 
 #include "base/parts_of_record.hpp"
 #include "diagnosis/innovation_rows.hpp"
+#include "diagnosis/smooth_inputs.hpp"
 #include "effects/driven_rows.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
@@ -151,6 +152,24 @@ bool is_of_lines(const Candidate& candidate, std::size_t effects) {
   return own == effects && form == 0;
 }
 
+namespace {
+
+/// Whether a residual is clearly less than another: a tenth in some output, and a tenth more in
+/// none.
+bool is_clearly_less(const VectorXd& residual, const VectorXd& other, Index rows) {
+  constexpr double clearly = 0.9;
+  bool is_less = false;
+  for (Index first = 0; first < residual.size(); first += rows) {
+    const double square = residual.segment(first, rows).squaredNorm();
+    const double before = other.segment(first, rows).squaredNorm();
+    if (clearly * square > before) return false;
+    is_less = is_less || square < clearly * before;
+  }
+  return is_less;
+}
+
+}  // namespace
+
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
     : CandidateRoom(fitted, {}, pool) {}
 
@@ -208,6 +227,9 @@ void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool)
       noise_
           ? innovation_rows(*model, used_, fit.values(), *noise_, columns)
           : model::Sweep(*model, measurements, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
+  regressors_ = record_;
+  const bool has_readings = measurements.output_square(0) > 0.0;  // not an equation of the inputs
+  if (has_readings && !noise_ && !path_) smooth_regressors(columns, pool);
   for (Index k = 0; k < own; ++k) {
     const Index at = tangent.cols() - 1 - own + k;
     tangent.rightCols<1>() +=
@@ -232,6 +254,32 @@ void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool)
   linearisation_.residual = tangent.rightCols<1>();
   if (own > 0) release(released, tangent.middleCols(tangent.cols() - 1 - own, own));
   tangent.conservativeResize(Eigen::NoChange, tangent.cols() - 1 - own);
+}
+
+void CandidateRoom::smooth_regressors(std::vector<Index> columns, base::ThreadPool& pool) {
+  const Record smooth = smooth_inputs(record_, fitted_.model->tables());
+  const auto model = compose(fitted_.model, effects_, smooth);
+  Record rows = smooth;
+  rows.cut(fitted_.rows);
+  const model::Measurements measurements(*model, rows);
+  const model::Sweep sweep(*model, measurements, pool);
+  const Fit& fit = fitted_.fit;
+  MatrixXd& tangent = linearisation_.tangent;
+  const VectorXd residual = tangent.rightCols<1>();
+  const VectorXd of_smooth = sweep.tangent_columns(fit.xi1(), fit.xi2(), {columns.back()});
+  if (!is_clearly_less(of_smooth, residual, linearisation_.layout.rows)) return;  // they are true
+  columns.pop_back();
+  tangent.leftCols(tangent.cols() - 1) = sweep.tangent_columns(fit.xi1(), fit.xi2(), columns);
+  regressors_ = smooth;
+}
+
+/// Candidates derive columns of their own, after the fit was linearised.
+Record CandidateRoom::regressors() const {
+  Record record = regressors_;
+  for (const std::string& name : record_.names()) {
+    if (!record.has(name)) record.view(name, record_.column(name));
+  }
+  return record;
 }
 
 void CandidateRoom::release(const Candidate& released, const MatrixXd& columns) {
@@ -291,11 +339,11 @@ void CandidateRoom::scale_outputs(MatrixXd& stacked) const {
 MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
                                          const base::ParameterValues& shapes,
                                          const std::vector<std::string>& names) const {
-  const auto model = model_with(added);
   base::ParameterValues values = values_;
   values.insert(shapes.begin(), shapes.end());
   if (path_) return path_columns(change_by(added, values, names));
-  Record rows = record_;
+  Record rows = regressors();
+  const auto model = compose(fitted_.model, with_those_of_fit(added), rows);
   rows.cut(fitted_.rows);
   const model::Measurements measurements(*model, rows);
   const std::vector<Variable> parameters = model->tables().parameters();
@@ -313,7 +361,7 @@ MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
 MatrixXd CandidateRoom::input_columns() const {
   if (follows_path() || noise_) return {};
   constexpr double of_spread = 1e-4;
-  const auto model = this->model();
+  const auto model = compose(fitted_.model, effects_, regressors_);
   const auto last = static_cast<Index>(model->tables().parameters().size());  // the residual
   base::ThreadPool alone(1);
   const auto residual = [&](Record record) {
@@ -325,20 +373,17 @@ MatrixXd CandidateRoom::input_columns() const {
   std::vector<VectorXd> columns;
   VectorXd before;
   for (const Variable& input : model->tables().inputs) {
-    if (input.name == "time" || !record_.has(input.name)) continue;
-    const auto values = record_.column(input.name);
+    if (input.name == "time" || !regressors_.has(input.name)) continue;
+    const auto values = regressors_.column(input.name);
     const Eigen::Map<const VectorXd> known(values.data(), static_cast<Index>(values.size()));
     const double spread = (known.array() - known.mean()).matrix().norm();
     const double step = of_spread * spread / std::sqrt(static_cast<double>(known.size()));
     if (!(step > 0.0) || !std::isfinite(step)) continue;
-    Record changed;
-    for (const std::string& name : record_.names()) {
-      if (name != input.name) changed.view(name, record_.column(name));
-    }
+    Record changed = regressors_;
     std::vector<double> moved(values.begin(), values.end());
     for (double& value : moved) value += step;
-    changed.add(input.name, std::move(moved));
-    if (before.size() == 0) before = residual(record_);
+    changed.replace(input.name, std::move(moved));
+    if (before.size() == 0) before = residual(regressors_);
     columns.emplace_back((residual(std::move(changed)) - before) / step);
   }
   MatrixXd all(before.size(), static_cast<Index>(columns.size()));
@@ -353,9 +398,13 @@ std::shared_ptr<const BlockModel> CandidateRoom::model() const {
 
 std::shared_ptr<const BlockModel> CandidateRoom::model_with(
     const std::vector<Effect>& added) const {
+  return compose(fitted_.model, with_those_of_fit(added), record_);
+}
+
+std::vector<Effect> CandidateRoom::with_those_of_fit(const std::vector<Effect>& added) const {
   std::vector<Effect> all = effects_;
   all.insert(all.end(), added.begin(), added.end());
-  return compose(fitted_.model, all, record_);
+  return all;
 }
 
 const Candidate& CandidateRoom::make(const std::string& name) {

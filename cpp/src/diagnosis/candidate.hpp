@@ -88,6 +88,11 @@ class CandidateRoom {
   const LinearisedFit& fit() const { return linearisation_; }
   const Record& record() const { return record_; }
   const std::vector<Segment>& rows() const { return fitted_.rows; }
+
+  /// The record of which columns are made: inputs without their white noise where that leaves
+  /// clearly less of the error. The residual is that of the readings.
+  Record regressors() const;
+
   const Fit& fitted() const { return fitted_.fit; }
   const DiagnosedFit& diagnosed() const { return fitted_; }
 
@@ -144,12 +149,14 @@ class CandidateRoom {
                        const std::vector<std::string>& names) const;
   Eigen::MatrixXd path_columns(const PathChange& change) const;
   Columns drive_path(const PathChange& change, const Eigen::MatrixXd& phi) const;
+  std::vector<Effect> with_those_of_fit(const std::vector<Effect>& added) const;
   Eigen::MatrixXd composed_columns(const std::vector<Effect>& added,
                                    const base::ParameterValues& shapes,
                                    const std::vector<std::string>& names) const;
   /// Rows of all outputs become those of the used ones, over their RMSE.
   void scale_outputs(Eigen::MatrixXd& stacked) const;
   void linearise(const Candidate& released, base::ThreadPool& pool);
+  void smooth_regressors(std::vector<Eigen::Index> columns, base::ThreadPool& pool);
   void release(const Candidate& released, const Eigen::MatrixXd& columns);
   Eigen::MatrixXd wandering_columns();
 
@@ -160,6 +167,7 @@ class CandidateRoom {
   base::ParameterValues values_;
   LinearisedFit linearisation_;
   Record used_;                                      // the rows of record_ that are fitted
+  Record regressors_;                                // of which columns are made
   std::optional<PathNoise> noise_;                   // in which a filter follows the path
   std::shared_ptr<const BlockModel> followed_ = {};  // with effects, where it integrates a state
   std::unique_ptr<const PathTangent> path_ = {};     // its path

@@ -202,7 +202,9 @@ bool is_stand_in_for(const Candidate& one, const Candidate& other) {
 }
 
 EffectFinding& finding_of(Findings& findings, const std::string& name) {
-  return *std::ranges::find(findings, name, &EffectFinding::name);
+  const auto finding = std::ranges::find(findings, name, &EffectFinding::name);
+  if (finding == findings.end()) throw Error("nothing is known of the contender " + name);
+  return *finding;
 }
 
 }  // namespace

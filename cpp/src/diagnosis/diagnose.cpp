@@ -121,6 +121,7 @@ class Recipe {
   Objection object_to(const EffectFinding& finding);
   void tell_fitted(EffectFinding& finding);
   void advise();
+  void advise_pairs_of_lines();
   bool withdraw();
   void weigh_held_out();
   void put_line_first();
@@ -436,6 +437,24 @@ void Recipe::advise() {
   }
 }
 
+/// Advises pairs of lines, and forgets them where no fit bears out two of them either.
+void Recipe::advise_pairs_of_lines() {
+  Diagnosis alone = result_;
+  const auto trials = static_cast<std::ptrdiff_t>(trials_.size());
+  std::vector<Contender>& contenders = contest_.contenders;
+  const auto entered = static_cast<std::ptrdiff_t>(contenders.size());
+  if (!try_pairs_of_lines()) return;
+  order_found();
+  const std::vector<std::string> withdrawn = std::exchange(withdrawn_, {});
+  result_.advice = {};
+  advise();
+  if (!result_.advice.effect.empty()) return;
+  result_ = std::move(alone);
+  withdrawn_ = withdrawn;
+  trials_.erase(trials_.begin() + trials, trials_.end());
+  contenders.erase(contenders.begin() + entered, contenders.end());
+}
+
 /// What was found and no fit bears out is no finding, nor is then what fades beside it, nor what
 /// leaves clearly more than a first that takes much though no fit takes it: alone it would stand
 /// in. Returns whether something else that was found stands first now.
@@ -604,17 +623,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     in_time("fitting what was found", [&] { settle(); });
     in_time("fitting what is advised", [&] { advise(); });
     if (result_.advice.effect.empty() && !room.follows_path()) {
-      in_time("fitting two at once", [&] {
-        Diagnosis alone = result_;
-        if (!try_pairs_of_lines()) return;
-        order_found();
-        const std::vector<std::string> withdrawn = std::exchange(withdrawn_, {});
-        result_.advice = {};
-        advise();
-        if (!result_.advice.effect.empty()) return;
-        result_ = std::move(alone);  // no fit bears out two of them either
-        withdrawn_ = withdrawn;
-      });
+      in_time("fitting two at once", [&] { advise_pairs_of_lines(); });
     }
     constexpr int most_headlines = 4;
     for (int round = 0; withdraw() && round < most_headlines; ++round) {

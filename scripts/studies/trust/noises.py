@@ -68,6 +68,12 @@ def _gauss_markov(seconds: float) -> Draw:
     return draw
 
 
+def _filtered(rng: np.random.Generator, time: Array) -> Array:
+    """Noise of a third of the usual size that a filter of one second has smoothed."""
+    phi = float(np.exp(-np.median(np.diff(time)) / 1.0))
+    return first_order(phi)(rng, time) / 3.0
+
+
 def _random_walk(rng: np.random.Generator, time: Array) -> Array:
     walk = np.cumsum(rng.standard_normal(time.size))
     return np.asarray(_white(rng, time) + (walk - walk.mean()) / walk.std() / 3.0)
@@ -126,5 +132,6 @@ OUTPUT_NOISES: dict[str, Draw] = {
     "heteroscedastic": _heteroscedastic,
     "resonance 0.3 Hz": _resonance,
     "held fivefold": _held,
+    "filtered": _filtered,
 }
 FURTHER_NOISES: dict[str, Draw] = {INTERPOLATED: _interpolated}

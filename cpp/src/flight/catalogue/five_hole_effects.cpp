@@ -170,7 +170,8 @@ EffectTable five_hole_effects() {
        .sentence = "the pressures lag in their tubes",
        .channels = {"time"},
        .maker =
-           in_time(Delay::Kind::inputs_lagging, longest_pneumatic_lag, {"pt", "ps", "dpa", "dpb"})},
+           in_time(Delay::Kind::inputs_lagging, longest_pneumatic_lag, {"pt", "ps", "dpa", "dpb"}),
+       .plausible = {{"tau", {0.0, longest_pneumatic_lag}}}},
       {.entry = CataloguedEffect{"lever_arm", "- C_b^n (w x dr) (x, y, z)", "p, q, r", "m"},
        .sentence = "the probe is not where the lever arm says",
        .channels = {"p", "q", "r"},

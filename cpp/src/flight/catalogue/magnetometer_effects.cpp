@@ -144,7 +144,8 @@ EffectTable magnetometer_effects() {
       {.entry = CataloguedEffect{"sensor_lag", "tau dm/dt + m = m0", "attitude", "s"},
        .sentence = "the sensor lags",
        .channels = {"time"},
-       .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag)},
+       .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag),
+       .plausible = {{"tau", {0.0, longest_sensor_lag}}}},
       {.entry =
            CataloguedEffect{"field_declination", "h turned by delta about down", "attitude", "rad"},
        .sentence = "the field's declination is off",

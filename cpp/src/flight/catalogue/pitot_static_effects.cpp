@@ -40,7 +40,8 @@ EffectTable pitot_static_effects() {
       {.entry = CataloguedEffect{"pneumatic_lag", "tau dz/dt + z = z0", "none", "s"},
        .sentence = "the pressures lag in their tubes",
        .channels = {"time"},
-       .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag)},
+       .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag),
+       .plausible = {{"tau", {0.0, longest_sensor_lag}}}},
       {.entry =
            CataloguedEffect{"density_error",
                             "V = V_met + s V_met / 2T: the temperature is off by s", "temp_k", "K"},

@@ -71,14 +71,15 @@ std::vector<Parameter> kept_parameters(const Calibration& calibration, const Mat
     const auto is_own = [&](const Variable& variable) { return variable.name == one.name; };
     if (std::ranges::none_of(own.parameters(), is_own)) parameters.push_back(one);
   }
-  const auto value_of = [&](const std::string& name) -> double& {
+  const auto component_of = [&](const std::string& effect, Eigen::Index i) -> double& {
+    const std::string name = effect + "." + suffixes.at(static_cast<std::size_t>(i));
     return std::ranges::find(parameters, name, &Parameter::name)->value;
   };
   for (const std::string& effect : motor_effects(calibration)) {
     Vector3d s;
-    for (int i = 0; i < 3; ++i) s[i] = value_of(effect + "." + suffixes.at(i));
+    for (Eigen::Index i = 0; i < 3; ++i) s[i] = component_of(effect, i);
     s = turn * s;
-    for (int i = 0; i < 3; ++i) value_of(effect + "." + suffixes.at(i)) = s[i];
+    for (Eigen::Index i = 0; i < 3; ++i) component_of(effect, i) = s[i];
   }
   return parameters;
 }

@@ -38,14 +38,14 @@ Mounting angles_at(std::size_t number) {
 }  // namespace
 
 NumberedRotation nearest_rotation(const Eigen::Matrix3d& R) {
-  constexpr double degrees = 180.0 / std::numbers::pi;
+  constexpr double in_degrees = 180.0 / std::numbers::pi;
   constexpr double rounding = 1e-6;  // deg, by which two that are the same may differ
   NumberedRotation nearest{.apart = 360.0};
   for (std::size_t number = 0; number < by_number.size(); ++number) {
     if (number == no_multiple_of_45) continue;
     const Mounting angles = angles_at(number);
     const Eigen::Matrix3d between = probes::turn_by(angles).transpose() * R;
-    const double apart = Eigen::AngleAxisd(between).angle() * degrees;
+    const double apart = Eigen::AngleAxisd(between).angle() * in_degrees;
     if (apart >= nearest.apart - rounding) continue;
     nearest = {.number = static_cast<int>(number), .angles = angles, .apart = apart};
   }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Inputs of a model without their white noise, which columns of a tangent are made of: noise that
+// stands in the columns and in the residual alike could be cancelled, by coefficients that take the
+// model away.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/record.hpp"
+
+namespace sepcal::diagnosis {
+
+/// `x` smoothed by local quadratics over the window that Stein's unbiased estimate of the risk says
+/// is best, of 5 to 65 values; as it is where none is better, which is so of what is not noisy.
+std::vector<double> smooth(std::span<const double> x);
+
+/// The record with every input of these tables but the time smoothed segment by segment. Angles
+/// that wrap go on beyond pi.
+Record smooth_inputs(const Record& record, const Tables& tables);
+
+}  // namespace sepcal::diagnosis
