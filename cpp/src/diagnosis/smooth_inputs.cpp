@@ -32,7 +32,7 @@ class LocalQuadratic {
  public:
   explicit LocalQuadratic(Index h)
       : h_(h), k_(ArrayXd::LinSpaced(2 * h + 1, -static_cast<double>(h), static_cast<double>(h))) {
-    const double count = static_cast<double>(k_.size());
+    const auto count = static_cast<double>(k_.size());
     second_ = k_.square().sum();
     fourth_ = k_.square().square().sum();
     determinant_ = count * fourth_ - second_ * second_;
@@ -42,7 +42,7 @@ class LocalQuadratic {
   double own_weight() const { return fourth_ / determinant_; }
 
   ArrayXd smooth(const ArrayXd& x) const {
-    const double count = static_cast<double>(k_.size());
+    const auto count = static_cast<double>(k_.size());
     ArrayXd y(x.size());
     for (Index i = 0; i < x.size(); ++i) {
       const Index middle = std::clamp<Index>(i, h_, x.size() - 1 - h_);
