@@ -77,7 +77,8 @@ void ThreadPool::start_workers() {
     while (static_cast<int>(workers_.size()) + 1 < threads_) {
       workers_.emplace_back([this] { work(); });
     }
-  } catch (const std::system_error&) {  // no more of them here and now: those that run do it all
+  } catch (const std::system_error&) {
+    return;  // no more of them here and now: those that run do it all
   }
 }
 
