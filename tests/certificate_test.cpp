@@ -220,7 +220,8 @@ TEST_CASE("both scalar examples have a certificate") {
   }
 }
 
-TEST_CASE("a tone among many minima: certified where a dense grid agrees, and never elsewhere") {
+TEST_CASE("a tone among many minima: certified where a dense grid agrees, and never elsewhere" *
+          doctest::test_suite("slow")) {
   std::mt19937_64 generator(21);
   std::uniform_real_distribution<double> frequency(1.0, 11.5);
   std::normal_distribution<double> noise(0.0, 1.0);

@@ -163,7 +163,8 @@ TEST_CASE("the factors of three manoeuvres, merged, are that of their record in 
   CHECK(difference.norm() < 1e-12 * whole.matrix().norm());
 }
 
-TEST_CASE("three manoeuvres merged are one record in three segments") {
+TEST_CASE("three manoeuvres merged are one record in three segments" *
+          doctest::test_suite("slow")) {
   const Flights flights = manoeuvres();
   const Record stacked = stack(flights);
   const TrajectoryModel<ShortPeriod> all(ShortPeriod{}, stacked);
@@ -204,7 +205,8 @@ TEST_CASE("three manoeuvres merged are one record in three segments") {
 }
 
 TEST_CASE(
-    "a manoeuvre of another aircraft departs from the others, and one in a gale by its noise") {
+    "a manoeuvre of another aircraft departs from the others, and one in a gale by its noise" *
+    doctest::test_suite("slow")) {
   Flights flights = manoeuvres();
   ShortPeriodFlight flight;
   flight.process_noise = {0.003, 0.09};
@@ -254,7 +256,7 @@ TEST_CASE("flights that filter error can't take") {
   refused(options, "no process noise 'r'");
 }
 
-TEST_CASE("readings that are missing in one flight are left out") {
+TEST_CASE("readings that are missing in one flight are left out" * doctest::test_suite("slow")) {
   Flights flights = manoeuvres();
   Record with_gaps;
   const Record& first = flights[0].second;

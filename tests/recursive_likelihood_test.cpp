@@ -114,7 +114,8 @@ TEST_CASE("at a theta that stays the recursion is the batch's pass") {
   }
 }
 
-TEST_CASE("from the first rows' fit a track by rml ends where filter error of all rows does") {
+TEST_CASE("from the first rows' fit a track by rml ends where filter error of all rows does" *
+          doctest::test_suite("slow")) {
   double worst = 0.0;
   int held = 0;
   int of = 0;
