@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -89,6 +90,11 @@ inline Calibration renamed(Calibration calibration, std::string_view first,
   for (EffectSetting& setting : calibration.options.effects) rename(setting.name);
   for (Parameter& parameter : calibration.fit.parameters) rename(parameter.name);
   for (HistoryEntry& entry : calibration.history) rename(entry.effect);
+  std::map<std::string, Interval> ranges;
+  for (const auto& [channel, range] : calibration.driver_ranges) {
+    ranges.emplace(renamed(std::string_view(channel), first, second), range);
+  }
+  calibration.driver_ranges = std::move(ranges);
   return calibration;
 }
 
