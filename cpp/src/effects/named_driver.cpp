@@ -96,6 +96,10 @@ void check_channel(const EffectName& name, const Record& record, bool known) {
   if (name.base == "maneuver") return;
   need_channel(name, name.base, record);
   const std::vector<double> values = selected(record, name.base);
+  if (values.empty()) {
+    throw Error("effect " + name.text + ": no row has a number of '" + name.base +
+                "' and of all that is read beside it");
+  }
   const auto is_number = [](double value) { return std::isfinite(value); };
   if (!std::ranges::all_of(values, is_number)) {
     throw Error("effect " + name.text + ": channel '" + name.base +

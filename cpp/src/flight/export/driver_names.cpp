@@ -45,7 +45,10 @@ bool is_reserved(const std::string& name) {
       "alpha_cal_rad", "beta_cal_rad", "u", "v", "w", "y", "z", "pow", "fabs", "sqrt", "sin", "cos",
       "atan2", "asin", "isfinite", "expm1", "log1p", "powf", "fabsf", "sqrtf", "sinf", "cosf",
       "atan2f", "asinf", "expm1f", "log1pf", "alpha", "beta", "square", "side", "below", "in",
-      "out", "got", "says", "size", "status", "row", "at", "k"};
+      "out", "got", "says", "size", "status", "row", "at", "k",
+      // macros of the C library that are no functions
+      "errno", "stdin", "stdout", "stderr", "sa_handler", "sa_sigaction", "st_atime", "st_ctime",
+      "st_mtime", "environ", "signgam"};
   const bool in_capitals = std::ranges::none_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
   return in_capitals || words.contains(name) || name.starts_with("x_") ||
          name.starts_with("sepcal");

@@ -64,6 +64,17 @@ Trials::Trials(const Calibration& calibration, const ProbeBody& body, const Corr
   }
 }
 
+bool Trials::reads(const std::string& header) const {
+  return std::ranges::any_of(body_.readings, [&](const Quantities& one) {
+    return std::ranges::find(one.headers, header) != one.headers.end();
+  });
+}
+
+/// Whether the channel is of the flow's angles, of a probe that reads them.
+bool Trials::is_flow_angle(const std::string& channel) const {
+  return (channel == "alpha" || channel == "beta") && reads("dpa_pa");
+}
+
 bool Trials::has(const std::string& header) const {
   return std::ranges::any_of(columns_, [&](const auto& one) { return one.first == header; });
 }
@@ -94,12 +105,12 @@ std::string Trials::header_of(const std::string& channel) const {
 }
 
 double Trials::channel_at(const std::string& channel, std::size_t row) const {
-  if (channel == "alpha" || channel == "beta") {
+  if (is_flow_angle(channel)) {
     const double k = channel == "alpha" ? k_alpha_ : k_beta_;
     return cell(channel == "alpha" ? "dpa_pa" : "dpb_pa", row) /
            (k * (cell("pt_pa", row) - cell("ps_pa", row)));
   }
-  if (const int axis = axis_of(channel); axis >= 0 && has("mx_ut")) {
+  if (const int axis = axis_of(channel); axis >= 0 && reads("mx_ut")) {
     return turn_.row(axis).dot(
         Eigen::Vector3d(cell("mx_ut", row), cell("my_ut", row), cell("mz_ut", row)));
   }
@@ -108,16 +119,16 @@ double Trials::channel_at(const std::string& channel, std::size_t row) const {
 
 void Trials::set_channel(const std::string& channel, std::size_t row, double value) {
   const double change = value - channel_at(channel, row);
-  if (channel == "alpha" || channel == "beta") {
+  if (is_flow_angle(channel)) {
     const double k = channel == "alpha" ? k_alpha_ : k_beta_;
     cell(channel == "alpha" ? "dpa_pa" : "dpb_pa", row) =
         value * k * (cell("pt_pa", row) - cell("ps_pa", row));
-  } else if (const int axis = axis_of(channel); axis >= 0 && has("mx_ut")) {
+  } else if (const int axis = axis_of(channel); axis >= 0 && reads("mx_ut")) {
     const Eigen::Vector3d added = turn_.row(axis).transpose() * change;
     cell("mx_ut", row) += added[0];
     cell("my_ut", row) += added[1];
     cell("mz_ut", row) += added[2];
-  } else if (has("pt_pa") && (is_total(channel) || is_static(channel))) {
+  } else if (reads("pt_pa") && (is_total(channel) || is_static(channel))) {
     cell("pt_pa", row) += change;  // what the probe sees is their difference
     cell("ps_pa", row) += change;
   } else {

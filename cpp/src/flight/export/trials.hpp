@@ -42,6 +42,8 @@ class Trials {
   void round_row(std::size_t row);
   double& cell(const std::string& header, std::size_t row);
   double cell(const std::string& header, std::size_t row) const;
+  bool reads(const std::string& header) const;
+  bool is_flow_angle(const std::string& channel) const;
   bool has(const std::string& header) const;
   std::string header_of(const std::string& channel) const;
 

@@ -2,6 +2,7 @@
 // BASE.json, written and read. Every key of interface.md's "Results" is here and nowhere else.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "flight/files/text_file.hpp"
@@ -27,6 +28,25 @@ std::vector<std::string> output_names(const Probe& probe) {
   return names;
 }
 
+/// Throws Error where an effect is listed twice, or a parameter's effect is not.
+void check_effects(const Calibration& calibration) {
+  const std::vector<EffectSetting>& effects = calibration.options.effects;
+  for (auto one = effects.begin(); one != effects.end(); ++one) {
+    if (std::ranges::find(effects.begin(), one, one->name, &EffectSetting::name) != one) {
+      throw Error("it lists the effect " + one->name + " twice");
+    }
+  }
+  if (!calibration.departures.empty()) return;  // parameters are called by their flights too
+  for (const Parameter& parameter : calibration.fit.parameters) {
+    const auto is_of = [&](const EffectSetting& effect) {
+      return parameter.name.starts_with(effect.name + ".");
+    };
+    if (parameter.name.find('.') != std::string::npos && std::ranges::none_of(effects, is_of)) {
+      throw Error("it has the parameter " + parameter.name + " of an effect that it does not list");
+    }
+  }
+}
+
 Calibration read(const Json& root) {
   Calibration calibration;
   calibration.options = read_options(root.at("options"));
@@ -44,6 +64,7 @@ Calibration read(const Json& root) {
     calibration.driver_ranges = read_ranges(root.at("driver_ranges"));
   }
   calibration.history = read_history(root.at("history"));
+  check_effects(calibration);
   return calibration;
 }
 

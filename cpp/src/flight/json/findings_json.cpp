@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/json/findings_json.hpp"
 
+#include "flight/files/invalid_cells.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::json {
@@ -81,6 +82,9 @@ std::map<std::string, Interval> read_ranges(const Json& object) {
   std::map<std::string, Interval> ranges;
   for (const auto& [channel, range] : entries_of(object)) {
     const Interval read{range.at(0).get<double>(), range.at(1).get<double>()};
+    if (range.size() != 2 || !files::is_reading(read.lower) || !files::is_reading(read.upper)) {
+      throw Error("the range of the driver " + channel + " is not two numbers within 1e150");
+    }
     if (!(read.lower <= read.upper)) {
       throw Error("the range of the driver " + channel + " ends before it begins");
     }

@@ -26,6 +26,11 @@ bool is_refused(const EffectFinding& effect) {
   return effect.status == FindingStatus::not_seen && effect.p_adjusted < significant_below;
 }
 
+/// Significant, and rows left out are predicted better, by next to nothing.
+bool is_too_small(const EffectFinding& effect) {
+  return is_refused(effect) && effect.held_out_passed && effect.held_out_gain < 0.01;
+}
+
 Page percent(double fraction) {
   return std::isnan(fraction) ? Page("-") : page("{:.1f} %", 100.0 * fraction);
 }
@@ -44,8 +49,8 @@ std::string_view in_words(const EffectFinding& effect) {
   if (effect.status == FindingStatus::found) return "FOUND";
   if (effect.status == FindingStatus::slow_change) return "slow change";
   if (effect.status == FindingStatus::undecided) return "undecided";
-  if (!is_refused(effect)) return "not seen";
-  return effect.held_out_passed ? "too small" : "not held out";
+  if (is_too_small(effect)) return "too small";
+  return is_refused(effect) && !effect.held_out_passed ? "not held out" : "not seen";
 }
 
 Page estimates(const EffectFinding& effect) {
@@ -111,7 +116,8 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
     if (effect.status == FindingStatus::not_seen && !is_refused(effect) && ++unseen > most_unseen) {
       break;
     }
-    if (is_refused(effect)) (effect.held_out_passed ? is_small : is_unpredicted) = true;
+    is_small = is_small || is_too_small(effect);
+    is_unpredicted = is_unpredicted || (is_refused(effect) && !effect.held_out_passed);
     text += effect_row(effect, width, detail);
     ++shown;
   }
