@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import json
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +21,12 @@ MAG = sepcal.Magnetometer(field=[19.7, -1.4, 49.4])
 def renamed(flight: sepcal.Flight, old: str, new: str) -> sepcal.Flight:
     columns = {header: np.asarray(flight[header]) for header in flight}
     return sepcal.Flight({new if header == old else header: columns[header] for header in columns})
+
+
+def load(file: Path) -> sepcal.Calibration:
+    found = sepcal.load(file)
+    assert isinstance(found, sepcal.Calibration)
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +51,7 @@ def test_a_driver_without_a_number_is_named(base: Path, dead: float) -> None:
     with pytest.raises(
         sepcal.Error, match=r"bias\[current_a\]: no row has a number of 'current_a'"
     ):
-        sepcal.load(base).apply(sepcal.Flight(columns))
+        load(base).apply(sepcal.Flight(columns))
 
 
 @pytest.mark.parametrize("single", [False, True])
@@ -60,9 +68,9 @@ def test_a_driver_may_be_called_as_another_probe_reads(
     test = next(word for word in text.split() if "self_test" in word).split("(")[0]
     includes = '#include <errno.h>\n#include <stdio.h>\n#include "tube.h"\n'
     program.write_text(f"{includes}int main(void) {{ return {test}(); }}\n")
-    command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", program, "-lm"]
-    subprocess.run([*command, "-o", tmp_path / "tube"], check=True)
-    subprocess.run([tmp_path / "tube"], check=True)
+    command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", str(program), "-lm"]
+    subprocess.run([*command, "-o", str(tmp_path / "tube")], check=True)
+    subprocess.run([str(tmp_path / "tube")], check=True)
 
 
 @pytest.mark.parametrize(("change", "said"), [
@@ -72,7 +80,7 @@ def test_a_driver_may_be_called_as_another_probe_reads(
     (lambda root: root["options"]["effects"].extend(root["options"]["effects"]), "twice"),
 ])  # fmt: skip
 def test_a_calibration_that_contradicts_itself_is_damaged(
-    base: Path, tmp_path: Path, change, said: str
+    base: Path, tmp_path: Path, change: Callable[[dict[str, Any]], None], said: str
 ) -> None:
     root = json.loads(base.read_text())
     change(root)
@@ -92,7 +100,7 @@ def test_a_file_that_ends_at_a_nul_is_no_other_file(base: Path, tmp_path: Path) 
     kept = tmp_path / "kept.csv"
     kept.write_text("old")
     with pytest.raises(sepcal.Error, match="can't hold a NUL"):
-        sepcal.load(base).save(f"{kept}\0.json")
+        load(base).save(f"{kept}\0.json")
     with pytest.raises(sepcal.Error, match="can't hold a NUL"):
-        sepcal.export(sepcal.load(base), f"{kept}\0.h", "c")
+        sepcal.export(load(base), f"{kept}\0.h", "c")
     assert kept.read_text() == "old"
