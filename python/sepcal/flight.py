@@ -38,8 +38,6 @@ class Flight(Mapping[str, Array]):
             if not isinstance(header, str):
                 raise _core.Error(f"{name}: a column is called {header!r}; its name must be a text")
             as_utf8(f"{name}: the column's name", header)
-            if in_line(header) != header:
-                raise _core.Error(f"{name}: a column is called {header!r}; rename it in letters")
             if header == "maneuver":
                 self._core.label(to_labels(columns[header]))  # type: ignore[arg-type]
             else:

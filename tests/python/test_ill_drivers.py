@@ -90,12 +90,6 @@ def test_a_calibration_that_contradicts_itself_is_damaged(
         sepcal.load(file)
 
 
-@pytest.mark.parametrize("name", ["cur\nrent", "a\0b", "\x1b[31m", "\u202ea"])
-def test_a_column_that_steers_a_terminal_is_refused(tube: sepcal.Flight, name: str) -> None:
-    with pytest.raises(sepcal.Error, match="a column is called"):
-        renamed(tube, "current_a", name)
-
-
 def test_a_file_that_ends_at_a_nul_is_no_other_file(base: Path, tmp_path: Path) -> None:
     kept = tmp_path / "kept.csv"
     kept.write_text("old")
