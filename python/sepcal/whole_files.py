@@ -11,7 +11,7 @@ from sepcal.printing import in_line
 
 
 def name_of(file: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
-    """A file's name as the engine takes it. Raises Error for one that is no UTF-8 or holds a NUL."""
+    """A file's name as the engine takes it. Raises Error for no UTF-8, or a NUL."""
     name = os.fsdecode(file)
     if "\0" in name:
         raise _core.Error(f"{in_line(name)}: a file's name can't hold a NUL")
