@@ -71,7 +71,10 @@ class EffectFinding:
     def in_words(self) -> str:
         """The status as tables show it; "not held out" and "too small" are sure, yet refused."""
         if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
-            return "too small" if self.held_out_passed else "not held out"
+            if not self.held_out_passed:
+                return "not held out"
+            if self.held_out_gain is not None and self.held_out_gain < 0.01:
+                return "too small"
         return {
             "found": "found",
             "slow_change": "slow change",
