@@ -73,7 +73,7 @@ class EffectFinding:
         if self.status == "not_seen" and self.p_adjusted < _core.SIGNIFICANT_BELOW:
             if not self.held_out_passed:
                 return "not held out"
-            if self.held_out_gain is not None and self.held_out_gain < 0.01:
+            if self.held_out_gain is not None and self.held_out_gain < _core.LEAST_GAIN:
                 return "too small"
         return {
             "found": "found",

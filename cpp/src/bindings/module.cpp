@@ -48,6 +48,7 @@ PYBIND11_MODULE(_core, module) {
   sepcal::silence_solver_log();
   module.attr("__version__") = SEPCAL_VERSION;
   module.attr("SIGNIFICANT_BELOW") = sepcal::significant_below;
+  module.attr("LEAST_GAIN") = sepcal::least_gain;
   module.attr("VISIBLE_FROM") = sepcal::visible_from;
   define_error(module);
   define_escaping(module);

@@ -77,6 +77,7 @@ struct EffectTable {
   std::vector<Channel> channels;
   std::vector<EffectKit::Maker> wandering = {};  // errors of the attitude: roll, pitch, yaw
   std::vector<WanderBound> wanders = {};         // as sensors of the kind let them
+  std::vector<std::string> disturbed = {};       // readings that meet gusts
 
   /// nullptr where there is none of that name.
   const PortRow* find_port(const std::string& name) const;

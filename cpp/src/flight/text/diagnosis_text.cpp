@@ -26,9 +26,13 @@ bool is_refused(const EffectFinding& effect) {
   return effect.status == FindingStatus::not_seen && effect.p_adjusted < significant_below;
 }
 
+bool is_unpredicted(const EffectFinding& effect) {
+  return is_refused(effect) && !effect.held_out_passed;
+}
+
 /// Significant, and rows left out are predicted better, by next to nothing.
 bool is_too_small(const EffectFinding& effect) {
-  return is_refused(effect) && effect.held_out_passed && effect.held_out_gain < 0.01;
+  return is_refused(effect) && effect.held_out_passed && effect.held_out_gain < least_gain;
 }
 
 Page percent(double fraction) {
@@ -50,7 +54,7 @@ std::string_view in_words(const EffectFinding& effect) {
   if (effect.status == FindingStatus::slow_change) return "slow change";
   if (effect.status == FindingStatus::undecided) return "undecided";
   if (is_too_small(effect)) return "too small";
-  return is_refused(effect) && !effect.held_out_passed ? "not held out" : "not seen";
+  return is_unpredicted(effect) ? "not held out" : "not seen";
 }
 
 Page estimates(const EffectFinding& effect) {
@@ -108,16 +112,16 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
   if (detail != Detail::brief) text += page(" {:>9} {:>9} {:>9}", "F", "PSE", "SSE");
   text += "\n";
   std::size_t shown = 0;
-  bool is_unpredicted = false;
-  bool is_small = false;
+  bool some_unpredicted = false;
+  bool some_small = false;
   std::size_t unseen = 0;
   for (const EffectFinding& effect : effects) {
     if (shown == most_shown || effect.status == FindingStatus::cannot_be_seen) break;
     if (effect.status == FindingStatus::not_seen && !is_refused(effect) && ++unseen > most_unseen) {
       break;
     }
-    is_small = is_small || is_too_small(effect);
-    is_unpredicted = is_unpredicted || (is_refused(effect) && !effect.held_out_passed);
+    some_small = some_small || is_too_small(effect);
+    some_unpredicted = some_unpredicted || is_unpredicted(effect);
     text += effect_row(effect, width, detail);
     ++shown;
   }
@@ -125,10 +129,10 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
       std::ranges::count(effects, FindingStatus::cannot_be_seen, &EffectFinding::status);
   const auto others = static_cast<std::ptrdiff_t>(effects.size() - shown) - hidden;
   if (others > 0) text += page("and {} more\n", others);
-  if (is_unpredicted) {
+  if (some_unpredicted) {
     text += "not held out: significant, but rows left out gain no more than by chance\n";
   }
-  if (is_small) {
+  if (some_small) {
     text +=
         "too small: significant, but it takes less than 1 % on rows held out, as errors of what "
         "enters the model do by themselves\n";
