@@ -38,6 +38,7 @@ __all__: list[str] = [
     "Innovation",
     "Intervals",
     "IterationOptions",
+    "LEAST_GAIN",
     "LocalMinimum",
     "LogNote",
     "ManyFit",
@@ -3099,6 +3100,7 @@ def spectrum(
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
 def write_whole(arg0: collections.abc.Mapping[str, str]) -> None: ...
 
+LEAST_GAIN: float = 0.01
 SIGNIFICANT_BELOW: float = 0.05
 VISIBLE_FROM: float = 0.05
 __version__: str = "0.1.0"

@@ -230,11 +230,11 @@ inline constexpr double objects_from = 0.2;
 std::vector<std::string> list_beside(const Diagnosis& diagnosis, Beside beside);
 
 inline constexpr double significant_below = 0.05;  // p after Holm
-/// Of the error on rows held out: an effect that takes less is too small to be a cause, however sure
-/// it is. Noise of the inputs and turbulence do as much, where a model is linearised about what was
-/// read.
+/// Of the error on rows held out: an effect that takes less is too small to be a cause, however
+/// sure it is. Noise of the inputs and turbulence do as much, where a model is linearised about
+/// what was read.
 inline constexpr double least_gain = 0.01;
-inline constexpr double visible_from = 0.05;       // a sine: below, an effect can't be seen
+inline constexpr double visible_from = 0.05;  // a sine: below, an effect can't be seen
 /// The same along a trajectory: a power of alpha about its trim is within 0.03 of what the aircraft
 /// has, and twenty seconds tell it at sixty standard errors.
 inline constexpr double visible_along_path = 0.01;
