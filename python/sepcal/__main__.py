@@ -15,12 +15,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from sepcal import _core
+from sepcal import own_commands as own
 from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
 from sepcal.printing import in_line, tell
 from sepcal.reporting import command as report
 
-COMMANDS = (report, log, field)
+COMMANDS = (own, report, log, field)
 BAD_INPUT = 2
 INTERRUPTED = 130
 
@@ -50,7 +51,10 @@ def open_streams() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit code."""
     open_streams()
-    parser = Parser(prog="sepcal", description="Beside sepcal-pitot and sepcal-mag.")
+    parser = Parser(
+        prog="sepcal",
+        description="Beside sepcal-pitot and sepcal-mag: models of your own, reports, logs.",
+    )
     parser.add_argument("--version", action="version", version=f"sepcal {_core.__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     for command in COMMANDS:

@@ -20,6 +20,7 @@ from sepcal.flight import Flight, to_flight
 from sepcal.intervals import Intervals, Prediction
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
+from sepcal.own_model import OwnModel, SeparableModel, to_own
 from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options
 from sepcal.whole_files import name_of
@@ -36,17 +37,20 @@ class Calibration(Fit):
     core: _core.Calibration
     flight: Flight | None  # that was fitted, or several, joined; None where it was loaded
     own_effects: list[Effect]  # of the caller's making, among `effects`
+    own_model: OwnModel | None  # where it is of a model of the caller's making
 
     def __init__(
         self,
         core: _core.Calibration,
         flight: Flight | None = None,
         own: Sequence[Effect] = (),
+        own_model: OwnModel | None = None,
     ) -> None:
         super().__init__(core.fit)
         self.core = core
         self.flight = flight
         self.own_effects = list(own)
+        self.own_model = own_model
 
     @property
     def restated(self) -> dict[str, dict[str, Any]]:
@@ -213,7 +217,7 @@ class Calibration(Fit):
             found = self.core.diagnose(chosen._core, own, injected, asked)
             return Diagnosis._of(found)
         stepped = self.core.diagnose_stepwise(chosen._core, own, most, asked)
-        return Stepwise(Calibration(stepped.fitted, chosen, [*self.own_effects, *effects]), stepped)
+        return Stepwise(self._next(stepped.fitted, chosen, effects), stepped)
 
     def add(
         self, effect: str | Effect, flight: Flight | Sequence[Flight] | None = None
@@ -235,7 +239,11 @@ class Calibration(Fit):
         name = effect.name if isinstance(effect, Effect) else effect
         own = [effect] if isinstance(effect, Effect) else []
         core = self.core.add(flight._core, name, to_core_effects(own))
-        return Calibration(core, flight, [*self.own_effects, *own])
+        return self._next(core, flight, own)
+
+    def _next(self, core: _core.Calibration, flight: Flight, own: Sequence[Effect]) -> Calibration:
+        """The same with more effects."""
+        return Calibration(core, flight, [*self.own_effects, *own], self.own_model)
 
     def intervals(
         self,
@@ -350,28 +358,34 @@ class Calibration(Fit):
         return read
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _parse, (self.to_json(), self.own_effects)
+        return _parse, (self.to_json(), self.own_effects, self.own_model)
 
 
-def load(file: Path, effects: Sequence[Effect] = ()) -> Calibration | AircraftFit:
+def load(
+    file: Path, effects: Sequence[Effect] = (), model: SeparableModel | OwnModel | None = None
+) -> Calibration | AircraftFit:
     """Reads what save() or an app's fit wrote.
 
     Args:
         file: The JSON.
         effects: The effects of your own that the calibration was fitted with, which a file can't
             hold. Without them its numbers can be read and nothing be done with it.
+        model: The model of your own that it is of, where it is of one.
 
     Returns:
         A Calibration; of a flight path or an aircraft an AircraftFit.
 
     Raises:
         Error: The file can't be read, is no calibration, or is of another schema version; an effect
-            that it doesn't have.
+            that it doesn't have; another model.
     """
     if _is_of_aircraft(file):
         return read_fit(file)
-    core = _core.read_calibration(name_of(file), to_core_effects(effects))
-    return Calibration(core, own=effects)
+    own = None if model is None else to_own(model)
+    core = _core.read_calibration(
+        name_of(file), to_core_effects(effects), None if own is None else own._core
+    )
+    return Calibration(core, own=effects, own_model=own)
 
 
 def _is_of_aircraft(file: Path) -> bool:
@@ -384,6 +398,8 @@ def _is_of_aircraft(file: Path) -> bool:
     return isinstance(read, dict) and ("aircraft" in read or {"path", "aero"} <= set(read))
 
 
-def _parse(text: str, effects: Sequence[Effect]) -> Calibration:
-    core = _core.parse_calibration(text, "pickle", to_core_effects(effects))
-    return Calibration(core, own=effects)
+def _parse(text: str, effects: Sequence[Effect], own: OwnModel | None = None) -> Calibration:
+    core = _core.parse_calibration(
+        text, "pickle", to_core_effects(effects), None if own is None else own._core
+    )
+    return Calibration(core, own=effects, own_model=own)

@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The physical effects that sepcal knows, probe by probe."""
+"""The physical effects that sepcal knows, model by model."""
 
 from sepcal import _core
-from sepcal.models import FiveHoleProbe, Magnetometer, PitotStatic
+from sepcal.own_state_model import AnyModel, as_model
 
 PROBES = ("five-hole", "pitot-static", "magnetometer", "magnetometer-norm")
 
 
-def effects(
-    probe: FiveHoleProbe | PitotStatic | Magnetometer | str,
-) -> list[_core.CataloguedEffect]:
-    """The catalogue of a probe, or of a probe's name.
+def effects(model: AnyModel | str) -> list[_core.CataloguedEffect]:
+    """The catalogue of a probe, of a probe's name, or of a model of your own.
 
     Raises:
-        Error: Another name than "five-hole", "pitot-static", "magnetometer" (also with attitude) or
-            "magnetometer-norm" (its field's strength alone).
+        Error: A model that takes no flight; another name than "five-hole", "pitot-static",
+            "magnetometer" (also with attitude) or "magnetometer-norm" (its field's strength alone).
     """
-    name = probe if isinstance(probe, str) else probe.name
-    if name not in PROBES:
-        raise _core.Error(f"there is no probe '{name}'; known: {', '.join(PROBES)}")
-    return _core.effects(name)
+    if not isinstance(model, str):
+        return _core.effects_of(as_model(model)._core)
+    if model not in PROBES:
+        raise _core.Error(f"there is no probe '{model}'; known: {', '.join(PROBES)}")
+    return _core.effects(model)

@@ -8,7 +8,7 @@ from typing import Any
 
 from sepcal import _core
 from sepcal.flight import Flight
-from sepcal.models import Model
+from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
 
 
@@ -40,13 +40,13 @@ class FlightCheck(Page, _core.FlightCheck):
         return [note._asdict() for note in self.notes]
 
 
-def check(model: Model, flight: Flight) -> FlightCheck:
+def check(model: AnyModel, flight: Flight) -> FlightCheck:
     """What a log is, column by column, and what that does to a calibration from it.
 
     Nothing is fitted, and a log that a fit would refuse is described all the same.
 
     Args:
-        model: FiveHoleProbe, PitotStatic or Magnetometer, as for the fit.
+        model: FiveHoleProbe, PitotStatic, Magnetometer or one of your own, as for the fit.
         flight: The log.
 
     Returns:
@@ -56,6 +56,7 @@ def check(model: Model, flight: Flight) -> FlightCheck:
     Raises:
         Error: A model that takes no flight.
     """
-    if not isinstance(model, Model) or not isinstance(flight, Flight):
+    if isinstance(model, Flight) or not isinstance(flight, Flight):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
+    model = as_model(model)
     return FlightCheck(_core.check(model._core, flight._core))

@@ -13,6 +13,7 @@ from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
 from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
+from sepcal.own_model import own_among
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 from sepcal.results import Fit
 from sepcal.trajectories import FlightPath
@@ -46,8 +47,8 @@ def fit(
             one of yours in Python: any object with the tables and at() of SeparableModel or, with a
             state, of StateModel. Python lets one thread in at a time, so that threads=0 then means
             one.
-        data: A Flight (columns with units in their headers; for the probes, FlightPath, Aero and
-            RigidAircraft), or the model's own
+        data: A Flight (columns with units in their headers; for the probes, FlightPath, Aero,
+            RigidAircraft and models of yours without a state), or the model's own
             inputs and outputs by name in the units of its tables, each of shape (N,): a dict or a
             DataFrame. There "time" [s] and "maneuver" (labels) are optional and cut the record at
             gaps and changes of label; other columns are ignored but by effects. C-contiguous
@@ -77,7 +78,8 @@ def fit(
     core_options, own = to_core(options), to_core_effects(effects)
     if isinstance(data, Flight):
         core = _core.calibrate(model._core, data._core, core_options, own)
-        return Calibration(core, data, [e for e in effects if isinstance(e, Effect)])
+        made = [effect for effect in effects if isinstance(effect, Effect)]
+        return Calibration(core, data, made, own_among(model))
     refuse_log_choice(options)
     if getattr(model, "mounting", None) is not None:
         raise _core.Error("mounting turns the readings of a Flight; turn these yourself")

@@ -7,14 +7,15 @@ from typing import Unpack
 from sepcal import _core
 from sepcal.calibration import Calibration
 from sepcal.flight import Flight, to_flight
-from sepcal.models import Model
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import Effect, name_effects, to_core_effects
+from sepcal.own_model import own_among
+from sepcal.own_state_model import AnyModel, as_model
 
 
 @spelled_out()
 def fit_jointly(
-    model: Model,
+    model: AnyModel,
     flights: Sequence[Flight],
     *,
     own: Sequence[str] = (),
@@ -30,7 +31,7 @@ def fit_jointly(
     the same in each. For many flights, on many machines, there is fit_many().
 
     Args:
-        model: A probe.
+        model: A probe, or a model of your own without a state.
         flights: Two or more, of different names. They need the same columns; what is not in all of
             them is left out. A flight is called by its file's name without folder and ending.
         own: Parameters that every flight has for itself, "wind" for w_n, w_e, w_d; the others are
@@ -47,12 +48,13 @@ def fit_jointly(
         raise _core.Error("flights is one flight; give several in a list, or fit() the one")
     effects = options.get("effects") or ()
     options["effects"] = name_effects(effects)
+    subject = as_model(model)
     core, joined = _core.calibrate_jointly(
-        model._core,
+        subject._core,
         [to_flight(flight, "fit_jointly(model, [")._core for flight in flights],
         to_names("own", own),
         to_core(options),
         to_core_effects(effects),
     )
     made = [effect for effect in effects if isinstance(effect, Effect)]
-    return Calibration(core, Flight._of(joined), made)
+    return Calibration(core, Flight._of(joined), made, own_among(subject))

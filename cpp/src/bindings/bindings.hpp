@@ -35,15 +35,19 @@ struct Model {
   explicit Model(const std::shared_ptr<const Probe>& given)
       : block(given, &given->model()), probe(given) {}
 
-  EffectKit kit() const { return probe ? effect_kit(probe->name()) : plain_kit(block->tables()); }
+  EffectKit kit() const { return probe ? effect_kit(*probe) : plain_kit(block->tables()); }
 
   std::shared_ptr<const BlockModel> block;
   std::shared_ptr<const Probe> probe;  // may be empty
+  std::shared_ptr<const Probe> own;    // of a model of the caller's own: what takes flights
   Along along;                         // the same
   std::map<std::string, double> held;  // unless freed, of a model without a probe
 };
 
-/// Throws Error where the model has none.
+/// What takes the model's flights; may be empty.
+const std::shared_ptr<const Probe>& subject_of(const Model& model);
+
+/// Throws Error where the model takes none.
 const Probe& probe_of(const Model& model);
 
 // Of sepcal._core.

@@ -23,6 +23,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/own_model.hpp"
 #include "sepcal/innovation_model.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 
@@ -52,10 +53,12 @@ std::vector<Variable> to_table(const std::vector<Row>& rows) {
 
 Model python_model(const std::string& name, const std::array<std::vector<Row>, 4>& tables,
                    const PythonFunctions& functions) {
-  return Model(std::make_shared<const PythonModel>(
+  Model model(std::make_shared<const PythonModel>(
       name,
       Tables{to_table(tables[0]), to_table(tables[1]), to_table(tables[2]), to_table(tables[3])},
       functions));
+  model.own = own_model(name, model.block);
+  return model;
 }
 
 /// The model for a record of these columns.

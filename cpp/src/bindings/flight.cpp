@@ -128,7 +128,7 @@ Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
                       const std::vector<PythonEffect>& own,
                       const std::optional<std::pair<std::string, std::vector<double>>>& injected,
                       const DiagnosisOptions& asked) {
-  const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
+  const OwnEffects makers = own_effects(own, effect_kit(*calibration.probe));
   const DiagnosisOptions options = with_threads(asked, calibration.options.fit.threads);
   const Released released;
   need_own_effects(calibration);
@@ -141,7 +141,7 @@ Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const 
                                           const std::vector<PythonEffect>& own,
                                           std::optional<std::size_t> most,
                                           const DiagnosisOptions& asked) {
-  const OwnEffects makers = own_effects(own, effect_kit(calibration.probe->name()));
+  const OwnEffects makers = own_effects(own, effect_kit(*calibration.probe));
   const StepwiseOptions options =
       stepwise_options(most, with_threads(asked, calibration.options.fit.threads));
   const Released released;
@@ -179,9 +179,9 @@ Applied apply_file(const Calibration& calibration, const std::string& file,
 
 Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
                             const std::vector<PythonEffect>& own) {
-  options.own_effects = own_effects(own, effect_kit(probe_of(model).name()));
+  options.own_effects = own_effects(own, effect_kit(probe_of(model)));
   const Released released;
-  return calibrate(model.probe, flight, options);
+  return calibrate(subject_of(model), flight, options);
 }
 
 /// Flights fitted together, and these joined.
@@ -190,11 +190,11 @@ std::pair<Calibration, Flight> calibrate_flights(const Model& model,
                                                  const std::vector<std::string>& own,
                                                  CalibrationOptions options,
                                                  const std::vector<PythonEffect>& own_made) {
-  options.own_effects = own_effects(own_made, effect_kit(probe_of(model).name()));
+  options.own_effects = own_effects(own_made, effect_kit(probe_of(model)));
   const Released released;
   std::vector<std::string> notes;  // calibrate_jointly() gives them with the calibration
   Flight joined = join_flights(flights, options.log, notes);
-  return {calibrate_jointly(model.probe, flights, own, options), std::move(joined)};
+  return {calibrate_jointly(subject_of(model), flights, own, options), std::move(joined)};
 }
 
 /// A joint calibration on one flight, whose own parameters must be known where `known`.
@@ -226,7 +226,7 @@ FlightPrediction predict_flight(const Calibration& calibration, const Flight& fl
 
 Calibration add_to(const Calibration& base, const Flight& flight, const std::string& effect,
                    const std::vector<PythonEffect>& own) {
-  const OwnEffects makers = own_effects(own, effect_kit(base.probe->name()));
+  const OwnEffects makers = own_effects(own, effect_kit(*base.probe));
   const Released released;
   need_own_effects(base);
   Calibration next = add(base, flight, effect, makers);
@@ -478,8 +478,12 @@ void define_calibration(py::module_& module) {
 
 }  // namespace
 
+const std::shared_ptr<const Probe>& subject_of(const Model& model) {
+  return model.probe != nullptr ? model.probe : model.own;
+}
+
 const Probe& probe_of(const Model& model) {
-  if (model.probe != nullptr) return *model.probe;
+  if (const auto& probe = subject_of(model)) return *probe;
   throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
 }
 
@@ -491,12 +495,16 @@ void define_flight(py::module_& module) {
   module.def("calibrate", &calibrate_probe);
   module.def("calibrate_jointly", &calibrate_flights);
   using Own = std::vector<PythonEffect>;
-  module.def("parse_calibration",
-             [](const std::string& json, const std::string& source, const Own& own) {
-               return with_own_effects(parse_calibration(json, source), own);
-             });
-  module.def("read_calibration", [](const std::string& file, const Own& own) {
-    return with_own_effects(read_calibration(file), own);
+  module.def("parse_calibration", [](const std::string& json, const std::string& source,
+                                     const Own& own, const Model* model) {
+    return with_own_effects(model == nullptr ? parse_calibration(json, source)
+                                             : parse_calibration(json, source, subject_of(*model)),
+                            own);
+  });
+  module.def("read_calibration", [](const std::string& file, const Own& own, const Model* model) {
+    return with_own_effects(
+        model == nullptr ? read_calibration(file) : read_calibration(file, subject_of(*model)),
+        own);
   });
 }
 

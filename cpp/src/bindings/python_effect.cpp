@@ -111,7 +111,7 @@ OwnEffects own_effects(const std::vector<PythonEffect>& effects, const EffectKit
 }
 
 void give_own_effects(Calibration& calibration, const std::vector<PythonEffect>& effects) {
-  OwnEffects own = own_effects(effects, effect_kit(calibration.probe->name()));
+  OwnEffects own = own_effects(effects, effect_kit(*calibration.probe));
   for (const auto& [name, maker] : own) {
     std::string there;
     for (const EffectSetting& setting : calibration.options.effects) {
@@ -128,7 +128,7 @@ void give_own_effects(Calibration& calibration, const std::vector<PythonEffect>&
 }
 
 void need_own_effects(const Calibration& calibration) {
-  const EffectKit kit = effect_kit(calibration.probe->name());
+  const EffectKit kit = effect_kit(*calibration.probe);
   for (const EffectSetting& setting : calibration.options.effects) {
     const bool is_driven = setting.name.find('[') != std::string::npos;
     if (is_driven || kit.own.contains(setting.name)) continue;

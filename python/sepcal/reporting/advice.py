@@ -19,6 +19,7 @@ from sepcal.reporting.words import number, with_unit
 from sepcal.results import Fit
 
 BEYOND_ALL = 1e6  # of a port's unit: nothing that would have shown is so large
+OWN_MODEL = "FILE.py:CLASS"
 DEPARTS = 0.01  # of p
 TWINS = 4  # effects that would do as well, or pairs, that are named
 
@@ -208,8 +209,12 @@ def next_command(material: Material, file: str) -> str:
     effect = advised(material)
     if effect is None or not file or not material.flight.sha256:
         return ""
-    app = "sepcal-mag" if material.model.startswith("magnetometer") else "sepcal-pitot"
-    words = [app, "add", *material.flight_files, file, effect.name]
+    if material.last.own_model is not None:
+        app = ["python", "-m", "sepcal", "add", "--model", OWN_MODEL]
+    else:
+        is_magnetometer = material.model.startswith("magnetometer")
+        app = ["sepcal-mag" if is_magnetometer else "sepcal-pitot", "add"]
+    words = [*app, *material.flight_files, file, effect.name]
     return f"{in_shell(words)} -o NEXT.json"
 
 
@@ -217,7 +222,8 @@ def report_command(material: Material, file: str) -> str:
     """What makes this page again."""
     if material.files and material.flight.sha256:
         flights = material.flight_files
-        words = ["python", "-m", "sepcal", "report", *flights, *material.files]
+        own = [] if material.last.own_model is None else ["--model", OWN_MODEL]
+        words = ["python", "-m", "sepcal", "report", *own, *flights, *material.files]
         return in_shell([*words, "-o", file])
     return f"sepcal.report(calibrations, {file!r}, flight)"
 

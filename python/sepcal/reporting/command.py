@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from sepcal._core import Error
 from sepcal.calibration import Calibration, load
 from sepcal.flight import read_csv
+from sepcal.own_commands import add_model, read_model
 from sepcal.printing import in_line, show, told_progress
 from sepcal.reporting import report
 from sepcal.whole_files import refuse_outputs
@@ -45,6 +46,7 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
         help="of a flight path or an aircraft: root of the spectral density of a noise that drives "
         "the states; the page then has smoothed states, innovations and noise; may be repeated",
     )
+    add_model(parser, needed=False)
     parser.set_defaults(run=run)
 
 
@@ -56,7 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
     if not files:
         raise Error(f"{more[-1]} is a log, not a calibration; give the JSON that fit wrote with -o")
     flight = read_csv(arguments.flight)
-    chain = [load(file) for file in files]
+    model = read_model(arguments.model) if arguments.model else None
+    chain = [load(file, model=model) for file in files]
     last = chain[-1]
     if isinstance(last, Calibration) and (more or last.flights):
         flight = last.join([flight, *map(read_csv, more)])

@@ -7,6 +7,7 @@ import numpy as np
 
 from sepcal.columns import Array
 from sepcal.markup import Html, html
+from sepcal.own_model import OwnModel
 from sepcal.reporting import tables, words
 from sepcal.reporting.figures_flight import (
     covered_cells,
@@ -80,17 +81,22 @@ def _coverage_table(material: Material) -> Html:
 
 def show_coverage(material: Material) -> Section:
     """Directions or flow angles, heading, speed."""
-    if material.model.startswith("magnetometer"):
+    own, told = material.last.own_model, html("")
+    if own is not None:
+        figures = _cover_inputs(material, own)
+        lead = "What the inputs never were can't be calibrated: beyond, the model is a guess."
+    elif material.model.startswith("magnetometer"):
         figures, told = _cover_field(material)
+        lead = (
+            "What was never flown can't be calibrated: directions all over the sphere separate the "
+            "errors of a magnetometer's axes from its hard iron."
+        )
     else:
-        figures, told = _cover_air(material), html("")
-    lead = (
-        "What was never flown can't be calibrated: directions all over the sphere separate the "
-        "errors of a magnetometer's axes from its hard iron."
-        if material.model.startswith("magnetometer")
-        else "What was never flown can't be calibrated: a full turn separates the wind from "
-        "airspeed errors, a range of airspeeds a scale from a bias."
-    )
+        figures = _cover_air(material)
+        lead = (
+            "What was never flown can't be calibrated: a full turn separates the wind from "
+            "airspeed errors, a range of airspeeds a scale from a bias."
+        )
     blocks: list[str | Figure | Grid] = [Grid(figures, 320)]
     if told:
         blocks.insert(0, told)
@@ -122,6 +128,16 @@ def _cover_field(material: Material) -> tuple[list[Figure], Html]:
     figures.append(draw_histogram("Strength of the calibrated field", strength, "|h| [uT]"))
     told = "<p>The field came from {} of {} equal parts of the sphere.</p>"
     return figures, html(told, visited, cells)
+
+
+def _cover_inputs(material: Material, own: OwnModel) -> list[Figure]:
+    figures = []
+    for name in own.inputs:
+        values = material.figures.channel(name)
+        if values is not None:
+            axis = f"{name} [{own.units[name]}]"
+            figures.append(draw_histogram(f"Input {name}", values, axis))
+    return figures
 
 
 def _cover_air(material: Material) -> list[Figure]:

@@ -119,8 +119,14 @@ std::string to_text(const Fit& fit, const CalibrationOptions& options,
 Calibration parse_calibration(std::string_view json, const std::string& source,
                               std::string_view app = {});
 
+/// The same of a model of your own (own_model.hpp). Throws Error also where the calibration is of
+/// another model.
+Calibration parse_calibration(std::string_view json, const std::string& source,
+                              std::shared_ptr<const Probe> own);
+
 /// parse_calibration() of a file. Throws Error also where it can't be read.
 Calibration read_calibration(const std::string& file, std::string_view app = {});
+Calibration read_calibration(const std::string& file, std::shared_ptr<const Probe> own);
 
 /// Writes to_json() to a file that appears whole or not at all.
 void write_calibration(const Calibration& calibration, const std::string& file);

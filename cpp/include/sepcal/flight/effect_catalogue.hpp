@@ -10,6 +10,8 @@
 
 namespace sepcal {
 
+class Probe;
+
 struct CataloguedEffect {
   std::string name;      // as `port[driver]`, or a name of its own
   std::string equation;  // what joins the model
@@ -20,6 +22,9 @@ struct CataloguedEffect {
 /// The catalogue of a model by its Probe::name(), of trajectories "path" or "aircraft"; empty for
 /// another name.
 std::span<const CataloguedEffect> effect_catalogue(std::string_view model);
+
+/// The catalogue of a probe, a model of your own (own_model.hpp) too.
+std::vector<CataloguedEffect> effect_catalogue(const Probe& probe);
 
 /// The catalogue of a model as the table that the apps print.
 std::string catalogue_text(std::string_view model);

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,13 @@
 namespace sepcal {
 
 struct Fit;
+
+namespace catalogue {
+struct EffectTable;
+}
+namespace probes {
+struct ProbeQuantity;
+}
 
 /// Columns that applying a calibration adds: header and a value a row (NaN where there is none).
 struct CorrectedColumn {
@@ -73,6 +81,11 @@ class Probe {
 
   virtual const BlockModel& model() const = 0;
 
+  /// All that is known of the effects that it may lack, and all that it reads of a log: unless
+  /// overridden what ships under its name.
+  virtual const catalogue::EffectTable& effects() const;
+  virtual std::span<const probes::ProbeQuantity> quantities() const;
+
   /// What must be known of the instrument, by the names of the options, e.g. k_alpha {4.5},
   /// lever_arm {0.35, 0, -0.02}. make_probe() takes them back.
   virtual std::map<std::string, std::vector<double>> settings() const = 0;
@@ -98,6 +111,10 @@ class Probe {
   virtual std::vector<CorrectedColumn> correct(const ProbeReadings& readings,
                                                const Eigen::VectorXd& values,
                                                const ReadingEffects& effects) const = 0;
+
+  /// Whether applying a calibration gives what the model with its effects makes of its inputs, in
+  /// place of correct().
+  virtual bool predicts() const { return false; }
 
   /// Parameters that a fit holds at a value unless they are freed.
   virtual std::map<std::string, double> held() const { return {}; }

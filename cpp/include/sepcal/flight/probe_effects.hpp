@@ -12,9 +12,12 @@
 
 namespace sepcal {
 
-/// Ports, effects with a physics of their own and aliases of a probe by its Probe::name(): the
-/// catalogue that effect_catalogue.hpp describes; with `own`, which go before those.
-EffectKit effect_kit(std::string_view probe, const OwnEffects& own = {});
+/// Ports, effects with a physics of their own and aliases of a probe: the catalogue that
+/// effect_catalogue.hpp describes; with `own`, which go before those. The probe must outlive it.
+EffectKit effect_kit(const Probe& probe, const OwnEffects& own = {});
+
+/// The same of a probe that ships, by its Probe::name().
+EffectKit effect_kit(std::string_view probe);
 
 /// A flight as the model with its effects takes it.
 struct EffectiveFlight {

@@ -4,23 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "sepcal/effect_name.hpp"
 
 namespace sepcal::catalogue {
-namespace {
-
-constexpr std::array state_drivers{"time", "alpha", "beta", "q", "r"};
-
-}  // namespace
 
 /// Channels under their own header; what is measured can't drive an effect.
-std::vector<std::string> list_drivers(const Record& record, const Flight& flight) {
-  std::vector<std::string> drivers(state_drivers.begin(), state_drivers.end());
+std::vector<std::string> list_drivers(const EffectTable& table, const Record& record,
+                                      const Flight& flight) {
+  std::vector<std::string> drivers{"time"};
+  drivers.insert(drivers.end(), table.state_drivers.begin(), table.state_drivers.end());
   std::erase_if(drivers, [&](const std::string& state) { return !record.has(state); });
   for (const std::string& name : record.names()) {
-    if (flight.find(name) != nullptr && can_name(name)) drivers.push_back(name);
+    if (flight.find(name) == nullptr || !can_name(name)) continue;
+    if (std::ranges::find(drivers, name) != drivers.end()) continue;
+    if (std::ranges::find(table.measured, name) == table.measured.end()) drivers.push_back(name);
   }
   return drivers;
 }
@@ -66,7 +64,7 @@ std::vector<std::string> list_candidates(const EffectTable& table, const EffectK
                                          const Record& record, const Flight& flight) {
   std::vector<std::string> names;
   for (const auto& [name, maker] : kit.own) names.push_back(name);
-  const std::vector<std::string> drivers = list_drivers(record, flight);
+  const std::vector<std::string> drivers = list_drivers(table, record, flight);
   for (const PortRow& row : table.ports) {
     for (const std::string& driver : drivers) {
       names.push_back(fmt::format("{}[{}]", row.port.name, driver));

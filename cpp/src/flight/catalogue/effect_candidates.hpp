@@ -17,7 +17,8 @@ std::vector<std::string> list_candidates(const EffectTable& table, const EffectK
                                          const Record& record, const Flight& flight);
 
 /// What of these may drive an effect: time, channels and state functions.
-std::vector<std::string> list_drivers(const Record& record, const Flight& flight);
+std::vector<std::string> list_drivers(const EffectTable& table, const Record& record,
+                                      const Flight& flight);
 
 /// Channels of effects that the flight doesn't log: "throttle".
 std::vector<std::string> list_missing_channels(const EffectTable& table, const Flight& flight);

@@ -8,6 +8,7 @@
 
 #include "effects/named_driver.hpp"
 #include "flight/catalogue/effect_table.hpp"
+#include "sepcal/flight/probe.hpp"
 
 namespace sepcal {
 
@@ -34,6 +35,10 @@ std::vector<CataloguedEffect> list_effects(const EffectTable& table) {
 }
 
 }  // namespace
+
+std::vector<CataloguedEffect> effect_catalogue(const Probe& probe) {
+  return list_effects(probe.effects());
+}
 
 std::span<const CataloguedEffect> effect_catalogue(std::string_view model) {
   static const auto catalogues = [] {

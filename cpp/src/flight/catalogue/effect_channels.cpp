@@ -131,7 +131,7 @@ bool acts_on_the_world(const EffectTable& table, const EffectName& name) {
 
 std::vector<std::string> add_channels(Record& record, const Flight& flight, const Probe& probe,
                                       const EffectName& effect) {
-  const EffectTable& table = effect_table(probe.name());
+  const EffectTable& table = probe.effects();
   std::vector<std::string> channels = channels_of(table, effect);
   for (const std::string& channel : channels) {
     if (add_channel(record, flight, probe, channel)) continue;

@@ -68,10 +68,12 @@ EffectKit catalogue::kit_of(const EffectTable& table) {
   return kit;
 }
 
-EffectKit effect_kit(std::string_view probe, const OwnEffects& own) {
-  EffectKit kit = kit_of(effect_table(probe));
+EffectKit effect_kit(const Probe& probe, const OwnEffects& own) {
+  EffectKit kit = kit_of(probe.effects());
   for (const auto& [name, maker] : own) kit.own[name] = maker;
   return kit;
 }
+
+EffectKit effect_kit(std::string_view probe) { return kit_of(effect_table(probe)); }
 
 }  // namespace sepcal

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "sepcal/error.hpp"
+#include "sepcal/flight/probe.hpp"
 
 namespace sepcal::catalogue {
 
@@ -36,3 +37,9 @@ const EffectTable& effect_table(std::string_view probe) {
 }
 
 }  // namespace sepcal::catalogue
+
+namespace sepcal {
+
+const catalogue::EffectTable& Probe::effects() const { return catalogue::effect_table(name()); }
+
+}  // namespace sepcal

@@ -38,7 +38,7 @@ EffectiveFlight with_effects(const Probe& probe, const Record& record,
   EffectiveFlight result;
   Record& extended = result.prepared.record = record;
   const auto model = model_of(probe);
-  result.effects = make_effects(effect_kit(probe.name(), own), *model, settings, extended);
+  result.effects = make_effects(effect_kit(probe, own), *model, settings, extended);
   result.model = compose(model, result.effects, extended);
   extended = without_edges(std::move(extended), reach(result.effects, bounds));
   return result;

@@ -52,7 +52,7 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
 /// All rows where the choice can't be followed, of which `refused` tells.
 TakenRows take_what_can_be(const Probe& probe, const Flight& flight, const LogChoice& choice) {
   try {
-    return take_rows(probe.name(), flight, choice);
+    return take_rows(probe, flight, choice);
   } catch (const Error&) {
     return {flight};
   }
@@ -99,7 +99,7 @@ FlightCheck check(const Probe& given, const Flight& logged, const LogChoice& cho
                     .rows = flight.rows()};
   describe_use(probe, flight, choice, spell, check);
   const TakenRows taken = take_what_can_be(probe, flight, choice);
-  const Log log(probe.name(), taken.flight);
+  const Log log(probe, taken.flight);
   check.rate = 1 / log.interval();
   if (std::isfinite(check.rate)) {
     std::vector<double> stamps;

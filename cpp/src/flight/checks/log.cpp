@@ -25,17 +25,18 @@ bool is_used(std::string_view model, const probes::ProbeQuantity& quantity) {
 
 }  // namespace
 
-Log::Log(std::string_view model, const Flight& flight) : model_(model), flight_(flight) {
+Log::Log(const probes::ModelQuantities& model, const Flight& flight)
+    : model_(model.model), flight_(flight) {
   time_ = files::read_quantity(flight, "time", UnitKind::time);
   stretches_ = probes::find_stretches(time_, flight.maneuvers());
-  for (const probes::ProbeQuantity& quantity : probes::quantities_of(model)) {
+  for (const probes::ProbeQuantity& quantity : model.list) {
     if (quantity.kind == UnitKind::time) continue;
-    const auto logged = files::find_quantity(flight, quantity.name, quantity.kind);
+    const auto logged = files::find_quantity(flight, quantity.name, quantity.kind, quantity.bare);
     if (!logged) continue;
     LoggedColumn column{quantity.name, *logged, logged->values(), {}, true};
     if (quantity.kind == UnitKind::angle) unwrap(column.values, 2 * std::numbers::pi);
     column.sequence = probes::find_sequence(logged->column->values, stretches_);
-    column.used = is_used(model, quantity);
+    column.used = is_used(model_, quantity);
     columns_.push_back(std::move(column));
   }
 }

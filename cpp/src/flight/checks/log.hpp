@@ -30,8 +30,7 @@ struct LoggedColumn {
 
 class Log {
  public:
-  /// Throws Error for a model that there is none of.
-  Log(std::string_view model, const Flight& flight);
+  Log(const probes::ModelQuantities& model, const Flight& flight);
 
   std::string_view model() const { return model_; }
   const Flight& flight() const { return flight_; }

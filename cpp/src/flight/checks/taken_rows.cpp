@@ -7,7 +7,8 @@
 
 namespace sepcal::checks {
 
-TakenRows take_rows(std::string_view model, const Flight& flight, const LogChoice& choice) {
+TakenRows take_rows(const probes::ModelQuantities& model, const Flight& flight,
+                    const LogChoice& choice) {
   const logs::RowTruth is_taken = probes::rows_taken(model, flight, choice);
   TakenRows taken{flight};
   if (!is_taken) return taken;

@@ -16,6 +16,7 @@ struct TakenRows {
 };
 
 /// Throws Error as probes::rows_taken().
-TakenRows take_rows(std::string_view model, const Flight& flight, const LogChoice& choice);
+TakenRows take_rows(const probes::ModelQuantities& model, const Flight& flight,
+                    const LogChoice& choice);
 
 }  // namespace sepcal::checks

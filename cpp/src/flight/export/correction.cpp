@@ -63,7 +63,7 @@ class Description {
 
   Correction make() {
     find_origins();
-    const auto& table = catalogue::effect_table(calibration_.probe->name());
+    const auto& table = calibration_.probe->effects();
     for (const EffectSetting& setting : calibration_.options.effects) {
       const EffectName name = parse_effect_name(setting.name);
       const bool catalogued =
@@ -195,7 +195,7 @@ class Description {
       const EffectName name = parse_effect_name(setting.name);
       const bool is_counted = name.shape == Shape::power || name.shape == Shape::product ||
                               name.shape == Shape::spline || name.shape == Shape::levels;
-      const auto& table = catalogue::effect_table(calibration_.probe->name());
+      const auto& table = calibration_.probe->effects();
       if (!is_counted || catalogue::acts_on_the_world(table, name)) continue;
       for (const std::string& channel : driver_channels(name)) {
         if (channel == "time" || readings.contains(channel)) continue;

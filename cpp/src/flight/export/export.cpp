@@ -102,7 +102,7 @@ void fill_ranges(Calibration& calibration, const FlightAtHand& at_hand) {
   const EffectiveFlight effective =
       verbs::with_effects_of(calibration, verbs::prepare(calibration, *flight));
   calibration.driver_ranges = verbs::ranges_of_drivers(
-      calibration.probe->name(), calibration.options.effects,
+      *calibration.probe, calibration.options.effects,
       effective.prepared.record.select(calibration.options.fit.stage_two_segments));
 }
 

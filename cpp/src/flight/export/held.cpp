@@ -40,7 +40,7 @@ bool is_magnetometer(const Calibration& calibration) {
 
 bool acts_on_reading(const Calibration& calibration, const EffectSetting& setting) {
   if (calibration.options.own_effects.contains(setting.name)) return true;
-  return !catalogue::acts_on_the_world(catalogue::effect_table(calibration.probe->name()),
+  return !catalogue::acts_on_the_world(calibration.probe->effects(),
                                        parse_effect_name(setting.name));
 }
 

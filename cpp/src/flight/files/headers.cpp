@@ -165,11 +165,27 @@ const std::string* find_without_unit(std::string_view quantity,
 
 }  // namespace
 
-std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind) {
+const Unit* unit_in(std::string_view header, std::string_view quantity, UnitKind kind,
+                    const Unit* bare) {
+  if (!header.starts_with(quantity)) return nullptr;
+  const std::string_view rest = header.substr(quantity.size());
+  if (rest.empty()) return bare;
+  if (rest.front() != '_') return nullptr;
+  const std::string_view suffix = rest.substr(1);
+  return bare != nullptr && suffix == bare->suffix ? bare : find_unit(kind, suffix);
+}
+
+std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind,
+                                          const Unit* bare) {
   std::vector<std::string> headers;
   for (const Unit& unit : known_units(kind)) {
     headers.push_back(fmt::format("{}_{}", quantity, unit.suffix));
   }
+  if (bare == nullptr) return headers;
+  if (bare->kind == UnitKind::own && !bare->suffix.empty()) {
+    headers.push_back(fmt::format("{}_{}", quantity, bare->suffix));
+  }
+  headers.emplace_back(quantity);
   return headers;
 }
 
@@ -181,12 +197,9 @@ std::vector<double> LoggedQuantity::values() const {
 }
 
 std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
-                                            UnitKind kind) {
+                                            UnitKind kind, const Unit* bare) {
   for (const Flight::Column& column : flight.columns()) {
-    const std::string_view header = column.header;
-    const std::size_t split = header.rfind('_');
-    if (split == std::string_view::npos || header.substr(0, split) != quantity) continue;
-    const Unit* unit = find_unit(kind, header.substr(split + 1));
+    const Unit* unit = unit_in(column.header, quantity, kind, bare);
     if (unit != nullptr) return LoggedQuantity{&column, unit};
   }
   return std::nullopt;
@@ -209,8 +222,8 @@ std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
 }
 
 std::string describe_missing(std::string_view quantity, UnitKind kind,
-                             std::span<const std::string> others) {
-  const std::vector<std::string> accepted = accepted_headers(quantity, kind);
+                             std::span<const std::string> others, const Unit* bare) {
+  const std::vector<std::string> accepted = accepted_headers(quantity, kind, bare);
   std::string text = fmt::format("column '{}' is missing", accepted.front());
   if (accepted.size() > 1) {
     text += fmt::format(" ({} would do as well)",

@@ -18,8 +18,16 @@ namespace sepcal::files {
 /// driven by such a name.
 inline constexpr const char* flight_number = "flight number";
 
-/// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg.
-std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind);
+/// The unit in which a header says that it logs the quantity: the one of `kind` that its suffix
+/// names, or `bare` where it is the quantity's name alone or ends with its suffix (nullptr: there
+/// is none such). nullptr where the header is no such quantity's, or in a unit that is not known.
+const Unit* unit_in(std::string_view header, std::string_view quantity, UnitKind kind,
+                    const Unit* bare = nullptr);
+
+/// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg; the
+/// name alone, where `bare` is its unit, last.
+std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind,
+                                          const Unit* bare = nullptr);
 
 /// A quantity as a flight has it.
 struct LoggedQuantity {
@@ -35,7 +43,7 @@ struct LoggedQuantity {
 
 /// The flight's first column under one of these headers; nothing where there is none.
 std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
-                                            UnitKind kind);
+                                            UnitKind kind, const Unit* bare = nullptr);
 
 /// Its values(); empty where there is none.
 std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind);
@@ -50,6 +58,6 @@ std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
 
 /// "column 'roll_rad' is missing (roll_deg would do as well)", and ask_for_near_miss().
 std::string describe_missing(std::string_view quantity, UnitKind kind,
-                             std::span<const std::string> others);
+                             std::span<const std::string> others, const Unit* bare = nullptr);
 
 }  // namespace sepcal::files

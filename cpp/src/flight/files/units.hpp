@@ -24,7 +24,8 @@ enum class UnitKind {
   field,
   temperature,
   density,
-  share  // of one
+  share,  // of one
+  own     // in the unit of a model of the user's own, and in no other
 };
 
 /// A unit as CSV headers spell it: "kt" of "vn_kt".
@@ -46,7 +47,7 @@ struct Unit {
   }
 };
 
-/// All units of a kind; the first is the one used inside.
+/// All units of a kind, the one used inside first; none of `own`.
 std::span<const Unit> known_units(UnitKind kind);
 
 /// The unit of `kind` with that suffix ("kt"), or nullptr.

@@ -31,6 +31,8 @@ class JointProbe final : public Probe {
   std::string_view name() const override { return one_->name(); }
   std::string_view app() const override { return one_->app(); }
   const BlockModel& model() const override { return model_; }
+  const catalogue::EffectTable& effects() const override { return one_->effects(); }
+  std::span<const probes::ProbeQuantity> quantities() const override { return one_->quantities(); }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }
   std::unique_ptr<const Probe> settle(const Flight& flight, const LogChoice& log) const override;
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "flight/files/text_file.hpp"
 #include "flight/json/findings_json.hpp"
@@ -47,10 +49,17 @@ void check_effects(const Calibration& calibration) {
   }
 }
 
-Calibration read(const Json& root) {
+/// Of the caller's own model, or one that ships.
+std::shared_ptr<const Probe> find_probe(const Json& root, std::shared_ptr<const Probe> own) {
+  const std::string name = root.at("model").get<std::string>();
+  if (!own) return read_probe(name, root.at("options"));
+  return own;
+}
+
+Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
   Calibration calibration;
   calibration.options = read_options(root.at("options"));
-  calibration.probe = read_probe(root.at("model").get<std::string>(), root.at("options"));
+  calibration.probe = find_probe(root, std::move(own));
   if (root.contains("joint")) read_joint(root.at("joint"), calibration);
   calibration.flight = read_inputs(root.at("inputs"));
   calibration.fit = read_fit(root, calibration.options, output_names(*calibration.probe));
@@ -68,12 +77,13 @@ Calibration read(const Json& root) {
   return calibration;
 }
 
-Calibration read_or_refuse(Json& root, const std::string& source) {
+Calibration read_or_refuse(Json& root, const std::string& source,
+                           std::shared_ptr<const Probe> own) {
   const std::string before = source + " is damaged: ";
   const std::string after = "; fit the flight again";
   try {
     if (root["schema_version"] == 1) convert_version_1(root.at("options"));
-    return read(root);
+    return read(root, std::move(own));
   } catch (const Json::exception&) {
     throw Error(before + "a calibration's entries are missing or of another kind" + after);
   } catch (const Error& error) {
@@ -113,8 +123,10 @@ std::string to_json(const Calibration& calibration) {
   return text_of(root);
 }
 
-Calibration parse_calibration(std::string_view json, const std::string& source,
-                              std::string_view app) {
+namespace {
+
+Calibration parse(std::string_view json, const std::string& source,
+                  std::shared_ptr<const Probe> own) {
   Json root = files::parse_json(json, source);
   if (root.is_discarded() || !root.is_object() || !root.contains("schema_version") ||
       !root.contains("model") || !root["model"].is_string()) {
@@ -125,7 +137,31 @@ Calibration parse_calibration(std::string_view json, const std::string& source,
     throw Error(source + " is a fit of an aircraft; use sepcal-aircraft for it");
   }
   check_version(root["schema_version"], source);
-  Calibration calibration = read_or_refuse(root, source);
+  if (own && root["model"] != own->name()) {
+    throw Error(fmt::format("{}: its model is '{}', and the one given is '{}'; give its own",
+                            source, root["model"].get<std::string>(), own->name()));
+  }
+  return read_or_refuse(root, source, std::move(own));
+}
+
+Calibration read_file(const std::string& file,
+                      const std::function<Calibration(const std::string& text)>& parse_text) {
+  Calibration calibration = parse_text(
+      files::read_text_file(file, "as a calibration; give the JSON that fit wrote with -o"));
+  calibration.file = file;
+  return calibration;
+}
+
+}  // namespace
+
+Calibration parse_calibration(std::string_view json, const std::string& source,
+                              std::shared_ptr<const Probe> own) {
+  return parse(json, source, std::move(own));
+}
+
+Calibration parse_calibration(std::string_view json, const std::string& source,
+                              std::string_view app) {
+  Calibration calibration = parse(json, source, nullptr);
   if (!app.empty() && calibration.probe->app() != app) {
     throw Error(fmt::format("{}: its model is '{}'; use {} for it", source,
                             calibration.probe->name(), calibration.probe->app()));
@@ -134,11 +170,12 @@ Calibration parse_calibration(std::string_view json, const std::string& source,
 }
 
 Calibration read_calibration(const std::string& file, std::string_view app) {
-  const std::string text =
-      files::read_text_file(file, "as a calibration; give the JSON that fit wrote with -o");
-  Calibration calibration = parse_calibration(text, file, app);
-  calibration.file = file;
-  return calibration;
+  return read_file(file,
+                   [&](const std::string& text) { return parse_calibration(text, file, app); });
+}
+
+Calibration read_calibration(const std::string& file, std::shared_ptr<const Probe> own) {
+  return read_file(file, [&](const std::string& text) { return parse(text, file, own); });
 }
 
 }  // namespace sepcal

@@ -49,7 +49,7 @@ std::unique_ptr<const Probe> make_probe(std::string_view name, const Settings& s
   }
   throw Error(
       fmt::format("there is no model '{}'; known: five-hole, pitot-static, magnetometer, "
-                  "magnetometer-norm",
+                  "magnetometer-norm, and models of your own where they are given",
                   name));
 }
 

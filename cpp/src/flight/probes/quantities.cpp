@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sepcal/error.hpp"
+#include "sepcal/flight/probe.hpp"
 
 namespace sepcal::probes {
 namespace {
@@ -108,12 +109,18 @@ std::span<const ProbeQuantity> quantities_of(std::string_view model) {
   throw Error("there is no model '" + std::string(model) + "'");
 }
 
-logs::RowTruth rows_taken(std::string_view model, const Flight& flight, const LogChoice& choice) {
-  const auto quantities = quantities_of(model);
+ModelQuantities::ModelQuantities(std::string_view name) : model(name), list(quantities_of(name)) {}
+
+ModelQuantities::ModelQuantities(const Probe& probe)
+    : model(probe.name()), list(probe.quantities()) {}
+
+logs::RowTruth rows_taken(const ModelQuantities& model, const Flight& flight,
+                          const LogChoice& choice) {
+  const std::span<const ProbeQuantity> quantities = model.list;
   const auto find = [&](const std::string& name) -> std::optional<files::LoggedQuantity> {
     const auto quantity = std::ranges::find(quantities, name, &ProbeQuantity::name);
     if (quantity == quantities.end()) return std::nullopt;
-    return files::find_quantity(flight, quantity->name, quantity->kind);
+    return files::find_quantity(flight, quantity->name, quantity->kind, quantity->bare);
   };
   const logs::RowTruth within = logs::rows_within_times(flight, choice);
   const logs::RowTruth holds = logs::rows_where(flight, choice, find);
@@ -122,3 +129,11 @@ logs::RowTruth rows_taken(std::string_view model, const Flight& flight, const Lo
 }
 
 }  // namespace sepcal::probes
+
+namespace sepcal {
+
+std::span<const probes::ProbeQuantity> Probe::quantities() const {
+  return probes::quantities_of(name());
+}
+
+}  // namespace sepcal

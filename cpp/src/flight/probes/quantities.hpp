@@ -9,14 +9,31 @@
 #include "flight/files/units.hpp"
 #include "flight/logs/chosen_rows.hpp"
 
+namespace sepcal {
+class Probe;
+}
+
 namespace sepcal::probes {
 
 /// A quantity of a probe: the base name of its column and what kind of unit follows it.
 struct ProbeQuantity {
   std::string_view name;
   files::UnitKind kind;
-  bool is_driver = false;  // may drive effects too, then under its whole header
-  bool is_extra = false;   // no fit needs it: effects may
+  bool is_driver = false;             // may drive effects too, then under its whole header
+  bool is_extra = false;              // no fit needs it: effects may
+  const files::Unit* bare = nullptr;  // of a header that is its name alone; nullptr: none may be
+};
+
+/// What a model reads of a log, needed or not, and the model's name.
+struct ModelQuantities {
+  // Implicit: whoever asks for a model's quantities has its name or a probe.
+  ModelQuantities(std::string_view model);  // NOLINT(google-explicit-constructor)
+  ModelQuantities(const char* model)
+      : ModelQuantities(std::string_view(model)) {}  // NOLINT(google-explicit-constructor)
+  ModelQuantities(const Probe& probe);               // NOLINT(google-explicit-constructor)
+
+  std::string_view model;
+  std::span<const ProbeQuantity> list;
 };
 
 /// Whether the model carries a state from row to row: one of an aircraft's, but for equation error.
@@ -27,6 +44,7 @@ std::span<const ProbeQuantity> quantities_of(std::string_view model);
 
 /// Whether a choice takes a row by what it holds and when it was logged; empty where it takes all.
 /// `flight` as read_as() gives it. Throws OptionError as the choice's condition and times do.
-logs::RowTruth rows_taken(std::string_view model, const Flight& flight, const LogChoice& choice);
+logs::RowTruth rows_taken(const ModelQuantities& model, const Flight& flight,
+                          const LogChoice& choice);
 
 }  // namespace sepcal::probes

@@ -78,12 +78,10 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
   const Flight::Column* unknown = nullptr;
   for (const Flight::Column& column : flight_.columns()) {
     const std::string_view header = column.header;
-    const std::size_t split = std::min(header.rfind('_'), header.size());
-    if (header.substr(0, split) != quantity.name) continue;
-    const auto suffix = header.substr(std::min(split + 1, header.size()));
-    const files::Unit* unit = files::find_unit(quantity.kind, suffix);
+    const files::Unit* unit = files::unit_in(header, quantity.name, quantity.kind, quantity.bare);
     if (unit == nullptr) {
-      unknown = &column;
+      const std::string_view name = header.substr(0, header.rfind('_'));
+      if (quantity.bare == nullptr && name == quantity.name) unknown = &column;
     } else if (found.column != nullptr) {
       throw Error(fmt::format("{}: {} is there twice, as '{}' and '{}'; rename or delete one",
                               flight_.name(), quantity.name, found.column->header, header));
@@ -102,10 +100,10 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
     note(fmt::format("column '{}' is not read as {}, which no fit needs: its unit is unknown",
                      unknown->header, quantity.name));
   } else if (unknown != nullptr) {
-    throw Error(
-        fmt::format("{}: column '{}' has no known unit; {} may be logged as: {}", flight_.name(),
-                    unknown->header, quantity.name,
-                    fmt::join(files::accepted_headers(quantity.name, quantity.kind), ", ")));
+    throw Error(fmt::format(
+        "{}: column '{}' has no known unit; {} may be logged as: {}", flight_.name(),
+        unknown->header, quantity.name,
+        fmt::join(files::accepted_headers(quantity.name, quantity.kind, quantity.bare), ", ")));
   }
 }
 
@@ -144,13 +142,15 @@ std::string RecordBuilder::ask_for_near_miss(Names names) const {
 
 void RecordBuilder::fail_missing(std::span<const std::string_view> names) const {
   const auto inside = [this](std::string_view name) {
-    return files::accepted_headers(name, quantity_of(name).kind).front();
+    const ProbeQuantity& quantity = quantity_of(name);
+    return files::accepted_headers(name, quantity.kind, quantity.bare).front();
   };
   std::vector<std::string> others;
   std::ranges::transform(names.subspan(1), std::back_inserter(others), inside);
   throw Error(fmt::format(
       "{}: {}{}; {}{}", flight_.name(),
-      files::describe_missing(names.front(), quantity_of(names.front()).kind, other_headers()),
+      files::describe_missing(names.front(), quantity_of(names.front()).kind, other_headers(),
+                              quantity_of(names.front()).bare),
       others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
       flight_.list_columns(),
       flight_.is_mapped() ? "; quaternions and positions of a streamed log are not converted"

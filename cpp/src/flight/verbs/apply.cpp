@@ -36,7 +36,7 @@ LogChoice every_row(const Calibration& calibration, const Flight& flight) {
 std::optional<CorrectedColumn> find_outside(const Calibration& calibration, const Flight& flight,
                                             std::vector<std::string>& notes) {
   const LogChoice choice = choice_for(calibration, flight, notes);
-  const logs::RowTruth is_taken = probes::rows_taken(calibration.probe->name(), flight, choice);
+  const logs::RowTruth is_taken = probes::rows_taken(*calibration.probe, flight, choice);
   if (!is_taken) return std::nullopt;
   CorrectedColumn outside{"outside_fit", std::vector<double>(flight.rows(), 0.0)};
   for (std::size_t row = 0; row < flight.rows(); ++row) {
@@ -105,6 +105,11 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
     throw OptionError({Option{"stream"},
                        ": the calibration's effects look at whole columns, which a streamed log "
                        "never has in memory; leave it out"});
+  }
+  if (stream && probe.predicts()) {
+    throw OptionError({Option{"stream"},
+                       ": a model of your own is applied to whole columns; leave "
+                       "it out"});
   }
   OutputFile target(output);
   const Flight flight = stream ? stream_csv(file, {}, progress) : read_csv(file, progress);

@@ -133,7 +133,7 @@ Calibration calibrate_on(const EffectiveFlight& flight, FittedFlight fitted,
   std::vector<Derived> derived = derive(*probe, fit);
   std::vector<Restatement> restated = probe->restate(fit);
   std::map<std::string, Interval> ranges =
-      ranges_of_drivers(probe->name(), held.effects, record.select(held.fit.stage_two_segments));
+      ranges_of_drivers(*probe, held.effects, record.select(held.fit.stage_two_segments));
   return {std::move(probe),
           std::move(held),
           std::move(fitted),

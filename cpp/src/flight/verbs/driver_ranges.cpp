@@ -23,10 +23,10 @@ Interval range_of(const Record& record, const std::string& channel) {
 
 }  // namespace
 
-std::map<std::string, Interval> ranges_of_drivers(std::string_view probe,
+std::map<std::string, Interval> ranges_of_drivers(const Probe& probe,
                                                   const std::vector<EffectSetting>& settings,
                                                   const Record& record) {
-  const catalogue::EffectTable& table = catalogue::effect_table(probe);
+  const catalogue::EffectTable& table = probe.effects();
   std::map<std::string, Interval> ranges;
   for (const EffectSetting& setting : settings) {
     const EffectName name = parse_effect_name(setting.name);

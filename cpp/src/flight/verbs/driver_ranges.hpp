@@ -4,7 +4,6 @@
 
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "sepcal/flight/probe.hpp"
@@ -15,7 +14,7 @@ namespace sepcal::verbs {
 /// The least and the greatest value in the record's segments of each channel that an effect on the
 /// reading follows, in the record's unit. `record` as the model with its effects takes it; time
 /// and what the record lacks are left out.
-std::map<std::string, Interval> ranges_of_drivers(std::string_view probe,
+std::map<std::string, Interval> ranges_of_drivers(const Probe& probe,
                                                   const std::vector<EffectSetting>& settings,
                                                   const Record& record);
 

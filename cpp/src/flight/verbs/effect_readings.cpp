@@ -9,8 +9,11 @@
 #include <utility>
 
 #include "base/parameter_values.hpp"
+#include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_channels.hpp"
+#include "flight/verbs/residual_comparison.hpp"
 #include "numerics/interpolated_column.hpp"
+#include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 
@@ -216,15 +219,65 @@ ReadingEffects totals_of(const std::vector<Effect>& effects, const base::Paramet
   return result;
 }
 
+/// What the model with its effects makes of the inputs, in the rows that have all that it takes.
+std::vector<CorrectedColumn> predict_outputs(const Calibration& calibration, const Flight& flight,
+                                             ProbeReadings& readings) {
+  const Probe& probe = *calibration.probe;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  std::set<std::string> needed;
+  for (const EffectSetting& setting : settings) {
+    if (calibration.options.own_effects.contains(setting.name)) {
+      catalogue::add_all_channels(readings.record, flight);
+      continue;
+    }
+    const EffectName name = parse_effect_name(setting.name);
+    for (std::string& channel : catalogue::add_channels(readings.record, flight, probe, name)) {
+      needed.insert(std::move(channel));
+    }
+  }
+  std::vector<CorrectedColumn> columns = probe.correct(readings, own_values(calibration), {});
+  Compact compact = keep_rows(readings, flight, needed);
+  readings.valid.assign(readings.valid.size(), false);
+  if (compact.flight_rows.empty()) return columns;
+  Record& record = compact.record;
+  for (const Variable& output : probe.model().tables().outputs) {  // nobody asks what was measured
+    std::vector<double> zeros(record.length(), 0.0);
+    if (record.has(output.name)) {
+      record.replace(output.name, std::move(zeros));
+    } else {
+      record.add(output.name, std::move(zeros));
+    }
+  }
+  const CalibrationOptions& options = calibration.options;
+  const std::vector<Effect> effects =
+      make_effects(effect_kit(probe, options.own_effects), probe.model(), settings, record);
+  const auto model = compose(model_of(probe), effects, record);
+  const Record inside = without_edges(record, reach(effects, options.fit.bounds));
+  base::ThreadPool pool(options.fit.threads);
+  const Eigen::MatrixXd modelled = -residuals_of(*model, inside, calibration.fit, pool);
+  Index row = 0;
+  for (const Segment& segment : inside.segments()) {
+    for (std::size_t at = segment.first; at < segment.last; ++at, ++row) {
+      const std::size_t flight_row = compact.flight_rows[at];
+      readings.valid[flight_row] = true;
+      for (Index j = 0; j < modelled.cols(); ++j) {
+        columns[static_cast<std::size_t>(j)].values[flight_row] = modelled(row, j);
+      }
+    }
+  }
+  return columns;
+}
+
 }  // namespace
 
 std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration,
                                                   const Flight& flight, ProbeReadings& readings) {
   const Probe& probe = *calibration.probe;
+  if (probe.predicts()) return predict_outputs(calibration, flight, readings);
   if (calibration.options.effects.empty()) {
     return probe.correct(readings, own_values(calibration), {});
   }
-  const catalogue::EffectTable& table = catalogue::effect_table(probe.name());
+  const catalogue::EffectTable& table = probe.effects();
   std::vector<EffectSetting> settings;
   std::set<std::string> needed;
   for (const EffectSetting& setting : calibration.options.effects) {
@@ -240,9 +293,8 @@ std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration
     }
   }
   Compact compact = keep_rows(readings, flight, needed);
-  const std::vector<Effect> effects =
-      make_effects(effect_kit(probe.name(), calibration.options.own_effects), probe.model(),
-                   settings, compact.record);
+  const std::vector<Effect> effects = make_effects(
+      effect_kit(probe, calibration.options.own_effects), probe.model(), settings, compact.record);
   const auto values = calibration.fit.by_name();
   const ReadingEffects totals = totals_of(effects, values, compact.record);
   const ProbeReadings kept = put_right(compact.record, shifts_of_readings(effects, values), totals);

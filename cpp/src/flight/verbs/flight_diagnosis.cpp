@@ -46,7 +46,7 @@ std::vector<std::string> pool_of(const catalogue::EffectTable& table, const Diag
       catalogue::list_candidates(table, fitted.kit, fitted.record, flight);
   base::ThreadPool pool(threads);
   for (std::string& name :
-       find_curved(fitted, catalogue::list_drivers(fitted.record, flight), pool)) {
+       find_curved(fitted, catalogue::list_drivers(table, fitted.record, flight), pool)) {
     const std::string_view in_time = "[spline(time,";
     const std::size_t at = name.find(in_time);
     const auto is_known = [&](const std::string& other) {
@@ -71,9 +71,9 @@ std::vector<std::string> candidates_for(const catalogue::EffectTable& table,
 }
 
 /// Names of the probe's catalogue: of effects that do the same they are the ones people know.
-std::vector<std::string> catalogued(std::string_view model) {
+std::vector<std::string> catalogued(const Probe& probe) {
   std::vector<std::string> names;
-  for (const CataloguedEffect& effect : effect_catalogue(model)) names.push_back(effect.name);
+  for (const CataloguedEffect& effect : effect_catalogue(probe)) names.push_back(effect.name);
   return names;
 }
 
@@ -81,7 +81,7 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
                     const OwnEffects& own, const DiagnosisOptions& options) {
   const Flight& flight = prepared.flight;
   const DiagnosedFit fitted = diagnosed_fit(calibration, prepared.readings.record, own);
-  const catalogue::EffectTable& table = catalogue::effect_table(calibration.probe->name());
+  const catalogue::EffectTable& table = calibration.probe->effects();
   FlightDiagnosis result;
   result.model = calibration.probe->name();
   result.app = calibration.probe->app();
@@ -91,7 +91,7 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   result.notes = prepared.readings.notes;
   note_other_flight(calibration, flight, result.notes);
   DiagnosisOptions preferring = options;
-  preferring.preferred = catalogued(result.model);
+  preferring.preferred = catalogued(*calibration.probe);
   result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight, options), preferring);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(catalogue::describe_effect(table, effect.name));
@@ -106,11 +106,11 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
 
 /// Of a reading that never changes nothing can be learnt: whatever explains it is an artefact.
 void refuse_frozen(const Calibration& calibration, const PreparedFlight& prepared) {
-  const std::string model(calibration.probe->name());
+  const Probe& probe = *calibration.probe;
   const checks::TakenRows taken =
-      checks::take_rows(model, prepared.logged, calibration.options.log);
+      checks::take_rows(probe, prepared.logged, calibration.options.log);
   std::vector<LogNote> found;
-  checks::check_constants(checks::Log(model, taken.flight), found);
+  checks::check_constants(checks::Log(probe, taken.flight), found);
   if (found.empty()) return;
   throw Error(
       fmt::format("{}; {}; {}", found.front().found, found.front().effect, found.front().advice));
@@ -145,7 +145,7 @@ FlightDiagnosis name_errors(const Flight& flight, Task task) {
 MatrixXd added_outputs(const Calibration& calibration, const PreparedFlight& prepared,
                        const OwnEffects& own, const SizedEffect& injected, Injection& injection) {
   const Probe& probe = *calibration.probe;
-  const EffectKit kit = effect_kit(probe.name(), own);
+  const EffectKit kit = effect_kit(probe, own);
   Record record = prepared.readings.record;
   std::vector<EffectSetting> settings = calibration.options.effects;
   settings.push_back({.name = injected.name});

@@ -128,7 +128,8 @@ bool may_be_empty(const Log& log, const Flight::Column& column) {
 
 }  // namespace
 
-MendedFlight mend(std::string_view model, const Flight& flight, const LogChoice& choice) {
+MendedFlight mend(const probes::ModelQuantities& model, const Flight& flight,
+                  const LogChoice& choice) {
   MendedFlight mended{flight};
   if (flight.is_mapped()) return mended;
   const checks::TakenRows taken = checks::take_rows(model, flight, choice);

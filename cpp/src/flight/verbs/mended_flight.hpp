@@ -30,6 +30,7 @@ struct MendedFlight {
 /// `flight` as read_as() gives it; the rows that `choice` does not take stay as they are, and so
 /// does a flight that may be longer than memory. Empty cells are filled where they are at most one
 /// in twenty. Throws Error as probes::rows_taken().
-MendedFlight mend(std::string_view model, const Flight& flight, const LogChoice& choice);
+MendedFlight mend(const probes::ModelQuantities& model, const Flight& flight,
+                  const LogChoice& choice);
 
 }  // namespace sepcal::verbs

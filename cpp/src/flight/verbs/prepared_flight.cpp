@@ -18,7 +18,7 @@ namespace sepcal::verbs {
 
 PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice& log) {
   ReadFlight read = read_as(flight, log);
-  MendedFlight mended = mend(probe.name(), read.flight, log);
+  MendedFlight mended = mend(probe, read.flight, log);
   ProbeRecord readings = probe.prepare(mended.flight, log);
   readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());
   return {std::move(mended.flight),  std::move(readings),      std::move(read.flight),
@@ -79,7 +79,7 @@ namespace {
 /// Without errors of inputs that the flight doesn't log: of a field that is known in body axes no
 /// attitude wanders.
 EffectKit kit_for(const Probe& probe, const OwnEffects& own, const Record& readings) {
-  EffectKit kit = effect_kit(probe.name(), own);
+  EffectKit kit = effect_kit(probe, own);
   std::erase_if(kit.wandering, [&](const EffectKit::Maker& maker) {
     Record record = readings;
     EffectSetting setting{.name = "wandering"};

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A model of your own as a probe, which every verb then takes: its tables say what it reads of a
+// log, where effects may enter and what they are called.
+//
+//   const auto wire = own_model("hot-wire", HotWire{});       // or a BlockModel
+//   const Calibration base = calibrate(wire, read_csv("tunnel.csv"));
+//   const FlightDiagnosis found = diagnose(base, flight);
+//   const Calibration better = add(base, flight, "A[temp_degc]");
+//   const Calibration read = read_calibration("better.json", wire);
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "sepcal/block_model.hpp"
+#include "sepcal/flight/probe.hpp"
+#include "sepcal/static_model.hpp"
+
+namespace sepcal {
+
+/// The model as a probe called `name`, as its JSON calls it.
+///
+/// A log has a column for the time, every input and every output: "v_mps" for v [m/s], in any unit
+/// that is known for it, or "v" alone, in the table's unit; of any other unit, say "V", "u_v" or
+/// "u". The names of the log's other columns are channels, which may drive effects.
+///
+/// Effects: every linear parameter and every input is a port, and so is the zero of every output,
+/// as `z_bias`; `z_bias` alone is a constant. The others are delays: `time_offset` and `lag` of all
+/// outputs and, of each of several inputs u, `u_late` and `u_lag`. Inputs drive effects too, by
+/// their names.
+///
+/// A correction gives what the model makes of the inputs, an output a column: "z_fit_mps".
+///
+/// Throws Error where the name is empty or one that ships, and for a model that carries a state
+/// from row to row.
+std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model);
+
+template <SeparableModel M>
+std::shared_ptr<const Probe> own_model(std::string name, M model) {
+  return own_model(std::move(name), block_model(std::move(model)));
+}
+
+}  // namespace sepcal

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sepcal/flight/own_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <deque>
+#include <string_view>
+
+#include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/record_builder.hpp"
+#include "flight/subjects/own_effects.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal {
+namespace {
+
+using files::Unit;
+using files::UnitKind;
+using probes::ProbeQuantity;
+
+/// How tables spell the units that are used inside.
+struct Spelling {
+  std::string_view unit;
+  UnitKind kind;
+};
+constexpr std::array spellings{
+    Spelling{"s", UnitKind::time},
+    Spelling{"rad", UnitKind::angle},
+    Spelling{"rad/s", UnitKind::rate},
+    Spelling{"rad/s^2", UnitKind::angular_acceleration},
+    Spelling{"m", UnitKind::length},
+    Spelling{"m/s", UnitKind::speed},
+    Spelling{"m/s^2", UnitKind::acceleration},
+    Spelling{"kg", UnitKind::mass},
+    Spelling{"N", UnitKind::force},
+    Spelling{"Pa", UnitKind::pressure},
+    Spelling{"uT", UnitKind::field},
+    Spelling{"K", UnitKind::temperature},
+    Spelling{"kg/m^3", UnitKind::density},
+    Spelling{"1", UnitKind::share},
+};
+
+/// "degC" as headers end with it: degc; "V/K": vpk; "%": pct.
+std::string suffix_of(std::string_view unit) {
+  if (unit == "%") return "pct";
+  std::string suffix;
+  for (const char c : unit) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '/') {
+      suffix += 'p';
+    } else if (std::isalnum(byte) != 0) {
+      suffix += static_cast<char>(std::tolower(byte));
+    }
+  }
+  return suffix;
+}
+
+/// What the model reads of a log, by its tables.
+class OwnQuantities {
+ public:
+  explicit OwnQuantities(const Tables& tables) {
+    list_.push_back({.name = "time", .kind = UnitKind::time});
+    for (const std::vector<Variable>* table : {&tables.inputs, &tables.outputs}) {
+      for (const Variable& variable : *table) add(variable);
+    }
+  }
+
+  std::span<const ProbeQuantity> list() const { return list_; }
+
+ private:
+  void add(const Variable& variable) {
+    if (std::ranges::find(list_, variable.name, &ProbeQuantity::name) != list_.end()) return;
+    const auto known = std::ranges::find(spellings, variable.unit, &Spelling::unit);
+    if (known != spellings.end()) {
+      list_.push_back({.name = variable.name,
+                       .kind = known->kind,
+                       .bare = &files::known_units(known->kind).front()});
+      return;
+    }
+    suffixes_.push_back(suffix_of(variable.unit));
+    units_.push_back({suffixes_.back(), UnitKind::own});
+    list_.push_back({.name = variable.name, .kind = UnitKind::own, .bare = &units_.back()});
+  }
+
+  std::deque<std::string> suffixes_;  // which units_ point to
+  std::deque<Unit> units_;            // which list_ points to
+  std::vector<ProbeQuantity> list_;
+};
+
+class OwnProbe final : public Probe {
+ public:
+  OwnProbe(std::string name, std::shared_ptr<const BlockModel> model)
+      : name_(std::move(name)),
+        model_(std::move(model)),
+        quantities_(model_->tables()),
+        effects_(subjects::own_effects(model_->tables())) {}
+
+  std::string_view name() const override { return name_; }
+  std::string_view app() const override { return "sepcal"; }
+  const BlockModel& model() const override { return *model_; }
+  const catalogue::EffectTable& effects() const override { return effects_; }
+  std::span<const ProbeQuantity> quantities() const override { return quantities_.list(); }
+  std::map<std::string, std::vector<double>> settings() const override { return {}; }
+
+  ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
+    probes::RecordBuilder builder(flight, quantities_.list(), log);
+    builder.need({"time"});
+    need_inputs(builder);
+    for (const Variable& output : model_->tables().outputs) builder.need({output.name});
+    builder.keep_valid();
+    builder.check_time();
+    return builder.finish();
+  }
+
+  ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
+    probes::RecordBuilder builder(flight, quantities_.list(), log);
+    need_inputs(builder);
+    builder.keep_valid();
+    builder.offer({"time"});
+    return builder.finish_readings();
+  }
+
+  bool predicts() const override { return true; }
+
+  std::vector<std::string> corrected_headers() const override {
+    std::vector<std::string> headers;
+    for (const Variable& output : model_->tables().outputs) {
+      const auto quantity =
+          std::ranges::find(quantities_.list(), output.name, &ProbeQuantity::name);
+      const std::string_view suffix = quantity->bare->suffix;
+      headers.push_back(suffix.empty() || suffix == "1"
+                            ? output.name + "_fit"
+                            : fmt::format("{}_fit_{}", output.name, suffix));
+    }
+    return headers;
+  }
+
+  std::vector<CorrectedColumn> correct(const ProbeReadings& readings,
+                                       const Eigen::VectorXd& /*values*/,
+                                       const ReadingEffects& /*effects*/) const override {
+    return probes::empty_columns(corrected_headers(), readings.valid.size());
+  }
+
+ private:
+  void need_inputs(probes::RecordBuilder& builder) const {
+    for (const Variable& input : model_->tables().inputs) {
+      const bool may_lack = std::isfinite(input.absent);
+      if (input.name == "time") continue;
+      if (may_lack) {
+        builder.offer({input.name});
+      } else {
+        builder.need({input.name});
+      }
+    }
+  }
+
+  std::string name_;
+  std::shared_ptr<const BlockModel> model_;
+  OwnQuantities quantities_;
+  catalogue::EffectTable effects_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model) {
+  if (name.empty()) throw Error("a model of your own needs a name");
+  if (catalogue::effect_tables().contains(name)) {
+    throw Error("there is a probe '" + name + "' already; give your model another name");
+  }
+  if (model->new_carry() != nullptr) {
+    throw Error("the model " + name + " carries a state from row to row, which no flight is " +
+                "brought to yet; give its inputs and outputs as columns");
+  }
+  return std::make_shared<const OwnProbe>(std::move(name), std::move(model));
+}
+
+}  // namespace sepcal

@@ -1,0 +1,338 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`python -m sepcal VERB --model FILE.py:CLASS ...`: every verb of the apps, of your own model.
+
+The file is run where it is named, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from sepcal import _core
+from sepcal.calibration import Calibration, load
+from sepcal.catalogue import effects
+from sepcal.checking import check
+from sepcal.fitting import fit
+from sepcal.flight import Flight, read_csv
+from sepcal.joint import fit_jointly
+from sepcal.own_model import OwnModel
+from sepcal.printing import in_line, page_of, show, tell
+from sepcal.whole_files import name_of, refuse_outputs, write_whole
+
+Commands = argparse._SubParsersAction
+EXIT_CODES = {
+    "converged": 0, "not_identifiable": 4, "not_converged": 5,
+    "adequate": 0, "effect_missing": 3, "slow_change": 3, "unexplained": 3,
+}  # fmt: skip
+FORM = "FILE.py:CLASS"
+
+
+def add_to(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Registers the verbs."""
+    verb = _add(commands, "check", _check, "what a log is, and what that does to a fit")
+    _add_flights(verb)
+    verb = _add(commands, "fit", _fit, "a calibration of one flight, or of several together")
+    _add_flights(verb, several=True)
+    _add_output(verb, "BASE.json")
+    _add_options(verb)
+    _add(commands, "effects", _effects, "the effects that the model may lack")
+    verb = _add(commands, "compare", _compare, "the residual by output, maneuver and channel")
+    _add_subject(verb)
+    verb = _add(commands, "diagnose", _diagnose, "which physical effect is missing?")
+    _add_subject(verb)
+    _add_output(verb, "FOUND.json", needed=False)
+    verb.add_argument("--auto", action="store_true", help="adds what is advised, and asks again")
+    verb.add_argument("--most", type=int, metavar="N", help="with --auto: at most so many effects")
+    verb.add_argument("--only", action="append", default=[], metavar="EFFECT", help="a candidate")
+    verb.add_argument("--inject", metavar="EFFECT=SIZE", help="would it have been found?")
+    verb.add_argument("--within", type=float, metavar="SECONDS", help="answers within that time")
+    verb = _add(commands, "add", _add_effect, "the calibration with one more effect")
+    _add_subject(verb)
+    verb.add_argument("effect", metavar="EFFECT", help="as diagnose names it: A[temp_degc]")
+    _add_output(verb, "BETTER.json")
+    verb = _add(commands, "intervals", _intervals, "profile likelihood intervals")
+    _add_subject(verb)
+    verb.add_argument("--level", type=float, default=0.95, help="default: 0.95")
+    verb = _add(commands, "apply", _apply, "the log with what the calibrated model makes of it")
+    _add_subject(verb)
+    _add_output(verb, "LOG.csv")
+
+
+def _add(
+    commands: Commands[argparse.ArgumentParser],
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    what: str,
+) -> argparse.ArgumentParser:
+    verb = commands.add_parser(name, help=f"{what}, with a model of your own", description=what)
+    add_model(verb, needed=True)
+    verb.add_argument("--json", action="store_true", help="prints JSON in place of the page")
+    verb.set_defaults(run=run)
+    return verb
+
+
+def add_model(verb: argparse.ArgumentParser, *, needed: bool) -> None:
+    """The option that names a model."""
+    verb.add_argument(
+        "--model", metavar=FORM, required=needed, help="your model: a class in a file, which is run"
+    )
+
+
+def _add_flights(verb: argparse.ArgumentParser, *, several: bool = False) -> None:
+    verb.add_argument("flights", metavar="LOG.csv", nargs="+" if several else 1)
+    if several:
+        verb.add_argument("--own", action="append", default=[], metavar="NAME",
+                          help="of several flights: a parameter that each has for itself")  # fmt: skip
+
+
+def _add_subject(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "flights", metavar="LOG.csv", nargs="+", help="a log, or those of a joint fit"
+    )
+    verb.add_argument("calibration", metavar="CAL.json", help="what fit or add wrote")
+
+
+def _add_output(verb: argparse.ArgumentParser, metavar: str, *, needed: bool = True) -> None:
+    verb.add_argument("-o", "--output", metavar=metavar, required=needed, default="")
+
+
+def _add_options(verb: argparse.ArgumentParser) -> None:
+    """Those of sepcal.fit() that a fit of one's own model has most use for."""
+    several: dict[str, Any] = {"action": "append", "default": []}
+    verb.add_argument("--effect", metavar="EFFECT", help="that joins the model", **several)
+    verb.add_argument("--bounds", metavar="NAME=LOW:HIGH", help="either may be empty", **several)
+    verb.add_argument("--fix", metavar="NAME=VALUE", help="held there", **several)
+    verb.add_argument("--start", metavar="NAME=VALUE", help="of stage two", **several)
+    verb.add_argument("--noise", metavar="OUTPUT=SD", help="where it is known", **several)
+    verb.add_argument("--map", metavar="HEADER=COLUMN", help="the log's own name", **several)
+    verb.add_argument("--ignore", metavar="COLUMN", help="as if it were not there", **several)
+    verb.add_argument("--drop-repeats", metavar="COLUMN", help="slower than the log", **several)
+    verb.add_argument("--drop-invalid", action="store_true", help="rows with a bad cell")
+    verb.add_argument("--where", metavar="CONDITION", help="only rows in which it holds")
+    verb.add_argument("--from", dest="from_time", type=float, metavar="S", help="only from then on")
+    verb.add_argument("--to", dest="to_time", type=float, metavar="S", help="only up to then")
+    verb.add_argument("--stage-one", metavar="SEGMENTS", help="labels or times, 10:60")
+    verb.add_argument("--stage-two", metavar="SEGMENTS", help="the same")
+    verb.add_argument("--loss", help="squares, huber or cauchy")
+    verb.add_argument("--samples", type=int, metavar="N", help="of stage one")
+    verb.add_argument("--seed", type=int, metavar="N")
+
+
+def _split(option: str, texts: Sequence[str]) -> dict[str, str]:
+    """{name: text} of NAME=TEXT."""
+    halves = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not name or not equals:
+            raise _core.Error(f"{option} {text}: write it as NAME=VALUE")
+        halves[name] = value
+    return halves
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise _core.Error(f"{option}: '{text}' is no number") from None
+
+
+def _numbers(option: str, texts: Sequence[str]) -> dict[str, float]:
+    return {name: _number(option, text) for name, text in _split(option, texts).items()}
+
+
+def _bounds(texts: Sequence[str]) -> dict[str, tuple[float | None, float | None]]:
+    """{name: (lower, upper)} of NAME=LOW:HIGH."""
+    bounds = {}
+    for name, text in _split("--bounds", texts).items():
+        low, colon, high = text.partition(":")
+        if not colon:
+            raise _core.Error(f"--bounds {name}={text}: write it as NAME=LOW:HIGH")
+        bounds[name] = (
+            _number("--bounds", low) if low else None,
+            _number("--bounds", high) if high else None,
+        )
+    return bounds
+
+
+def _options(given: argparse.Namespace) -> dict[str, Any]:
+    options = {
+        "effects": given.effect,
+        "bounds": _bounds(given.bounds),
+        "fixed": _numbers("--fix", given.fix),
+        "start": _numbers("--start", given.start),
+        "noise": _numbers("--noise", given.noise),
+        "map": _split("--map", given.map),
+        "ignore": given.ignore,
+        "drop_repeats": given.drop_repeats,
+        "drop_invalid": given.drop_invalid,
+        "where": given.where,
+        "from_time": given.from_time,
+        "to_time": given.to_time,
+        "stage_one": given.stage_one,
+        "stage_two": given.stage_two,
+        "loss": given.loss,
+        "samples": given.samples,
+        "seed": given.seed,
+    }
+    return {name: value for name, value in options.items() if value not in (None, [], {}, False)}
+
+
+def read_model(named: str) -> OwnModel:
+    """Runs the file and makes an object of the class.
+
+    Raises:
+        Error: Another form, no such file or class, a file that does not run, no model.
+    """
+    file, colon, name = named.rpartition(":")
+    if not colon or not file or not name:
+        raise _core.Error(f"--model {named}: write it as {FORM}, my_models.py:HotWire")
+    if not os.path.isfile(file):
+        raise _core.Error(f"--model {named}: there is no file {file}")
+    # Under a name of its own, so that it is pickled and found by nobody else's.
+    spec = importlib.util.spec_from_file_location("sepcal_own_model", file)
+    if spec is None or spec.loader is None:
+        raise _core.Error(f"--model {named}: {file} is no Python file")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    try:
+        spec.loader.exec_module(module)
+        made = getattr(module, name)()
+    except AttributeError as error:
+        if hasattr(module, name):
+            raise _core.Error(f"--model {named}: {error}") from error
+        raise _core.Error(f"--model {named}: {file} has no class {name}") from None
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        raise _core.Error(f"--model {named}: it does not run: {in_line(what)}") from error
+    if hasattr(made, "states"):
+        raise _core.Error(
+            f"--model {named}: a model with a state takes no log yet; give sepcal.fit() its columns"
+        )
+    return OwnModel(made)
+
+
+def _read_flight(given: argparse.Namespace) -> Flight:
+    return read_csv(given.flights[0])
+
+
+def _read_subject(given: argparse.Namespace) -> tuple[Calibration, Flight | list[Flight]]:
+    """The calibration and its flight, or flights."""
+    calibration = load(given.calibration, model=read_model(given.model))
+    assert isinstance(calibration, Calibration)
+    flights = [read_csv(file) for file in given.flights]
+    return calibration, flights[0] if len(flights) == 1 else flights
+
+
+def _tell_notes(notes: Sequence[str]) -> None:
+    for note in notes:
+        tell(f"note: {note}")
+
+
+def _deliver(given: argparse.Namespace, page: object, told: str) -> None:
+    """Prints one and writes the other."""
+    output = getattr(given, "output", "")
+    if output:
+        write_whole({name_of(output): told})
+    show(told if given.json else str(page))
+    if output and not given.json:
+        show(in_line(f"wrote {output}"))
+
+
+def _inputs(given: argparse.Namespace) -> tuple[str, ...]:
+    files = (*given.flights, given.model.rpartition(":")[0])
+    return (*files, given.calibration) if hasattr(given, "calibration") else files
+
+
+def _check(given: argparse.Namespace) -> int:
+    found = check(read_model(given.model), _read_flight(given))
+    _deliver(given, found, found.to_json())
+    return 0
+
+
+def _effects(given: argparse.Namespace) -> int:
+    known = effects(read_model(given.model))
+    lines = [f"{each.name:<24} {each.equation:<36} [{each.unit}]" for each in known]
+    show(json.dumps([each._asdict() for each in known]) if given.json else page_of(lines))
+    return 0
+
+
+def _fit(given: argparse.Namespace) -> int:
+    refuse_outputs((given.output,), _inputs(given))
+    model, options = read_model(given.model), _options(given)
+    flights = [read_csv(file) for file in given.flights]
+    if len(flights) == 1:
+        if given.own:
+            raise _core.Error("--own is of several flights; give them, or leave it out")
+        calibration = fit(model, flights[0], **options)
+    else:
+        calibration = fit_jointly(model, flights, own=given.own, **options)
+    _tell_notes(calibration.notes)
+    _deliver(given, calibration, calibration.to_json())
+    return EXIT_CODES[calibration.status]
+
+
+def _compare(given: argparse.Namespace) -> int:
+    calibration, flight = _read_subject(given)
+    compared = calibration.compare(flight)
+    _tell_notes(compared.notes)
+    _deliver(given, compared, compared.to_json())
+    return 0
+
+
+def _diagnose(given: argparse.Namespace) -> int:
+    if given.output:
+        refuse_outputs((given.output,), _inputs(given))
+    calibration, flight = _read_subject(given)
+    if given.auto:
+        if given.inject:
+            raise _core.Error(
+                "--inject and --auto exclude each other: what is injected is not in the log"
+            )
+        stepped = calibration.diagnose(
+            flight, auto=True, most=given.most, only=given.only, within=given.within
+        )
+        _tell_notes(stepped.fitted.notes)
+        _deliver(given, stepped, stepped.to_json())
+        return EXIT_CODES[stepped.fitted.status] or EXIT_CODES[stepped.diagnosis.verdict]
+    if given.most is not None:
+        raise _core.Error("--most is of --auto; add that, or leave it out")
+    inject = None if given.inject is None else _numbers("--inject", [given.inject])
+    found = calibration.diagnose(flight, inject=inject, only=given.only, within=given.within)
+    _tell_notes(found.notes)
+    _deliver(given, found, found.to_json())
+    return EXIT_CODES[found.verdict]
+
+
+def _add_effect(given: argparse.Namespace) -> int:
+    refuse_outputs((given.output,), _inputs(given))
+    calibration, flight = _read_subject(given)
+    better = calibration.add(given.effect, flight)
+    _tell_notes(better.notes)
+    _deliver(given, better, better.to_json())
+    return EXIT_CODES[better.status]
+
+
+def _intervals(given: argparse.Namespace) -> int:
+    calibration, flight = _read_subject(given)
+    found = calibration.intervals(flight, level=given.level)
+    _tell_notes(found.notes)
+    _deliver(given, found, found.to_json())
+    return EXIT_CODES[found.status]
+
+
+def _apply(given: argparse.Namespace) -> int:
+    refuse_outputs((given.output,), _inputs(given))
+    calibration = load(given.calibration, model=read_model(given.model))
+    assert isinstance(calibration, Calibration)
+    if len(given.flights) > 1:
+        raise _core.Error("apply takes one log at a time")
+    applied = calibration.apply_to_file(given.flights[0], given.output)
+    _tell_notes(applied.notes)
+    show(in_line(f"wrote {given.output}: {applied.rows} rows with {', '.join(applied.headers)}"))
+    return 0

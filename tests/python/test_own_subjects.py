@@ -1,0 +1,315 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The loop on models that aren't sepcal's: found, added, the error fallen as promised, applied.
+
+Each log is of instruments as they are: noise that is not white, quantised readings, channels that
+go with the run and drive nothing.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import sepcal
+
+Array = npt.NDArray[np.float64]
+FILE = Path(__file__).parents[2] / "examples" / "own_models.py"
+ROWS = 1500
+STEP = 0.1  # [s]
+
+
+def _load_models() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("own_models", FILE)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["own_models"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+models = _load_models()
+
+
+def _wander(rng: np.random.Generator, seconds: float) -> Array:
+    """Gauss-Markov, of standard deviation one."""
+    keep = np.exp(-STEP / seconds)
+    values = np.zeros(ROWS)
+    values[0] = rng.normal()
+    for row in range(1, ROWS):
+        values[row] = keep * values[row - 1] + np.sqrt(1 - keep**2) * rng.normal()
+    return values
+
+
+def _noise(rng: np.random.Generator, size: float, quantum: float, values: Array) -> Array:
+    """White noise, a little that goes on, and a converter's steps."""
+    read = values + size * (rng.normal(size=ROWS) + 0.5 * _wander(rng, 1.0))
+    return np.round(read / quantum) * quantum
+
+
+def _common(rng: np.random.Generator) -> dict[str, Array]:
+    time = STEP * np.arange(ROWS)
+    return {
+        "time_s": time,
+        "supply_v": np.round(12.0 - time / 400.0 + 0.05 * _wander(rng, 20.0), 2),
+        "humidity_pct": np.round(50.0 + 10.0 * _wander(rng, 60.0), 1),
+    }
+
+
+def _hot_wire(rng: np.random.Generator, hidden: float) -> dict[str, Array]:
+    log = _common(rng)
+    temp = 20.0 + 8.0 * np.sin(log["time_s"] / 31.0) + 2.0 * _wander(rng, 30.0)
+    speed = 15.0 + 9.0 * np.sin(log["time_s"] / 7.0) + _wander(rng, 2.0)
+    clean = (2.0 + 1.1 * speed**0.45) * (1.0 - hidden * (temp - 20.0))
+    return log | {
+        "u_mps": speed,
+        "temp_degc": np.round(temp, 1),
+        "e2": _noise(rng, 0.01, 0.002, clean),
+    }
+
+
+def _potentiometer(rng: np.random.Generator, hidden: float) -> dict[str, Array]:
+    log = _common(rng)
+    angle = 1.2 * np.sin(log["time_s"] / 3.0) + 0.3 * _wander(rng, 5.0)
+    direction = np.sign(np.gradient(np.convolve(angle, np.ones(9) / 9, mode="same")))
+    clean = 2.5 + 0.8 * (angle + hidden * direction)
+    return log | {
+        "angle_deg": np.degrees(angle),
+        "direction": direction,
+        "wiper_v": _noise(rng, 0.004, 0.001, clean),
+    }
+
+
+def _thermistor(rng: np.random.Generator, hidden: float) -> dict[str, Array]:
+    log = _common(rng)
+    temp = 25.0 + 20.0 * np.sin(log["time_s"] / 25.0)
+    power = 2.0 + 1.5 * np.sin(log["time_s"] / 9.0) + 0.3 * _wander(rng, 10.0)
+    own = temp + hidden * power + 273.15
+    clean = 10.0 * np.exp(3435.0 * (1.0 / own - 1.0 / 298.15))
+    return log | {
+        "T_degc": temp,
+        "power_mw": np.round(power, 2),
+        "R_kohm": _noise(rng, 0.01, 0.001, clean),
+    }
+
+
+def _radar_altimeter(rng: np.random.Generator, hidden: float) -> dict[str, Array]:
+    log = _common(rng)
+    height = 300.0 + 80.0 * np.sin(log["time_s"] / 40.0) + 5.0 * _wander(rng, 5.0)
+    roll = np.radians(35.0) * np.tanh(2.0 * np.sin(log["time_s"] / 11.0))
+    slant = 1.0 / np.cos(roll) - 1.0
+    clean = 0.6 + height * (1.0 + hidden * slant)
+    return log | {
+        "height_ft": height / 0.3048,
+        "roll_deg": np.degrees(roll),
+        "range_m": _noise(rng, 0.5, 0.1, clean),
+    }
+
+
+def _turntable(rng: np.random.Generator, hidden: float) -> dict[str, Array]:
+    log = _common(rng)
+    rate = 2.0 * np.sin(log["time_s"] / 17.0) + 0.2 * _wander(rng, 3.0)
+    angle = np.mod(np.cumsum(rate) * STEP + np.pi, 2 * np.pi) - np.pi
+    clean = 0.05 + 1.01 * 9.80665 * np.sin(angle + 0.04) + hidden * rate**2
+    return log | {
+        "angle_rad": angle,
+        "rate_radps": rate,
+        "a_mps2": _noise(rng, 0.02, 0.005, clean),
+    }
+
+
+class Subject(NamedTuple):
+    """A model, its instrument, what is hidden in it, and names that are right for that."""
+
+    make: Callable[[], Any]
+    draw: Callable[[np.random.Generator, float], dict[str, Array]]
+    hidden: float
+    names: tuple[str, ...]
+    truth: Mapping[str, float]
+
+
+SUBJECTS = {
+    "HotWire": Subject(
+        models.HotWire, _hot_wire, 0.004, ("A[temp_degc]+B[temp_degc]", "B[temp_degc]",
+        "A[temp_degc]", "u[temp_degc]"), {"n": 0.45},
+    ),
+    "Potentiometer": Subject(
+        models.Potentiometer, _potentiometer, 0.02, ("v0[direction]", "angle[direction]",
+        "wiper_bias[direction]"), {"v0": 2.5, "k": 0.8},
+    ),
+    "Thermistor": Subject(
+        models.Thermistor, _thermistor, 0.4, ("T[power_mw]", "R_25[power_mw]"), {"beta": 3435.0},
+    ),
+    "RadarAltimeter": Subject(
+        models.RadarAltimeter, _radar_altimeter, 1.0, ("s[roll_deg^2]", "height[roll_deg^2]",
+        "b[roll_deg^2]"), {"s": 1.0},
+    ),
+    "TurntableAccelerometer": Subject(
+        models.TurntableAccelerometer, _turntable, 0.1, ("b[rate_radps^2]",), {"b": 0.05},
+    ),
+}  # fmt: skip
+
+
+def _draw(name: str, seed: int, scale: float = 1.0) -> sepcal.Flight:
+    subject = SUBJECTS[name]
+    columns = subject.draw(np.random.default_rng(seed), scale * subject.hidden)
+    return sepcal.Flight(columns, name=f"{name}_{seed}")
+
+
+def _write(flight: sepcal.Flight, file: Path) -> None:
+    rows = np.column_stack([flight[header] for header in flight.columns])
+    np.savetxt(file, rows, delimiter=",", header=",".join(flight.columns), comments="", fmt="%.10g")
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_the_loop(name: str, tmp_path: Path) -> None:
+    """Found, named, added: the error falls as promised and the estimates come right."""
+    subject = SUBJECTS[name]
+    flight = _draw(name, 1)
+    base = sepcal.fit(subject.make(), flight, seed=1)
+    assert isinstance(base, sepcal.Calibration)
+    assert base.status == "converged"
+    found = base.diagnose()
+    assert found.verdict == "effect_missing", found.text
+    assert found.effects[0].name in subject.names, found.text
+    advised = found.advice["effect"]
+    assert advised is not None, found.text
+    better = base.add(advised)
+    entry = better.history[-1]
+    assert entry.rmse_before is not None
+    assert entry.rmse_after is not None
+    achieved = 1.0 - entry.rmse_after / entry.rmse_before
+    assert achieved == pytest.approx(found[advised].predicted_drop, abs=0.05)
+    compared = better.compare()
+    assert compared.overall[0].rmse < 0.7 * base.compare().overall[0].rmse
+    file = tmp_path / "better.json"
+    better.save(file)
+    again = sepcal.load(file, model=subject.make())
+    assert isinstance(again, sepcal.Calibration)
+    assert again.to_json() == better.to_json()
+    other = _draw(name, 2)
+    ((header, fitted),) = again.apply(other).items()
+    output = better.own_model.outputs[0] if better.own_model else ""
+    read = next(other[column] for column in other.columns if column.split("_")[0] == output)
+    assert header.startswith(f"{output}_fit")
+    left = np.sqrt(np.nanmean((read - fitted) ** 2))
+    assert left == pytest.approx(compared.overall[0].rmse, rel=0.2)
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_nothing_is_called_missing_where_nothing_is(name: str) -> None:
+    """The same instruments with nothing hidden."""
+    base = sepcal.fit(SUBJECTS[name].make(), _draw(name, 3, scale=0.0), seed=1)
+    assert base.diagnose().verdict == "adequate"  # type: ignore[union-attr]
+    for parameter, true in SUBJECTS[name].truth.items():
+        estimate = base[parameter]
+        assert abs(estimate.value - true) < 4.0 * estimate.standard_error
+
+
+def _run(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "sepcal", *words], capture_output=True, text=True, check=False,
+        env=os.environ,
+    )  # fmt: skip
+
+
+def test_every_verb_from_the_command_line(tmp_path: Path) -> None:
+    """check, fit, compare, diagnose, add, intervals, apply and report, by file and class."""
+    model = ("--model", f"{FILE}:HotWire")
+    log, base, better = (str(tmp_path / name) for name in ("tunnel.csv", "base.json", "b.json"))
+    _write(_draw("HotWire", 1), Path(log))
+    checked = _run("check", *model, log)
+    assert checked.returncode == 0, checked.stderr
+    assert "u_mps" in checked.stdout
+    fitted = _run("fit", *model, log, "-o", base, "--seed", "1")
+    assert fitted.returncode == 0, fitted.stderr
+    assert json.loads(Path(base).read_text())["model"] == "HotWire"
+    compared = _run("compare", *model, log, base)
+    assert compared.returncode == 0
+    assert "temp_degc" in compared.stdout
+    found = _run("diagnose", *model, log, base, "--json")
+    assert found.returncode == 3, found.stderr
+    effect = json.loads(found.stdout)["advice"]["effect"]
+    assert "temp_degc" in effect
+    added = _run("add", *model, log, base, effect, "-o", better)
+    assert added.returncode == 0, added.stderr
+    intervals = _run("intervals", *model, log, better)
+    assert intervals.returncode == 0, intervals.stderr
+    assert "n " in intervals.stdout
+    applied = _run("apply", *model, log, better, "-o", str(tmp_path / "applied.csv"))
+    assert applied.returncode == 0, applied.stderr
+    assert "e2_fit_v2" in (tmp_path / "applied.csv").read_text().splitlines()[0]
+    page = tmp_path / "report.html"
+    pytest.importorskip("plotly")
+    told = _run("report", *model, log, base, better, "-o", str(page))
+    assert told.returncode == 0, told.stderr
+    assert "HotWire" in page.read_text()
+
+
+@pytest.mark.parametrize(
+    ("named", "said"),
+    [
+        ("HotWire", "FILE.py:CLASS"),
+        ("nowhere.py:HotWire", "there is no file nowhere.py"),
+        (f"{FILE}:ColdWire", "has no class ColdWire"),
+    ],
+)
+def test_a_model_that_is_not_there_is_named(named: str, said: str, tmp_path: Path) -> None:
+    """One line, and no file."""
+    log = tmp_path / "tunnel.csv"
+    _write(_draw("HotWire", 1), log)
+    refused = _run("fit", "--model", named, str(log), "-o", str(tmp_path / "base.json"))
+    assert refused.returncode == 2
+    assert said in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1
+    assert not (tmp_path / "base.json").exists()
+
+
+def test_a_calibration_needs_its_model(tmp_path: Path) -> None:
+    """Without it, or with another one, the file is refused by one line."""
+    file = tmp_path / "base.json"
+    base = sepcal.fit(models.HotWire(), _draw("HotWire", 1), seed=1)
+    assert isinstance(base, sepcal.Calibration)
+    base.save(file)
+    with pytest.raises(sepcal.Error, match="HotWire"):
+        sepcal.load(file)
+    with pytest.raises(sepcal.Error, match="'HotWire', and the one given is 'Thermistor'"):
+        sepcal.load(file, model=models.Thermistor())
+    again = pickle.loads(pickle.dumps(base))
+    assert again.to_json() == base.to_json()
+    assert again.compare(_draw("HotWire", 1)).overall[0].rmse == base.compare().overall[0].rmse
+
+
+def test_headers_with_and_without_units() -> None:
+    """u_mps, u_kt and u are one input; what is missing is named with what would do."""
+    flight = _draw("HotWire", 1)
+    columns = dict(flight)
+    speed = columns.pop("u_mps")
+    fits = [
+        sepcal.fit(models.HotWire(), sepcal.Flight(columns | {header: values}), seed=1)
+        for header, values in (("u_mps", speed), ("u", speed), ("u_kmh", speed * 3.6))
+    ]
+    np.testing.assert_allclose(fits[1].values, fits[0].values, rtol=1e-12)
+    np.testing.assert_allclose(fits[2].values, fits[0].values, rtol=1e-7)
+    with pytest.raises(sepcal.Error, match="column 'u_mps' is missing"):
+        sepcal.fit(models.HotWire(), sepcal.Flight(columns))
+
+
+def test_several_flights_together() -> None:
+    """A zero of its own for every run, the rest shared."""
+    flights = [_draw("Potentiometer", seed, scale=0.0) for seed in (4, 5)]
+    joint = sepcal.fit_jointly(models.Potentiometer(), flights, own=["v0"])
+    assert joint["k"].value == pytest.approx(0.8, abs=4 * joint["k"].standard_error)
+    assert {"v0@Potentiometer_4", "v0@Potentiometer_5"} <= set(joint.names)
