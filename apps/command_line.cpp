@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line that both apps share: verbs, options, exit codes.
 #include <CLI/App.hpp>
+#include <CLI/Config.hpp>     // what App is made with, in this unit
+#include <CLI/Formatter.hpp>  // the same
 
 #include "diagnose_arguments.hpp"
 #include "export_arguments.hpp"

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <CLI/Config.hpp>     // what App is made with, in this unit
+#include <CLI/Formatter.hpp>  // the same
 #include <algorithm>
 
 #include <map>

@@ -3,7 +3,7 @@
 
 python -m sepcal fit --model own_models.py:HotWire tunnel.csv -o base.json
 python -m sepcal diagnose --model own_models.py:HotWire tunnel.csv base.json
-python -m sepcal add --model own_models.py:HotWire tunnel.csv base.json 'A[temp_degc]' -o better.json
+python -m sepcal add --model own_models.py:HotWire tunnel.csv base.json EFFECT -o better.json
 """
 
 import numpy as np

@@ -87,8 +87,8 @@ def add_model(verb: argparse.ArgumentParser, *, needed: bool) -> None:
 def _add_flights(verb: argparse.ArgumentParser, *, several: bool = False) -> None:
     verb.add_argument("flights", metavar="LOG.csv", nargs="+" if several else 1)
     if several:
-        verb.add_argument("--own", action="append", default=[], metavar="NAME",
-                          help="of several flights: a parameter that each has for itself")  # fmt: skip
+        of_each = "of several flights: a parameter that each has for itself"
+        verb.add_argument("--own", action="append", default=[], metavar="NAME", help=of_each)
 
 
 def _add_subject(verb: argparse.ArgumentParser) -> None:
@@ -323,7 +323,7 @@ def _intervals(given: argparse.Namespace) -> int:
     found = calibration.intervals(flight, level=given.level)
     _tell_notes(found.notes)
     _deliver(given, found, found.to_json())
-    return EXIT_CODES[found.status]
+    return EXIT_CODES[json.loads(found.to_json())["status"]]
 
 
 def _apply(given: argparse.Namespace) -> int:

@@ -52,8 +52,8 @@ def test_a_missing_column_is_the_models() -> None:
     refuse(lambda: sepcal.fit(WindBox(), data), "WindBox", "'psi'", "ve")
 
 
-def test_a_flight_is_refused() -> None:
-    refuse(lambda: sepcal.fit(WindBox(), sepcal.Flight({"time_s": [0, 1]})), "{name: array}")
+def test_a_flight_without_an_input_is_refused() -> None:
+    refuse(lambda: sepcal.fit(WindBox(), sepcal.Flight({"time_s": [0, 1]})), "column 'v_mps'")
 
 
 # --- what at() gives

@@ -153,8 +153,8 @@ SUBJECTS = {
         models.Thermistor, _thermistor, 0.4, ("T[power_mw]", "R_25[power_mw]"), {"beta": 3435.0},
     ),
     "RadarAltimeter": Subject(
-        models.RadarAltimeter, _radar_altimeter, 1.0, ("s[roll_deg^2]", "height[roll_deg^2]",
-        "b[roll_deg^2]"), {"s": 1.0},
+        models.RadarAltimeter, _radar_altimeter, 1.0, ("s[roll_deg^2]", "s[spline(roll_deg,4)]"),
+        {"s": 1.0},
     ),
     "TurntableAccelerometer": Subject(
         models.TurntableAccelerometer, _turntable, 0.1, ("b[rate_radps^2]",), {"b": 0.05},

@@ -41,7 +41,6 @@ void define_effects(py::module_& module) {
     const auto catalogue = effect_catalogue(probe);
     return std::vector(catalogue.begin(), catalogue.end());
   });
-  module.def("effects_of", [](const Model& model) { return effect_catalogue(probe_of(model)); });
   module.def("channels", &channels);
 }
 

@@ -23,6 +23,7 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/own_model.hpp"
 #include "sepcal/innovation_model.hpp"
 #include "sepcal/models/scalar_examples.hpp"
@@ -197,6 +198,8 @@ void define_engine(py::module_& module) {
                                return names;
                              })
       .def("input_tangent", &input_tangent);
+
+  module.def("effects_of", [](const Model& model) { return effect_catalogue(probe_of(model)); });
 
   using Vector = std::array<double, 3>;
   module.def("scalar_example_1", [] { return Model(block_model(ScalarExample1{})); });

@@ -495,16 +495,16 @@ void define_flight(py::module_& module) {
   module.def("calibrate", &calibrate_probe);
   module.def("calibrate_jointly", &calibrate_flights);
   using Own = std::vector<PythonEffect>;
+  using Asked = std::optional<Model>;  // where the calibration is of a model of the caller's own
   module.def("parse_calibration", [](const std::string& json, const std::string& source,
-                                     const Own& own, const Model* model) {
-    return with_own_effects(model == nullptr ? parse_calibration(json, source)
-                                             : parse_calibration(json, source, subject_of(*model)),
+                                     const Own& own, const Asked& model) {
+    return with_own_effects(model ? parse_calibration(json, source, subject_of(*model))
+                                  : parse_calibration(json, source),
                             own);
   });
-  module.def("read_calibration", [](const std::string& file, const Own& own, const Model* model) {
+  module.def("read_calibration", [](const std::string& file, const Own& own, const Asked& model) {
     return with_own_effects(
-        model == nullptr ? read_calibration(file) : read_calibration(file, subject_of(*model)),
-        own);
+        model ? read_calibration(file, subject_of(*model)) : read_calibration(file), own);
   });
 }
 

@@ -66,6 +66,12 @@ struct ReadingEffects {
   double at(const std::string& port_component, std::size_t row) const;
 };
 
+inline constexpr std::string_view own_app = "python -m sepcal";
+
+/// A verb of an app as people type it: "sepcal-pitot add", or "python -m sepcal add --model
+/// FILE.py:CLASS".
+std::string command_of(std::string_view app, std::string_view verb);
+
 class Probe {
  public:
   Probe() = default;
@@ -76,7 +82,8 @@ class Probe {
   /// "five-hole", "pitot-static", "magnetometer", "magnetometer-norm": the JSON's `model`.
   virtual std::string_view name() const = 0;
 
-  /// The command that calibrates it: "sepcal-pitot", "sepcal-mag".
+  /// The command that calibrates it: "sepcal-pitot", "sepcal-mag"; `own_app` of a model of your
+  /// own.
   virtual std::string_view app() const = 0;
 
   virtual const BlockModel& model() const = 0;

@@ -4,6 +4,7 @@
 
 #include "flight/checks/log.hpp"
 #include "sepcal/flight/check.hpp"
+#include "sepcal/flight/probe.hpp"
 
 namespace sepcal {
 
@@ -21,7 +22,7 @@ std::vector<std::string> brief_notes(const FlightCheck& check) {
   }
   if (hidden > 0) {
     const std::string command =
-        check.sha256.empty() ? "sepcal.check()" : fmt::format("{} check {}", check.app, check.file);
+        check.sha256.empty() ? "sepcal.check()" : fmt::format("{} {}", command_of(check.app, "check"), check.file);
     lines.push_back(fmt::format("{} more: {}", hidden, command));
   }
   return lines;

@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "flight/probes/quantities.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/log_choice.hpp"
 

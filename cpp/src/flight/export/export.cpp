@@ -209,6 +209,13 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
 
 Exported export_calibration(const Calibration& calibration, const Flight* flight,
                             const ExportOptions& options) {
+  if (calibration.probe->predicts()) {
+    throw Error(
+        fmt::format("{} is a model of your own, which gives no correction to export; read its "
+                    "parameters from the "
+                    "JSON",
+                    calibration.probe->name()));
+  }
   refuse_five_hole(calibration, options);
   refuse_idle(calibration, options);
   const Calibration given = of_one_flight(calibration, flight, options);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "flight/catalogue/effect_table.hpp"
 #include "flight/files/text_file.hpp"
 #include "flight/json/findings_json.hpp"
 #include "flight/json/fit_json.hpp"
@@ -63,8 +64,8 @@ Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
   if (root.contains("joint")) read_joint(root.at("joint"), calibration);
   calibration.flight = read_inputs(root.at("inputs"));
   calibration.fit = read_fit(root, calibration.options, output_names(*calibration.probe));
-  for (const Variable& own : calibration.probe->model().tables().parameters()) {
-    calibration.fit[own.name];
+  for (const Variable& parameter : calibration.probe->model().tables().parameters()) {
+    calibration.fit[parameter.name];
   }
   calibration.fit.rows = calibration.flight.rows_used;
   calibration.derived = read_derived(root.at("derived"));
@@ -137,9 +138,16 @@ Calibration parse(std::string_view json, const std::string& source,
     throw Error(source + " is a fit of an aircraft; use sepcal-aircraft for it");
   }
   check_version(root["schema_version"], source);
-  if (own && root["model"] != own->name()) {
+  const std::string model = root["model"].get<std::string>();
+  if (own && model != own->name()) {
     throw Error(fmt::format("{}: its model is '{}', and the one given is '{}'; give its own",
-                            source, root["model"].get<std::string>(), own->name()));
+                            source, model, own->name()));
+  }
+  if (!own && !catalogue::effect_tables().contains(model)) {
+    throw Error(
+        fmt::format("{}: its model, '{}', is none of sepcal's; give yours: {} VERB --model "
+                    "FILE.py:CLASS, or sepcal.load(file, model=...)",
+                    source, model, own_app));
   }
   return read_or_refuse(root, source, std::move(own));
 }

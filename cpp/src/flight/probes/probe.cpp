@@ -26,6 +26,10 @@ std::array<double, length> setting(const Settings& settings, const std::string& 
 
 }  // namespace
 
+std::string command_of(std::string_view app, std::string_view verb) {
+  return fmt::format("{} {}{}", app, verb, app == own_app ? " --model FILE.py:CLASS" : "");
+}
+
 std::vector<DerivedQuantity> Probe::derive(const Fit& /*fit*/) const { return {}; }
 
 void Probe::judge(Fit& /*fit*/) const {}
@@ -49,7 +53,7 @@ std::unique_ptr<const Probe> make_probe(std::string_view name, const Settings& s
   }
   throw Error(
       fmt::format("there is no model '{}'; known: five-hole, pitot-static, magnetometer, "
-                  "magnetometer-norm, and models of your own where they are given",
+                  "magnetometer-norm",
                   name));
 }
 

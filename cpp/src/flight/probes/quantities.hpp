@@ -27,10 +27,11 @@ struct ProbeQuantity {
 /// What a model reads of a log, needed or not, and the model's name.
 struct ModelQuantities {
   // Implicit: whoever asks for a model's quantities has its name or a probe.
-  ModelQuantities(std::string_view model);  // NOLINT(google-explicit-constructor)
-  ModelQuantities(const char* model)
-      : ModelQuantities(std::string_view(model)) {}  // NOLINT(google-explicit-constructor)
-  ModelQuantities(const Probe& probe);               // NOLINT(google-explicit-constructor)
+  // NOLINTBEGIN(google-explicit-constructor)
+  ModelQuantities(std::string_view name);
+  ModelQuantities(const char* name) : ModelQuantities(std::string_view(name)) {}
+  ModelQuantities(const Probe& probe);
+  // NOLINTEND(google-explicit-constructor)
 
   std::string_view model;
   std::span<const ProbeQuantity> list;

@@ -24,7 +24,8 @@ PortRow row_of_parameter(const Variable& parameter) {
                    .unit = parameter.unit,
                    .components = {{.name = "s", .linear = parameter.name}}},
           .sentence = parameter.name + " changes",
-          .forms = {{any_driver, parameter.name + " + s x"}}};
+          .forms = {{any_driver, parameter.name + " + s x"}},
+          .curves = {{"", "{}^2"}}};
 }
 
 PortRow row_of_input(const Variable& input) {

@@ -99,7 +99,7 @@ class OwnProbe final : public Probe {
         effects_(subjects::own_effects(model_->tables())) {}
 
   std::string_view name() const override { return name_; }
-  std::string_view app() const override { return "sepcal"; }
+  std::string_view app() const override { return own_app; }
   const BlockModel& model() const override { return *model_; }
   const catalogue::EffectTable& effects() const override { return effects_; }
   std::span<const ProbeQuantity> quantities() const override { return quantities_.list(); }

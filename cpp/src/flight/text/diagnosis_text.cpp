@@ -207,7 +207,7 @@ Page best_effect(const FlightDiagnosis& result) {
   }
   const std::string& effect = result.diagnosis.advice.effect;
   if (effect.empty()) return text;
-  return text + page("next: {} add {} {} {} -o NEXT.json\n", result.app,
+  return text + page("next: {} {} {} {} -o NEXT.json\n", command_of(result.app, "add"),
                      file_words(result.flight.file),
                      base::in_shell(result.calibration.empty() ? "BASE.json" : result.calibration),
                      base::in_shell(effect));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/probes/quantities.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/log_choice.hpp"
 
