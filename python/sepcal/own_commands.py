@@ -200,6 +200,7 @@ def read_model(named: str) -> OwnModel:
         raise _core.Error(f"--model {named}: {file} is no Python file")
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
+    sys.path.insert(0, os.path.dirname(os.path.abspath(file)))  # as of a script that is run
     try:
         spec.loader.exec_module(module)
         made = getattr(module, name)()
@@ -335,4 +336,6 @@ def _apply(given: argparse.Namespace) -> int:
     applied = calibration.apply_to_file(given.flights[0], given.output)
     _tell_notes(applied.notes)
     show(in_line(f"wrote {given.output}: {applied.rows} rows with {', '.join(applied.headers)}"))
+    if applied.rows_left_empty:
+        show(f"{applied.rows_left_empty} rows are left empty there: no reading of what it takes")
     return 0

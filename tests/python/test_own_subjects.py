@@ -31,11 +31,11 @@ STEP = 0.1  # [s]
 
 
 def _load_models() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("own_models", FILE)
+    spec = importlib.util.spec_from_file_location("example_own_models", FILE)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules["own_models"] = module
+    sys.modules["example_own_models"] = module
     spec.loader.exec_module(module)
     return module
 
@@ -313,3 +313,56 @@ def test_several_flights_together() -> None:
     joint = sepcal.fit_jointly(models.Potentiometer(), flights, own=["v0"])
     assert joint["k"].value == pytest.approx(0.8, abs=4 * joint["k"].standard_error)
     assert {"v0@Potentiometer_4", "v0@Potentiometer_5"} <= set(joint.names)
+
+
+class Spring:
+    """A force without a zero of its own; of a unit that no header spells."""
+
+    inputs = (("x", "mm"),)
+    outputs = (("y", "µN"),)
+    linear = (("k", "µN/mm"),)
+    nonlinear = ()
+
+    def at(self, u: Any, xi2: Array) -> tuple[Array, Array]:  # noqa: D102
+        return u.x[:, np.newaxis, np.newaxis], np.zeros((u.x.size, 1))
+
+
+def _pull(zero: float) -> sepcal.Flight:
+    rng = np.random.default_rng(8)
+    log = _common(rng)
+    x = 5.0 + 4.0 * np.sin(log["time_s"] / 5.0)
+    return sepcal.Flight(log | {"x": x, "y_un": _noise(rng, 0.05, 0.01, 0.8 * x + zero)})
+
+
+def test_a_zero_that_the_model_lacks_is_found() -> None:
+    """A constant, where no parameter is one."""
+    base = sepcal.fit(Spring(), _pull(0.3))
+    assert isinstance(base, sepcal.Calibration)
+    found = base.diagnose()
+    assert found.verdict == "effect_missing"
+    assert found.effects[0].name == "y_bias", found.text
+    better = base.add("y_bias")
+    assert better["k"].value == pytest.approx(0.8, abs=4 * better["k"].standard_error)
+    assert better["y_bias.s"].value == pytest.approx(0.3, abs=4 * better["y_bias.s"].standard_error)
+
+
+def test_units_that_changed_are_refused(tmp_path: Path) -> None:
+    """The same names in another unit are another model."""
+    base = sepcal.fit(Spring(), _pull(0.0))
+    assert isinstance(base, sepcal.Calibration)
+    base.save(tmp_path / "base.json")
+    changed = type("Spring", (Spring,), {"inputs": (("x", "m"),)})
+    with pytest.raises(sepcal.Error, match="have changed since it was fitted"):
+        sepcal.load(tmp_path / "base.json", model=changed())
+
+
+def test_a_report_spares_the_model(tmp_path: Path) -> None:
+    """The file of the model is an input of every verb."""
+    model, log, base = tmp_path / "m.py", tmp_path / "tunnel.csv", tmp_path / "base.json"
+    model.write_text(FILE.read_text())
+    _write(_draw("HotWire", 1), log)
+    named = ("--model", f"{model}:HotWire")
+    assert _run("fit", *named, str(log), "-o", str(base)).returncode == 0
+    refused = _run("report", *named, str(log), str(base), "-o", str(model))
+    assert refused.returncode == 2
+    assert model.read_text() == FILE.read_text()

@@ -52,7 +52,8 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
 
 def run(arguments: argparse.Namespace) -> int:
     """Writes the page; returns 0. Raises sepcal.Error on bad input."""
-    refuse_outputs((arguments.output,), (arguments.flight, *arguments.calibrations))
+    source = (arguments.model.rpartition(":")[0],) if arguments.model else ()
+    refuse_outputs((arguments.output,), (arguments.flight, *arguments.calibrations, *source))
     more = [file for file in arguments.calibrations if file.endswith(".csv")]
     files = [file for file in arguments.calibrations if file not in more]
     if not files:

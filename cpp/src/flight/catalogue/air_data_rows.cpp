@@ -48,15 +48,6 @@ Port pressure_offset() {
   return port;
 }
 
-/// A constant has no driver whose mean could be taken away: all of it is the effect.
-EffectKit::Maker without_driver(const EffectKit::Maker& maker) {
-  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
-    Effect effect = maker(model, setting, record);
-    effect.driver = nullptr;
-    return effect;
-  };
-}
-
 }  // namespace
 
 PortRow pressure_offset_row(const std::vector<Form>& forms) {
@@ -70,7 +61,7 @@ EffectRow pressure_zero_row(const std::string& equation) {
   const Port port = pressure_offset();
   return {.entry = CataloguedEffect{port.name, equation, "density", port.unit},
           .sentence = "the zero of the pressure difference is off",
-          .maker = without_driver(constant_on(port)),
+          .maker = lacking_constant_on(port),
           .better_with = {"rho"}};
 }
 

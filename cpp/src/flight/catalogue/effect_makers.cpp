@@ -17,6 +17,15 @@ EffectKit::Maker constant_on(const Port& port) {
   };
 }
 
+EffectKit::Maker lacking_constant_on(const Port& port) {
+  return
+      [maker = constant_on(port)](const BlockModel& model, EffectSetting& setting, Record& record) {
+        Effect effect = maker(model, setting, record);
+        effect.driver = nullptr;
+        return effect;
+      };
+}
+
 EffectKit::Maker in_time(Delay::Kind kind, double bound, const std::vector<std::string>& inputs) {
   return [=](const BlockModel& /*model*/, EffectSetting& setting, Record& /*record*/) {
     Effect effect{.name = setting.name};

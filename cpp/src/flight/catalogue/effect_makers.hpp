@@ -17,8 +17,12 @@ inline constexpr double largest_scale = 0.5;       // of what is scaled
 /// An effect that is another one under its own name: `means` is "bias[step(time)]", `port` bias.
 EffectKit::Maker renamed(const std::string& means, const Port& port);
 
-/// A constant on a port where the model has none.
+/// A constant on a port, of which the model may have one.
 EffectKit::Maker constant_on(const Port& port);
+
+/// A constant on a port where the model has none. It has no driver whose mean could be taken away:
+/// all of it is the effect.
+EffectKit::Maker lacking_constant_on(const Port& port);
 
 /// An effect in time with the one parameter tau, within +-bound [s].
 EffectKit::Maker in_time(Delay::Kind kind, double bound,

@@ -57,6 +57,20 @@ std::shared_ptr<const Probe> find_probe(const Json& root, std::shared_ptr<const 
   return own;
 }
 
+/// {name: unit}.
+Json write_units(const std::vector<Variable>& table) {
+  Json units = Json::object();
+  for (const Variable& variable : table) units[variable.name] = variable.unit;
+  return units;
+}
+
+/// Of a model of the caller's own, what its tables say: its author may change them.
+Json write_tables(const Tables& tables) {
+  return {{"inputs", write_units(tables.inputs)},
+          {"outputs", write_units(tables.outputs)},
+          {"parameters", write_units(tables.parameters())}};
+}
+
 Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
   Calibration calibration;
   calibration.options = read_options(root.at("options"));
@@ -110,6 +124,9 @@ std::string to_json(const Calibration& calibration) {
   Json root = Json::object();
   root["schema_version"] = schema_version;
   root["model"] = calibration.probe->name();
+  if (calibration.probe->predicts()) {
+    root["tables"] = write_tables(calibration.probe->model().tables());
+  }
   root["inputs"] = write_inputs(calibration.flight);
   if (joint_setup(*calibration.probe) != nullptr) root["joint"] = write_joint(calibration);
   root["options"] = write_options(calibration);
@@ -142,6 +159,12 @@ Calibration parse(std::string_view json, const std::string& source,
   if (own && model != own->name()) {
     throw Error(fmt::format("{}: its model is '{}', and the one given is '{}'; give its own",
                             source, model, own->name()));
+  }
+  if (own && root.contains("tables") && root["tables"] != write_tables(own->model().tables())) {
+    throw Error(fmt::format(
+        "{}: the names or units in the tables of {} have changed since it was fitted; give the "
+        "model as it was, or fit the flight again",
+        source, model));
   }
   if (!own && !catalogue::effect_tables().contains(model)) {
     throw Error(

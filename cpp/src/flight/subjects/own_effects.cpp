@@ -48,7 +48,7 @@ PortRow row_of_output(const Variable& output, int place) {
 EffectRow constant_row(const PortRow& row, const Variable& output) {
   return {.entry = {row.port.name, output.name + " = model + s", "none", output.unit},
           .sentence = "the zero of " + output.name + " is off",
-          .maker = catalogue::constant_on(row.port)};
+          .maker = catalogue::lacking_constant_on(row.port)};
 }
 
 EffectRow delay_row(const std::string& name, const std::string& equation,
@@ -67,17 +67,22 @@ EffectRow delay_row(const std::string& name, const std::string& equation,
 
 EffectTable own_effects(const Tables& tables) {
   EffectTable table;
-  for (const Variable& parameter : tables.linear)
-    table.ports.push_back(row_of_parameter(parameter));
+  const auto is_free = [&](const std::string& name) {  // no effect is called so, and one can be
+    return can_name(name) && table.find_port(name) == nullptr;
+  };
+  for (const Variable& parameter : tables.linear) {
+    if (is_free(parameter.name)) table.ports.push_back(row_of_parameter(parameter));
+  }
   std::vector<std::string> inputs;
   for (const Variable& input : tables.inputs) {
     if (input.name == "time") continue;
-    inputs.push_back(input.name);
-    if (table.find_port(input.name) == nullptr) table.ports.push_back(row_of_input(input));
+    if (can_name(input.name)) inputs.push_back(input.name);
+    if (is_free(input.name)) table.ports.push_back(row_of_input(input));
   }
   for (int j = 0; j < tables.n_z(); ++j) {
     const Variable& output = tables.outputs[static_cast<std::size_t>(j)];
     table.measured.push_back(output.name);
+    if (!is_free(output.name + "_bias")) continue;
     table.ports.push_back(row_of_output(output, j));
     table.effects.push_back(constant_row(table.ports.back(), output));
   }

@@ -43,12 +43,20 @@ constexpr std::array spellings{
     Spelling{"1", UnitKind::share},
 };
 
-/// "degC" as headers end with it: degc; "V/K": vpk; "%": pct.
-std::string suffix_of(std::string_view unit) {
+/// "degC" as headers end with it: degc; "V/K": vpk; "%": pct; "kΩ": kohm. Empty where it has
+/// signs that no header spells.
+std::string suffix_of(std::string unit) {
   if (unit == "%") return "pct";
+  constexpr std::array<std::array<std::string_view, 2>, 5> signs{
+      {{"\u00b5", "u"}, {"\u03bc", "u"}, {"\u03a9", "ohm"}, {"\u2126", "ohm"}, {"\u00b0", "deg"}}};
+  for (const auto& [sign, letters] : signs) {
+    const std::size_t at = unit.find(sign);
+    if (at != std::string::npos) unit.replace(at, sign.size(), letters);
+  }
   std::string suffix;
   for (const char c : unit) {
     const auto byte = static_cast<unsigned char>(c);
+    if (byte > 127) return "";
     if (c == '/') {
       suffix += 'p';
     } else if (std::isalnum(byte) != 0) {
