@@ -222,11 +222,16 @@ def _read_flight(given: argparse.Namespace) -> Flight:
     return read_csv(given.flights[0])
 
 
-def _read_subject(given: argparse.Namespace) -> tuple[Calibration, Flight | list[Flight]]:
-    """The calibration and its flight, or flights."""
+def _read_subject(
+    given: argparse.Namespace, *, whole: bool = True
+) -> tuple[Calibration, Flight | list[Flight]]:
+    """The calibration and its flight, or flights; `whole`: all those of a joint fit."""
     calibration = load(given.calibration, model=read_model(given.model))
     assert isinstance(calibration, Calibration)
     flights = [read_csv(file) for file in given.flights]
+    if whole and calibration.flights and len(flights) == 1:
+        number = len(calibration.flights)
+        raise _core.Error(f"{given.calibration} is of {number} flights; give them all")
     return calibration, flights[0] if len(flights) == 1 else flights
 
 
@@ -279,7 +284,7 @@ def _fit(given: argparse.Namespace) -> int:
 
 
 def _compare(given: argparse.Namespace) -> int:
-    calibration, flight = _read_subject(given)
+    calibration, flight = _read_subject(given, whole=False)
     compared = calibration.compare(flight)
     _tell_notes(compared.notes)
     _deliver(given, compared, compared.to_json())

@@ -366,3 +366,18 @@ def test_a_report_spares_the_model(tmp_path: Path) -> None:
     refused = _run("report", *named, str(log), str(base), "-o", str(model))
     assert refused.returncode == 2
     assert model.read_text() == FILE.read_text()
+
+
+def test_a_joint_fit_from_the_command_line(tmp_path: Path) -> None:
+    """One of its logs is compared; to diagnose it all of them are needed, which is said."""
+    logs = [str(tmp_path / f"{name}.csv") for name in ("monday", "tuesday")]
+    for seed, log in enumerate(logs, 4):
+        _write(_draw("Potentiometer", seed, scale=0.0), Path(log))
+    named, base = ("--model", f"{FILE}:Potentiometer"), str(tmp_path / "base.json")
+    fitted = _run("fit", *named, *logs, "--own", "v0", "-o", base)
+    assert fitted.returncode == 0, fitted.stderr
+    assert "v0@tuesday" in fitted.stdout
+    assert _run("compare", *named, logs[0], base).returncode == 0
+    refused = _run("diagnose", *named, logs[0], base)
+    assert refused.returncode == 2
+    assert "is of 2 flights; give them all" in refused.stderr
