@@ -28,7 +28,7 @@ from sepcal.whole_files import name_of, refuse_outputs, write_whole
 Commands = argparse._SubParsersAction
 EXIT_CODES = {
     "converged": 0, "not_identifiable": 4, "not_converged": 5,
-    "adequate": 0, "effect_missing": 3, "slow_change": 3, "unexplained": 3,
+    "adequate": 0, "effect_missing": 3, "slow_change": 6, "unexplained": 6,
 }  # fmt: skip
 FORM = "FILE.py:CLASS"
 
@@ -142,8 +142,22 @@ def _number(option: str, text: str) -> float:
         raise _core.Error(f"{option}: '{text}' is no number") from None
 
 
+def read_numbers(option: str, texts: Sequence[str], form: str) -> dict[str, float]:
+    """{name: number} of NAME=NUMBER. Raises Error, which shows the form, for another one."""
+    numbers = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        try:
+            numbers[name] = float(value)
+        except ValueError:
+            equals = ""
+        if not name or not equals:
+            raise _core.Error(f"{option} {text}: write it as {form}")
+    return numbers
+
+
 def _numbers(option: str, texts: Sequence[str]) -> dict[str, float]:
-    return {name: _number(option, text) for name, text in _split(option, texts).items()}
+    return read_numbers(option, texts, "NAME=VALUE")
 
 
 def _bounds(texts: Sequence[str]) -> dict[str, tuple[float | None, float | None]]:

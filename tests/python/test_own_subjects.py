@@ -23,6 +23,7 @@ import numpy.typing as npt
 import pytest
 
 import sepcal
+from sepcal.own_commands import EXIT_CODES
 
 Array = npt.NDArray[np.float64]
 FILE = Path(__file__).parents[2] / "examples" / "own_models.py"
@@ -381,3 +382,10 @@ def test_a_joint_fit_from_the_command_line(tmp_path: Path) -> None:
     refused = _run("diagnose", *named, logs[0], base)
     assert refused.returncode == 2
     assert "is of 2 flights; give them all" in refused.stderr
+
+
+def test_exit_codes_are_those_of_the_apps() -> None:
+    """A slow change or what nothing explains is 6, as docs/commands.md has it."""
+    told = {"adequate": 0, "effect_missing": 3, "slow_change": 6, "unexplained": 6}
+    told |= {"converged": 0, "not_identifiable": 4, "not_converged": 5}
+    assert told == EXIT_CODES

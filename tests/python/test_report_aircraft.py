@@ -117,7 +117,11 @@ def test_what_was_read_is_not_written_over(folder: Path) -> None:
     for read in (log, path):
         before = read.read_bytes()
         wishes = argparse.Namespace(
-            flight=str(log), calibrations=[str(path)], output=str(read), process_noise=[]
+            flight=str(log),
+            calibrations=[str(path)],
+            output=str(read),
+            process_noise=[],
+            model=None,
         )
         refuse(
             lambda wishes=wishes: command.run(wishes),

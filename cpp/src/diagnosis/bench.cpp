@@ -45,11 +45,11 @@ Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::
     : Bench(fitted, {}, options, pool) {}
 
 Bench::Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
-             base::ThreadPool& pool, Regressors regressors)
+             base::ThreadPool& pool)
     : fitted_(fitted),
       options_(options),
       pool_(pool),
-      room_(fitted, released, pool, regressors),
+      room_(fitted, released, pool),
       refits_(std::make_unique<Refits>(room_)) {
   if (is_exact()) return;
   room_.add_wandering();

@@ -40,7 +40,7 @@ class Bench {
   Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool);
   /// Where the fit has the candidate, as if it had not: see CandidateRoom.
   Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
-        base::ThreadPool& pool, Regressors regressors = Regressors::read);
+        base::ThreadPool& pool);
   Bench(const Bench&) = delete;  // the null hypothesis points into it
   Bench& operator=(const Bench&) = delete;
   ~Bench() = default;

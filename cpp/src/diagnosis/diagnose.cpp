@@ -106,7 +106,6 @@ class Recipe {
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
   bool takes_too_little(const EffectFinding& finding) const;
-  void doubt_readings(Trial& trial, double threshold) const;
   double threshold_of(const Trials& trials, double tests) const;
   bool has(FindingStatus status) const;
   Trials::iterator find_trial(const std::string& name);
@@ -134,10 +133,9 @@ class Recipe {
   const DiagnosedFit& fitted_;
   const DiagnosisOptions& options_;
   Clock::time_point begun_ = Clock::now();
-  mutable base::ThreadPool pool_;
+  base::ThreadPool pool_;
   Bench bench_;
   Trials trials_;
-  mutable std::unique_ptr<Bench> undisturbed_;               // made where it is asked
   std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
   Contest contest_;
   std::vector<std::string> withdrawn_;  // were found, but no fit bears them out
@@ -235,29 +233,11 @@ double Recipe::threshold_of(const Trials& trials, double tests) const {
   return std::log10(options_.significance / number) + about;
 }
 
-/// No surer than where what the model leaves stands in the readings that columns are made of: there
-/// it goes with them, and imitates whatever changes their errors.
-void Recipe::doubt_readings(Trial& trial, double threshold) const {
-  if (fitted_.kit.disturbed.empty() || bench_.room().follows_path()) return;
-  if (!undisturbed_) {
-    undisturbed_ =
-        std::make_unique<Bench>(fitted_, Candidate{}, options_, pool_, Regressors::undisturbed);
-  }
-  Trials again = undisturbed_->make({trial.candidate.name});
-  if (again.empty()) return;
-  undisturbed_->screen_all(again);
-  undisturbed_->test_best(again, most_tested, threshold, false);
-  trial.log10_p = std::max(trial.log10_p, again.front().log10_p);
-}
-
 std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) const {
   bench_.hold_out_significant(trials, slow_too);
   const double threshold = threshold_of(trials, tests);
   bench_.calibrate_significant(trials, threshold, slow_too);
   bench_.confirm_best(trials, threshold);
-  for (Trial& trial : trials) {
-    if (trial.held_out.passed && trial.log10_p < threshold) doubt_readings(trial, threshold);
-  }
   std::vector<EffectFinding> findings = collect(trials, tests);
   rank(findings);
   return findings;
@@ -529,7 +509,6 @@ void Recipe::weigh_held_out() {
     tell_held_out(trial, *finding);
     if (!trial.held_out.passed || !(finding->held_out_gain >= objects_from)) continue;
     bound_by_fit(bench_, trial);
-    if (trial.log10_p < significant) doubt_readings(trial, significant);
     if (trial.log10_p < significant) {
       finding->status = FindingStatus::found;
       finding->log10_p = trial.log10_p;

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 
 from sepcal._core import Error
 from sepcal.calibration import Calibration, load
 from sepcal.flight import read_csv
-from sepcal.own_commands import add_model, read_model
+from sepcal.own_commands import add_model, read_model, read_numbers
 from sepcal.printing import in_line, show, told_progress
 from sepcal.reporting import report
 from sepcal.whole_files import refuse_outputs
@@ -70,22 +69,10 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.output,
             flight,
             files=files,
-            process_noise=read_noise(arguments.process_noise),
+            process_noise=read_numbers(
+                "--process-noise", arguments.process_noise, "NAME=SD, az=0.01"
+            ),
             progress=report_progress,
         )
     show(in_line(f"wrote {arguments.output}"))
     return 0
-
-
-def read_noise(texts: Sequence[str]) -> dict[str, float]:
-    """{name: sd} of NAME=SD. Raises Error for another form."""
-    noise = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        try:
-            noise[name] = float(value)
-        except ValueError:
-            equals = ""
-        if not name or not equals:
-            raise Error(f"--process-noise {text}: write it as NAME=SD, az=0.01")
-    return noise

@@ -50,13 +50,6 @@ void check_effects(const Calibration& calibration) {
   }
 }
 
-/// Of the caller's own model, or one that ships.
-std::shared_ptr<const Probe> find_probe(const Json& root, std::shared_ptr<const Probe> own) {
-  const std::string name = root.at("model").get<std::string>();
-  if (!own) return read_probe(name, root.at("options"));
-  return own;
-}
-
 /// {name: unit}.
 Json write_units(const std::vector<Variable>& table) {
   Json units = Json::object();
@@ -74,7 +67,8 @@ Json write_tables(const Tables& tables) {
 Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
   Calibration calibration;
   calibration.options = read_options(root.at("options"));
-  calibration.probe = find_probe(root, std::move(own));
+  calibration.probe =
+      own ? std::move(own) : read_probe(root.at("model").get<std::string>(), root.at("options"));
   if (root.contains("joint")) read_joint(root.at("joint"), calibration);
   calibration.flight = read_inputs(root.at("inputs"));
   calibration.fit = read_fit(root, calibration.options, output_names(*calibration.probe));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <span>
@@ -219,22 +220,30 @@ ReadingEffects totals_of(const std::vector<Effect>& effects, const base::Paramet
   return result;
 }
 
-/// What the model with its effects makes of the inputs, in the rows that have all that it takes.
-std::vector<CorrectedColumn> predict_outputs(const Calibration& calibration, const Flight& flight,
-                                             ProbeReadings& readings) {
-  const Probe& probe = *calibration.probe;
-  std::vector<EffectSetting> settings = calibration.options.effects;
+/// Adds what these effects read to the readings; returns the channels that a row needs for them.
+std::set<std::string> add_what_drives(const Calibration& calibration,
+                                      const std::vector<EffectSetting>& settings,
+                                      const Flight& flight, ProbeReadings& readings) {
   std::set<std::string> needed;
   for (const EffectSetting& setting : settings) {
     if (calibration.options.own_effects.contains(setting.name)) {
       catalogue::add_all_channels(readings.record, flight);
       continue;
     }
-    const EffectName name = parse_effect_name(setting.name);
-    for (std::string& channel : catalogue::add_channels(readings.record, flight, probe, name)) {
+    for (std::string& channel : catalogue::add_channels(readings.record, flight, *calibration.probe,
+                                                        parse_effect_name(setting.name))) {
       needed.insert(std::move(channel));
     }
   }
+  return needed;
+}
+
+/// What the model with its effects makes of the inputs, in the rows that have all that it takes.
+std::vector<CorrectedColumn> predict_outputs(const Calibration& calibration, const Flight& flight,
+                                             ProbeReadings& readings) {
+  const Probe& probe = *calibration.probe;
+  std::vector<EffectSetting> settings = calibration.options.effects;
+  const std::set<std::string> needed = add_what_drives(calibration, settings, flight, readings);
   std::vector<CorrectedColumn> columns = probe.correct(readings, own_values(calibration), {});
   Compact compact = keep_rows(readings, flight, needed);
   readings.valid.assign(readings.valid.size(), false);
@@ -279,19 +288,11 @@ std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration
   }
   const catalogue::EffectTable& table = probe.effects();
   std::vector<EffectSetting> settings;
-  std::set<std::string> needed;
-  for (const EffectSetting& setting : calibration.options.effects) {
-    const EffectName name = parse_effect_name(setting.name);
-    if (catalogue::acts_on_the_world(table, name)) continue;
-    settings.push_back(setting);
-    if (calibration.options.own_effects.contains(setting.name)) {
-      catalogue::add_all_channels(readings.record, flight);
-      continue;
-    }
-    for (std::string& channel : catalogue::add_channels(readings.record, flight, probe, name)) {
-      needed.insert(std::move(channel));
-    }
-  }
+  std::ranges::copy_if(
+      calibration.options.effects, std::back_inserter(settings), [&](const EffectSetting& setting) {
+        return !catalogue::acts_on_the_world(table, parse_effect_name(setting.name));
+      });
+  const std::set<std::string> needed = add_what_drives(calibration, settings, flight, readings);
   Compact compact = keep_rows(readings, flight, needed);
   const std::vector<Effect> effects = make_effects(
       effect_kit(probe, calibration.options.own_effects), probe.model(), settings, compact.record);
