@@ -22,7 +22,8 @@ std::vector<std::string> brief_notes(const FlightCheck& check) {
   }
   if (hidden > 0) {
     const std::string command =
-        check.sha256.empty() ? "sepcal.check()" : fmt::format("{} {}", command_of(check.app, "check"), check.file);
+        check.sha256.empty() ? "sepcal.check()"
+                             : fmt::format("{} {}", command_of(check.app, "check"), check.file);
     lines.push_back(fmt::format("{} more: {}", hidden, command));
   }
   return lines;
