@@ -76,3 +76,27 @@ class TurntableAccelerometer:
     def at(self, u, xi2):
         pull = GRAVITY * np.sin(u.angle + xi2[0])
         return stack(np.ones_like(pull), pull), np.zeros((pull.size, 1))
+
+
+class Pendulum:
+    """A rod that a motor drives: theta'' = -w2 sin(theta) - d theta' + k torque."""
+
+    inputs = {"torque": "N m"}
+    states = {"theta": "rad", "rate": "rad/s"}
+    outputs = {"angle": "rad"}
+    linear = {"zero": "rad"}
+    nonlinear = {
+        "w2": ("1/s^2", 8.0, 16.0),
+        "d": ("1/s", 0.0, 1.0),
+        "k": ("1/(kg m^2)", 0.5, 5.0),
+    }
+
+    def rate(self, x, u, p):
+        w2, d, k = p
+        return [x[1], -w2 * np.sin(x[0]) - d * x[1] + k * u.torque]
+
+    def at(self, x, u, p):
+        return [[1.0]], [x[0]]
+
+    def start(self, u, z):
+        return [z[0], 0.0]

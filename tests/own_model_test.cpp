@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/export.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
+#include "sepcal/flight/own_state_model.hpp"
 
 namespace own_model_test {
 namespace {
@@ -68,6 +70,69 @@ Flight tunnel(unsigned seed, double of_temperature) {
   }
   Flight flight("tunnel");
   flight.add("time_s", time).add("u_mps", speed).add("temp_degc", temperature).add("e2", squared);
+  return flight;
+}
+
+/// Roll damping and aileron effectiveness, p' = Lp p + La aileron.
+struct RollMode {
+  static constexpr std::array inputs{Quantity{"aileron", "rad"}};
+  static constexpr std::array states{Quantity{"p", "rad/s"}};
+  static constexpr std::array outputs{Quantity{"p_m", "rad/s"}};
+  static constexpr std::array linear{Quantity{"b_p", "rad/s"}};
+  static constexpr std::array nonlinear{Quantity{"Lp", "1/s", -20, 0}, Quantity{"La", "1/s^2"}};
+  static constexpr std::array<std::string_view, 1> linear_dynamic{"La"};
+  static constexpr std::array<Quantity, 0> noise{};
+
+  template <class U, class X>
+  Rate<X, 1> rate(const Vec<X, 1>& x, const Vec<U, 1>& u, const Vec<X, 2>& p) const {
+    Rate<X, 1> dx;
+    dx[0] = p[0] * x[0] + p[1] * u[0];
+    return dx;
+  }
+
+  template <class U, class X>
+  Affine<X, 1, 1> at(const Vec<X, 1>& x, const Vec<U, 1>& /*u*/, const Vec<X, 2>& /*p*/) const {
+    Affine<X, 1, 1> z;
+    z.A << X(1.0);
+    z.b << x[0];
+    return z;
+  }
+};
+
+/// By the closed form of each straight piece of the aileron; the gyro's zero warms by
+/// `of_temperature` [rad/s/K]. Rows from `second` on are of another maneuver.
+Flight rolls(unsigned seed, double of_temperature, std::size_t second = 0) {
+  constexpr double Lp = -2.5;
+  constexpr double La = 8.0;
+  constexpr double dt = 0.02;
+  std::mt19937_64 draw(seed);  // NOLINT(bugprone-random-generator-seed): the same flight each time
+  std::normal_distribution<double> normal;
+  const std::size_t rows = 800;
+  std::vector<double> time(rows);
+  std::vector<double> aileron(rows);
+  std::vector<double> temperature(rows);
+  std::vector<double> rate(rows);
+  std::vector<std::string> labels(rows, "first");
+  for (std::size_t i = 0; i < rows; ++i) {
+    time[i] = dt * static_cast<double>(i);
+    aileron[i] = 0.1 * std::sin(2.1 * time[i]) + 0.05 * std::sin(5.3 * time[i] + 1.0);
+    temperature[i] = 20.0 + 5.0 * std::sin(0.7 * time[i]);
+    if (second > 0 && i >= second) labels[i] = "second";
+  }
+  double p = 0.2;
+  for (std::size_t i = 0; i < rows; ++i) {
+    rate[i] = p + 0.03 + of_temperature * (temperature[i] - 20.0) + 0.004 * normal(draw);
+    if (i + 1 == rows) break;
+    const double slope = (aileron[i + 1] - aileron[i]) / dt;
+    const auto forced = [&](double t) {  // where the rate would stay
+      return -La / Lp * (aileron[i] + slope * t) - La / (Lp * Lp) * slope;
+    };
+    p = forced(dt) + (p - forced(0.0)) * std::exp(Lp * dt);
+  }
+  Flight flight("rolls_" + std::to_string(seed));
+  flight.add("time_s", time).add("aileron_rad", aileron).add("temp_degc", temperature);
+  flight.add("p_m_radps", rate);
+  if (second > 0) flight.label(labels);
   return flight;
 }
 
@@ -123,6 +188,50 @@ TEST_CASE("an own model's catalogue has its parameters, inputs, outputs and dela
   }
   CHECK(names == std::vector<std::string>{"A[DRIVER]", "B[DRIVER]", "u[DRIVER]", "e2_bias[DRIVER]",
                                           "e2_bias", "time_offset", "lag"});
+}
+
+TEST_CASE("an own model with a state has the loop too") {
+  const auto roll = own_model("roll", RollMode{});
+  const Flight flight = rolls(1, 0.01);
+  const Calibration base = calibrate(roll, flight, seeded());
+  CHECK(base.fit.status == FitStatus::converged);
+  const FlightDiagnosis found = diagnose(base, flight);
+  REQUIRE(found.diagnosis.verdict == Verdict::effect_missing);
+  CHECK(found.diagnosis.effects.front().name.find("[temp_degc]") != std::string::npos);
+  const Calibration better = add(base, flight, "b_p[temp_degc]");
+  const HistoryEntry& step = better.history.back();
+  CHECK(1.0 - step.rmse_after / step.rmse_before == Approx(step.predicted_drop).epsilon(0.05));
+  for (const auto& [name, truth] :
+       {std::pair{"Lp", -2.5}, {"La", 8.0}, {"b_p[temp_degc].s", 0.01}, {"p_0", 0.2}}) {
+    CHECK(std::abs(better.fit[name].value - truth) < 4.0 * better.fit[name].standard_error);
+  }
+  const Calibration read = parse_calibration(to_json(better), "better.json", roll);
+  CHECK(to_json(read) == to_json(better));
+  const double rmse = compare(read, flight).overall[0].rmse;
+  CHECK(rmse == Approx(0.004).epsilon(0.1));
+
+  SUBCASE("another flight's initial states are estimated anew, and all else is held") {
+    const Flight other = rolls(2, 0.01, 300);
+    const Comparison compared = compare(read, other);
+    CHECK(compared.overall[0].rmse == Approx(0.004).epsilon(0.1));
+    CHECK(compared.where.size() == 2);
+    const auto columns = apply(read, other);
+    REQUIRE(columns.size() == 1);
+    CHECK(columns[0].header == "p_m_fit_radps");
+    CHECK(std::abs(columns[0].values[0] - 0.23) < 0.02);
+  }
+}
+
+TEST_CASE("of an own model with a state each segment has an initial state, and no effect is one") {
+  const auto roll = own_model("roll", RollMode{});
+  const Calibration base = calibrate(roll, rolls(3, 0.0, 300), seeded());
+  CHECK(base.fit["p_0[first]"].value == Approx(0.2).epsilon(0.1));
+  CHECK(base.fit["p_0[second]"].standard_error > 0.0);
+  CHECK(diagnose(base, rolls(3, 0.0, 300)).diagnosis.verdict == Verdict::adequate);
+  std::vector<std::string> names;
+  for (const CataloguedEffect& effect : effect_catalogue(*roll)) names.push_back(effect.name);
+  CHECK(names == std::vector<std::string>{"b_p[DRIVER]", "aileron[DRIVER]", "p_m_bias[DRIVER]",
+                                          "p_m_bias", "aileron_late", "aileron_lag"});
 }
 
 TEST_CASE("what an own model can't be is said in a line") {

@@ -81,6 +81,7 @@ from sepcal.tracking import Track, track
 from sepcal.trajectories import FlightPath, ShortPeriod, TrajectoryModel, TrajectoryOptions
 from sepcal.trial_fits import TrialFits, fit_trials
 from sepcal.trials import Estimates, Failure, TrialRecord
+from sepcal.validation import Validation, validate
 
 __all__ = [
     "AddedRegressor",
@@ -157,6 +158,7 @@ __all__ = [
     "TrialFits",
     "TrialRecord",
     "TwoSteps",
+    "Validation",
     "Window",
     "__version__",
     "bound_cost",
@@ -184,4 +186,5 @@ __all__ = [
     "stream_trials",
     "track",
     "two_step",
+    "validate",
 ]

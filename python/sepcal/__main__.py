@@ -20,8 +20,9 @@ from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
 from sepcal.printing import in_line, tell
 from sepcal.reporting import command as report
+from sepcal.validation import command as validation
 
-COMMANDS = (own, report, log, field)
+COMMANDS = (own, report, log, field, validation)
 BAD_INPUT = 2
 INTERRUPTED = 130
 

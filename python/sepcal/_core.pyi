@@ -2812,7 +2812,8 @@ class Innovation:
         """
 
 def attitude_independent_magnetometer(
-    arg0: typing.SupportsFloat | typing.SupportsIndex,
+    field_strength: typing.SupportsFloat | typing.SupportsIndex,
+    noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
 ) -> Model: ...
 def autocorrelation(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],

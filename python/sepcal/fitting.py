@@ -13,8 +13,7 @@ from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
 from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
-from sepcal.own_model import own_among
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model, own_among, runs_in_python
 from sepcal.results import Fit
 from sepcal.trajectories import FlightPath
 
@@ -48,11 +47,10 @@ def fit(
             state, of StateModel. Python lets one thread in at a time, so that threads=0 then means
             one.
         data: A Flight (columns with units in their headers; for the probes, FlightPath, Aero,
-            RigidAircraft and models of yours without a state), or the model's own
-            inputs and outputs by name in the units of its tables, each of shape (N,): a dict or a
-            DataFrame. There "time" [s] and "maneuver" (labels) are optional and cut the record at
-            gaps and changes of label; other columns are ignored but by effects. C-contiguous
-            float64 arrays are not copied.
+            RigidAircraft and models of yours), or the model's own inputs and outputs by name in the
+            units of its tables, each of shape (N,): a dict or a DataFrame. There "time" [s] and
+            "maneuver" (labels) are optional and cut the record at gaps and changes of label; other
+            columns are ignored but by effects. C-contiguous float64 arrays are not copied.
         **options: FitOptions.
 
     Returns:

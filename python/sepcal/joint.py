@@ -9,8 +9,7 @@ from sepcal.calibration import Calibration
 from sepcal.flight import Flight, to_flight
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import Effect, name_effects, to_core_effects
-from sepcal.own_model import own_among
-from sepcal.own_state_model import AnyModel, as_model
+from sepcal.own_state_model import AnyModel, as_model, own_among, runs_in_python
 
 
 @spelled_out()
@@ -31,7 +30,7 @@ def fit_jointly(
     the same in each. For many flights, on many machines, there is fit_many().
 
     Args:
-        model: A probe, or a model of your own without a state.
+        model: A probe, or a model of your own; one with a state shares all but its initial states.
         flights: Two or more, of different names. They need the same columns; what is not in all of
             them is left out. A flight is called by its file's name without folder and ending.
         own: Parameters that every flight has for itself, "wind" for w_n, w_e, w_d; the others are
@@ -49,6 +48,8 @@ def fit_jointly(
     effects = options.get("effects") or ()
     options["effects"] = name_effects(effects)
     subject = as_model(model)
+    if runs_in_python(subject):
+        options["threads"] = options.get("threads") or 1
     core, joined = _core.calibrate_jointly(
         subject._core,
         [to_flight(flight, "fit_jointly(model, [")._core for flight in flights],

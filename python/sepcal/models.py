@@ -84,6 +84,11 @@ class Model:
             return rows[:, :, :n_1], rows[:, :, -1]
         return rows[:, :, :n_1], rows[:, :, -1], rows[:, :, n_1:-1]
 
+    def at_noise(self, noise: Mapping[str, float]) -> "Model":
+        """The model where its outputs have these standard deviations: itself, unless it depends."""
+        del noise
+        return self
+
     @property
     def _owner(self) -> str:
         """The model's name in messages."""
@@ -217,6 +222,12 @@ class Magnetometer(Model):
             if self.field_strength is None
             else _core.attitude_independent_magnetometer(self.field_strength)
         )
+
+    def at_noise(self, noise: Mapping[str, float]) -> Model:
+        """Of a strength: noise makes readings longer, by which the model corrects them."""
+        if self.field_strength is None:
+            return self
+        return Model(_core.attitude_independent_magnetometer(self.field_strength, noise["field"]))
 
     def _settings(self) -> dict[str, Any]:
         if self.field_strength is not None:

@@ -2,8 +2,9 @@
 """The keyword arguments of fit(). Their defaults are the engine's own and stand nowhere else."""
 
 import inspect
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Any, Literal, TypedDict, TypeVar
+from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
 
 from sepcal import _core
 from sepcal.own_effect import Effect
@@ -136,6 +137,7 @@ class FitOptions(TypedDict, total=False):
     to_time: float | None
 
 
+Bounds: TypeAlias = Mapping[str, tuple[float | None, float | None]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -192,6 +194,14 @@ def to_core(options: Mapping[str, Any]) -> _core.Options:
                 "takes"
             ) from None
     return core
+
+
+def open_ends(bounds: Bounds | None) -> dict[str, tuple[float, float]]:
+    """(lower, upper) by name, infinite where None."""
+    return {
+        name: (-math.inf if lower is None else lower, math.inf if upper is None else upper)
+        for name, (lower, upper) in (bounds or {}).items()
+    }
 
 
 def refuse_log_choice(options: Mapping[str, Any]) -> None:

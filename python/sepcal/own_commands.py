@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import inspect
 import json
 import os
 import sys
@@ -22,6 +23,7 @@ from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
 from sepcal.joint import fit_jointly
 from sepcal.own_model import OwnModel
+from sepcal.own_state_model import Trajectory, to_own
 from sepcal.printing import in_line, page_of, show, tell
 from sepcal.whole_files import name_of, refuse_outputs, write_whole
 
@@ -197,8 +199,8 @@ def _options(given: argparse.Namespace) -> dict[str, Any]:
     return {name: value for name, value in options.items() if value not in (None, [], {}, False)}
 
 
-def read_model(named: str) -> OwnModel:
-    """Runs the file and makes an object of the class.
+def read_model(named: str) -> OwnModel | Trajectory:
+    """Runs the file and makes an object of the class; an object there is taken as it is.
 
     Raises:
         Error: Another form, no such file or class, a file that does not run, no model.
@@ -217,7 +219,8 @@ def read_model(named: str) -> OwnModel:
     sys.path.insert(0, os.path.dirname(os.path.abspath(file)))  # as of a script that is run
     try:
         spec.loader.exec_module(module)
-        made = getattr(module, name)()
+        found = getattr(module, name)
+        made = found() if isinstance(found, type) or inspect.isroutine(found) else found
     except AttributeError as error:
         if hasattr(module, name):
             raise _core.Error(f"--model {named}: {error}") from error
@@ -225,11 +228,7 @@ def read_model(named: str) -> OwnModel:
     except Exception as error:
         what = f"{type(error).__name__}: {error}"
         raise _core.Error(f"--model {named}: it does not run: {in_line(what)}") from error
-    if hasattr(made, "states"):
-        raise _core.Error(
-            f"--model {named}: a model with a state takes no log yet; give sepcal.fit() its columns"
-        )
-    return OwnModel(made)
+    return to_own(made)
 
 
 def _read_flight(given: argparse.Namespace) -> Flight:

@@ -128,18 +128,6 @@ class OwnModel(Model):
         return f"OwnModel({self.definition!r})"
 
 
-def to_own(model: SeparableModel | OwnModel) -> OwnModel:
-    """As sepcal takes it. Raises Error for what is no model of one's own without a state."""
-    if isinstance(model, Model) and not isinstance(model, OwnModel):
-        raise _core.Error(f"{type(model).__name__} ships with sepcal; leave model out")
-    return model if isinstance(model, OwnModel) else OwnModel(model)
-
-
-def own_among(model: object) -> OwnModel | None:
-    """The model where it is one of the caller's own."""
-    return model if isinstance(model, OwnModel) else None
-
-
 def check_parts(
     definition: object, parts: Sequence[str], kind: str, protocol: type, module: str = "sepcal"
 ) -> None:

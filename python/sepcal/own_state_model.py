@@ -130,7 +130,7 @@ class Trajectory(TrajectoryModel):
             facts.discrete,
         )
         walk = Walk(self._owner, model, facts.layout(rows["nonlinear"], whole))
-        core = states_module().python_state_model(tables, to_core_options(whole), walk)
+        core = states_module().python_state_model(self._owner, tables, to_core_options(whole), walk)
         super().__init__(core, whole)
 
     @property
@@ -157,7 +157,20 @@ def as_model(model: AnyModel) -> Model:
 
 def runs_in_python(model: Model) -> bool:
     """Whether Python lets one thread in at a time."""
-    return isinstance(model, OwnModel | Trajectory)
+    return own_among(model) is not None
+
+
+def own_among(model: object) -> OwnModel | Trajectory | None:
+    """The model where it is one of the caller's own."""
+    return model if isinstance(model, OwnModel | Trajectory) else None
+
+
+def to_own(model: SeparableModel | StateModel | OwnModel | Trajectory) -> OwnModel | Trajectory:
+    """As sepcal takes it. Raises Error for what is no model of one's own."""
+    own = own_among(as_model(model))
+    if own is None:
+        raise _core.Error(f"{type(model).__name__} ships with sepcal; leave model out")
+    return own
 
 
 def _again(definition: StateModel, settings: TrajectoryOptions) -> Trajectory:

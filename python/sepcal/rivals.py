@@ -15,12 +15,12 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.models import Model
+from sepcal.options import Bounds, open_ends
 from sepcal.own_model import OwnModel, Table, check_parts, to_rows
 from sepcal.own_state_model import AnyModel, as_model, runs_in_python
 
 Solver = Literal["levenberg_marquardt", "slsqp"]
 SOLVERS = ("levenberg_marquardt", "slsqp")
-Bounds = Mapping[str, tuple[float | None, float | None]]
 
 
 class _Named:
@@ -181,7 +181,7 @@ def fit_single_stage(
             columns,
             labels,
             dict(start or {}),
-            bounds=_ends(bounds),
+            bounds=open_ends(bounds),
             fixed=dict(fixed or {}),
             noise=dict(noise or {}),
             segments=segments,
@@ -237,7 +237,7 @@ def fit_haupt_kasdin(
             columns,
             labels_in(data),
             dict(start or {}),
-            bounds=_ends(bounds),
+            bounds=open_ends(bounds),
             noise=dict(noise or {}),
             segments=segments,
             solver=solver,
@@ -331,11 +331,3 @@ def _check_choice(option: str, given: str, known: tuple[str, ...]) -> None:
     """Raises Error for another word."""
     if given not in known:
         raise _core.Error(f"{option}: {given!r} is unknown; known: {', '.join(known)}")
-
-
-def _ends(bounds: Bounds | None) -> dict[str, tuple[float, float]]:
-    """With infinities for open sides."""
-    return {
-        name: (-np.inf if lower is None else lower, np.inf if upper is None else upper)
-        for name, (lower, upper) in (bounds or {}).items()
-    }

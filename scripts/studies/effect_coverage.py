@@ -87,7 +87,8 @@ def fly_and_fit(case: Case, seed: int) -> tuple[sepcal.Calibration, dict[str, fl
         seed=seed,
     )
     model = PROBES[case.probe]
-    fit = sepcal.fit(model, flight, effects=[case.effect], samples=16, descents=2, threads=1)
+    samples = None if norm else 16  # a strength begins at the ellipsoid of the readings
+    fit = sepcal.fit(model, flight, effects=[case.effect], samples=samples, descents=2, threads=1)
     return fit, flight.truth
 
 

@@ -7,7 +7,6 @@ go with the run and drive nothing.
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import pickle
@@ -15,7 +14,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,25 +21,12 @@ import numpy.typing as npt
 import pytest
 
 import sepcal
+from example_models import FILE, models
 from sepcal.own_commands import EXIT_CODES
 
 Array = npt.NDArray[np.float64]
-FILE = Path(__file__).parents[2] / "examples" / "own_models.py"
 ROWS = 1500
 STEP = 0.1  # [s]
-
-
-def _load_models() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("example_own_models", FILE)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["example_own_models"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-models = _load_models()
 
 
 def _wander(rng: np.random.Generator, seconds: float) -> Array:

@@ -14,8 +14,10 @@
 
 #include "named_casters.hpp"
 #include "sepcal/block_model.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/own_model.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/named_effects.hpp"
@@ -43,6 +45,17 @@ struct Model {
   Along along;                         // the same
   std::map<std::string, double> held;  // unless freed, of a model without a probe
 };
+
+/// A model of the caller's own as a probe; nullptr where it is called as one that ships: its
+/// columns can be fitted all the same.
+template <class Given>
+std::shared_ptr<const Probe> own_if_free(const std::string& name, const Given& model) {
+  try {
+    return own_model(name, model);
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
 
 /// What takes the model's flights; may be empty.
 const std::shared_ptr<const Probe>& subject_of(const Model& model);

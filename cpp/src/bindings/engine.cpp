@@ -58,11 +58,7 @@ Model python_model(const std::string& name, const std::array<std::vector<Row>, 4
       name,
       Tables{to_table(tables[0]), to_table(tables[1]), to_table(tables[2]), to_table(tables[3])},
       functions));
-  try {
-    model.own = own_model(name, model.block);
-  } catch (const Error&) {
-    model.own = nullptr;  // called as a probe that ships: columns can be fitted all the same
-  }
+  model.own = own_if_free(name, model.block);
   return model;
 }
 
@@ -213,9 +209,13 @@ void define_engine(py::module_& module) {
   });
   module.def("pitot_static",
              [] { return Model(std::shared_ptr<const Probe>(pitot_static_probe())); });
-  module.def("attitude_independent_magnetometer", [](double field_strength) {
-    return Model(std::shared_ptr<const Probe>(attitude_independent_probe(field_strength)));
-  });
+  module.def(
+      "attitude_independent_magnetometer",
+      [](double field_strength, double noise) {
+        return Model(
+            std::shared_ptr<const Probe>(attitude_independent_probe(field_strength, noise)));
+      },
+      "field_strength"_a, "noise"_a = 0.0);
   // `mounting`: none, a sensor in body axes; empty, to be found in the flight; or three angles.
   module.def("magnetometer", [](const std::optional<Vector>& field,
                                 const std::optional<std::vector<double>>& mounting) {

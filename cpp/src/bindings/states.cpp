@@ -17,6 +17,7 @@
 #include "released.hpp"
 #include "results.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/own_state_model.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
 #include "sepcal/states/compiled_trajectories.hpp"
@@ -107,13 +108,17 @@ StateTables state_tables(const std::array<std::vector<Row>, 6>& tables,
           .discrete = discrete};
 }
 
-Model python_state_model(const StateTables& tables, const TrajectoryOptions& options,
-                         const py::object& walk) {
+Model python_state_model(const std::string& name, const StateTables& tables,
+                         const TrajectoryOptions& options, const py::object& walk) {
   const std::shared_ptr<const py::object> kept = share(walk);
-  return Model([=](const Record* record) -> std::shared_ptr<const BlockModel> {
+  const auto lay = [=](const Record* record) {
     return std::make_shared<const PythonStateModel>(
         TrajectoryPlan(tables, record, options_for(record, options)), kept);
-  });
+  };
+  Model model{Along(lay)};
+  model.own =
+      own_if_free(name, LaidAlong([=](const Record* record) { return laid_model(lay(record)); }));
+  return model;
 }
 
 SmoothedRecord smooth_columns(const Model& model, const py::dict& columns,

@@ -7,6 +7,7 @@
 #include "base/name_list.hpp"
 #include "base/thread_pool.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -120,6 +121,10 @@ void check_numbers(const FitOptions& options) {
   if (options.loss_width > 0 && options.loss == Loss::squares) {
     throw Error("loss_width is given without a loss; choose huber or cauchy, or leave it out");
   }
+  if (options.hessian != Hessian::fisher && options.method != FitMethod::filter_error) {
+    throw OptionError({Option{"hessian"}, " is of filter error alone; leave it out, or choose ",
+                       Option{"method"}, " filter-error"});
+  }
   if (options.screens) check_screens(*options.screens);
   if (!(options.noise_tolerance > 0)) throw Error("noise_tolerance must be positive");
 }
@@ -146,6 +151,20 @@ void check_options(const FitOptions& options, const Tables& tables) {
   check_fixed(options, parameters);
   check_noise(options, tables.outputs);
   check_numbers(options);
+}
+
+void refuse_sampling(const FitOptions& options, const std::string& why) {
+  const FitOptions by_default;
+  const auto refuse = [&](bool is_given, const char* option) {
+    if (!is_given) return;
+    throw OptionError(
+        {Option{option}, " has no part here: this fit samples nothing: " + why + "; leave it out"});
+  };
+  refuse(options.search != by_default.search, "search");
+  refuse(options.samples != by_default.samples && options.samples != 0, "samples");
+  refuse(options.sampling != by_default.sampling, "sampling");
+  refuse(!options.sampling_distribution.empty(), "sampling_distribution");
+  refuse(options.screens.has_value(), "screens");
 }
 
 }  // namespace sepcal::estimation

@@ -21,4 +21,8 @@ std::vector<Variable> with_bounds(const Tables& tables,
 /// or is not given for every output, and a number out of its range.
 void check_options(const FitOptions& options, const Tables& tables);
 
+/// Throws OptionError for a choice of stage one's samples where nothing is sampled; `why` ends the
+/// sentence "this fit samples nothing: ".
+void refuse_sampling(const FitOptions& options, const std::string& why);
+
 }  // namespace sepcal::estimation

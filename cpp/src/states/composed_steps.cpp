@@ -120,6 +120,12 @@ std::span<const double> ComposedSteps::input(int place) const {
   return (corrected_->has(variable.name) ? *corrected_ : record_).column(variable.name);
 }
 
+double ComposedSteps::input_at(int place, std::size_t row) const {
+  const Variable& variable = model_.tables().inputs[static_cast<std::size_t>(place)];
+  const bool is_there = corrected_->has(variable.name) || record_.has(variable.name);
+  return is_there || !std::isfinite(variable.absent) ? input(place)[row] : variable.absent;
+}
+
 MatrixXd ComposedSteps::evaluate(const TermPart& part) const {
   const Tables& own = part.model->tables();
   const auto length = static_cast<Index>(record_.length());
@@ -150,7 +156,7 @@ std::vector<ComposedSteps::Column> ComposedSteps::columns_at(std::size_t row) co
     int column = part.first;
     for (std::size_t c = 0; c < part.targets.size(); ++c) {
       VectorXd shared = VectorXd::Zero(n_z());
-      for (const auto& [output, source] : part.shares[c]) shared[output] += input(source)[row];
+      for (const auto& [output, source] : part.shares[c]) shared[output] += input_at(source, row);
       for (Index f = 0; f < drives_[i].values.cols(); ++f, ++column) {
         const double phi = drives_[i].values(at, f);
         columns.push_back({column, part.targets[c], phi, phi * shared});

@@ -63,6 +63,7 @@ class ComposedSteps final : public StateSteps {
   Drive drive(const effects::VaryingPart& part) const;
   Eigen::MatrixXd evaluate(const effects::TermPart& part) const;
   std::span<const double> input(int place) const;
+  double input_at(int place, std::size_t row) const;  // what the record lacks is constant
 
   std::vector<Column> columns_at(std::size_t row) const;
   Eigen::VectorXd read_effects(std::size_t row, const std::vector<Column>& columns) const;

@@ -12,6 +12,7 @@
 #include "model/fixed_model.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/iterated_update.hpp"
@@ -65,6 +66,23 @@ void check_linearised(const TrackOptions& options) {
   };
   if (!options.process_noise.empty()) refuse(options.process_noise.begin()->first, "process noise");
   if (!options.initial_states.empty()) refuse(options.initial_states.begin()->first, "state");
+}
+
+/// Throws OptionError for what another method takes.
+void check_of_method(const TrackOptions& options) {
+  const TrackOptions by_default;
+  const auto refuse = [&](bool is_given, const char* option, TrackMethod method) {
+    if (!is_given || options.method == method) return;
+    throw OptionError({Option{option}, " is of " + std::string(to_string(method)) +
+                                           " alone; leave it out, or take " +
+                                           std::string(to_string(method))});
+  };
+  refuse(options.forgetting != by_default.forgetting, "forgetting", TrackMethod::rml);
+  refuse(options.every != by_default.every, "every", TrackMethod::rml);
+  refuse(options.iterations.iterations != by_default.iterations.iterations, "row_iterations",
+         TrackMethod::iekf);
+  refuse(options.iterations.tolerance != by_default.iterations.tolerance, "tolerance",
+         TrackMethod::iekf);
 }
 
 std::map<std::string, double> held(const StreamStart& start) {
@@ -204,6 +222,7 @@ void track_filtered(Samples& samples, const StreamStart& start, const TrackOptio
 
 Track track(const BlockModel& model, const Record& record, const StreamStart& start,
             const TrackOptions& options) {
+  check_of_method(options);
   const auto* along = dynamic_cast<const StateBlockModel*>(&model);
   if (options.method == TrackMethod::rml) {
     if (along == nullptr) {

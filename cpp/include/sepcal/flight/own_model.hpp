@@ -9,9 +9,11 @@
 //   const Calibration read = read_calibration("better.json", wire);
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/flight/probe.hpp"
@@ -33,8 +35,24 @@ namespace sepcal {
 /// A correction gives what the model makes of the inputs, an output a column: "z_fit_mps".
 ///
 /// Throws Error where the name is empty or one that ships, and for a model that carries a state
-/// from row to row.
+/// from row to row, which is given as what lays it along a record.
 std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model);
+
+/// A model with a state, laid along a record.
+struct LaidModel {
+  std::shared_ptr<const BlockModel> model;
+  std::vector<std::string> initial_states;  // "theta_0" of "theta_0", "theta_0[turn]"
+  std::size_t varying = 0;                  // so many of the linear parameters, the first, may vary
+};
+
+/// Lays it; without a record along any, each of whose segments begins at one initial state.
+using LaidAlong = std::function<LaidModel(const Record*)>;
+
+/// The same of a model with a state (own_state_model.hpp makes it of a StateModel), along each
+/// flight: an initial state a segment, which other flights estimate anew, all else held. Ports are
+/// the inputs, the linear parameters of the outputs and the outputs' zeros; inputs may be late or
+/// lag.
+std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay);
 
 template <SeparableModel M>
 std::shared_ptr<const Probe> own_model(std::string name, M model) {

@@ -88,6 +88,14 @@ class Probe {
 
   virtual const BlockModel& model() const = 0;
 
+  /// Of a model with a state the same probe along this record, each of whose segments begins at
+  /// initial states of its own, which join the model's parameters. Else nullptr.
+  virtual std::shared_ptr<const Probe> along(const Record& /*record*/) const { return nullptr; }
+
+  /// How these are called, "theta_0" of "theta_0", "theta_0[turn]" and "theta_0[2]". Empty: the
+  /// model has no state.
+  virtual std::vector<std::string> initial_states() const { return {}; }
+
   /// All that is known of the effects that it may lack, and all that it reads of a log: unless
   /// overridden what ships under its name.
   virtual const catalogue::EffectTable& effects() const;
@@ -149,6 +157,12 @@ class Probe {
   /// The estimates of the probe's own parameters in other forms.
   virtual std::vector<Restatement> restate(const Fit& /*fit*/) const { return {}; }
 };
+
+/// Whether a parameter is an initial state, of one record alone.
+bool is_initial_state(const Probe& probe, std::string_view parameter);
+
+/// The model's parameters that are of every record: all but initial states.
+std::vector<Variable> lasting_parameters(const Probe& probe);
 
 /// K_alpha, K_beta [1/rad] and the lever arm from the velocity's reference point [m, body axes].
 /// Throws Error where a sensitivity is not positive.

@@ -6,20 +6,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include "base/thread_pool.hpp"
+#include "estimation/check_options.hpp"
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/believed_rows.hpp"
 #include "flight/aircraft/innovation_comparison.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
-#include "flight/files/sha256.hpp"
+#include "flight/files/flight_digest.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/aircraft/two_step.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -29,18 +30,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> model_names{"path", "longitudinal", "lateral", "six-dof",
                                                       "aero"};
-
-/// Of the file's bytes; of arrays, which have none, of their headers and values.
-std::string digest_of(const Flight& flight) {
-  if (!flight.sha256().empty()) return flight.sha256();
-  files::Sha256 hash;
-  for (const Flight::Column& column : flight.columns()) {
-    hash.absorb(column.header.data(), column.header.size());
-    const auto bytes = std::as_bytes(column.values);
-    hash.absorb(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  }
-  return hash.finish();
-}
 
 /// Of another flight than the fitted one.
 std::vector<OutputValue> rmse_on(const Flight& flight, const AircraftFit& fitted) {
@@ -58,7 +47,7 @@ AircraftFit describe(const Flight& flight, AircraftOptions options, Fit fit) {
   }
   if (options.model != AircraftModel::aero) options.calibration.fit.samples = 0;
   return {.options = std::move(options),
-          .flight = FittedFlight{flight.name(), digest_of(flight), flight.rows(), fit.rows},
+          .flight = FittedFlight{flight.name(), files::digest_of(flight), flight.rows(), fit.rows},
           .equations = {},
           .fit = std::move(fit)};
 }
@@ -101,6 +90,13 @@ AeroEquation parse_equation(std::string_view text) {
 }
 
 AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
+  estimation::refuse_sampling(options.calibration.fit, options.model == AircraftModel::aero
+                                                           ? "coefficients are linear"
+                                                           : "it begins at the flight's readings");
+  if (options.model == AircraftModel::aero && !options.calibration.free.empty()) {
+    throw OptionError(
+        {Option{"free"}, ": equation error holds nothing that could be freed; leave it out"});
+  }
   LaidAircraft laid = lay(flight, options);
   AircraftFit fitted = describe(flight, options, fit_laid(laid, laid.fit));
   fitted.equations = std::move(laid.equations);
@@ -196,7 +192,7 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
 }
 
 bool aircraft_log::is_same_flight(const AircraftFit& fitted, const Flight& flight) {
-  return fitted.flight.sha256 == digest_of(flight);
+  return fitted.flight.sha256 == files::digest_of(flight);
 }
 
 AircraftOptions aircraft_log::options_on(const AircraftFit& fitted, const Flight& flight) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sepcal/option_error.hpp"
+#include "sepcal/path_model.hpp"
 
 namespace sepcal {
 
@@ -40,7 +41,8 @@ EffectiveFlight with_effects(const Probe& probe, const Record& record,
   const auto model = model_of(probe);
   result.effects = make_effects(effect_kit(probe, own), *model, settings, extended);
   result.model = compose(model, result.effects, extended);
-  extended = without_edges(std::move(extended), reach(result.effects, bounds));
+  const bool goes_on = dynamic_cast<const PathModel*>(model.get()) != nullptr;
+  if (!goes_on) extended = without_edges(std::move(extended), reach(result.effects, bounds));
   return result;
 }
 

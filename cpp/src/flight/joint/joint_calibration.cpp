@@ -90,7 +90,8 @@ FlightDeparture describe_departure(const FlightFit& flight) {
 /// name.
 template <class Fitted>
 bool is_the_same(const Fitted& fitted, const Flight& flight) {
-  return fitted.sha256.empty() ? fitted.file == flight.name() : fitted.sha256 == flight.sha256();
+  const bool by_name = fitted.sha256.empty() || flight.sha256().empty();
+  return by_name ? fitted.file == flight.name() : fitted.sha256 == flight.sha256();
 }
 
 const JoinedFlight* find_flight(const JointSetup& setup, const Flight& flight) {
@@ -120,11 +121,11 @@ void find_departures(Calibration& calibration, const Flight& joined) {
   const JointSetup& setup = probe->setup();
   CalibrationOptions options = without_own(calibration.options, setup);
   if (options.fit.loss != Loss::squares || probe->one()->with_noise(1.0) ||
-      is_said_of_own(calibration.options, setup)) {
+      !probe->initial_states().empty() || is_said_of_own(calibration.options, setup)) {
     calibration.notes.emplace_back(
         "flights are not tested for their departure from each other where a loss forgives "
-        "outliers, where the model depends on its own noise, or where bounds, a prior or a value "
-        "are given of what is each flight's own");
+        "outliers, where the model has a state or depends on its own noise, or where bounds, a "
+        "prior or a value are given of what is each flight's own");
     return;
   }
   const verbs::PreparedFlight prepared = verbs::prepare(calibration, joined);

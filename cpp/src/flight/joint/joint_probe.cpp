@@ -96,6 +96,12 @@ JointProbe::JointProbe(std::shared_ptr<const Probe> one, JointSetup setup)
       setup_(std::move(setup)),
       model_(one_->model(), setup_.own, labels_of(setup_)) {}
 
+std::shared_ptr<const Probe> JointProbe::along(const Record& record) const {
+  std::shared_ptr<const Probe> laid = one_->along(record);
+  if (!laid) return nullptr;
+  return std::make_shared<const JointProbe>(std::move(laid), setup_);
+}
+
 std::vector<CorrectedColumn> JointProbe::correct(const ProbeReadings& /*readings*/,
                                                  const Eigen::VectorXd& /*values*/,
                                                  const ReadingEffects& /*effects*/) const {
@@ -192,6 +198,12 @@ std::vector<std::string> resolve_own(const Probe& probe, const std::vector<std::
 std::shared_ptr<const Probe> joint_probe(std::shared_ptr<const Probe> one, JointSetup setup) {
   const std::vector<Variable> parameters = one->model().tables().parameters();
   const std::vector<std::string> own = resolve_own(*one, setup.own);
+  if (!one->initial_states().empty() && !own.empty()) {
+    throw Error(fmt::format(
+        "own {}: flights of a model with a state have their initial states for themselves, and "
+        "share all else; leave it out",
+        fmt::join(own, ", ")));
+  }
   setup.own.clear();
   for (const Variable& parameter : parameters) {  // in the probe's order
     if (std::ranges::find(own, parameter.name) != own.end()) setup.own.push_back(parameter.name);

@@ -30,7 +30,12 @@ class JointProbe final : public Probe {
 
   std::string_view name() const override { return one_->name(); }
   std::string_view app() const override { return one_->app(); }
-  const BlockModel& model() const override { return model_; }
+  const BlockModel& model() const override {
+    if (setup_.own.empty()) return one_->model();  // which may go along a path
+    return model_;
+  }
+  std::shared_ptr<const Probe> along(const Record& record) const override;
+  std::vector<std::string> initial_states() const override { return one_->initial_states(); }
   const catalogue::EffectTable& effects() const override { return one_->effects(); }
   std::span<const probes::ProbeQuantity> quantities() const override { return one_->quantities(); }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }

@@ -58,10 +58,11 @@ Json write_units(const std::vector<Variable>& table) {
 }
 
 /// Of a model of the caller's own, what its tables say: its author may change them.
-Json write_tables(const Tables& tables) {
+Json write_tables(const Probe& probe) {
+  const Tables& tables = probe.model().tables();
   return {{"inputs", write_units(tables.inputs)},
           {"outputs", write_units(tables.outputs)},
-          {"parameters", write_units(tables.parameters())}};
+          {"parameters", write_units(lasting_parameters(probe))}};
 }
 
 Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
@@ -72,7 +73,7 @@ Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
   if (root.contains("joint")) read_joint(root.at("joint"), calibration);
   calibration.flight = read_inputs(root.at("inputs"));
   calibration.fit = read_fit(root, calibration.options, output_names(*calibration.probe));
-  for (const Variable& parameter : calibration.probe->model().tables().parameters()) {
+  for (const Variable& parameter : lasting_parameters(*calibration.probe)) {
     calibration.fit[parameter.name];
   }
   calibration.fit.rows = calibration.flight.rows_used;
@@ -119,7 +120,7 @@ std::string to_json(const Calibration& calibration) {
   root["schema_version"] = schema_version;
   root["model"] = calibration.probe->name();
   if (calibration.probe->predicts()) {
-    root["tables"] = write_tables(calibration.probe->model().tables());
+    root["tables"] = write_tables(*calibration.probe);
   }
   root["inputs"] = write_inputs(calibration.flight);
   if (joint_setup(*calibration.probe) != nullptr) root["joint"] = write_joint(calibration);
@@ -154,7 +155,7 @@ Calibration parse(std::string_view json, const std::string& source,
     throw Error(fmt::format("{}: its model is '{}', and the one given is '{}'; give its own",
                             source, model, own->name()));
   }
-  if (own && root.contains("tables") && root["tables"] != write_tables(own->model().tables())) {
+  if (own && root.contains("tables") && root["tables"] != write_tables(*own)) {
     throw Error(fmt::format(
         "{}: the names or units in the tables of {} have changed since it was fitted; give the "
         "model as it was, or fit the flight again",

@@ -12,6 +12,7 @@
 
 #include "base/excerpt.hpp"
 #include "base/sentences.hpp"
+#include "estimation/check_options.hpp"
 #include "flight/probes/ellipsoid.hpp"
 #include "model/soft_iron_and_scale.hpp"
 #include "sepcal/compiled_models.hpp"
@@ -150,6 +151,7 @@ FitOptions start_attitude_independent(const FitOptions& options, const Record& r
   bound_hard_iron(completed, box_of_readings(record.select(options.stage_two_segments)),
                   field_strength);
   if (!options.start.empty()) return completed;
+  estimation::refuse_sampling(options, "it begins at the ellipsoid of the readings");
 
   const Readings readings(base::excerpt(record.select(options.stage_one_segments)));
   const Points points = readings.points();

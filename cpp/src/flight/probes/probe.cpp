@@ -30,6 +30,20 @@ std::string command_of(std::string_view app, std::string_view verb) {
   return fmt::format("{} {}{}", app, verb, app == own_app ? " --model FILE.py:CLASS" : "");
 }
 
+bool is_initial_state(const Probe& probe, std::string_view parameter) {
+  return std::ranges::any_of(probe.initial_states(), [&](const std::string& state) {
+    const std::string_view rest = parameter.substr(std::min(state.size(), parameter.size()));
+    return parameter.starts_with(state) && (rest.empty() || rest.front() == '[');
+  });
+}
+
+std::vector<Variable> lasting_parameters(const Probe& probe) {
+  std::vector<Variable> parameters = probe.model().tables().parameters();
+  std::erase_if(parameters,
+                [&](const Variable& each) { return is_initial_state(probe, each.name); });
+  return parameters;
+}
+
 std::vector<DerivedQuantity> Probe::derive(const Fit& /*fit*/) const { return {}; }
 
 void Probe::judge(Fit& /*fit*/) const {}

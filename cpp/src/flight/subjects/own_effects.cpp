@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,14 +67,29 @@ EffectRow delay_row(const std::string& name, const std::string& equation,
   return row;
 }
 
+std::array<EffectRow, 2> delays_of_outputs() {
+  return {delay_row("time_offset", "outputs late by tau", "the outputs are late",
+                    Delay::Kind::outputs_late),
+          delay_row("lag", "tau dz/dt + z = z0", "the outputs lag", Delay::Kind::outputs_lagging)};
+}
+
+std::array<EffectRow, 2> delays_of(const std::string& input) {
+  return {delay_row(input + "_late", input + " late by tau", input + " is late",
+                    Delay::Kind::inputs_late, {input}),
+          delay_row(input + "_lag", fmt::format("tau d{0}/dt + {0} = {0}0", input), input + " lags",
+                    Delay::Kind::inputs_lagging, {input})};
+}
+
 }  // namespace
 
-EffectTable own_effects(const Tables& tables) {
+EffectTable own_effects(const LaidModel& laid) {
+  const Tables& tables = laid.model->tables();
+  const bool has_state = !laid.initial_states.empty();
   EffectTable table;
   const auto is_free = [&](const std::string& name) {  // no effect is called so, and one can be
     return can_name(name) && table.find_port(name) == nullptr;
   };
-  for (const Variable& parameter : tables.linear) {
+  for (const Variable& parameter : std::span(tables.linear).first(laid.varying)) {
     if (is_free(parameter.name)) table.ports.push_back(row_of_parameter(parameter));
   }
   std::vector<std::string> inputs;
@@ -86,17 +105,10 @@ EffectTable own_effects(const Tables& tables) {
     table.ports.push_back(row_of_output(output, j));
     table.effects.push_back(constant_row(table.ports.back(), output));
   }
-  table.effects.push_back(delay_row("time_offset", "outputs late by tau", "the outputs are late",
-                                    Delay::Kind::outputs_late));
-  table.effects.push_back(
-      delay_row("lag", "tau dz/dt + z = z0", "the outputs lag", Delay::Kind::outputs_lagging));
-  if (inputs.size() > 1) {
+  if (!has_state) std::ranges::copy(delays_of_outputs(), std::back_inserter(table.effects));
+  if (has_state || inputs.size() > 1) {
     for (const std::string& input : inputs) {
-      table.effects.push_back(delay_row(input + "_late", input + " late by tau", input + " is late",
-                                        Delay::Kind::inputs_late, {input}));
-      table.effects.push_back(delay_row(input + "_lag",
-                                        fmt::format("tau d{0}/dt + {0} = {0}0", input),
-                                        input + " lags", Delay::Kind::inputs_lagging, {input}));
+      std::ranges::copy(delays_of(input), std::back_inserter(table.effects));
     }
   }
   table.state_drivers = std::move(inputs);

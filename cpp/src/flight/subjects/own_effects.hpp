@@ -3,11 +3,12 @@
 #pragma once
 
 #include "flight/catalogue/effect_table.hpp"
-#include "sepcal/tables.hpp"
+#include "sepcal/flight/own_model.hpp"
 
 namespace sepcal::subjects {
 
-/// Ports for every linear parameter, input and output, constants of the outputs, and delays.
-catalogue::EffectTable own_effects(const Tables& tables);
+/// Ports for every linear parameter, input and output, constants of the outputs, and delays. Of a
+/// model with a state no linear parameter of its dynamics is a port, and only inputs are late.
+catalogue::EffectTable own_effects(const LaidModel& laid);
 
 }  // namespace sepcal::subjects

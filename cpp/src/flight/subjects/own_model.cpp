@@ -100,24 +100,32 @@ class OwnQuantities {
 
 class OwnProbe final : public Probe {
  public:
-  OwnProbe(std::string name, std::shared_ptr<const BlockModel> model)
+  OwnProbe(std::string name, LaidModel laid, LaidAlong lay = {})
       : name_(std::move(name)),
-        model_(std::move(model)),
-        quantities_(model_->tables()),
-        effects_(subjects::own_effects(model_->tables())) {}
+        laid_(std::move(laid)),
+        lay_(std::move(lay)),
+        quantities_(laid_.model->tables()),
+        effects_(subjects::own_effects(laid_)) {}
 
   std::string_view name() const override { return name_; }
   std::string_view app() const override { return own_app; }
-  const BlockModel& model() const override { return *model_; }
+  const BlockModel& model() const override { return *laid_.model; }
   const catalogue::EffectTable& effects() const override { return effects_; }
   std::span<const ProbeQuantity> quantities() const override { return quantities_.list(); }
   std::map<std::string, std::vector<double>> settings() const override { return {}; }
+
+  std::shared_ptr<const Probe> along(const Record& record) const override {
+    if (!lay_) return nullptr;
+    return std::make_shared<const OwnProbe>(name_, lay_(&record), lay_);
+  }
+
+  std::vector<std::string> initial_states() const override { return laid_.initial_states; }
 
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
     probes::RecordBuilder builder(flight, quantities_.list(), log);
     builder.need({"time"});
     need_inputs(builder);
-    for (const Variable& output : model_->tables().outputs) builder.need({output.name});
+    for (const Variable& output : laid_.model->tables().outputs) builder.need({output.name});
     builder.keep_valid();
     builder.check_time();
     return builder.finish();
@@ -135,7 +143,7 @@ class OwnProbe final : public Probe {
 
   std::vector<std::string> corrected_headers() const override {
     std::vector<std::string> headers;
-    for (const Variable& output : model_->tables().outputs) {
+    for (const Variable& output : laid_.model->tables().outputs) {
       const auto quantity =
           std::ranges::find(quantities_.list(), output.name, &ProbeQuantity::name);
       const std::string_view suffix = quantity->bare->suffix;
@@ -154,7 +162,7 @@ class OwnProbe final : public Probe {
 
  private:
   void need_inputs(probes::RecordBuilder& builder) const {
-    for (const Variable& input : model_->tables().inputs) {
+    for (const Variable& input : laid_.model->tables().inputs) {
       const bool may_lack = std::isfinite(input.absent);
       if (input.name == "time") continue;
       if (may_lack) {
@@ -166,23 +174,33 @@ class OwnProbe final : public Probe {
   }
 
   std::string name_;
-  std::shared_ptr<const BlockModel> model_;
+  LaidModel laid_;
+  LaidAlong lay_;  // empty of a model without a state
   OwnQuantities quantities_;
   catalogue::EffectTable effects_;
 };
 
+void check_name(const std::string& name) {
+  if (name.empty()) throw Error("a model of your own needs a name");
+  if (!catalogue::effect_tables().contains(name)) return;
+  throw Error("there is a probe '" + name + "' already; give your model another name");
+}
+
 }  // namespace
 
 std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model) {
-  if (name.empty()) throw Error("a model of your own needs a name");
-  if (catalogue::effect_tables().contains(name)) {
-    throw Error("there is a probe '" + name + "' already; give your model another name");
-  }
+  check_name(name);
   if (model->new_carry() != nullptr) {
-    throw Error("the model " + name + " carries a state from row to row, which no flight is " +
-                "brought to yet; give its inputs and outputs as columns");
+    throw Error("the model " + name + " carries a state from row to row; give what lays it along " +
+                "a record (LaidAlong)");
   }
-  return std::make_shared<const OwnProbe>(std::move(name), std::move(model));
+  const auto linear = static_cast<std::size_t>(model->tables().n_1());
+  return std::make_shared<const OwnProbe>(std::move(name), LaidModel{std::move(model), {}, linear});
+}
+
+std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay) {
+  check_name(name);
+  return std::make_shared<const OwnProbe>(std::move(name), lay(nullptr), lay);
 }
 
 }  // namespace sepcal

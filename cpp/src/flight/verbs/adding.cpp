@@ -94,7 +94,7 @@ Calibration add_to(const Calibration& base, const PreparedFlight& prepared,
 Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
                 const OwnEffects& own, const FitProgress& progress) {
   PreparedFlight prepared = prepare(base, flight);
-  const OnFlight here = on_readings_of(base, flight, prepared, own, progress);
+  const OnFlight here = on_readings_of(along(base, prepared), flight, prepared, own, progress);
   note_mended(prepared);
   Calibration next = add_to(here.calibration, prepared, effect, own, progress);
   next.notes.insert(next.notes.begin(), here.notes.begin(), here.notes.end());
@@ -102,7 +102,8 @@ Calibration add(const Calibration& base, const Flight& flight, const std::string
 }
 
 Comparison compare_with(const Calibration& base, const Flight& flight, const std::string& effect) {
-  return compare(refit(base, prepare(base, flight), effect, {}, {}), flight);
+  PreparedFlight prepared = prepare(base, flight);
+  return compare(refit(along(base, prepared), prepared, effect, {}, {}), flight);
 }
 
 }  // namespace sepcal

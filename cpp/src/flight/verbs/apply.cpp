@@ -83,9 +83,17 @@ std::vector<CorrectedColumn> correct_rows(const Calibration& calibration, const 
   return columns;
 }
 
+bool has_state(const Calibration& calibration) {
+  return !calibration.probe->initial_states().empty();
+}
+
 }  // namespace
 
 std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight& flight) {
+  if (has_state(calibration)) {
+    ProbeReadings readings;
+    return predict_along(calibration, flight, readings);
+  }
   const LogChoice choice = every_row(calibration, flight);
   ReadFlight read = read_as(flight, choice);
   ProbeReadings readings = calibration.probe->read(read.flight, choice);
@@ -113,19 +121,29 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   }
   OutputFile target(output);
   const Flight flight = stream ? stream_csv(file, {}, progress) : read_csv(file, progress);
+  Applied applied{
+      .output = output, .rows = flight.rows(), .headers = probe.corrected_headers(), .notes = {}};
+  const auto finish = [&](ProbeReadings& readings) {
+    std::ranges::move(readings.notes, std::back_inserter(applied.notes));
+    applied.rows_left_empty = static_cast<std::size_t>(std::ranges::count(readings.valid, false));
+    target.commit();
+    return applied;
+  };
+  if (has_state(calibration)) {
+    ProbeReadings readings;
+    write_with_columns(flight, predict_along(calibration, flight, readings), target);
+    return finish(readings);
+  }
   const LogChoice choice = every_row(calibration, flight);
   const ReadFlight read = read_as(flight, choice);
+  applied.notes = read.notes;
   ProbeReadings readings = probe.read(read.flight, choice);
   auto columns = stream ? std::vector<CorrectedColumn>()
                         : correct_with_effects(calibration, read.flight, readings);
   check_corrected(calibration, readings, columns, flight);
-
-  Applied applied{.output = output,
-                  .rows = flight.rows(),
-                  .headers = probe.corrected_headers(),
-                  .notes = read.notes};
-  std::ranges::copy(readings.notes, std::back_inserter(applied.notes));
-  const auto outside = find_outside(calibration, read.flight, applied.notes);
+  std::vector<std::string> more;
+  const auto outside = find_outside(calibration, read.flight, more);
+  std::ranges::move(more, std::back_inserter(readings.notes));
   if (outside) {
     applied.headers.push_back(outside->header);
     if (!stream) columns.push_back(*outside);
@@ -140,9 +158,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   } else {
     write_with_columns(flight, columns, target);
   }
-  applied.rows_left_empty = static_cast<std::size_t>(std::ranges::count(readings.valid, false));
-  target.commit();
-  return applied;
+  return finish(readings);
 }
 
 }  // namespace sepcal

@@ -267,6 +267,20 @@ void note_edges(const Record& whole, const EffectiveFlight& flight, const FitOpt
       lost, whole.rows(), reach(flight.effects, options.bounds)));
 }
 
+/// The probe for a fit of these rows. Throws Error for a fit that none of its verbs could follow.
+std::shared_ptr<const Probe> laid_along(const std::shared_ptr<const Probe>& probe,
+                                        const Record& record, const CalibrationOptions& options) {
+  std::shared_ptr<const Probe> laid = probe->along(record);
+  if (!laid) return probe;
+  if (options.fit.method == FitMethod::filter_error) {
+    throw Error(fmt::format(
+        "a flight of {} is fitted by output error; by filter error give sepcal.fit() or fit() the "
+        "model's columns",
+        probe->name()));
+  }
+  return laid;
+}
+
 /// The fit within the bounds that the options give and the model has by default.
 Calibration calibrate_within(std::shared_ptr<const Probe> probe, const PreparedFlight& prepared,
                              const CalibrationOptions& options) {
@@ -279,9 +293,9 @@ Calibration calibrate_within(std::shared_ptr<const Probe> probe, const PreparedF
   check_rows(
       *effective.model, held, flight,
       count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
+  FittedFlight fitted{flight.name(), digest(*probe, prepared), flight.rows(), 0};
   Calibration calibration =
-      calibrate_on(effective, {flight.name(), flight.sha256(), flight.rows(), 0}, std::move(probe),
-                   std::move(held));
+      calibrate_on(effective, std::move(fitted), std::move(probe), std::move(held));
   note_edges(prepared.readings.record, effective, options.fit, calibration.notes);
   std::string suggestion =
       flight.is_mapped() ? "" : calibration.probe->suggest(calibration.fit, record);
@@ -307,7 +321,7 @@ Calibration try_beyond(Calibration within, const std::shared_ptr<const Probe>& p
     return within;
   }
   if (!is_regular_beyond(tried, within.fit, beyond->fit)) return within;
-  const std::vector<Variable> own = probe->model().tables().parameters();
+  const std::vector<Variable> own = lasting_parameters(*probe);
   const bool adopted =
       has_plausible_scales(beyond->fit) && std::ranges::all_of(tried, [&](const auto& bound) {
         return std::ranges::find(own, bound.first, &Variable::name) != own.end();
@@ -336,13 +350,15 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
   return calibration;
 }
 
-Calibration verbs::calibrate(const std::shared_ptr<const Probe>& probe,
+Calibration verbs::calibrate(const std::shared_ptr<const Probe>& given,
                              const PreparedFlight& prepared, const CalibrationOptions& options) {
+  const std::shared_ptr<const Probe> probe = laid_along(given, prepared.readings.record, options);
   return try_beyond(calibrate_within(probe, prepared, options), probe, prepared, options);
 }
 
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                       const CalibrationOptions& options) {
+  probe = laid_along(probe, record, options);
   CalibrationOptions held = hold(*probe, options);
   const EffectiveFlight effective =
       with_effects(*probe, model::with_constant_outputs(probe->model().tables(), record),

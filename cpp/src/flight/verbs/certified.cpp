@@ -8,13 +8,15 @@ namespace sepcal {
 
 using namespace verbs;  // this room's own
 
-Certificate certify(const Calibration& calibration, const Flight& flight,
+Certificate certify(const Calibration& given, const Flight& flight,
                     const CertificateOptions& options) {
-  check_fitted(calibration, flight);
-  if (!calibration.options.effects.empty()) {
+  check_fitted(given, flight);
+  if (!given.options.effects.empty()) {
     throw Error("a model with effects can't be enclosed: certify the fit without them");
   }
-  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
+  PreparedFlight prepared = prepare(given, flight);
+  const Calibration calibration = along(given, prepared);
+  const EffectiveFlight effective = with_effects_of(calibration, prepared);
   const Record& record = effective.prepared.record;
   return certify(*effective.model, record, calibration.fit,
                  calibration.probe->complete(calibration.options.fit, record), options);

@@ -9,9 +9,11 @@ namespace sepcal {
 
 using namespace verbs;  // this room's own
 
-Comparison compare(const Calibration& calibration, const Flight& flight) {
+Comparison compare(const Calibration& given, const Flight& flight) {
+  PreparedFlight prepared = prepare(given, flight);
+  const Calibration calibration = along(given, prepared);
   const Probe& probe = *calibration.probe;
-  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
+  const EffectiveFlight effective = with_effects_of(calibration, prepared);
   const Record& record = effective.prepared.record;
   base::ThreadPool pool(calibration.options.fit.threads);
 
@@ -20,7 +22,7 @@ Comparison compare(const Calibration& calibration, const Flight& flight) {
                         record, flight, calibration.fit, pool);
   result.model = probe.name();
   result.notes = effective.prepared.notes;
-  note_other_flight(calibration, flight, result.notes);
+  note_other_flight(given, flight, result.notes);
   return result;
 }
 

@@ -12,6 +12,8 @@
 #include "base/parameter_values.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_channels.hpp"
+#include "flight/probes/corrected_columns.hpp"
+#include "flight/verbs/prepared_flight.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "numerics/interpolated_column.hpp"
 #include "sepcal/composition.hpp"
@@ -278,6 +280,33 @@ std::vector<CorrectedColumn> predict_outputs(const Calibration& calibration, con
 }
 
 }  // namespace
+
+std::vector<CorrectedColumn> predict_along(const Calibration& given, const Flight& flight,
+                                           ProbeReadings& readings) {
+  PreparedFlight prepared = prepare(given, flight);
+  const Calibration calibration = along(given, prepared);
+  const EffectiveFlight effective = with_effects_of(calibration, prepared);
+  const Record& record = effective.prepared.record;
+  base::ThreadPool pool(calibration.options.fit.threads);
+  const Eigen::MatrixXd residuals = residuals_of(calibration, effective, pool);
+  const std::vector<Variable>& outputs = calibration.probe->model().tables().outputs;
+  std::vector<CorrectedColumn> columns =
+      probes::empty_columns(calibration.probe->corrected_headers(), flight.rows());
+  readings.valid.assign(flight.rows(), false);
+  Index row = 0;
+  for (const Segment& segment : record.segments()) {
+    for (std::size_t at = segment.first; at < segment.last; ++at, ++row) {
+      const std::size_t flight_row = prepared.readings.flight_rows[at];
+      readings.valid[flight_row] = true;
+      for (std::size_t j = 0; j < outputs.size(); ++j) {
+        columns[j].values[flight_row] =
+            record.column(outputs[j].name)[at] - residuals(row, static_cast<Index>(j));
+      }
+    }
+  }
+  readings.notes = std::move(prepared.readings.notes);
+  return columns;
+}
 
 std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration,
                                                   const Flight& flight, ProbeReadings& readings) {

@@ -18,4 +18,10 @@ namespace sepcal::verbs {
 std::vector<CorrectedColumn> correct_with_effects(const Calibration& calibration,
                                                   const Flight& flight, ProbeReadings& readings);
 
+/// Of a model with a state what it makes of a flight, in the rows that a fit takes of it; of
+/// another flight than the fitted one the log has the outputs too, which tell the initial states.
+/// Fills in the readings' valid rows and notes. Throws Error as a fit of the flight does.
+std::vector<CorrectedColumn> predict_along(const Calibration& given, const Flight& flight,
+                                           ProbeReadings& readings);
+
 }  // namespace sepcal::verbs

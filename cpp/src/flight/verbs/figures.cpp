@@ -91,8 +91,9 @@ void find_heading(const Flight& flight, FlightFigures& figures) {
 
 }  // namespace
 
-FlightFigures gather_figures(const Calibration& calibration, const Flight& flight) {
-  const PreparedFlight prepared = prepare(calibration, flight);
+FlightFigures gather_figures(const Calibration& given, const Flight& flight) {
+  PreparedFlight prepared = prepare(given, flight);
+  const Calibration calibration = along(given, prepared);
   const EffectiveFlight effective = with_effects_of(calibration, prepared);
   base::ThreadPool pool(calibration.options.fit.threads);
   FlightFigures figures;

@@ -222,7 +222,8 @@ FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
   PreparedFlight prepared = prepare(calibration, flight);
   return name_errors(flight, [&] {
     const OwnEffects all = all_own(calibration, own);
-    return run(believe(calibration, prepared, all, options), prepared, all, options);
+    const Calibration here = along(calibration, prepared);
+    return run(believe(here, prepared, all, options), prepared, all, options);
   });
 }
 
@@ -269,7 +270,8 @@ FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& ca
                               const DiagnosisOptions& options) {
   PreparedFlight prepared = prepare(calibration, flight);
   return name_errors(flight, [&] {
-    const Calibration believed = believe(calibration, prepared, all_own(calibration, own), options);
+    const Calibration here = along(calibration, prepared);
+    const Calibration believed = believe(here, prepared, all_own(calibration, own), options);
     return inject(injected, believed, std::move(prepared), own, options);
   });
 }

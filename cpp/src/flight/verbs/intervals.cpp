@@ -10,10 +10,12 @@ namespace sepcal {
 
 using namespace verbs;  // this room's own
 
-FlightIntervals find_intervals(const Calibration& calibration, const Flight& flight,
+FlightIntervals find_intervals(const Calibration& given, const Flight& flight,
                                const ProfileOptions& asked) {
-  check_fitted(calibration, flight);
-  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
+  check_fitted(given, flight);
+  PreparedFlight prepared = prepare(given, flight);
+  const Calibration calibration = along(given, prepared);
+  const EffectiveFlight effective = with_effects_of(calibration, prepared);
   const Record& record = effective.prepared.record;
   FitOptions options = calibration.probe->complete(calibration.options.fit, record);
   options.unsampled = initial_corrections(effective.effects);
@@ -28,8 +30,11 @@ FlightIntervals find_intervals(const Calibration& calibration, const Flight& fli
       .notes = effective.prepared.notes};
 }
 
-FlightPrediction predict(const Calibration& calibration, const Flight& flight, double level) {
-  const EffectiveFlight effective = with_effects_of(calibration, prepare(calibration, flight));
+FlightPrediction predict(const Calibration& given, const Flight& flight, double level) {
+  if (!given.probe->initial_states().empty()) check_fitted(given, flight);
+  PreparedFlight prepared = prepare(given, flight);
+  const Calibration calibration = along(given, prepared);
+  const EffectiveFlight effective = with_effects_of(calibration, prepared);
   const Record& record = effective.prepared.record;
   return {base::gather_time(record),
           predict(*effective.model, record, calibration.fit, calibration.options.fit, level)};

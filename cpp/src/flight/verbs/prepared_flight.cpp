@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "flight/checks/suspect_notes.hpp"
+#include "flight/files/flight_digest.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/read_as.hpp"
@@ -33,6 +35,55 @@ PreparedFlight prepare(const Calibration& calibration, const Flight& flight) {
   auto& all = prepared.readings.notes;
   all.insert(all.begin(), notes.begin(), notes.end());
   return prepared;
+}
+
+std::string digest(const Probe& probe, const PreparedFlight& prepared) {
+  const Flight& logged = prepared.logged;
+  return probe.initial_states().empty() ? logged.sha256() : files::digest_of(logged);
+}
+
+Calibration along(const Calibration& given, PreparedFlight& prepared) {
+  std::shared_ptr<const Probe> probe = given.probe->along(prepared.readings.record);
+  if (!probe) return given;
+  Calibration here = given;
+  here.probe = std::move(probe);
+  const auto is_initial = [&](const std::string& name) {
+    return is_initial_state(*here.probe, name);
+  };
+  std::set<std::string> fitted;
+  for (const Parameter& one : given.fit.parameters) {
+    if (is_initial(one.name)) fitted.insert(one.name);
+  }
+  std::set<std::string> there;
+  for (const Variable& one : here.probe->model().tables().parameters()) {
+    if (is_initial(one.name)) there.insert(one.name);
+  }
+  if (given.flight.sha256 == digest(*here.probe, prepared) && fitted == there) return here;
+  prepared.readings.notes.push_back(fmt::format(
+      "{}: the rows are not those of the fit: the initial states are estimated anew, all else is "
+      "held",
+      prepared.flight.name()));
+  CalibrationOptions options = given.options;
+  FitOptions& fit = options.fit;
+  for (const auto drop : {&FitOptions::start, &FitOptions::fixed}) {
+    std::erase_if(fit.*drop, [&](const auto& entry) { return is_initial(entry.first); });
+  }
+  std::erase_if(fit.bounds, [&](const auto& entry) { return fitted.contains(entry.first); });
+  std::erase_if(fit.prior, [&](const auto& entry) { return fitted.contains(entry.first); });
+  for (const Parameter& one : given.fit.parameters) {
+    if (!is_initial(one.name)) fit.fixed[one.name] = one.value;
+  }
+  std::erase_if(fit.start, [&](const auto& entry) { return fit.fixed.contains(entry.first); });
+  for (const OutputValue& noise : given.fit.noise) fit.noise[noise.name] = noise.value;
+  fit.stage_one_segments.clear();
+  fit.stage_two_segments.clear();
+  here.fit = calibrate(here.probe, prepared, options).fit;
+  here.fit.status = given.fit.status;
+  here.fit.message = given.fit.message;
+  for (Parameter& one : here.fit.parameters) {
+    if (!is_initial(one.name)) one = given.fit[one.name];
+  }
+  return here;
 }
 
 LogChoice choice_for(const Calibration& calibration, const Flight& flight,

@@ -34,6 +34,15 @@ struct PreparedFlight {
 PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice& log);
 PreparedFlight prepare(const Calibration& calibration, const Flight& flight);
 
+/// By which later verbs know the flight again: its file's SHA-256, and where a model has initial
+/// states also that of arrays; else empty.
+std::string digest(const Probe& probe, const PreparedFlight& prepared);
+
+/// The calibration on that flight: of a model with a state along its rows, where they are not those
+/// of the fit with the initial states estimated anew and all else held, which a note says; of
+/// another model as it is.
+Calibration along(const Calibration& given, PreparedFlight& prepared);
+
 /// What the calibration chose of its log, as far as it means something on this flight: times are of
 /// the fitted one's clock. A note says what was left out.
 LogChoice choice_for(const Calibration& calibration, const Flight& flight,

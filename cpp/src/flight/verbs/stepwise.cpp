@@ -114,7 +114,7 @@ StepwiseCalibration diagnose_stepwise(const Calibration& base, const Flight& fli
   check_most(options);
   const FitProgress& progress = options.diagnosis.progress;
   PreparedFlight prepared = prepare(base, flight);
-  OnFlight here = on_readings_of(base, flight, prepared, own, progress);
+  OnFlight here = on_readings_of(along(base, prepared), flight, prepared, own, progress);
   Calibration calibration = std::move(here.calibration);
   calibration.notes = std::move(here.notes);
   const StepwiseLoop<Calibration> loop{
