@@ -14,7 +14,7 @@ import numpy as np
 
 from sepcal._core import Error
 from sepcal.columns import Array
-from sepcal.printing import page_of
+from sepcal.printing import aligned, page_of
 from sepcal.quantiles import binomial_limits, student_quantile
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
 
@@ -271,13 +271,7 @@ def _table(summary: dict[str, ParameterStudy]) -> list[str]:
     is_known = any(np.isfinite(one.bias) for one in summary.values())
     columns = _about_the_truth if is_known else _about_the_mean
     rows = [["parameter", *columns(None)], *([one.name, *columns(one)] for one in summary.values())]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(
-            [row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]  # names left
-        )
-        for row in rows
-    ]
+    return aligned(rows)
 
 
 def _about_the_truth(one: ParameterStudy | None) -> list[str]:

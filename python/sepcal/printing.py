@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 from sepcal import _core
@@ -33,6 +33,14 @@ def in_shell(words: Iterable[str | os.PathLike[str]]) -> str:
 def page_of(lines: Iterable[object]) -> str:
     """Lines as a page: none of them forges another."""
     return "\n".join(in_line(line) for line in lines)
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """A table's lines, its first column to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows
+    ]
 
 
 def show(page: str) -> None:

@@ -20,7 +20,7 @@ from sepcal.executors import Executors
 from sepcal.fitting import fit
 from sepcal.options import FitOptions, open_ends
 from sepcal.own_state_model import AnyModel
-from sepcal.printing import page_of
+from sepcal.printing import aligned, page_of
 from sepcal.quantiles import binomial_limits
 from sepcal.running_trials import Progress, monte_carlo
 from sepcal.validation.scipy_fit import fit_by_scipy, least_squares, residuals_of
@@ -137,14 +137,9 @@ class Validation:
 
     def __str__(self) -> str:
         head = ("parameter", "truth", "bias", "+-", "95 % covers", "limits", "apart", "errors")
-        table = [head, *map(_cells, self._rows())]
-        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         lines = [
             f"{self.model}: {len(self.estimates)} trials of {self.rows} rows, seed {self.seed}",
-            *(
-                "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])])
-                for row in table
-            ),
+            *aligned([head, *map(_cells, self._rows())]),
             "apart: the largest |sepcal - SciPy| in standard errors; errors: the largest "
             "difference of the standard errors themselves, a share of them",
             self._verdict(),
