@@ -396,7 +396,8 @@ def make_case(number: int, seed: int) -> Case | None:
     known |= {name: base[f"{name}_ut"] for name in ("mx", "my", "mz") if f"{name}_ut" in base}
     try:
         flight = sepcal.Flight(base | columns)
-        calibration = sepcal.fit(model, flight, effects=effects, samples=20)
+        samples = None if probe == "norm" else 20  # a strength begins at the ellipsoid
+        calibration = sepcal.fit(model, flight, effects=effects, samples=samples)
         document = calibration.to_dict()
         wide = float(
             10.0 ** draw.rng.uniform(-2.0, 0.5 if "pit" in probe or "five" in probe else 1.0)

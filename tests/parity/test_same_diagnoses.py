@@ -69,7 +69,7 @@ def files(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     folder = tmp_path_factory.mktemp("same_diagnoses")
     flight, base = folder / "flight.csv", folder / "base.json"
     write_flight(sepcal.simulate(setup.model, rows=200, seed=7, hide=setup.hidden), flight)
-    sepcal.fit(setup.model, sepcal.read_csv(flight), samples=100).save(base)
+    sepcal.fit(setup.model, sepcal.read_csv(flight)).save(base)
     return Files(setup, flight, base)
 
 
