@@ -38,10 +38,9 @@ bool is_initial_state(const Probe& probe, std::string_view parameter) {
 }
 
 std::vector<Variable> lasting_parameters(const Probe& probe) {
-  std::vector<Variable> parameters = probe.model().tables().parameters();
-  std::erase_if(parameters,
-                [&](const Variable& each) { return is_initial_state(probe, each.name); });
-  return parameters;
+  std::vector<Variable> lasting = probe.model().tables().parameters();
+  std::erase_if(lasting, [&](const Variable& each) { return is_initial_state(probe, each.name); });
+  return lasting;
 }
 
 std::vector<DerivedQuantity> Probe::derive(const Fit& /*fit*/) const { return {}; }
