@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "numerics/symmetric.hpp"
+
 namespace sepcal::estimation {
 namespace {
 
@@ -124,7 +126,8 @@ BlockErrors find_block_errors(const std::vector<TriangularFactor>& blocks, const
   const auto count = static_cast<double>(shares.size());
   const MatrixXd inverse =
       R.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
-  BlockErrors errors{.covariance = inverse * ((count - 1.0) / count * steps) * inverse.transpose(),
+  BlockErrors errors{.covariance = numerics::symmetric_part(
+                         inverse * ((count - 1.0) / count * steps) * inverse.transpose()),
                      .freedom = degrees_of_freedom(shares, inverse.transpose())};
   for (Index i = 0; i < k; ++i) {
     if (errors.freedom[i] >= least_freedom) continue;

@@ -9,6 +9,7 @@
 
 #include "model/loss.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/symmetric.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -82,8 +83,6 @@ VectorXd judge_noise(const Problem& problem, const StageTwo& two, double rows, d
   }
   return judged;
 }
-
-MatrixXd symmetric(const MatrixXd& square) { return 0.5 * (square + square.transpose()); }
 
 /// The sandwich, H^-1, and what blocks show of the noise in its middle.
 struct Slices {
@@ -190,8 +189,8 @@ class Sandwich {
     const MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(MatrixXd(bread.inverse()));
     const MatrixXd outer =
         R_.triangularView<Eigen::Upper>().solve(MatrixXd(MatrixXd::Identity(k, k)));
-    return {symmetric(inverse * middle * inverse.transpose()),
-            symmetric(inverse * outer.transpose()), std::move(evidence)};
+    return {numerics::symmetric_part(inverse * middle * inverse.transpose()),
+            numerics::symmetric_part(inverse * outer.transpose()), std::move(evidence)};
   }
 
  private:

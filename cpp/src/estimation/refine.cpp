@@ -6,6 +6,7 @@
 
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/symmetric.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -42,7 +43,7 @@ MatrixXd hessian(Objective& objective, const VectorXd& x, const VectorXd& gradie
     if (moved[k] == x[k] || !objective.linearise(moved, residual, tangent)) return {};
     H.col(k) = (tangent.transpose() * residual - gradient) / (moved[k] - x[k]);
   }
-  return 0.5 * (H + H.transpose());
+  return numerics::symmetric_part(H);
 }
 
 /// Newton's steps, for a minimum so curved that Gauss-Newton's don't contract there. The parameters

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "numerics/bounded_least_squares.hpp"
+#include "numerics/symmetric.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -175,7 +176,7 @@ MatrixXd observed_hessian(const Scoring& scoring, const Scored& at) {
     to[place] = at.theta[place] - h;
     H.col(i) = (above - gradient(score_at(scoring, to))) / (2.0 * h);
   }
-  return 0.5 * (H + H.transpose());
+  return numerics::symmetric_part(H);
 }
 
 Scored finish_by_newton(const Scoring& scoring, Scored at) {

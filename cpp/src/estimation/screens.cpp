@@ -12,6 +12,7 @@
 
 #include "estimation/minima.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/symmetric.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::estimation {
@@ -153,7 +154,7 @@ double ratio(double slope_square, double square, double l_2) {
 double smallest_curvature(const MatrixXd& bend, const VectorXd& widths) {
   if (!bend.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const MatrixXd scaled = widths.asDiagonal() * bend * widths.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (scaled + scaled.transpose()),
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(numerics::symmetric_part(scaled),
                                                        Eigen::EigenvaluesOnly);
   const VectorXd& values = solver.eigenvalues();
   constexpr double rounding = 1e-8;

@@ -8,6 +8,7 @@
 #include "estimation/block_errors.hpp"
 #include "estimation/error_sentences.hpp"
 #include "model/loss.hpp"
+#include "numerics/symmetric.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -93,7 +94,7 @@ MatrixXd block_covariance(const Problem& problem, const model::Sweep& sweep, con
   }
   if (problem.options().loss != Loss::squares) {
     const MatrixXd slopes = covariances.inverse_hessian * R.transpose() * R;
-    covariance = slopes * covariance * slopes.transpose();
+    covariance = numerics::symmetric_part(slopes * covariance * slopes.transpose());
   }
   return covariance;
 }
@@ -109,7 +110,7 @@ MatrixXd believe(const Covariances& covariances, const VectorXd& blocks, double 
     const double ratio = blocks[k] / std::sqrt(noise_model(k, k));
     if (ratio > from) scale[k] = std::max(scale[k], ratio);
   }
-  return scale.asDiagonal() * noise_model * scale.asDiagonal();
+  return noise_model.cwiseProduct(scale * scale.transpose());
 }
 
 }  // namespace

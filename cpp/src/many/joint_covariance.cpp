@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimation/covariance.hpp"
+#include "numerics/symmetric.hpp"
 
 namespace sepcal::many {
 namespace {
@@ -31,7 +32,7 @@ MatrixXd sandwich(const MatrixXd& R, const MatrixXd& M) {
   const auto upper = R.triangularView<Eigen::Upper>();
   const MatrixXd half = upper.solve(M);
   const MatrixXd whole = upper.solve(half.transpose());
-  return 0.5 * (whole + whole.transpose());
+  return numerics::symmetric_part(whole);
 }
 
 JudgedFlight judge_flight(const Layout& layout, const std::vector<bool>& at_bound,

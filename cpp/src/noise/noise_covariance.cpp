@@ -8,6 +8,7 @@
 #include "noise/arfima_factor.hpp"
 #include "noise/noise_room.hpp"
 #include "noise/stationary_lags.hpp"
+#include "numerics/symmetric.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -96,7 +97,7 @@ MatrixXd covariance_product(const NoiseModel& model, const std::vector<Segment>&
     first += n;
     product += part.transpose() * lags.multiply(part, n, 0);
   }
-  return 0.5 * (product + product.transpose());
+  return numerics::symmetric_part(product);
 }
 
 }  // namespace sepcal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Symmetric 3 x 3 matrices and their six entries, in the order xx, yy, zz, xy, xz, yz.
+// Symmetric matrices; of 3 x 3 their six entries, in the order xx, yy, zz, xy, xz, yz.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +17,11 @@ inline Eigen::Matrix3d symmetric(const Eigen::Vector3d& diagonal,
 
 inline Eigen::Vector<double, 6> entries(const Eigen::Matrix3d& S) {
   return {S(0, 0), S(1, 1), S(2, 2), S(0, 1), S(0, 2), S(1, 2)};
+}
+
+/// (M + M') / 2: what is symmetric but for rounding, to the last bit.
+inline Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& M) {
+  return 0.5 * (M + M.transpose());
 }
 
 }  // namespace sepcal::numerics
