@@ -12,7 +12,7 @@ SI units, angles in rad, fields in uT. Body axes are forward-right-down, navigat
 north-east-down.
 """
 
-from sepcal import rivals
+from sepcal import rivals, triads
 from sepcal._core import (
     Applied,
     CataloguedEffect,
@@ -30,6 +30,8 @@ from sepcal._core import (
     LocalMinimum,
     LogNote,
     Misfit,
+    NoiseFit,
+    NoiseModel,
     Parameter,
     ParameterInterval,
     ScreenResults,
@@ -43,21 +45,34 @@ from sepcal.calibration import Calibration, load
 from sepcal.catalogue import effects
 from sepcal.certificates import Certificate, CostBound, bound_cost, certify
 from sepcal.checking import FlightCheck, check
+from sepcal.coefficients import AeroCoefficients, aero_coefficients
 from sepcal.comparison import Comparison
+from sepcal.concatenation import Concatenation, concatenate
 from sepcal.design_trial import DesignTrial
 from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
 from sepcal.exporting import Exported, export
-from sepcal.filters import Filter, RecursiveLeastSquares
+from sepcal.filters import Filter, SmoothedPass
 from sepcal.fitting import fit
-from sepcal.flight import Flight, read_csv
+from sepcal.flight import Flight, read_csv, stream_csv
 from sepcal.geomagnetism import EarthField, earth_field
 from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
 from sepcal.joint import fit_jointly
+from sepcal.least_squares import LeastSquares, RecursiveLeastSquares, iterate_least_squares
+from sepcal.linear_systems import (
+    DiscreteInputs,
+    Transition,
+    discretise,
+    discretise_inputs,
+    matrix_exponential,
+    propagate,
+)
 from sepcal.logs import LogContents, LoggedFlight, list_log, read_log
 from sepcal.many import fit_many
 from sepcal.many_results import ManyFit
 from sepcal.models import (
+    Accelerometer,
+    DampedSinusoids,
     FiveHoleProbe,
     Magnetometer,
     Model,
@@ -66,6 +81,7 @@ from sepcal.models import (
     ScalarExample2,
 )
 from sepcal.monte_carlo_results import MonteCarlo, ParameterStudy
+from sepcal.noise import fit_noise, simulate_noise, whiten
 from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
@@ -79,13 +95,16 @@ from sepcal.smoothing import Smoothed, smooth
 from sepcal.stepwise import Stepwise, StepwiseStep
 from sepcal.tracking import Track, track
 from sepcal.trajectories import FlightPath, ShortPeriod, TrajectoryModel, TrajectoryOptions
+from sepcal.triads import Triad
 from sepcal.trial_fits import TrialFits, fit_trials
 from sepcal.trials import Estimates, Failure, TrialRecord
 from sepcal.validation import Validation, validate
 
 __all__ = [
+    "Accelerometer",
     "AddedRegressor",
     "Aero",
+    "AeroCoefficients",
     "Aircraft",
     "AircraftFit",
     "Applied",
@@ -96,11 +115,14 @@ __all__ = [
     "ColumnCheck",
     "Combination",
     "Comparison",
+    "Concatenation",
     "CostBound",
+    "DampedSinusoids",
     "Departure",
     "Derived",
     "DesignTrial",
     "Diagnosis",
+    "DiscreteInputs",
     "EarthField",
     "Effect",
     "EffectFinding",
@@ -122,6 +144,7 @@ __all__ = [
     "Injection",
     "Innovation",
     "Intervals",
+    "LeastSquares",
     "LocalMinimum",
     "LogContents",
     "LogNote",
@@ -131,6 +154,8 @@ __all__ = [
     "Misfit",
     "Model",
     "MonteCarlo",
+    "NoiseFit",
+    "NoiseModel",
     "OwnModel",
     "Parameter",
     "ParameterInterval",
@@ -147,6 +172,7 @@ __all__ = [
     "SimulatedFlight",
     "SimulatedTrial",
     "Smoothed",
+    "SmoothedPass",
     "StageOne",
     "StateModel",
     "Stepwise",
@@ -155,36 +181,50 @@ __all__ = [
     "Trajectory",
     "TrajectoryModel",
     "TrajectoryOptions",
+    "Transition",
+    "Triad",
     "TrialFits",
     "TrialRecord",
     "TwoSteps",
     "Validation",
     "Window",
     "__version__",
+    "aero_coefficients",
     "bound_cost",
     "certify",
     "check",
+    "concatenate",
+    "discretise",
+    "discretise_inputs",
     "earth_field",
     "effects",
     "export",
     "fit",
     "fit_jointly",
     "fit_many",
+    "fit_noise",
     "fit_trials",
+    "iterate_least_squares",
     "list_log",
     "load",
+    "matrix_exponential",
     "monte_carlo",
     "predict",
     "profile_intervals",
+    "propagate",
     "read_aircraft",
     "read_csv",
     "read_log",
     "report",
     "rivals",
     "simulate",
+    "simulate_noise",
     "smooth",
+    "stream_csv",
     "stream_trials",
     "track",
+    "triads",
     "two_step",
     "validate",
+    "whiten",
 ]

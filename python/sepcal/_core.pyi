@@ -44,6 +44,8 @@ __all__: list[str] = [
     "ManyFit",
     "Misfit",
     "Model",
+    "NoiseFit",
+    "NoiseModel",
     "NoiseSize",
     "Options",
     "Parameter",
@@ -61,6 +63,7 @@ __all__: list[str] = [
     "TwoStepProblem",
     "VISIBLE_FROM",
     "Window",
+    "accelerometer",
     "attitude_independent_magnetometer",
     "autocorrelation",
     "bin_means",
@@ -72,6 +75,7 @@ __all__: list[str] = [
     "check",
     "check_not_input",
     "check_output",
+    "concatenation",
     "effects",
     "effects_of",
     "example_in_five_states",
@@ -81,6 +85,7 @@ __all__: list[str] = [
     "fit_alonso_shuster",
     "fit_haupt_kasdin",
     "fit_many",
+    "fit_noise",
     "fit_single_stage",
     "fit_trials",
     "five_hole_probe",
@@ -104,8 +109,11 @@ __all__: list[str] = [
     "scalar_example_2",
     "sdp3x_pressure",
     "simulate",
+    "simulate_noise",
     "smooth",
     "spectrum",
+    "stream_csv",
+    "whiten",
     "write_whole",
 ]
 
@@ -782,11 +790,102 @@ class Model:
     def outputs(self) -> list: ...
     @property
     def process_noises(self) -> list[str]: ...
+    @property
+    def ships_a_probe(self) -> bool: ...
+    @property
+    def takes_flights(self) -> bool: ...
 
 class PythonFunctions:
     def __init__(
         self, gather: typing.Any, at: typing.Any, try_at: typing.Any, derivatives: typing.Any
     ) -> None: ...
+
+class NoiseModel:
+    """
+    The noise of one output: phi(B) (1 - B)^d e = sigma w, w white.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("d", "phi", "sigma", "free_level")
+    def __getstate__(self) -> tuple: ...
+    def __init__(
+        self,
+        *,
+        d: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        phi: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] = ...,
+        sigma: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        free_level: bool = False,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def d(self) -> float:
+        """
+        In [0, 1): 0 white, 0.5 pink, near 1 a slow drift.
+        """
+    @property
+    def free_level(self) -> bool:
+        """
+        Whether nothing is assumed of the mean of a segment.
+        """
+    @property
+    def phi(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (p,), of a stationary autoregression.
+        """
+    @property
+    def sigma(self) -> float:
+        """
+        Standard deviation of w, in the unit of e.
+        """
+
+class NoiseFit:
+    """
+    A noise model of most likelihood.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "model",
+        "minus_two_log_likelihood",
+        "informative_rows",
+        "evaluations",
+        "converged",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def converged(self) -> bool:
+        """
+        Whether another step would gain next to nothing.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Of the likelihood.
+        """
+    @property
+    def informative_rows(self) -> int:
+        """
+        Spans, less one for each segment where the level is free.
+        """
+    @property
+    def minus_two_log_likelihood(self) -> float:
+        """
+        Comparable between fits of equal free_level and rows; -infinity of zeros.
+        """
+    @property
+    def model(self) -> NoiseModel:
+        """
+        The NoiseModel.
+        """
 
 class ParameterInterval:
     """
@@ -2811,6 +2910,7 @@ class Innovation:
         (n_z,), e in standard deviations, uncorrelated.
         """
 
+def accelerometer() -> Model: ...
 def attitude_independent_magnetometer(
     field_strength: typing.SupportsFloat | typing.SupportsIndex,
     noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
@@ -2874,6 +2974,7 @@ def channels(arg0: collections.abc.Sequence[str]) -> list[str]: ...
 def check(arg0: Model, arg1: Flight) -> FlightCheck: ...
 def check_not_input(arg0: str, arg1: str) -> None: ...
 def check_output(arg0: str) -> None: ...
+def concatenation(arg0: collections.abc.Sequence[tuple[str, Model]]) -> Model: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def effects_of(arg0: Model) -> list[CataloguedEffect]: ...
 def example_in_five_states() -> TwoStepProblem: ...
@@ -2941,6 +3042,16 @@ def fit_many(
     arg4: bool,
     arg5: collections.abc.Callable,
 ) -> ManyFit: ...
+def fit_noise(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg1: collections.abc.Sequence[
+        tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]
+    ]
+    | None,
+    arg2: typing.SupportsInt | typing.SupportsIndex | None,
+    arg3: typing.SupportsInt | typing.SupportsIndex,
+    arg4: NoiseModel | None,
+) -> NoiseFit: ...
 def fit_single_stage(
     model: Model,
     columns: dict,
@@ -3084,6 +3195,12 @@ def simulate(
     arg7: typing.SupportsInt | typing.SupportsIndex,
     arg8: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[Flight, dict[str, float], list[str]]: ...
+def simulate_noise(
+    arg0: NoiseModel,
+    arg1: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    arg2: typing.SupportsInt | typing.SupportsIndex,
+    arg3: typing.SupportsInt | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
 def smooth(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3106,6 +3223,15 @@ def spectrum(
     ],
     arg2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+def stream_csv(arg0: str, arg1: str) -> Flight: ...
+def whiten(
+    arg0: NoiseModel,
+    arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg2: collections.abc.Sequence[
+        tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]
+    ]
+    | None,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 def write_whole(arg0: collections.abc.Mapping[str, str]) -> None: ...
 
 LEAST_GAIN: float = 0.01

@@ -16,9 +16,16 @@ __all__: list[str] = [
     "SteppedFit",
     "Steps",
     "TrajectoryOptions",
+    "aero_coefficients",
+    "damped_sinusoids",
+    "discretise",
+    "discretise_inputs",
     "fit",
     "flight_path",
+    "iterate_least_squares",
+    "matrix_exponential",
     "parse",
+    "propagate",
     "python_state_model",
     "read",
     "read_aircraft",
@@ -67,6 +74,11 @@ class StateTables:
     ) -> None: ...
 
 class Filter:
+    @staticmethod
+    def of_information_root(
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> Filter: ...
     @typing.overload
     def __init__(
         self,
@@ -76,6 +88,20 @@ class Filter:
     ) -> None: ...
     @typing.overload
     def __init__(self, arg0: Filter) -> None: ...
+    def iterated_update(
+        self,
+        arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        arg1: collections.abc.Callable[
+            [typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]],
+            tuple[
+                typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+                typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+            ],
+        ],
+        arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        arg3: sepcal._core.IterationOptions,
+    ) -> tuple[sepcal._core.Innovation, bool] | None: ...
+    def keep_pass(self) -> None: ...
     def predict(
         self,
         arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -83,6 +109,14 @@ class Filter:
         arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
         arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     ) -> bool: ...
+    def smooth(
+        self,
+    ) -> tuple[
+        list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]],
+        list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]],
+        list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]],
+        list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]],
+    ]: ...
     def update(
         self,
         arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -92,6 +126,12 @@ class Filter:
     ) -> sepcal._core.Innovation | None: ...
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def information_root(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None: ...
+    @property
+    def keeps_pass(self) -> bool: ...
     @property
     def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
@@ -215,6 +255,31 @@ class Steps:
     @property
     def text(self) -> str: ...
 
+def aero_coefficients(
+    arg0: dict,
+    arg1: collections.abc.Sequence[str],
+    arg2: str,
+    arg3: collections.abc.Sequence[str],
+    arg4: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[dict[str, numpy.typing.NDArray[numpy.float64]], list[str], float, list[str]]: ...
+def damped_sinusoids(arg0: typing.SupportsInt | typing.SupportsIndex) -> sepcal._core.Model: ...
+def discretise(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    arg2: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]: ...
+def discretise_inputs(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    arg2: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]: ...
 def fit(arg0: sepcal._core.Flight, arg1: Options) -> Fit: ...
 def flight_path(
     arg0: bool,
@@ -224,7 +289,56 @@ def flight_path(
     ],
     arg3: TrajectoryOptions,
 ) -> sepcal._core.Model: ...
+def iterate_least_squares(
+    arg0: collections.abc.Callable[
+        [int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]],
+        tuple[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        ],
+    ],
+    arg1: typing.SupportsInt | typing.SupportsIndex,
+    arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg3: typing.SupportsInt | typing.SupportsIndex,
+    arg4: typing.SupportsFloat | typing.SupportsIndex,
+    arg5: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[
+    str,
+    int,
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    int,
+    float,
+]: ...
+def matrix_exponential(
+    arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
 def parse(arg0: str, arg1: str) -> Fit: ...
+def propagate(
+    arg0: collections.abc.Callable[
+        [typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float],
+        typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ],
+    arg1: collections.abc.Callable[
+        [typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float],
+        typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ],
+    arg2: collections.abc.Callable[
+        [typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float],
+        typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ],
+    arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    arg4: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    arg5: typing.SupportsFloat | typing.SupportsIndex,
+    arg6: typing.SupportsFloat | typing.SupportsIndex,
+    arg7: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]: ...
 def python_state_model(
     arg0: str, arg1: StateTables, arg2: TrajectoryOptions, arg3: typing.Any
 ) -> sepcal._core.Model: ...

@@ -18,10 +18,10 @@ from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight, to_flight
 from sepcal.intervals import Intervals, Prediction
+from sepcal.models import Model
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
-from sepcal.own_model import OwnModel, SeparableModel
-from sepcal.own_state_model import StateModel, Trajectory, to_own
+from sepcal.own_state_model import AnyModel, to_own
 from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options
 from sepcal.whole_files import name_of
@@ -38,14 +38,14 @@ class Calibration(Fit):
     core: _core.Calibration
     flight: Flight | None  # that was fitted, or several, joined; None where it was loaded
     own_effects: list[Effect]  # of the caller's making, among `effects`
-    own_model: OwnModel | Trajectory | None  # where it is of a model of the caller's making
+    own_model: Model | None  # where it is of a model of the caller's making
 
     def __init__(
         self,
         core: _core.Calibration,
         flight: Flight | None = None,
         own: Sequence[Effect] = (),
-        own_model: OwnModel | Trajectory | None = None,
+        own_model: Model | None = None,
     ) -> None:
         super().__init__(core.fit)
         self.core = core
@@ -365,7 +365,7 @@ class Calibration(Fit):
 def load(
     file: Path,
     effects: Sequence[Effect] = (),
-    model: SeparableModel | StateModel | OwnModel | Trajectory | None = None,
+    model: AnyModel | None = None,
 ) -> Calibration | AircraftFit:
     """Reads what save() or an app's fit wrote.
 
@@ -402,9 +402,7 @@ def _is_of_aircraft(file: Path) -> bool:
     return isinstance(read, dict) and ("aircraft" in read or {"path", "aero"} <= set(read))
 
 
-def _parse(
-    text: str, effects: Sequence[Effect], own: OwnModel | Trajectory | None = None
-) -> Calibration:
+def _parse(text: str, effects: Sequence[Effect], own: Model | None = None) -> Calibration:
     core = _core.parse_calibration(
         text, "pickle", to_core_effects(effects), None if own is None else own._core
     )

@@ -14,7 +14,7 @@ from sepcal.columns import Array, Columns, by_name
 from sepcal.fitting import fit
 from sepcal.options import FitOptions, to_core
 from sepcal.own_effect import name_effects
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit
 from sepcal.trial_fits import fit_trials
 from sepcal.trials import Estimates, in_order
@@ -103,7 +103,7 @@ class DesignTrial:
             and bool(starts)
             and not options.get("effects")
             and options.get("method") != "filter-error"
-            and not runs_in_python(self.model)
+            and not self.model.runs_in_python
         )
 
     def together(self, rngs: Sequence[Generator]) -> list[Estimates | None]:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filters and recursions of flight software, in Python."""
+"""The filters and smoothers of flight software, in Python."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,14 +14,28 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal._core import Innovation
 from sepcal.columns import Array
+from sepcal.matrices import REFUSED, finite, times, to_covariance, to_matrix, to_vector
 from sepcal.states_module import states_module
 
 if TYPE_CHECKING:
     from sepcal import _states
 
-REFUSED = (
-    "a number is not finite, or a covariance is not positive semidefinite; nothing was changed"
-)
+
+@dataclass(frozen=True)
+class SmoothedPass:
+    """States and noises of a filter's pass of N samples, given all measurements.
+
+    Attributes:
+        x: (N, n_x).
+        covariance: Of x, (N, n_x, n_x).
+        noise: Of the steps between samples, (N - 1, n_w): where it is large the model fails.
+        noise_covariance: (N - 1, n_w, n_w).
+    """
+
+    x: Array
+    covariance: Array
+    noise: Array
+    noise_covariance: Array
 
 
 class Filter:
@@ -34,9 +50,12 @@ class Filter:
 
     Args:
         x: The state that it begins with, (n_x,).
-        P: Its covariance, (n_x, n_x), positive semidefinite.
-        form: How the covariance is kept: its root, which holds twice the digits, or multiplied out
-            and updated by Joseph's form.
+        P: Its covariance, (n_x, n_x), positive semidefinite; with "information" definite.
+        form: How the covariance is kept: its root, which holds twice the digits; multiplied out
+            and updated by Joseph's form; or the root of its inverse.
+        information_root: In place of P, with "information": R, upper triangular, R'R = P^-1, as
+            the leading part of a batch's factor is.
+        keep_pass: Remember every step, n_x^2 numbers each, for smooth().
 
     Attributes:
         log_likelihood: Of all outputs so far, the sum of ln p(e), S 5.4.
@@ -45,12 +64,26 @@ class Filter:
     def __init__(
         self,
         x: ArrayLike,
-        P: ArrayLike,
-        form: Literal["square_root", "joseph"] | str = "square_root",
+        P: ArrayLike | None = None,
+        form: Literal["square_root", "joseph", "information"] | str = "square_root",
+        *,
+        information_root: ArrayLike | None = None,
+        keep_pass: bool = False,
     ) -> None:
-        self._core: _states.Filter = states_module().Filter(
-            _finite("x", _vector("x", x)), _covariance("P", P), form
-        )
+        begin = finite("x", to_vector("x", x))
+        self._core: _states.Filter
+        if P is not None and information_root is None:
+            self._core = states_module().Filter(begin, to_covariance("P", P), form)
+        elif information_root is not None and P is None:
+            if form != "information":
+                raise _core.Error('information_root is for form="information"; give P otherwise')
+            self._core = states_module().Filter.of_information_root(
+                begin, _regular_triangle("information_root", information_root)
+            )
+        else:
+            raise _core.Error("a filter begins at P or at information_root; give one of them")
+        if keep_pass:
+            self._core.keep_pass()
         self.log_likelihood = 0.0
 
     @property
@@ -62,6 +95,14 @@ class Filter:
     def covariance(self) -> Array:
         """Its covariance, (n_x, n_x)."""
         return self._core.covariance
+
+    @property
+    def information_root(self) -> Array:
+        """R, (n_x, n_x), R'R the covariance's inverse. Raises Error but with "information"."""
+        root = self._core.information_root
+        if root is None:
+            raise _core.Error('the filter keeps no information; make it with form="information"')
+        return root
 
     def predict(
         self,
@@ -85,13 +126,13 @@ class Filter:
             Error: Another shape, what is not finite, a covariance that is not positive
                 semidefinite; the filter is as it was.
         """
-        transition = _matrix("Phi", Phi)
+        transition = to_matrix("Phi", Phi)
         if x is None:
-            x = _times("Phi", transition, self.x) + _vector(
+            x = times("Phi", transition, self.x) + to_vector(
                 "shift", 0.0 if shift is None else shift
             )
-        noise = np.eye(len(self.x)) if Gamma is None else _matrix("Gamma", Gamma)
-        if not self._core.predict(_vector("x", x), transition, noise, _matrix("Q", Q)):
+        noise = np.eye(len(self.x)) if Gamma is None else to_matrix("Gamma", Gamma)
+        if not self._core.predict(to_vector("x", x), transition, noise, to_matrix("Q", Q)):
             raise _core.Error(f"predict(): {REFUSED}")
 
     def update(
@@ -111,116 +152,96 @@ class Filter:
         Raises:
             Error: As of predict().
         """
-        slope = _matrix("H", H)
-        value = _times("H", slope, self.x) if expected is None else _vector("expected", expected)
-        found = self._core.update(_vector("y", y), value, slope, _matrix("R", R))
+        slope = to_matrix("H", H)
+        value = times("H", slope, self.x) if expected is None else to_vector("expected", expected)
+        found = self._core.update(to_vector("y", y), value, slope, to_matrix("R", R))
         if found is None:
             raise _core.Error(f"update(): {REFUSED}")
-        self.log_likelihood -= found.cost + 0.5 * found.count * math.log(2.0 * math.pi)
+        self._count(found)
         return found
+
+    def iterated_update(
+        self,
+        y: ArrayLike,
+        outputs: Callable[[Array], tuple[ArrayLike, ArrayLike]],
+        R: ArrayLike,
+        *,
+        iterations: int = 20,
+        tolerance: float = 1e-8,
+    ) -> Innovation:
+        """By a measurement of nonlinear outputs, linearised anew until the state stays.
+
+        Gauss-Newton for the state of highest probability given y, S 3.15 to 3.18.
+
+        Args:
+            y: (n_z,); NaN where missing.
+            outputs: Of a state: what is expected of y there, (n_z,), and its slope, (n_z, n_x).
+            R: Covariance of the measurement's noise, (n_z, n_z).
+            iterations: At most so many.
+            tolerance: Of a step, in standard deviations of the state.
+
+        Returns:
+            The last iteration's innovation.
+
+        Raises:
+            Error: As of predict(); and where the iterations ended by their cap: the filter then
+                holds the last one's state.
+            Exception: What `outputs` raises, as it is; the filter is as it was.
+        """
+
+        def linearise(at: Array) -> tuple[Array, Array]:
+            expected, H = outputs(at)
+            return to_vector("expected", expected), to_matrix("H", H)
+
+        answer = self._core.iterated_update(
+            to_vector("y", y),
+            linearise,
+            to_matrix("R", R),
+            _core.IterationOptions(iterations=iterations, tolerance=tolerance),
+        )
+        if answer is None:
+            raise _core.Error(f"iterated_update(): {REFUSED}")
+        found, converged = answer
+        self._count(found)
+        if not converged:
+            raise _core.Error(
+                f"iterated_update() did not converge within {iterations} iterations; give more, or "
+                "a prior that is nearer"
+            )
+        return found
+
+    def smooth(self) -> SmoothedPass:
+        """The states and noises of the pass, given all its measurements (S 2.20 to 2.23).
+
+        A sample is what lies between two calls of predict(). The filter may go on afterwards.
+
+        Raises:
+            Error: The pass was not kept, or its steps have noises of different number.
+        """
+        if not self._core.keeps_pass:
+            raise _core.Error("the pass was not kept; make the filter with keep_pass=True")
+        x, P, w, Q = self._core.smooth()
+        if len({len(noise) for noise in w}) > 1:
+            raise _core.Error(
+                "the steps have noises of different number; give each step all of them"
+            )
+        n_w = len(w[0]) if w else 0
+        return SmoothedPass(
+            np.array(x),
+            np.array(P),
+            np.array(w).reshape((len(w), n_w)),
+            np.array(Q).reshape((len(w), n_w, n_w)),
+        )
+
+    def _count(self, found: Innovation) -> None:
+        self.log_likelihood -= found.cost + 0.5 * found.count * math.log(2.0 * math.pi)
 
     def __repr__(self) -> str:
         return f"<sepcal.Filter of {len(self.x)} states>"
 
 
-class RecursiveLeastSquares:
-    """y = H p + e, sample by sample; the answer is that of all samples at once.
-
-    System Identification Summary, S 4.9 to 4.14.
-
-    Args:
-        p: The parameters to begin with, (n,), or how many there are.
-        covariance: Theirs, (n, n); None: nothing is known before (with "square_root").
-        form: What is kept: the root of the information, the information itself (S 4.13), or its
-            inverse (S 4.14, corrected).
-    """
-
-    def __init__(
-        self,
-        p: ArrayLike,
-        covariance: ArrayLike | None = None,
-        form: Literal["square_root", "information", "covariance"] | str = "square_root",
-    ) -> None:
-        if isinstance(p, int) and p < 1:
-            raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
-        begin = np.zeros(p) if isinstance(p, int) else _finite("p", _vector("p", p))
-        known = None if covariance is None else _covariance("covariance", covariance)
-        self._core: _states.RecursiveLeastSquares = states_module().RecursiveLeastSquares(
-            begin, known, form
-        )
-
-    def absorb(self, H: ArrayLike, y: ArrayLike, W: ArrayLike | None = None) -> None:
-        """One sample.
-
-        Args:
-            H: (m, n), or (n,) of one output.
-            y: (m,), or a number; NaN where missing.
-            W: Covariance of e, (m, m) [the identity].
-
-        Raises:
-            Error: Another shape, what is not finite, a covariance that is not positive definite;
-                nothing was changed.
-        """
-        values = np.atleast_1d(np.asarray(y, dtype=np.float64))
-        weights = np.eye(len(values)) if W is None else np.atleast_2d(np.asarray(W))
-        if not self._core.absorb(
-            _matrix("H", np.atleast_2d(H)), _vector("y", values), _matrix("W", weights)
-        ):
-            raise _core.Error(f"absorb(): {REFUSED}")
-
-    @property
-    def solution(self) -> Array:
-        """p, (n,); zero where nothing determines it."""
-        return self._core.solution
-
-    @property
-    def covariance(self) -> Array:
-        """Of p, (n, n), where W is the noise's covariance."""
-        return self._core.covariance
-
-    @property
-    def determined(self) -> bool:
-        """Whether the samples determine every parameter."""
-        return self._core.determined
-
-    def __repr__(self) -> str:
-        return f"<sepcal.RecursiveLeastSquares of {len(self.solution)} parameters>"
-
-
-def _vector(name: str, values: ArrayLike) -> Array:
-    vector = np.asarray(values, dtype=np.float64)
-    if vector.ndim > 1:
-        raise _core.Error(f"{name} has the shape {vector.shape}; it is a vector, (n,)")
-    return vector
-
-
-def _matrix(name: str, values: ArrayLike) -> Array:
-    matrix = np.asarray(values, dtype=np.float64)
-    if matrix.ndim != 2:
-        raise _core.Error(f"{name} has the shape {matrix.shape}; it is a matrix, (n, m)")
-    return matrix
-
-
-def _finite(name: str, values: Array) -> Array:
-    if not np.isfinite(values).all():
-        raise _core.Error(f"{name} is not a finite number at {np.argmin(np.isfinite(values))}")
-    return values
-
-
-def _covariance(name: str, values: ArrayLike) -> Array:
-    matrix = _finite(name, _matrix(name, values))
-    if matrix.shape[0] != matrix.shape[1]:
-        raise _core.Error(f"{name} has the shape {matrix.shape}; it is a covariance, (n, n)")
-    size = np.abs(matrix).max(initial=0.0)
-    if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * size:
-        raise _core.Error(f"{name} is no covariance: it isn't symmetric")
-    lowest = np.linalg.eigvalsh(matrix).min(initial=0.0)
-    if lowest < -1e-9 * size:
-        raise _core.Error(f"{name} is no covariance: it has the eigenvalue {lowest:.3g}, below 0")
-    return matrix
-
-
-def _times(name: str, matrix: Array, x: Array) -> Array:
-    if matrix.shape[1] != len(x):
-        raise _core.Error(f"{name} has the shape {matrix.shape}; the filter has {len(x)} states")
-    return np.asarray(matrix @ x)
+def _regular_triangle(name: str, values: ArrayLike) -> Array:
+    root = finite(name, to_matrix(name, values))
+    if np.tril(root, -1).any() or not np.diagonal(root).all():
+        raise _core.Error(f"{name} is upper triangular, without a zero on its diagonal")
+    return root

@@ -13,7 +13,7 @@ from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
 from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
-from sepcal.own_state_model import AnyModel, as_model, own_among, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model, own_among
 from sepcal.results import Fit
 from sepcal.trajectories import FlightPath
 
@@ -41,16 +41,14 @@ def fit(
     Sun & Gebre-Egziabher, Steps 2-5. It runs without the GIL, on as many threads as asked for.
 
     Args:
-        model: One of sepcal's own, FiveHoleProbe, PitotStatic, Magnetometer, FlightPath,
-            ShortPeriod, ScalarExample1, ScalarExample2, of flights also Aero and RigidAircraft, or
-            one of yours in Python: any object with the tables and at() of SeparableModel or, with a
-            state, of StateModel. Python lets one thread in at a time, so that threads=0 then means
-            one.
-        data: A Flight (columns with units in their headers; for the probes, FlightPath, Aero,
-            RigidAircraft and models of yours), or the model's own inputs and outputs by name in the
-            units of its tables, each of shape (N,): a dict or a DataFrame. There "time" [s] and
-            "maneuver" (labels) are optional and cut the record at gaps and changes of label; other
-            columns are ignored but by effects. C-contiguous float64 arrays are not copied.
+        model: One of sepcal's own, of flights also Aero and RigidAircraft, or one of yours in
+            Python: any object with the tables and at() of SeparableModel or, with a state, of
+            StateModel. Python lets one thread in at a time, so that threads=0 then means one.
+        data: A Flight (columns with units in their headers), or the model's own inputs and outputs
+            by name in the units of its tables, each of shape (N,): a dict or a DataFrame. There
+            "time" [s] and "maneuver" (labels) are optional and cut the record at gaps and changes
+            of label; other columns are ignored but by effects. C-contiguous float64 arrays are not
+            copied.
         **options: FitOptions.
 
     Returns:
@@ -69,7 +67,7 @@ def fit(
     ):
         return fit_flight(model, to_flight(data, "fit(model, "), options)
     model = as_model(model)
-    if runs_in_python(model):
+    if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     effects = options.get("effects") or ()
     options["effects"] = names = name_effects(effects)

@@ -107,6 +107,19 @@ def read_csv(file: str | os.PathLike[str]) -> Flight:
     return Flight._of(_core.read_csv(name_of(file)))
 
 
+def stream_csv(file: str | os.PathLike[str], folder: str | os.PathLike[str] = "") -> Flight:
+    """The same of a log that may be longer than memory: its columns lie on disc, 8 bytes a cell.
+
+    Args:
+        file: The CSV; it may be a pipe.
+        folder: Where the columns are written, in files without a name [$TMPDIR, or /tmp].
+
+    Raises:
+        Error: As read_csv(), and where the disc is full.
+    """
+    return Flight._of(_core.stream_csv(name_of(file), name_of(folder) if folder else ""))
+
+
 def to_flight(flight: object, call: str) -> Flight:
     """A flight. Raises Error, which shows how to call again, for a file's name or columns."""
     if isinstance(flight, Flight):

@@ -11,7 +11,7 @@ from sepcal import _core
 from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
 from sepcal.results import Fit
 
@@ -146,7 +146,7 @@ def as_fitted(
     if hasattr(fit, "core"):
         raise _core.Error("a calibration knows its model: call its own intervals() or predict()")
     model = as_model(model)
-    if runs_in_python(model):
+    if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     own = to_core_effects(options.get("effects") or ())
     options["effects"] = name_effects(options.get("effects") or ())

@@ -9,7 +9,7 @@ from sepcal.calibration import Calibration
 from sepcal.flight import Flight, to_flight
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
 from sepcal.own_effect import Effect, name_effects, to_core_effects
-from sepcal.own_state_model import AnyModel, as_model, own_among, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model, own_among
 
 
 @spelled_out()
@@ -48,7 +48,7 @@ def fit_jointly(
     effects = options.get("effects") or ()
     options["effects"] = name_effects(effects)
     subject = as_model(model)
-    if runs_in_python(subject):
+    if subject.runs_in_python:
         options["threads"] = options.get("threads") or 1
     core, joined = _core.calibrate_jointly(
         subject._core,

@@ -16,7 +16,7 @@ from sepcal.flight import Flight
 from sepcal.many_results import ManyFit
 from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask, unusable
 from sepcal.options import FitOptions, spelled_out, to_core, to_names
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model
 from sepcal.trajectories import TrajectoryModel
 from sepcal.whole_files import name_of
 
@@ -71,7 +71,7 @@ def fit_many(
             "shoot cuts one record's segments; fit_many() gives every flight one start: cut flights"
         )
     threads = options.pop("threads", None) or 0
-    if runs_in_python(model):
+    if model.runs_in_python:
         threads = 1
     own = to_names("own", own)
     here = {name: value for name, value in options.items() if value is not None}

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, labels_in, take_columns
+from sepcal.states_module import states_module
 
 Vector = Sequence[float]  # three of them
 
@@ -26,6 +27,8 @@ class Model:
         units: Unit of every input, output and parameter by name.
         bounds: Default (lower, upper) of every parameter by name, in its unit; infinite where open.
     """
+
+    runs_in_python = False  # it then lets one thread in at a time
 
     def __init__(self, core: _core.Model) -> None:
         self._core = core
@@ -129,6 +132,40 @@ class ScalarExample2(Model):
 
     def __init__(self) -> None:
         super().__init__(_core.scalar_example_2())
+
+
+class Accelerometer(Model):
+    """Three accelerometers against the true specific force in body axes (Eqs. A1 to A4).
+
+    z = C_eta (I + D) f + n: scale errors lambda_x, lambda_y, lambda_z, biases n_x, n_y, n_z
+    [m/s^2], small misalignments eta_x, eta_y, eta_z [rad]. triads.Triad puts others together.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(_core.accelerometer())
+
+
+class DampedSinusoids(Model):
+    """Damped sinusoids out of samples, what Prony's method looks for.
+
+    z = sum_k exp(-damping_k t) (cos_k cos(omega_k t) + sin_k sin(omega_k t)) + offset, times as
+    irregular as they may be. The fastest comes first: omega_1 = frequency_1 [rad/s], omega_2 =
+    ratio_2 omega_1, omega_3 = ratio_3 omega_2, ratios within 0 and 1. A fit needs bounds of
+    frequency_1, which the sampling rate allows (below pi over its interval), and of the dampings.
+
+    Args:
+        modes: 1 to 6.
+
+    Raises:
+        Error: Another number of modes.
+    """
+
+    def __init__(self, modes: int = 1) -> None:
+        self.modes = modes
+        super().__init__(states_module().damped_sinusoids(modes))
+
+    def _settings(self) -> dict[str, Any]:
+        return {"modes": self.modes}
 
 
 class FiveHoleProbe(Model):

@@ -22,8 +22,8 @@ from sepcal.checking import check
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
 from sepcal.joint import fit_jointly
-from sepcal.own_model import OwnModel
-from sepcal.own_state_model import Trajectory, to_own
+from sepcal.models import Model
+from sepcal.own_state_model import to_own
 from sepcal.printing import in_line, page_of, show, tell
 from sepcal.whole_files import name_of, refuse_outputs, write_whole
 
@@ -199,7 +199,7 @@ def _options(given: argparse.Namespace) -> dict[str, Any]:
     return {name: value for name, value in options.items() if value not in (None, [], {}, False)}
 
 
-def read_model(named: str) -> OwnModel | Trajectory:
+def read_model(named: str) -> Model:
     """Runs the file and makes an object of the class; an object there is taken as it is.
 
     Raises:

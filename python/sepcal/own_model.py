@@ -97,6 +97,8 @@ class OwnModel(Model):
         Error: A table or at() is missing, a table is of another form, empty or has a name twice.
     """
 
+    runs_in_python = True
+
     def __init__(self, definition: SeparableModel) -> None:
         self.definition = definition
         check_parts(definition, (*TABLES, "at"), "sepcal model", SeparableModel)

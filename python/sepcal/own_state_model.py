@@ -109,6 +109,8 @@ class Trajectory(TrajectoryModel):
             twice; an option names what the model doesn't have.
     """
 
+    runs_in_python = True
+
     def __init__(self, model: StateModel, **options: Unpack[TrajectoryOptions]) -> None:
         self.definition = model
         step = "next" if getattr(model, "discrete", False) else "rate"
@@ -155,18 +157,13 @@ def as_model(model: AnyModel) -> Model:
     return Trajectory(model) if hasattr(model, "states") else OwnModel(model)  # type: ignore[arg-type]
 
 
-def runs_in_python(model: Model) -> bool:
-    """Whether Python lets one thread in at a time."""
-    return own_among(model) is not None
+def own_among(model: Model) -> Model | None:
+    """The model where a calibration's file can't make it again: it is no probe that ships."""
+    return None if model._core.ships_a_probe else model
 
 
-def own_among(model: object) -> OwnModel | Trajectory | None:
-    """The model where it is one of the caller's own."""
-    return model if isinstance(model, OwnModel | Trajectory) else None
-
-
-def to_own(model: SeparableModel | StateModel | OwnModel | Trajectory) -> OwnModel | Trajectory:
-    """As sepcal takes it. Raises Error for what is no model of one's own."""
+def to_own(model: AnyModel) -> Model:
+    """As sepcal takes it. Raises Error for a probe, which a calibration's file names."""
     own = own_among(as_model(model))
     if own is None:
         raise _core.Error(f"{type(model).__name__} ships with sepcal; leave model out")

@@ -17,7 +17,7 @@ from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.models import Model
 from sepcal.options import Bounds, open_ends
 from sepcal.own_model import OwnModel, Table, check_parts, to_rows
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model
 
 Solver = Literal["levenberg_marquardt", "slsqp"]
 SOLVERS = ("levenberg_marquardt", "slsqp")
@@ -190,7 +190,7 @@ def fit_single_stage(
             noise_tolerance=noise_tolerance,
             noise_iterations=noise_iterations,
             evaluations=evaluations,
-            threads=1 if runs_in_python(model) else threads,
+            threads=1 if model.runs_in_python else threads,
         )
     )
 

@@ -12,7 +12,7 @@ from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.flight import Flight
 from sepcal.options import LOG_CHOICE, FitOptions, spelled_out, to_core
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit
 from sepcal.states_module import states_module
 
@@ -108,7 +108,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
     if start_rows is not None and start_rows < 1:
         raise _core.Error(f"start_rows is {start_rows}; give the number of rows to fit first")
     model = as_model(model)
-    if runs_in_python(model):
+    if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     data = by_name(data)
     there = set(data)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
-from sepcal.own_state_model import AnyModel, as_model, runs_in_python
+from sepcal.own_state_model import AnyModel, as_model
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ def fit_trials(
         Error: Bad input or misuse: one line that names the culprit and the way out.
     """
     model = as_model(model)
-    if runs_in_python(model):
+    if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     refuse_log_choice(options)
     design = by_name(design)

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Filters and recursive least squares from Python: textbook formulas, batches, refusals."""
+"""Filters and smoothers from Python: textbook formulas, batches, refusals."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.linalg import block_diag
+from scipy.optimize import least_squares
 from scipy.stats import multivariate_normal
 
 import sepcal
 from refusals import refuse
 
-FORMS = ["square_root", "joseph"]
+FORMS = ["square_root", "joseph", "information"]
 rng = np.random.default_rng(4)
 PHI, GAMMA = rng.standard_normal((3, 3)), rng.standard_normal((3, 2))
 H = rng.standard_normal((2, 3))
@@ -87,43 +89,6 @@ def test_shapes_are_told() -> None:
     refuse(lambda: filter.update([[1.0]], H, R), "y", "vector")
 
 
-# --- recursive least squares
-
-
-def samples() -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    draws = np.random.default_rng(8)
-    found = []
-    for _ in range(12):
-        root = draws.standard_normal((2, 3))
-        found.append((draws.standard_normal((2, 3)), draws.standard_normal(2), root @ root.T))
-    return found
-
-
-@pytest.mark.parametrize("form", ["square_root", "information", "covariance"])
-def test_the_recursion_is_the_batch(form: str) -> None:
-    begin, known = np.array([0.5, -1.0, 2.0]), covariance(3)
-    recursion = sepcal.RecursiveLeastSquares(begin, known, form)
-    information, sum_of = np.linalg.inv(known), np.linalg.solve(known, begin)
-    for at, y, W in samples():
-        recursion.absorb(at, y, W)
-        information = information + at.T @ np.linalg.solve(W, at)
-        sum_of = sum_of + at.T @ np.linalg.solve(W, y)
-    assert_allclose(recursion.solution, np.linalg.solve(information, sum_of), rtol=1e-12)
-    assert_allclose(recursion.covariance, np.linalg.inv(information), rtol=1e-11, atol=1e-14)
-
-
-def test_without_a_start_it_is_ordinary_least_squares() -> None:
-    x = np.linspace(0, 1, 9)
-    y = 2 - 3 * x + 0.1 * np.random.default_rng(1).standard_normal(9)
-    recursion = sepcal.RecursiveLeastSquares(2)
-    assert not recursion.determined
-    for at, value in zip(x, y, strict=True):
-        recursion.absorb([1.0, at], value)
-    recursion.absorb([1.0, 0.5], np.nan)  # not measured
-    assert recursion.determined
-    assert_allclose(recursion.solution[::-1], np.polyfit(x, y, 1), rtol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -131,8 +96,13 @@ def test_without_a_start_it_is_ordinary_least_squares() -> None:
         (lambda: sepcal.Filter([0, 0], [[1, 2], [2, 1]]), ("P", "eigenvalue -1")),
         (lambda: sepcal.Filter([0, 0], [[1, 2], [0, 1]]), ("P", "symmetric")),
         (lambda: sepcal.Filter([0, np.nan], np.eye(2)), ("x", "not a finite number")),
-        (lambda: sepcal.RecursiveLeastSquares(2, -np.eye(2), "covariance"), ("covariance",)),
-        (lambda: sepcal.RecursiveLeastSquares(-1), ("p is -1",)),
+        (lambda: sepcal.Filter([0, 0]), ("P", "information_root", "one of them")),
+        (lambda: sepcal.Filter([0, 0], np.zeros((2, 2)), "information"), ("P is singular",)),
+        (lambda: sepcal.Filter([0], information_root=[[1]]), ('form="information"',)),
+        (
+            lambda: sepcal.Filter([0, 0], form="information", information_root=[[1, 0], [1, 1]]),
+            ("upper triangular",),
+        ),
     ],
 )
 def test_what_is_no_covariance_is_no_start(
@@ -141,11 +111,96 @@ def test_what_is_no_covariance_is_no_start(
     refuse(make, *words)
 
 
-def test_what_a_recursion_refuses() -> None:
-    recursion = sepcal.RecursiveLeastSquares(2)
-    refuse(lambda: recursion.absorb([1.0, 2.0, 3.0], 1.0), "H", "(1, 3)", "(1, 2)")
-    refuse(lambda: recursion.absorb([1.0, 2.0], 1.0, -1.0), "absorb()", "not positive")
-    refuse(lambda: sepcal.RecursiveLeastSquares(2, form="information"), "'square_root' needs none")
-    refuse(lambda: sepcal.RecursiveLeastSquares(2, np.eye(2), "fading"), "'fading'")
-    refuse(lambda: sepcal.RecursiveLeastSquares(2, np.zeros((2, 2))), "positive definite")
-    assert_array_equal(recursion.solution, 0.0)
+# --- information, iterations, smoothing
+
+
+def test_a_batchs_factor_goes_on_as_information() -> None:
+    rows = rng.standard_normal((9, 3))
+    R_batch = np.linalg.qr(rows, mode="r")
+    filter = sepcal.Filter(np.ones(3), form="information", information_root=R_batch)
+    assert_allclose(filter.covariance, np.linalg.inv(rows.T @ rows), rtol=1e-10)
+    filter.update([0.3, 0.7], H, R)
+    information = rows.T @ rows + H.T @ np.linalg.solve(R, H)
+    root = filter.information_root
+    assert_allclose(root.T @ root, information, rtol=1e-10)
+    assert_array_equal(np.tril(root, -1), 0.0)
+    refuse(lambda: sepcal.Filter([0.0], [[1.0]]).information_root, 'form="information"')
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_iterations_end_at_the_most_probable_state(form: str) -> None:
+    """Two ranges of a point in the plane; SciPy minimises the same sum of squares."""
+    beacons, prior, spread = (
+        np.array([[0.0, 0.0], [4.0, 0.0]]),
+        np.array([1.0, 1.0]),
+        2.0 * np.eye(2),
+    )
+    noise, y = np.diag([0.04, 0.01]), np.array([3.0, 2.5])
+
+    def ranges(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        away = x - beacons
+        distances = np.hypot(*away.T)
+        return distances, away / distances[:, None]
+
+    filter = sepcal.Filter(prior, spread, form)
+    found = filter.iterated_update(y, ranges, noise)
+    best = least_squares(
+        lambda x: np.r_[(y - ranges(x)[0]) / np.sqrt(np.diag(noise)), (x - prior) / np.sqrt(2.0)],
+        prior, xtol=1e-15, ftol=1e-15, gtol=1e-15,
+    )  # fmt: skip
+    assert_allclose(filter.x, best.x, rtol=1e-7)
+    assert_allclose(filter.covariance, np.linalg.inv(best.jac.T @ best.jac), rtol=1e-5)
+    assert found.count == 2
+    refuse(lambda: filter.iterated_update(y, lambda x: (y, [[1.0]]), noise), "H", "(2, 2)")
+    again = sepcal.Filter(prior, spread, form)
+    refuse(lambda: again.iterated_update(y, ranges, noise, iterations=1), "1 iterations", "prior")
+    with pytest.raises(ZeroDivisionError):
+        again.iterated_update(y, lambda _: 1 / 0, noise)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_pass_is_smoothed_as_the_batch_of_all_samples(form: str) -> None:
+    """Of all states and noises at once: a least-squares problem of dense matrices."""
+    samples, n, n_w = 6, 3, 2
+    y = rng.standard_normal((samples, 2))
+    filter = sepcal.Filter(np.zeros(n), P, form, keep_pass=True)
+    for k in range(samples):
+        filter.update(y[k], H, R)
+        if k < samples - 1:
+            filter.predict(PHI, Q, Gamma=GAMMA)
+    # x(k) of the unknowns x(0), w(0), ..., w(N - 2).
+    unknowns = n + n_w * (samples - 1)
+    state = [np.eye(n, unknowns)]
+    for k in range(samples - 1):
+        noise = np.zeros((n, unknowns))
+        noise[:, n + n_w * k : n + n_w * (k + 1)] = GAMMA
+        state.append(PHI @ state[-1] + noise)
+    information = np.linalg.inv(block_diag(P, *[Q] * (samples - 1)))
+    slope = np.zeros(unknowns)
+    for k in range(samples):
+        seen = H @ state[k]
+        information += seen.T @ np.linalg.solve(R, seen)
+        slope += seen.T @ np.linalg.solve(R, y[k])
+    every = np.linalg.inv(information)
+    best = every @ slope
+
+    smoothed = filter.smooth()
+    assert_allclose(smoothed.x, [rows @ best for rows in state], rtol=1e-7, atol=1e-9)
+    assert_allclose(
+        smoothed.covariance, [rows @ every @ rows.T for rows in state], rtol=1e-6, atol=1e-9
+    )
+    assert_allclose(smoothed.noise, best[n:].reshape((-1, n_w)), rtol=1e-7, atol=1e-9)
+    for k in range(samples - 1):
+        part = slice(n + n_w * k, n + n_w * (k + 1))
+        assert_allclose(smoothed.noise_covariance[k], every[part, part], rtol=1e-6, atol=1e-9)
+    assert_allclose(smoothed.x[-1], filter.x, rtol=1e-12)
+
+
+def test_only_a_pass_that_was_kept_is_smoothed() -> None:
+    filter = sepcal.Filter([0.0], [[1.0]])
+    refuse(filter.smooth, "keep_pass=True")
+    kept = sepcal.Filter([0.0], [[1.0]], keep_pass=True)
+    assert kept.smooth().noise.shape == (0, 0)
+    kept.predict([[1.0]], [[1.0]])
+    kept.predict([[1.0]], np.eye(2), Gamma=[[1.0, 2.0]])
+    refuse(kept.smooth, "noises of different number")

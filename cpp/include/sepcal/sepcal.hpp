@@ -25,6 +25,7 @@
 #include "sepcal/block_model.hpp"        // the narrow waist
 #include "sepcal/static_model.hpp"       // from a struct to the waist
 #include "sepcal/static_concatenation.hpp" // several sensors side by side
+#include "sepcal/concatenation.hpp"      // the same at run time
 #include "sepcal/joined_tables.hpp"
 #include "sepcal/dual.hpp"               // derivatives in flight
 #include "sepcal/nested_dual.hpp"        // second derivatives

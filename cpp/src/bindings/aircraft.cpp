@@ -12,6 +12,7 @@
 #include "bindings.hpp"
 #include "released.hpp"
 #include "results.hpp"
+#include "sepcal/aircraft/coefficients.hpp"
 #include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/flight/output_file.hpp"
 #include "sepcal/simulation/aircraft.hpp"
@@ -138,6 +139,26 @@ Stepped<AircraftFit> diagnose_stepwise_on(const AircraftFit& fitted, const Fligh
           std::move(page)};
 }
 
+/// {column: values}, the coefficients' names, the window [s], notes.
+std::tuple<py::typing::Dict<py::str, Array>, std::vector<std::string>, double,
+           std::vector<std::string>>
+coefficients_of(const py::dict& columns, const std::vector<std::string>& labels,
+                const std::string& geometry, const std::vector<std::string>& coefficients,
+                double window) {
+  const Record record = record_of(columns, labels);
+  AeroCoefficients found = [&] {
+    const Released released;
+    return aero_coefficients(record, parse_aircraft(geometry, "the aircraft"),
+                             {.coefficients = coefficients, .window = window});
+  }();
+  py::typing::Dict<py::str, Array> result;
+  for (const std::string& name : found.record.names()) {
+    const std::span<const double> values = found.record.column(name);
+    result[py::str(name)] = adopt({values.begin(), values.end()});
+  }
+  return {result, std::move(found.names), found.window, std::move(found.notes)};
+}
+
 void save(const AircraftFit& fitted, const std::string& file) {
   OutputFile output(file);
   output.write(to_json(fitted));
@@ -225,6 +246,7 @@ void define_aircraft(py::module_& module) {
   module.def("parse", &parse_aircraft_fit);
   module.def("read", &read_aircraft_fit);
   module.def("read_aircraft", [](const std::string& file) { return to_json(read_aircraft(file)); });
+  module.def("aero_coefficients", &coefficients_of);
   module.def("simulate", &simulate);
   module.def("standard_regressors", [](const std::string& coefficient) {
     return standard_equations({coefficient}).front().regressors;

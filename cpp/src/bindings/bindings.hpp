@@ -57,6 +57,13 @@ std::shared_ptr<const Probe> own_if_free(const std::string& name, const Given& m
   }
 }
 
+/// One that ships without a probe of its own, and whose flights are taken as those of an own model.
+inline Model shipped_model(const std::string& name, std::shared_ptr<const BlockModel> block) {
+  Model model(std::move(block));
+  model.own = own_if_free(name, model.block);
+  return model;
+}
+
 /// What takes the model's flights; may be empty.
 const std::shared_ptr<const Probe>& subject_of(const Model& model);
 
@@ -66,6 +73,7 @@ const Probe& probe_of(const Model& model);
 // Of sepcal._core.
 void define_certificate(py::module_& module);
 void define_check(py::module_& module);
+void define_noise(py::module_& module);
 void define_options(py::module_& module);
 void define_results(py::module_& module);
 void define_rivals(py::module_& module);
@@ -81,6 +89,7 @@ void define_state_results(py::module_& module);
 void define_trials(py::module_& module);
 
 // Of sepcal._states.
+void define_damped_sinusoids(py::module_& module);
 void define_aircraft(py::module_& module);
 void define_filters(py::module_& module);
 void define_states(py::module_& module);

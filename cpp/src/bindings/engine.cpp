@@ -20,6 +20,7 @@
 #include "released.hpp"
 #include "results.hpp"
 #include "sepcal/compiled_models.hpp"
+#include "sepcal/concatenation.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -54,12 +55,11 @@ std::vector<Variable> to_table(const std::vector<Row>& rows) {
 
 Model python_model(const std::string& name, const std::array<std::vector<Row>, 4>& tables,
                    const PythonFunctions& functions) {
-  Model model(std::make_shared<const PythonModel>(
-      name,
-      Tables{to_table(tables[0]), to_table(tables[1]), to_table(tables[2]), to_table(tables[3])},
-      functions));
-  model.own = own_if_free(name, model.block);
-  return model;
+  return shipped_model(
+      name, std::make_shared<const PythonModel>(name,
+                                                Tables{to_table(tables[0]), to_table(tables[1]),
+                                                       to_table(tables[2]), to_table(tables[3])},
+                                                functions));
 }
 
 /// The model for a record of these columns.
@@ -197,13 +197,26 @@ void define_engine(py::module_& module) {
                                }
                                return names;
                              })
+      .def_property_readonly("ships_a_probe",
+                             [](const Model& model) { return model.probe != nullptr; })
+      .def_property_readonly("takes_flights",
+                             [](const Model& model) { return subject_of(model) != nullptr; })
       .def("input_tangent", &input_tangent);
 
   module.def("effects_of", [](const Model& model) { return effect_catalogue(probe_of(model)); });
 
   using Vector = std::array<double, 3>;
-  module.def("scalar_example_1", [] { return Model(block_model(ScalarExample1{})); });
-  module.def("scalar_example_2", [] { return Model(block_model(ScalarExample2{})); });
+  module.def("scalar_example_1",
+             [] { return shipped_model("scalar-example-1", block_model(ScalarExample1{})); });
+  module.def("scalar_example_2",
+             [] { return shipped_model("scalar-example-2", block_model(ScalarExample2{})); });
+  module.def("accelerometer",
+             [] { return shipped_model("accelerometer", block_model(Accelerometer{})); });
+  module.def("concatenation", [](const std::vector<std::pair<std::string, Model>>& parts) {
+    std::vector<Sensor> sensors;
+    for (const auto& [label, model] : parts) sensors.push_back({label, model.block});
+    return shipped_model("concatenation", concatenate(sensors));
+  });
   module.def("five_hole_probe", [](double k_alpha, double k_beta, const Vector& lever_arm) {
     return Model(std::shared_ptr<const Probe>(five_hole_probe(k_alpha, k_beta, lever_arm)));
   });

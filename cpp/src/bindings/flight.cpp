@@ -113,6 +113,10 @@ void define_flights(py::module_& module) {
     check_not_input(output, input);
   });
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
+  module.def(
+      "stream_csv",
+      [](const std::string& file, const std::string& folder) { return stream_csv(file, folder); },
+      WithoutGil());
 }
 
 /// With an effect added where one is named.

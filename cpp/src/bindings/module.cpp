@@ -56,6 +56,7 @@ PYBIND11_MODULE(_core, module) {
   define_results(module);
   define_effects(module);
   define_engine(module);
+  define_noise(module);
   define_intervals(module);
   define_certificate(module);
   define_rivals(module);

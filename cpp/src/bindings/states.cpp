@@ -187,8 +187,11 @@ void define_states(py::module_& module) {
   module.def("track", &track_columns);
   module.def("python_state_model", &python_state_model);
   module.def("flight_path", &flight_path);
-  module.def("short_period",
-             [](const TrajectoryOptions& options) { return lay(ShortPeriod{}, options); });
+  module.def("short_period", [](const TrajectoryOptions& options) {
+    Model model = lay(ShortPeriod{}, options);
+    model.own = own_model("short-period", ShortPeriod{}, options);
+    return model;
+  });
 }
 
 }  // namespace sepcal::bindings

@@ -11,5 +11,6 @@ PYBIND11_MODULE(_states, module) {
   sepcal::silence_solver_log();
   define_states(module);
   define_filters(module);
+  define_damped_sinusoids(module);
   define_aircraft(module);
 }

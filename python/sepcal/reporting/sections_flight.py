@@ -7,8 +7,7 @@ import numpy as np
 
 from sepcal.columns import Array
 from sepcal.markup import Html, html
-from sepcal.own_model import OwnModel
-from sepcal.own_state_model import Trajectory
+from sepcal.models import Model
 from sepcal.reporting import tables, words
 from sepcal.reporting.figures_flight import (
     covered_cells,
@@ -131,7 +130,7 @@ def _cover_field(material: Material) -> tuple[list[Figure], Html]:
     return figures, html(told, visited, cells)
 
 
-def _cover_inputs(material: Material, own: OwnModel | Trajectory) -> list[Figure]:
+def _cover_inputs(material: Material, own: Model) -> list[Figure]:
     figures = []
     for name in own.inputs:
         values = material.figures.channel(name)

@@ -28,7 +28,9 @@ DiscreteNoise<NX, Scalar> discretise(
     const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& density,
     std::type_identity_t<Scalar> dt) {
   using Matrix = Eigen::Matrix<Scalar, NX, NX>;
-  using Square = Eigen::Matrix<Scalar, 2 * NX, 2 * NX>;
+  constexpr int both = states::together(NX, NX);
+  using Square = Eigen::Matrix<Scalar, both, both>;
+  const Eigen::Index n = F.rows();
   Matrix whole = F * dt;
   const Eigen::Vector<Scalar, NX> d = states::balance(whole);
   const int doublings = states::count_halvings(whole);
@@ -37,14 +39,14 @@ DiscreteNoise<NX, Scalar> discretise(
   const Scalar size = states::column_norm(balanced_density);  // Q_d is linear in it
   const Scalar unit = size > 0 ? 1 / size : Scalar(1);
   const Scalar part = std::ldexp(Scalar(1), -doublings);
-  Square block = Square::Zero();
-  block.template topLeftCorner<NX, NX>() = -whole * part;
-  block.template bottomRightCorner<NX, NX>() = whole.transpose() * part;
-  block.template topRightCorner<NX, NX>() = balanced_density * unit;
+  Square block = Square::Zero(2 * n, 2 * n);
+  block.template topLeftCorner<NX, NX>(n, n) = -whole * part;
+  block.template bottomRightCorner<NX, NX>(n, n) = whole.transpose() * part;
+  block.template topRightCorner<NX, NX>(n, n) = balanced_density * unit;
   const Square E = matrix_exponential(block);
 
-  Matrix Phi = E.template bottomRightCorner<NX, NX>().transpose();
-  Matrix Q = states::product(Phi, E.template topRightCorner<NX, NX>());
+  Matrix Phi = E.template bottomRightCorner<NX, NX>(n, n).transpose();
+  Matrix Q = states::product(Phi, E.template topRightCorner<NX, NX>(n, n));
   for (int k = 0; k < doublings; ++k) {
     Q += states::product(Phi, Q, Phi.transpose());
     Phi = states::product(Phi, Phi);
@@ -67,14 +69,17 @@ template <int NX, int NU, class Scalar = double>
 DiscreteInputs<NX, NU, Scalar> discretise_inputs(
     const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& F,
     const std::type_identity_t<Eigen::Matrix<Scalar, NX, NU>>& B, std::type_identity_t<Scalar> dt) {
-  using Square = Eigen::Matrix<Scalar, NX + 2 * NU, NX + 2 * NU>;
-  Square block = Square::Zero();
-  block.template topLeftCorner<NX, NX>() = F * dt;
-  block.template block<NX, NU>(0, NX) = B * dt;
-  block.template block<NU, NU>(NX, NX + NU).setIdentity();
+  constexpr int all = states::together(NX, states::together(NU, NU));
+  using Square = Eigen::Matrix<Scalar, all, all>;
+  const Eigen::Index n_x = B.rows();
+  const Eigen::Index n_u = B.cols();
+  Square block = Square::Zero(n_x + 2 * n_u, n_x + 2 * n_u);
+  block.template topLeftCorner<NX, NX>(n_x, n_x) = F * dt;
+  block.template block<NX, NU>(0, n_x, n_x, n_u) = B * dt;
+  block.template block<NU, NU>(n_x, n_x + n_u, n_u, n_u).setIdentity();
   const Square E = matrix_exponential(block);
-  const Eigen::Matrix<Scalar, NX, NU> held = E.template block<NX, NU>(0, NX);
-  const Eigen::Matrix<Scalar, NX, NU> end = E.template block<NX, NU>(0, NX + NU);
+  const Eigen::Matrix<Scalar, NX, NU> held = E.template block<NX, NU>(0, n_x, n_x, n_u);
+  const Eigen::Matrix<Scalar, NX, NU> end = E.template block<NX, NU>(0, n_x + n_u, n_x, n_u);
   return {held, held - end, end};
 }
 

@@ -68,7 +68,9 @@ Transition<NX, NX, Scalar> propagate(
   constexpr Scalar most_steps = 1e6;  // no loop without end for a longest_step of zero
   const Scalar steps = std::max(Scalar(1), std::ceil((end - begin) / longest_step));
   const Scalar dt = (end - begin) / steps;
-  Transition<NX, NX, Scalar> whole{x, Matrix::Identity(), Matrix::Identity(), Matrix::Zero()};
+  const Eigen::Index n = x.size();
+  Transition<NX, NX, Scalar> whole{x, Matrix::Identity(n, n), Matrix::Identity(n, n),
+                                   Matrix::Zero(n, n)};
   const bool endless = !(steps <= most_steps);
   if (endless) whole.x.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
   const int count = endless ? 0 : static_cast<int>(steps);

@@ -48,7 +48,8 @@ namespace states {
 template <int N, class Scalar, class Sample>
 bool gather(const Sample& sample, int count, const Eigen::Vector<Scalar, N>& p,
             InformationRoot<N, Scalar>& rows) {
-  rows = InformationRoot<N, Scalar>();
+  using Root = InformationRoot<N, Scalar>;
+  rows = Root(Root::Triangle::Zero(p.size() + 1, p.size() + 1));
   for (int k = 0; k < count; ++k) {
     const auto at = sample(k, p);
     if (!rows.absorb(at.H, at.z, at.W)) return false;
@@ -59,7 +60,7 @@ bool gather(const Sample& sample, int count, const Eigen::Vector<Scalar, N>& p,
 /// V(p) of the rows about p, S 4.5: at dp = 0, where rows.cost() is that of their solution.
 template <int N, class Scalar>
 Scalar cost_about(const InformationRoot<N, Scalar>& rows) {
-  return Scalar(0.5) * rows.matrix().col(N).squaredNorm();
+  return Scalar(0.5) * rows.matrix().template rightCols<1>().squaredNorm();
 }
 
 }  // namespace states
@@ -84,10 +85,10 @@ LeastSquares<N, Scalar> iterate_least_squares(const Sample& sample, int count,
     }
     Eigen::Vector<Scalar, N> step = fit.rows.solution();
     // What rounds in the step, of the rows' size and of p's, is not asked for.
-    const Scalar rounds =
-        8 * states::rounding<Scalar> *
-        (fit.rows.matrix().col(N).norm() + states::product(fit.rows.root(), fit.p).norm());
-    const bool last = fit.rows.matrix().col(N).template head<N>().norm() <=
+    const Scalar rounds = 8 * states::rounding<Scalar> *
+                          (fit.rows.matrix().template rightCols<1>().norm() +
+                           states::product(fit.rows.root(), fit.p).norm());
+    const bool last = fit.rows.matrix().template topRightCorner<N, 1>(p.size(), 1).norm() <=
                       static_cast<Scalar>(options.tolerance) + rounds;
     InformationRoot<N, Scalar> rows;
     const Scalar most = fit.cost * (1 + slack);

@@ -21,9 +21,9 @@ template <class T, int N>
 T column_norm(const Eigen::Matrix<T, N, N>& A) {
   using std::abs;
   T norm(Real<T>(0));
-  for (int j = 0; j < N; ++j) {
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
     T sum(Real<T>(0));
-    for (int i = 0; i < N; ++i) sum += abs(A(i, j));
+    for (Eigen::Index i = 0; i < A.rows(); ++i) sum += abs(A(i, j));
     if (!(sum <= norm)) norm = sum;  // a NaN stays
   }
   return norm;
@@ -36,14 +36,14 @@ Eigen::Vector<Real<T>, N> balance(Eigen::Matrix<T, N, N>& A) {
   using std::abs;
   constexpr int sweeps = 20;
   constexpr Real<T> most = std::same_as<Real<T>, float> ? Real<T>(1e9) : Real<T>(1e100);
-  Eigen::Vector<Real<T>, N> d = Eigen::Vector<Real<T>, N>::Ones();
+  Eigen::Vector<Real<T>, N> d = Eigen::Vector<Real<T>, N>::Ones(A.rows());
   bool changed = true;
   for (int sweep = 0; changed && sweep < sweeps; ++sweep) {
     changed = false;
-    for (int i = 0; i < N; ++i) {
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
       T column(Real<T>(0));
       T row(Real<T>(0));
-      for (int j = 0; j < N; ++j) {
+      for (Eigen::Index j = 0; j < A.rows(); ++j) {
         if (j == i) continue;
         column += abs(A(j, i));
         row += abs(A(i, j));
@@ -57,7 +57,7 @@ Eigen::Vector<Real<T>, N> balance(Eigen::Matrix<T, N, N>& A) {
       if (factor == 1) continue;
       changed = true;
       d[i] *= factor;
-      for (int j = 0; j < N; ++j) {
+      for (Eigen::Index j = 0; j < A.rows(); ++j) {
         if (j == i) continue;
         A(j, i) *= T(factor);
         A(i, j) *= T(1 / factor);
@@ -85,24 +85,25 @@ template <class T, int N>
 Eigen::Matrix<T, N, N> eliminate(Eigen::Matrix<T, N, N> A, Eigen::Matrix<T, N, N> B) {
   using std::abs;
   using std::swap;
-  for (int k = 0; k < N; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < N; ++i) {
+  const Eigen::Index n = A.rows();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < n; ++i) {
       if (abs(A(i, k)) > abs(A(pivot, k))) pivot = i;
     }
-    for (int j = 0; j < N; ++j) {
+    for (Eigen::Index j = 0; j < n; ++j) {
       swap(A(k, j), A(pivot, j));
       swap(B(k, j), B(pivot, j));
     }
-    for (int i = k + 1; i < N; ++i) {
+    for (Eigen::Index i = k + 1; i < n; ++i) {
       const T factor = A(i, k) / A(k, k);
-      for (int j = k + 1; j < N; ++j) A(i, j) -= factor * A(k, j);
-      for (int j = 0; j < N; ++j) B(i, j) -= factor * B(k, j);
+      for (Eigen::Index j = k + 1; j < n; ++j) A(i, j) -= factor * A(k, j);
+      for (Eigen::Index j = 0; j < n; ++j) B(i, j) -= factor * B(k, j);
     }
   }
-  for (int k = N - 1; k >= 0; --k) {
-    for (int j = 0; j < N; ++j) {
-      for (int i = k + 1; i < N; ++i) B(k, j) -= A(k, i) * B(i, j);
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = k + 1; i < n; ++i) B(k, j) -= A(k, i) * B(i, j);
       B(k, j) /= A(k, k);
     }
   }
@@ -111,19 +112,21 @@ Eigen::Matrix<T, N, N> eliminate(Eigen::Matrix<T, N, N> A, Eigen::Matrix<T, N, N
 
 }  // namespace states
 
-/// exp(A), N x N, of doubles or dual numbers; all NaN where A is not finite.
+/// exp(A), N x N (N may be Eigen::Dynamic), of doubles or dual numbers; all NaN where A is not
+/// finite.
 template <class T, int N>
 Eigen::Matrix<T, N, N> matrix_exponential(const Eigen::Matrix<T, N, N>& A) {
   using Matrix = Eigen::Matrix<T, N, N>;
   Matrix balanced = A;
   const Eigen::Vector<Real<T>, N> d = states::balance(balanced);
   const int halvings = states::count_halvings(balanced);
-  if (halvings < 0) return Matrix::Constant(T(std::numeric_limits<Real<T>>::quiet_NaN()));
+  const Eigen::Index n = A.rows();
+  if (halvings < 0) return Matrix::Constant(n, n, T(std::numeric_limits<Real<T>>::quiet_NaN()));
   const Matrix scaled = balanced * T(std::ldexp(Real<T>(1), -halvings));
 
   constexpr int order = 6;
   Real<T> coefficient = 1;
-  Matrix power = Matrix::Identity();
+  Matrix power = Matrix::Identity(n, n);
   Matrix above = power;  // of the rational function, N(A) / N(-A)
   Matrix below = power;
   for (int k = 1; k <= order; ++k) {
@@ -135,8 +138,8 @@ Eigen::Matrix<T, N, N> matrix_exponential(const Eigen::Matrix<T, N, N>& A) {
   }
   Matrix result = states::eliminate(below, above);
   for (int k = 0; k < halvings; ++k) result = states::product(result, result);
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) result(i, j) *= T(d[i] / d[j]);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) result(i, j) *= T(d[i] / d[j]);
   }
   return result;
 }

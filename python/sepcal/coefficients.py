@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The aerodynamic coefficients that a flight had."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
+from sepcal.geometry import Aircraft
+from sepcal.states_module import states_module
+
+
+@dataclass(frozen=True)
+class AeroCoefficients:
+    """What aero_coefficients() found.
+
+    Attributes:
+        columns: {name: (N,)}: those given, airspeed, alpha and beta moved to the centre of gravity,
+            the coefficients and, where there are rates, p_hat, q_hat, r_hat, and pdot, qdot, rdot
+            [rad/s^2]. NaN outside the segments.
+        names: The coefficients that were computed.
+        window: Of the local cubic that differentiated the rates [s]; NaN where pdot, qdot, rdot
+            were given.
+        notes: What must be known to read them, a sentence each.
+    """
+
+    columns: dict[str, Array]
+    names: list[str]
+    window: float
+    notes: list[str]
+
+
+def aero_coefficients(
+    data: Columns,
+    aircraft: Aircraft,
+    coefficients: Sequence[str] = (),
+    *,
+    window: float = 0.0,
+) -> AeroCoefficients:
+    """CX, CY, CZ, Cl, Cm, Cn of every sample, from what the inertial unit read (S 6.14 to 6.19).
+
+    Args:
+        data: Columns in SI, (N,) each: `time`; `ax ay az`, specific forces at aircraft.imu (level
+            flight reads az = -9.81); `p q r`; `airspeed`, `alpha`, `beta` at aircraft.vane; `rho`
+            or `qbar`. Where there are: `thrust` [N], `mass` [kg], `pdot qdot rdot`, `maneuver`.
+            Only what the chosen coefficients need is asked for.
+        aircraft: What flew.
+        coefficients: Which [all six].
+        window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+
+    Raises:
+        Error: What is missing, with the way out; degrees; a vertical acceleration that is no
+            specific force.
+    """
+    given = by_name(data)
+    numbers = [name for name in given if name != "maneuver"]
+    columns = take_columns("aero_coefficients", given, numbers)
+    found, names, window, notes = states_module().aero_coefficients(
+        columns, labels_in(given), aircraft.to_json(), list(coefficients), window
+    )
+    return AeroCoefficients(found, names, window, notes)

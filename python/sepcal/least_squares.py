@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Least squares over samples: iterated over all of them, or sample by sample."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sepcal import _core
+from sepcal.columns import Array
+from sepcal.matrices import REFUSED, finite, to_covariance, to_matrix, to_vector
+from sepcal.states_module import states_module
+
+if TYPE_CHECKING:
+    from sepcal import _states
+
+Status = Literal["converged", "not_converged", "not_determined"]
+Sample = Callable[
+    [int, Array], tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, ArrayLike]
+]
+
+
+@dataclass(frozen=True)
+class LeastSquares:
+    """What iterate_least_squares() found.
+
+    Attributes:
+        status: "not_converged": iterations ended by their cap, or no step made the cost fall.
+            "not_determined": the samples leave a parameter open.
+        iterations: How many.
+        p: (n,), S 4.8.
+        covariance: Of p, (n, n), where W is the noise's covariance, S 4.7; NaN where a parameter is
+            open.
+        root: [R q; 0 rho], (n + 1, n + 1), of all samples about p: R'R is the information.
+        count: Numbers that were there in all samples.
+        cost: V(p), half the weighted sum of squares, S 4.5.
+    """
+
+    status: Status
+    iterations: int
+    p: Array
+    covariance: Array
+    root: Array
+    count: int
+    cost: float
+
+
+def iterate_least_squares(
+    sample: Sample,
+    count: int,
+    p: ArrayLike,
+    *,
+    iterations: int = 50,
+    tolerance: float = 1e-8,
+    halvings: int = 30,
+) -> LeastSquares:
+    """Weighted least squares by Gauss and Newton, y(k) = f(k, p) + e(k) (S 4.1 to 4.8).
+
+    The compiled code that flight software takes for a few parameters; fits of whole records, with
+    bounds and without a start, are sepcal.fit().
+
+    Args:
+        sample: Of sample k at p: z = y - f(k, p), (m,), NaN where missing; H = df/dp, (m, n); and
+            W, the covariance of e, (m, m) [the identity].
+        count: Samples, k = 0 ... count - 1.
+        p: Where it begins, (n,).
+        iterations: At most so many.
+        tolerance: Of a step, in standard deviations of p.
+        halvings: At most so many of a step that makes the cost rise.
+
+    Raises:
+        Error: Another shape, what is not finite, a W that is not positive definite.
+        Exception: What `sample` raises, as it is.
+    """
+
+    def rows(k: int, at: Array) -> tuple[Array, Array, Array]:
+        given = sample(k, at)
+        if len(given) not in (2, 3):
+            raise _core.Error(f"sample() gave {len(given)} parts; it gives z, H or z, H, W")
+        z = np.atleast_1d(to_vector("z", given[0]))
+        H = to_matrix("H", np.atleast_2d(np.asarray(given[1], dtype=np.float64)))
+        W = np.eye(len(z)) if len(given) == 2 else np.atleast_2d(np.asarray(given[2], np.float64))
+        return z, H, to_matrix("W", W)
+
+    for name, number in (("count", count), ("iterations", iterations)):
+        if number < 1:
+            raise _core.Error(f"{name} is {number}; it must be above 0")
+    status, *found = states_module().iterate_least_squares(
+        rows, count, finite("p", to_vector("p", p)), iterations, tolerance, halvings
+    )
+    if status == "refused":
+        raise _core.Error(
+            "a sample has a number that is not finite, or a W that is not positive definite"
+        )
+    taken, at, root, covariance, values, cost = found
+    if status == "not_determined":
+        covariance = np.full_like(covariance, np.nan)
+    return LeastSquares(status, taken, at, covariance, root, values, cost)
+
+
+class RecursiveLeastSquares:
+    """y = H p + e, sample by sample; the answer is that of all samples at once.
+
+    System Identification Summary, S 4.9 to 4.14.
+
+    Args:
+        p: The parameters to begin with, (n,), or how many there are.
+        covariance: Theirs, (n, n); None: nothing is known before (with "square_root").
+        form: What is kept: the root of the information, the information itself (S 4.13), or its
+            inverse (S 4.14, corrected).
+    """
+
+    def __init__(
+        self,
+        p: ArrayLike,
+        covariance: ArrayLike | None = None,
+        form: Literal["square_root", "information", "covariance"] | str = "square_root",
+    ) -> None:
+        if isinstance(p, int) and p < 1:
+            raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
+        begin = np.zeros(p) if isinstance(p, int) else finite("p", to_vector("p", p))
+        known = None if covariance is None else to_covariance("covariance", covariance)
+        self._core: _states.RecursiveLeastSquares = states_module().RecursiveLeastSquares(
+            begin, known, form
+        )
+
+    def absorb(self, H: ArrayLike, y: ArrayLike, W: ArrayLike | None = None) -> None:
+        """One sample.
+
+        Args:
+            H: (m, n), or (n,) of one output.
+            y: (m,), or a number; NaN where missing.
+            W: Covariance of e, (m, m) [the identity].
+
+        Raises:
+            Error: Another shape, what is not finite, a covariance that is not positive definite;
+                nothing was changed.
+        """
+        values = np.atleast_1d(np.asarray(y, dtype=np.float64))
+        weights = np.eye(len(values)) if W is None else np.atleast_2d(np.asarray(W))
+        if not self._core.absorb(
+            to_matrix("H", np.atleast_2d(H)), to_vector("y", values), to_matrix("W", weights)
+        ):
+            raise _core.Error(f"absorb(): {REFUSED}")
+
+    @property
+    def solution(self) -> Array:
+        """p, (n,); zero where nothing determines it."""
+        return self._core.solution
+
+    @property
+    def covariance(self) -> Array:
+        """Of p, (n, n), where W is the noise's covariance."""
+        return self._core.covariance
+
+    @property
+    def determined(self) -> bool:
+        """Whether the samples determine every parameter."""
+        return self._core.determined
+
+    def __repr__(self) -> str:
+        return f"<sepcal.RecursiveLeastSquares of {len(self.solution)} parameters>"

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Linear systems over a step of time, and nonlinear ones by their linearisation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sepcal import _core
+from sepcal.columns import Array
+from sepcal.differences import CENTRAL, step_sizes
+from sepcal.matrices import finite, to_matrix, to_vector
+from sepcal.states_module import states_module
+
+
+def matrix_exponential(A: ArrayLike) -> Array:
+    """exp(A), (n, n), by scaling, a Pade approximant and squaring (S 3.9).
+
+    Raises:
+        Error: A is not square, or not finite.
+    """
+    exponential: Array = states_module().matrix_exponential(finite("A", to_matrix("A", A)))
+    return exponential
+
+
+@dataclass(frozen=True)
+class Transition:
+    """A step of a system with noise: what Filter.predict() is told.
+
+    Attributes:
+        Phi: (n, n), exp(F dt).
+        Q: Covariance of the noise that the step adds to the state, (n, n).
+        x: The state at its end, (n,); None of a linear system, where it is Phi x.
+    """
+
+    Phi: Array
+    Q: Array
+    x: Array | None = None
+
+
+def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
+    """X' = F x + w over a step of time, exact (Van Loan 1978).
+
+        step = sepcal.discretise(F, G @ Q @ G.T, dt)
+        filter.predict(step.Phi, step.Q)
+
+    Args:
+        F: (n, n) [1/s].
+        density: Of w, G Q G', (n, n) [state^2/s].
+        dt: [s].
+
+    Raises:
+        Error: Another shape, or what is not finite.
+    """
+    Phi, Q = states_module().discretise(
+        finite("F", to_matrix("F", F)), finite("density", to_matrix("density", density)), _time(dt)
+    )
+    return Transition(Phi, Q)
+
+
+@dataclass(frozen=True)
+class DiscreteInputs:
+    """What inputs add to a state over a step of time.
+
+    Attributes:
+        held: (n_x, n_u): x(k+1) = Phi x(k) + held u(k).
+        begin: (n_x, n_u), of inputs that are linear between samples:
+        end: (n_x, n_u): x(k+1) = Phi x(k) + begin u(k) + end u(k+1).
+    """
+
+    held: Array
+    begin: Array
+    end: Array
+
+
+def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
+    """What u adds to x' = F x + B u over a step of time. Held inputs lag linear ones by half of it.
+
+    Args:
+        F: (n_x, n_x) [1/s].
+        B: (n_x, n_u).
+        dt: [s].
+
+    Raises:
+        Error: Another shape, or what is not finite.
+    """
+    parts = states_module().discretise_inputs(
+        finite("F", to_matrix("F", F)), finite("B", to_matrix("B", B)), _time(dt)
+    )
+    return DiscreteInputs(*parts)
+
+
+Rate = Callable[[Array, float], ArrayLike]
+
+
+def propagate(
+    rate: Rate,
+    x: ArrayLike,
+    Q: ArrayLike,
+    begin: float,
+    end: float,
+    *,
+    rate_jacobian: Rate | None = None,
+    noise_input: Rate | None = None,
+    longest_step: float = math.inf,
+) -> Transition:
+    """X' = f(x, t) + G(x, t) w from one time to another, for an extended filter (S 3.1 to 3.11).
+
+        step = sepcal.propagate(fall, filter.x, Q, t[k], t[k + 1])
+        filter.predict(step.Phi, step.Q, x=step.x)
+
+    The state goes by Runge and Kutta's fourth order, Phi and Q by discretise() at the state
+    half-way through each step.
+
+    Args:
+        rate: f(x, t), (n,). Inputs u(t) are its own business.
+        x: The state at `begin`, (n,).
+        Q: Density of w, (n_w, n_w) [unit^2 s].
+        begin: [s].
+        end: [s].
+        rate_jacobian: df/dx at (x, t), (n, n) [differences of fourth order].
+        noise_input: G at (x, t), (n, n_w) [the identity].
+        longest_step: [s]; the time between is cut into equal steps of at most that.
+
+    Raises:
+        Error: Another shape, or what is not finite, also of what the functions give.
+        Exception: What the functions raise, as it is.
+    """
+    state = finite("x", to_vector("x", x))
+    identity = np.eye(len(state))
+    if not longest_step > 0.0:
+        raise _core.Error(f"longest_step is {longest_step}; it is a time above 0 [s]")
+
+    def differences(at: Array, t: float) -> Array:
+        offsets, weights = CENTRAL
+        steps = step_sizes(at)
+        points = [np.array([rate(at + h * row, t) for h in offsets]) for row in np.diag(steps)]
+        with np.errstate(invalid="ignore"):  # what is not finite is refused below
+            return np.stack([weights[1:] @ moved for moved in points], axis=1) / steps
+
+    def jacobian(at: Array, t: float) -> Array:
+        if rate_jacobian is None:
+            return differences(at, t)
+        return to_matrix("rate_jacobian(x, t)", rate_jacobian(at, t))
+
+    def input_of_noise(at: Array, t: float) -> Array:
+        if noise_input is None:
+            return identity
+        return to_matrix("noise_input(x, t)", noise_input(at, t))
+
+    moved, Phi, noise = states_module().propagate(
+        lambda at, t: to_vector("rate(x, t)", rate(at, t)),
+        jacobian,
+        input_of_noise,
+        state,
+        finite("Q", to_matrix("Q", Q)),
+        _time(begin),
+        _time(end),
+        longest_step,
+    )
+    if not all(np.isfinite(part).all() for part in (moved, Phi, noise)):
+        raise _core.Error(f"x is not finite on the way from {begin:g} to {end:g} s")
+    return Transition(Phi, noise, moved)
+
+
+def _time(seconds: float) -> float:
+    if not math.isfinite(seconds):
+        raise _core.Error(f"a time is {seconds}; it must be a number [s]")
+    return float(seconds)

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The noise of a residual: fitted, whitened by, drawn from."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sepcal import _core
+from sepcal._core import NoiseFit, NoiseModel
+from sepcal.columns import Array
+from sepcal.matrices import to_vector
+
+Segments = Sequence[tuple[int, int]]  # first row, row after the last
+
+
+def fit_noise(
+    e: ArrayLike,
+    *,
+    segments: Segments | None = None,
+    order: int | None = None,
+    max_order: int = 8,
+    start: NoiseModel | None = None,
+) -> NoiseFit:
+    """phi(B) (1 - B)^d e = sigma w by maximum likelihood: white, pink, autoregressive, drifting.
+
+        found = sepcal.fit_noise(residual)
+        white = sepcal.whiten(found.model, residual)
+
+    Args:
+        e: (N,), zero in the mean unless it is slow.
+        segments: (first row, row after the last) of each stretch, independent of the others; other
+            rows are not read [one of all rows].
+        order: Of the autoregression [that of least AIC].
+        max_order: At most so high then.
+        start: An earlier fit's model, whose order and freedom of the level are kept.
+
+    Raises:
+        Error: No rows, a segment that leaves e, what is not finite, an order below 0.
+    """
+    return _core.fit_noise(to_vector("e", e), _rows(segments), order, max_order, start)
+
+
+def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None) -> Array:
+    """W e, white with unit variance where e is of the model, (N,); NaN outside the segments.
+
+    Where the level is free each segment's first row becomes zero.
+
+    Raises:
+        Error: A model that isn't stationary or whose sigma is 0, a segment that leaves e.
+    """
+    return _core.whiten(model, to_vector("e", e), _rows(segments))
+
+
+def simulate_noise(
+    model: NoiseModel, rows: int | Sequence[int], *, draws: int = 1, seed: int = 0
+) -> Array:
+    """Draws of the noise, (N, draws).
+
+    Args:
+        model: What is drawn.
+        rows: N, or those of each segment, N in all.
+        draws: Independent ones, a column each.
+        seed: Of std::mt19937_64.
+
+    Raises:
+        Error: A model that isn't stationary, an empty segment.
+    """
+    lengths = np.atleast_1d(np.asarray(rows, dtype=np.int64)).tolist()
+    if min(lengths, default=0) < 1 or draws < 1:
+        raise _core.Error(f"rows and draws must be above 0; they are {rows} and {draws}")
+    return _core.simulate_noise(model, lengths, draws, seed)
+
+
+def _rows(segments: Segments | None) -> list[tuple[int, int]] | None:
+    if segments is None:
+        return None
+    for first, last in segments:
+        if not 0 <= first < last:
+            raise _core.Error(
+                f"the segment ({first}, {last}) has no rows; it is (first, after last)"
+            )
+    return [(int(first), int(last)) for first, last in segments]

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sensors of three axes in canonical form, put together of parts."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sepcal import _core
+from sepcal.columns import Array
+from sepcal.own_model import Row, Table, check_parts, to_rows
+
+
+class Reference(Protocol):
+    """What a triad sees: tables `inputs`, `outputs` (three), `nonlinear` (may be empty)."""
+
+    inputs: Table
+    outputs: Table
+    nonlinear: Table
+
+    def at(self, u: Any, xi: Array, /) -> ArrayLike:  # noqa: ANN401
+        """What is seen, (N, 3), of the inputs (a named tuple of (N,)) and own parameters."""
+
+
+class Factor(Protocol):
+    """A matrix through which it sees; a table `nonlinear` of its own parameters."""
+
+    nonlinear: Table
+
+    def matrix(self, xi: Array, /) -> ArrayLike:
+        """(3, 3), of its parameters."""
+
+
+class FieldInBody:
+    """The true field in body axes, as a magnetometer sees it."""
+
+    inputs: Table = (("hx", "uT"), ("hy", "uT"), ("hz", "uT"))
+    outputs: Table = (("mx", "uT"), ("my", "uT"), ("mz", "uT"))
+    nonlinear: Table = ()
+
+    def at(self, u: Any, _xi: Array) -> ArrayLike:  # noqa: ANN401
+        """The field, (N, 3)."""
+        return np.column_stack(u)
+
+
+class SpecificForceInBody:
+    """The true specific force in body axes; at rest and level fz is -9.81 m/s^2."""
+
+    inputs: Table = (("fx", "m/s^2"), ("fy", "m/s^2"), ("fz", "m/s^2"))
+    outputs: Table = (("ax", "m/s^2"), ("ay", "m/s^2"), ("az", "m/s^2"))
+    nonlinear: Table = ()
+
+    def at(self, u: Any, _xi: Array) -> ArrayLike:  # noqa: ANN401
+        """The force, (N, 3)."""
+        return np.column_stack(u)
+
+
+class Misalignment:
+    """C_eta = I + [eta x]: small angles from the reference's axes to the sensor's (Eq. A2)."""
+
+    nonlinear: Table = tuple((f"eta_{axis}", "rad", -0.5, 0.5) for axis in "xyz")
+
+    def matrix(self, eta: Array) -> Array:
+        """I + [eta x]."""
+        x, y, z = eta
+        return np.array([[1.0, -z, y], [z, 1.0, -x], [-y, x, 1.0]])
+
+
+class CrossCoupling:
+    """C_alpha, symmetric with a unit diagonal: soft iron, or axes that are not at right angles."""
+
+    nonlinear: Table = tuple((f"alpha_{axes}", "1", -0.5, 0.5) for axes in ("xy", "xz", "yz"))
+
+    def matrix(self, alpha: Array) -> Array:
+        """Ones on the diagonal, alpha beside it."""
+        xy, xz, yz = alpha
+        return np.array([[1.0, xy, xz], [xy, 1.0, yz], [xz, yz, 1.0]])
+
+
+class Triad:
+    """z = N (I + D) f(u, xi') + n, N the factors' product (Sun & Gebre-Egziabher, Eqs. A1 to A4).
+
+        gyro = sepcal.Triad(RatesInBody(), sepcal.triads.Misalignment())
+        sepcal.fit(gyro, flight)
+
+    A model as one of yours is. Linear parameters are lambda_x, lambda_y, lambda_z (D) and n_x, n_y,
+    n_z in the readings' unit; nonlinear ones the reference's, then each factor's.
+
+    Args:
+        reference: What it sees: triads.FieldInBody(), SpecificForceInBody(), or one of yours.
+        *factors: The one next to the readings first: triads.Misalignment(), CrossCoupling(), yours.
+
+    Raises:
+        Error: A part without its tables or function, or not three outputs.
+    """
+
+    def __init__(self, reference: Reference, *factors: Factor) -> None:
+        check_parts(
+            reference,
+            ("inputs", "outputs", "nonlinear", "at"),
+            "reference",
+            Reference,
+            "sepcal.triads",
+        )
+        for factor in factors:
+            check_parts(factor, ("nonlinear", "matrix"), "factor", Factor, "sepcal.triads")
+        self.reference, self.factors = reference, factors
+        self.inputs, self.outputs = reference.inputs, reference.outputs
+        readings = to_rows("outputs", reference.outputs)
+        if len(readings) != 3:
+            raise _core.Error(
+                f"a triad has three outputs; {type(reference).__name__} has {len(readings)}"
+            )
+        biases = [(f"n_{axis}", unit) for axis, (_, unit, *_) in zip("xyz", readings, strict=True)]
+        self.linear = [*((f"lambda_{axis}", "1", -0.95, None) for axis in "xyz"), *biases]
+        nonlinear = [reference.nonlinear, *(factor.nonlinear for factor in factors)]
+        tables = [to_rows("nonlinear", table) for table in nonlinear]
+        self.nonlinear: list[Row] = [row for table in tables for row in table]
+        self._splits = np.cumsum([len(table) for table in tables])[:-1]
+
+    def at(self, u: Any, xi2: Array) -> tuple[Array, Array]:  # noqa: ANN401
+        """A (N, 3, 6) and b (N, 3): [N diag(f) | I] and N f."""
+        of_reference, *of_factors = np.split(xi2, self._splits)
+        f = np.asarray(self.reference.at(u, of_reference))
+        N = np.eye(3)
+        for factor, xi in zip(self.factors, of_factors, strict=True):
+            N = N @ np.asarray(factor.matrix(xi))
+        A = np.empty((len(f), 3, 6))
+        A[:, :, :3] = N * f[:, None, :]
+        A[:, :, 3:] = np.eye(3)
+        return A, f @ N.T
+
+    def __repr__(self) -> str:
+        parts = ", ".join(f"{type(part).__name__}()" for part in (self.reference, *self.factors))
+        return f"Triad({parts})"
