@@ -79,7 +79,7 @@ def _aero_fit(**options: Any) -> sepcal.Fit:
 
 
 def _path_fit(**options: Any) -> sepcal.Fit:
-    return sepcal.fit(sepcal.FlightPath(), _aircraft()[1], **{"to_time": 8.0, **options})
+    return sepcal.fit(sepcal.FlightPath(), _aircraft()[1], **{"to_time": 20.0, **options})
 
 
 def _motion_fit(**options: Any) -> sepcal.Fit:
