@@ -88,7 +88,7 @@ TEST_CASE("tables are those of sensors that were put together while compiling") 
 
 TEST_CASE("rows, derivatives by inputs and second derivatives are the same") {
   const auto model = at_run_time();
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const At at(seed);
     for (const bool tangent : {false, true}) {
       CHECK((at.rows_of(*model, tangent) - at.rows_of(while_compiling(), tangent)).norm() < 1e-13);
