@@ -69,7 +69,8 @@ struct At {
 }  // namespace
 
 TEST_CASE("tables are those of sensors that were put together while compiling") {
-  const sepcal::Tables& one = at_run_time()->tables();
+  const auto model = at_run_time();
+  const sepcal::Tables& one = model->tables();
   const sepcal::Tables& other = while_compiling().tables();
   const auto same = [](const std::vector<Variable>& a, const std::vector<Variable>& b) {
     REQUIRE(a.size() == b.size());
