@@ -792,8 +792,6 @@ class Model:
     def process_noises(self) -> list[str]: ...
     @property
     def ships_a_probe(self) -> bool: ...
-    @property
-    def takes_flights(self) -> bool: ...
 
 class PythonFunctions:
     def __init__(
@@ -874,7 +872,7 @@ class NoiseFit:
     @property
     def informative_rows(self) -> int:
         """
-        Spans, less one for each segment where the level is free.
+        Rows, less one for each segment where the level is free.
         """
     @property
     def minus_two_log_likelihood(self) -> float:
@@ -3045,7 +3043,11 @@ def fit_many(
 def fit_noise(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg1: collections.abc.Sequence[
-        tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]
+        tuple[
+            str,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ]
     ]
     | None,
     arg2: typing.SupportsInt | typing.SupportsIndex | None,
@@ -3228,7 +3230,11 @@ def whiten(
     arg0: NoiseModel,
     arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     arg2: collections.abc.Sequence[
-        tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]
+        tuple[
+            str,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ]
     ]
     | None,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...

@@ -38,7 +38,7 @@ class Calibration(Fit):
     core: _core.Calibration
     flight: Flight | None  # that was fitted, or several, joined; None where it was loaded
     own_effects: list[Effect]  # of the caller's making, among `effects`
-    own_model: Model | None  # where it is of a model of the caller's making
+    own_model: Model | None  # where a file can't make it again
 
     def __init__(
         self,
@@ -373,8 +373,8 @@ def load(
         file: The JSON.
         effects: The effects of your own that the calibration was fitted with, which a file can't
             hold. Without them its numbers can be read and nothing be done with it.
-        model: The model of your own that it is of, where it is of one; of one with a state the
-            Trajectory, where it was laid with options.
+        model: The model that it is of, but for a probe, which the file names; one with a state as
+            it was laid, with its options, which the file doesn't hold.
 
     Returns:
         A Calibration; of a flight path or an aircraft an AircraftFit.

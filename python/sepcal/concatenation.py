@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Several sensors as one model."""
 
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Sequence
 from typing import Any
 
 from sepcal import _core
@@ -15,24 +14,19 @@ class Concatenation(Model):
     """Several sensors as one model; concatenate() makes it.
 
     Args:
-        sensors: By label; "": names as they are.
+        sensors: (label, model) of each; "": its names stay as they are.
     """
 
-    def __init__(self, sensors: Mapping[str, Model], unlabelled: tuple[Model, ...] = ()) -> None:
-        self.sensors = dict(sensors)
-        self.unlabelled = unlabelled
-        self.runs_in_python = any(
-            sensor.runs_in_python for sensor in (*unlabelled, *self.sensors.values())
-        )
-        parts = [("", sensor) for sensor in unlabelled] + list(self.sensors.items())
-        super().__init__(_core.concatenation([(label, part._core) for label, part in parts]))
+    def __init__(self, sensors: Sequence[tuple[str, Model]]) -> None:
+        self.sensors = tuple(sensors)
+        self.runs_in_python = any(model.runs_in_python for _, model in sensors)
+        super().__init__(_core.concatenation([(label, model._core) for label, model in sensors]))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return partial(Concatenation, self.sensors, self.unlabelled), ()
+        return Concatenation, (self.sensors,)
 
     def __repr__(self) -> str:
-        parts = [repr(sensor) for sensor in self.unlabelled]
-        parts += [f"{label}={sensor!r}" for label, sensor in self.sensors.items()]
+        parts = (f"{label}={model!r}" if label else repr(model) for label, model in self.sensors)
         return f"concatenate({', '.join(parts)})"
 
 
@@ -53,7 +47,5 @@ def concatenate(
     Raises:
         Error: No model, one with a state, a name that belongs to two, an input in two units.
     """
-    return Concatenation(
-        {label: as_model(sensor) for label, sensor in labelled.items()},
-        tuple(as_model(sensor) for sensor in sensors),
-    )
+    parts = [*(("", sensor) for sensor in sensors), *labelled.items()]
+    return Concatenation([(label, as_model(sensor)) for label, sensor in parts])

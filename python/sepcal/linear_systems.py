@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal.columns import Array
-from sepcal.differences import CENTRAL, step_sizes
+from sepcal.differences import CENTRAL, Fan, step_sizes
 from sepcal.matrices import finite, to_matrix, to_vector
 from sepcal.states_module import states_module
 
@@ -43,7 +43,7 @@ class Transition:
 
 
 def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
-    """X' = F x + w over a step of time, exact (Van Loan 1978).
+    """A step of x' = F x + w, exact (Van Loan 1978).
 
         step = sepcal.discretise(F, G @ Q @ G.T, dt)
         filter.predict(step.Phi, step.Q)
@@ -108,7 +108,7 @@ def propagate(
     noise_input: Rate | None = None,
     longest_step: float = math.inf,
 ) -> Transition:
-    """X' = f(x, t) + G(x, t) w from one time to another, for an extended filter (S 3.1 to 3.11).
+    """A step of x' = f(x, t) + G(x, t) w, for an extended filter (S 3.1 to 3.11).
 
         step = sepcal.propagate(fall, filter.x, Q, t[k], t[k + 1])
         filter.predict(step.Phi, step.Q, x=step.x)
@@ -135,17 +135,16 @@ def propagate(
     if not longest_step > 0.0:
         raise _core.Error(f"longest_step is {longest_step}; it is a time above 0 [s]")
 
-    def differences(at: Array, t: float) -> Array:
-        offsets, weights = CENTRAL
-        steps = step_sizes(at)
-        points = [np.array([rate(at + h * row, t) for h in offsets]) for row in np.diag(steps)]
-        with np.errstate(invalid="ignore"):  # what is not finite is refused below
-            return np.stack([weights[1:] @ moved for moved in points], axis=1) / steps
+    fan = Fan([CENTRAL] * len(state))
 
     def jacobian(at: Array, t: float) -> Array:
-        if rate_jacobian is None:
-            return differences(at, t)
-        return to_matrix("rate_jacobian(x, t)", rate_jacobian(at, t))
+        if rate_jacobian is not None:
+            return to_matrix("rate_jacobian(x, t)", rate_jacobian(at, t))
+        steps = step_sizes(at)
+        points = at[:, np.newaxis] + steps[:, np.newaxis] * fan.offsets
+        rates = np.array([rate(point, t) for point in points.T])
+        with np.errstate(invalid="ignore"):  # what is not finite is refused below
+            return rates.T @ fan.weights / steps
 
     def input_of_noise(at: Array, t: float) -> Array:
         if noise_input is None:

@@ -72,7 +72,7 @@ def simulate_noise(
     return _core.simulate_noise(model, lengths, draws, seed)
 
 
-def _rows(segments: Segments | None) -> list[tuple[int, int]] | None:
+def _rows(segments: Segments | None) -> list[tuple[str, int, int]] | None:
     if segments is None:
         return None
     for first, last in segments:
@@ -80,4 +80,4 @@ def _rows(segments: Segments | None) -> list[tuple[int, int]] | None:
             raise _core.Error(
                 f"the segment ({first}, {last}) has no rows; it is (first, after last)"
             )
-    return [(int(first), int(last)) for first, last in segments]
+    return [("", int(first), int(last)) for first, last in segments]

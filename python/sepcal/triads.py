@@ -31,28 +31,28 @@ class Factor(Protocol):
         """(3, 3), of its parameters."""
 
 
-class FieldInBody:
+class _InBody:
+    """What is given in body axes and seen as it is."""
+
+    nonlinear: Table = ()
+
+    def at(self, u: Any, _xi: Array) -> ArrayLike:  # noqa: ANN401
+        """The inputs, (N, 3)."""
+        return np.column_stack(u)
+
+
+class FieldInBody(_InBody):
     """The true field in body axes, as a magnetometer sees it."""
 
     inputs: Table = (("hx", "uT"), ("hy", "uT"), ("hz", "uT"))
     outputs: Table = (("mx", "uT"), ("my", "uT"), ("mz", "uT"))
-    nonlinear: Table = ()
-
-    def at(self, u: Any, _xi: Array) -> ArrayLike:  # noqa: ANN401
-        """The field, (N, 3)."""
-        return np.column_stack(u)
 
 
-class SpecificForceInBody:
+class SpecificForceInBody(_InBody):
     """The true specific force in body axes; at rest and level fz is -9.81 m/s^2."""
 
     inputs: Table = (("fx", "m/s^2"), ("fy", "m/s^2"), ("fz", "m/s^2"))
     outputs: Table = (("ax", "m/s^2"), ("ay", "m/s^2"), ("az", "m/s^2"))
-    nonlinear: Table = ()
-
-    def at(self, u: Any, _xi: Array) -> ArrayLike:  # noqa: ANN401
-        """The force, (N, 3)."""
-        return np.column_stack(u)
 
 
 class Misalignment:

@@ -64,4 +64,11 @@ Record record_of(const py::dict& columns, const std::vector<std::string>& labels
   return record;
 }
 
+std::vector<Segment> segments_of(const std::vector<SegmentRows>& rows,
+                                 std::span<const double> column) {
+  std::vector<Segment> segments;
+  for (const auto& [label, first, last] : rows) segments.push_back({label, first, last});
+  return Record().view("residual", column).cut(std::move(segments)).segments();
+}
+
 }  // namespace sepcal::bindings

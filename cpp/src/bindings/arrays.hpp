@@ -4,8 +4,11 @@
 
 #include <pybind11/numpy.h>
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "sepcal/record.hpp"
@@ -40,5 +43,16 @@ Array adopt(std::vector<double> values);
 /// or none), it is cut at gaps and at changes of label. Throws Error as Record::view() and
 /// find_segments() do.
 Record record_of(const py::dict& columns, const std::vector<std::string>& labels);
+
+inline std::span<const double> values_in(const Eigen::VectorXd& column) {
+  return {column.data(), static_cast<std::size_t>(column.size())};
+}
+
+/// (label, first row, row after the last)
+using SegmentRows = std::tuple<std::string, std::size_t, std::size_t>;
+
+/// The segments of a column. Throws Error as Record::cut() does.
+std::vector<Segment> segments_of(const std::vector<SegmentRows>& rows,
+                                 std::span<const double> column);
 
 }  // namespace sepcal::bindings

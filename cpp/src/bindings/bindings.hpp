@@ -57,8 +57,8 @@ std::shared_ptr<const Probe> own_if_free(const std::string& name, const Given& m
   }
 }
 
-/// One that ships without a probe of its own, and whose flights are taken as those of an own model.
-inline Model shipped_model(const std::string& name, std::shared_ptr<const BlockModel> block) {
+/// One without a probe that ships: its tables say what it takes of a flight.
+inline Model plain_model(const std::string& name, std::shared_ptr<const BlockModel> block) {
   Model model(std::move(block));
   model.own = own_if_free(name, model.block);
   return model;
@@ -73,7 +73,6 @@ const Probe& probe_of(const Model& model);
 // Of sepcal._core.
 void define_certificate(py::module_& module);
 void define_check(py::module_& module);
-void define_noise(py::module_& module);
 void define_options(py::module_& module);
 void define_results(py::module_& module);
 void define_rivals(py::module_& module);
@@ -84,13 +83,14 @@ void define_figures(py::module_& module);
 void define_flight(py::module_& module);
 void define_intervals(py::module_& module);
 void define_many(py::module_& module);
+void define_noise(py::module_& module);
 void define_simulation(py::module_& module);
 void define_state_results(py::module_& module);
 void define_trials(py::module_& module);
 
 // Of sepcal._states.
-void define_damped_sinusoids(py::module_& module);
 void define_aircraft(py::module_& module);
+void define_damped_sinusoids(py::module_& module);
 void define_filters(py::module_& module);
 void define_states(py::module_& module);
 

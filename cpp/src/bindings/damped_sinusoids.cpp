@@ -26,7 +26,7 @@ std::shared_ptr<const BlockModel> make_sinusoids(int modes) {
 
 void define_damped_sinusoids(py::module_& module) {
   module.def("damped_sinusoids", [](int modes) {
-    return shipped_model("damped-sinusoids-" + std::to_string(modes), make_sinusoids<1>(modes));
+    return plain_model("damped-sinusoids-" + std::to_string(modes), make_sinusoids<1>(modes));
   });
 }
 

@@ -55,7 +55,7 @@ std::vector<Variable> to_table(const std::vector<Row>& rows) {
 
 Model python_model(const std::string& name, const std::array<std::vector<Row>, 4>& tables,
                    const PythonFunctions& functions) {
-  return shipped_model(
+  return plain_model(
       name, std::make_shared<const PythonModel>(name,
                                                 Tables{to_table(tables[0]), to_table(tables[1]),
                                                        to_table(tables[2]), to_table(tables[3])},
@@ -199,23 +199,21 @@ void define_engine(py::module_& module) {
                              })
       .def_property_readonly("ships_a_probe",
                              [](const Model& model) { return model.probe != nullptr; })
-      .def_property_readonly("takes_flights",
-                             [](const Model& model) { return subject_of(model) != nullptr; })
       .def("input_tangent", &input_tangent);
 
   module.def("effects_of", [](const Model& model) { return effect_catalogue(probe_of(model)); });
 
   using Vector = std::array<double, 3>;
   module.def("scalar_example_1",
-             [] { return shipped_model("scalar-example-1", block_model(ScalarExample1{})); });
+             [] { return plain_model("scalar-example-1", block_model(ScalarExample1{})); });
   module.def("scalar_example_2",
-             [] { return shipped_model("scalar-example-2", block_model(ScalarExample2{})); });
+             [] { return plain_model("scalar-example-2", block_model(ScalarExample2{})); });
   module.def("accelerometer",
-             [] { return shipped_model("accelerometer", block_model(Accelerometer{})); });
+             [] { return plain_model("accelerometer", block_model(Accelerometer{})); });
   module.def("concatenation", [](const std::vector<std::pair<std::string, Model>>& parts) {
     std::vector<Sensor> sensors;
     for (const auto& [label, model] : parts) sensors.push_back({label, model.block});
-    return shipped_model("concatenation", concatenate(sensors));
+    return plain_model("concatenation", concatenate(sensors));
   });
   module.def("five_hole_probe", [](double k_alpha, double k_beta, const Vector& lever_arm) {
     return Model(std::shared_ptr<const Probe>(five_hole_probe(k_alpha, k_beta, lever_arm)));

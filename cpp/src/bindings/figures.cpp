@@ -22,22 +22,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// (label, first row, row after the last)
-using Rows = std::tuple<std::string, std::size_t, std::size_t>;
-
-std::vector<Rows> describe(const std::vector<Segment>& segments) {
-  std::vector<Rows> rows;
+std::vector<SegmentRows> describe(const std::vector<Segment>& segments) {
+  std::vector<SegmentRows> rows;
   for (const auto& [label, first, last] : segments) rows.emplace_back(label, first, last);
   return rows;
-}
-
-/// Throws Error as Record::cut() does.
-std::vector<Segment> segments_of(const std::vector<Rows>& rows, const VectorXd& residual) {
-  std::vector<Segment> segments;
-  for (const auto& [label, first, last] : rows) segments.push_back({label, first, last});
-  Record record;
-  record.view("residual", {residual.data(), static_cast<std::size_t>(residual.size())});
-  return record.cut(std::move(segments)).segments();
 }
 
 std::optional<Array> array_or_none(const std::vector<double>& values) {
@@ -53,14 +41,15 @@ Curve describe(numerics::Curve curve) {
 
 /// Lags, correlations, limits.
 std::tuple<Array, Array, Array> autocorrelation(const VectorXd& residual,
-                                                const std::vector<Rows>& runs) {
-  auto found = numerics::find_autocorrelation(residual, segments_of(runs, residual));
+                                                const std::vector<SegmentRows>& runs) {
+  auto found = numerics::find_autocorrelation(residual, segments_of(runs, values_in(residual)));
   return {adopt(std::move(found.lags)), adopt(std::move(found.values)),
           adopt(std::move(found.limits))};
 }
 
-Curve spectrum(const VectorXd& residual, const std::vector<Rows>& runs, double interval) {
-  return describe(numerics::find_spectrum(residual, segments_of(runs, residual), interval));
+Curve spectrum(const VectorXd& residual, const std::vector<SegmentRows>& runs, double interval) {
+  return describe(
+      numerics::find_spectrum(residual, segments_of(runs, values_in(residual)), interval));
 }
 
 void check_lengths(const VectorXd& x, const VectorXd& y) {

@@ -97,10 +97,11 @@ class AnyFilter {
     check_size("Gamma", Gamma, n, Gamma.cols());
     check_size("Q", Q, Gamma.cols(), Gamma.cols());
     const DynamicTransition to{x_next, Phi, Gamma, Q};
-    const Estimate<Dynamic> before = estimate();
+    std::optional<DynamicStage> stage;
+    if (keeps_pass_) stage = {estimate(), to};
     const bool used =
         std::visit([&](auto& filter) { return filter.predict(to); }, filter_) == FilterStatus::ok;
-    if (used && keeps_pass_) pass_.push_back({before, to});
+    if (used && stage) pass_.push_back(*std::move(stage));
     return used;
   }
 
@@ -134,16 +135,15 @@ class AnyFilter {
   bool keeps_pass() const { return keeps_pass_; }
 
   /// Of every sample x and P; of every step between samples w and Q.
-  std::tuple<std::vector<VectorXd>, std::vector<MatrixXd>, std::vector<VectorXd>,
-             std::vector<MatrixXd>>
-  smooth() const {
+  using SmoothedParts = std::tuple<std::vector<VectorXd>, std::vector<MatrixXd>,
+                                   std::vector<VectorXd>, std::vector<MatrixXd>>;
+
+  SmoothedParts smooth() const {
     std::vector<DynamicStage> pass = pass_;
     pass.push_back({.filtered = estimate()});
     std::vector<Smoothed<Dynamic, Dynamic>> smoothed(pass.size());
     sepcal::smooth(pass, smoothed);
-    std::tuple<std::vector<VectorXd>, std::vector<MatrixXd>, std::vector<VectorXd>,
-               std::vector<MatrixXd>>
-        result;
+    SmoothedParts result;
     auto& [x, P, w, Q] = result;
     for (Smoothed<Dynamic, Dynamic>& sample : smoothed) {
       x.push_back(std::move(sample.x));

@@ -8,11 +8,11 @@
 #include <limits>
 #include <optional>
 #include <random>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "released.hpp"
 #include "sepcal/error.hpp"
@@ -26,36 +26,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// (first row, row after the last), ...
-using Spans = std::vector<std::pair<std::size_t, std::size_t>>;
-
-/// Of all rows where none are given. Throws Error as Record::cut() does.
-std::vector<Segment> segments_in(const std::optional<Spans>& rows, Index length) {
-  const auto count = static_cast<std::size_t>(length);
-  if (!rows) return {Segment{.label = "", .first = 0, .last = count}};
-  std::vector<Segment> segments;
-  for (const auto& [first, last] : *rows) segments.push_back({"", first, last});
-  const std::vector<double> zeros(count);
-  return Record().view("e", zeros).cut(std::move(segments)).segments();
+/// The whole of e where none are given.
+std::vector<Segment> segments_in(const std::optional<std::vector<SegmentRows>>& rows,
+                                 const VectorXd& e) {
+  if (!rows) return {Segment{.label = "", .first = 0, .last = static_cast<std::size_t>(e.size())}};
+  return segments_of(*rows, values_in(e));
 }
 
-std::span<const double> values_in(const VectorXd& e) {
-  return {e.data(), static_cast<std::size_t>(e.size())};
-}
-
-NoiseFit fit_residual(const VectorXd& e, const std::optional<Spans>& segments,
+NoiseFit fit_residual(const VectorXd& e, const std::optional<std::vector<SegmentRows>>& segments,
                       std::optional<int> order, int max_order,
                       const std::optional<NoiseModel>& start) {
   const Released released;
-  return fit_noise(values_in(e), segments_in(segments, e.size()),
+  return fit_noise(values_in(e), segments_in(segments, e),
                    {.order = order, .max_order = max_order, .start = start});
 }
 
 /// W e at the rows of the segments, NaN elsewhere.
 VectorXd whiten_residual(const NoiseModel& model, const VectorXd& e,
-                         const std::optional<Spans>& rows) {
+                         const std::optional<std::vector<SegmentRows>>& rows) {
   const Released released;
-  const std::vector<Segment> segments = segments_in(rows, e.size());
+  const std::vector<Segment> segments = segments_in(rows, e);
   MatrixXd gathered = gather_rows(values_in(e), segments);
   Whitener(model, segments).apply(gathered);
   VectorXd white = VectorXd::Constant(e.size(), std::numeric_limits<double>::quiet_NaN());
@@ -103,7 +93,7 @@ void define_noise(py::module_& module) {
       .field("minus_two_log_likelihood", &NoiseFit::minus_two_log_likelihood,
              "Comparable between fits of equal free_level and rows; -infinity of zeros.")
       .field("informative_rows", &NoiseFit::informative_rows,
-             "Spans, less one for each segment where the level is free.")
+             "Rows, less one for each segment where the level is free.")
       .field("evaluations", &NoiseFit::evaluations, "Of the likelihood.")
       .field("converged", &NoiseFit::converged, "Whether another step would gain next to nothing.")
       .finish();
