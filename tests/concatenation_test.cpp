@@ -142,8 +142,8 @@ TEST_CASE("what can't be one model is refused by name") {
   const auto mag = block_model(Magnetometer{});
   CHECK_THROWS_WITH_AS(sepcal::concatenate(std::vector<sepcal::Sensor>{}), Contains("none"),
                        sepcal::Error);
-  CHECK_THROWS_WITH_AS(sepcal::concatenate({{"", mag}, {"", mag}}), Contains("lambda_x"),
-                       sepcal::Error);
+  CHECK_THROWS_WITH_AS(sepcal::concatenate({{"", mag}, {"", mag}}),
+                       Contains("two outputs named 'mx'"), sepcal::Error);
   const auto path = std::make_shared<const sepcal::TrajectoryModel<sepcal::ShortPeriod>>(
       sepcal::ShortPeriod{}, sepcal::TrajectoryOptions{.shoot = sepcal::infinity});
   CHECK_THROWS_WITH_AS(sepcal::concatenate({{"path", path}, {"", mag}}),
