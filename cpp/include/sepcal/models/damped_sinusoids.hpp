@@ -30,9 +30,10 @@ struct DampedSinusoids {
     constexpr std::array<std::string_view, 12> names{"cos_1", "sin_1", "cos_2", "sin_2",
                                                      "cos_3", "sin_3", "cos_4", "sin_4",
                                                      "cos_5", "sin_5", "cos_6", "sin_6"};
-    std::array<Quantity, 2 * Modes + 1> table{};
-    for (std::size_t k = 0; k < 2 * Modes; ++k) table[k] = {names[k], "1"};
-    table[2 * Modes] = {"offset", "1"};
+    constexpr std::size_t waves = 2 * std::size_t{Modes};
+    std::array<Quantity, waves + 1> table{};
+    for (std::size_t k = 0; k < waves; ++k) table[k] = {names[k], "1"};
+    table[waves] = {"offset", "1"};
     return table;
   }();
   static constexpr auto nonlinear = [] {
@@ -40,7 +41,7 @@ struct DampedSinusoids {
                                                      "ratio_4", "ratio_5", "ratio_6"};
     constexpr std::array<std::string_view, 6> dampings{"damping_1", "damping_2", "damping_3",
                                                        "damping_4", "damping_5", "damping_6"};
-    std::array<Quantity, 2 * Modes> table{};
+    std::array<Quantity, 2 * std::size_t{Modes}> table{};
     table[0] = {"frequency_1", "rad/s", 0.0};
     for (std::size_t k = 1; k < Modes; ++k) table[k] = {ratios[k], "1", 0.0, 1.0};
     for (std::size_t k = 0; k < Modes; ++k) table[Modes + k] = {dampings[k], "1/s", 0.0};
