@@ -14,7 +14,16 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal._core import Innovation
 from sepcal.columns import Array
-from sepcal.matrices import REFUSED, finite, times, to_covariance, to_matrix, to_vector
+from sepcal.matrices import (
+    finite,
+    refusal,
+    times,
+    to_covariance,
+    to_matrix,
+    to_symmetric,
+    to_vector,
+    to_whole_number,
+)
 from sepcal.states_module import states_module
 
 if TYPE_CHECKING:
@@ -127,13 +136,28 @@ class Filter:
                 semidefinite; the filter is as it was.
         """
         transition = to_matrix("Phi", Phi)
-        if x is None:
-            x = times("Phi", transition, self.x) + to_vector(
-                "shift", 0.0 if shift is None else shift
+        if x is not None:
+            if shift is not None:
+                raise _core.Error("predict() was given x, which has no need of shift; give one")
+            end = to_vector("x", x)
+        else:
+            end = times("Phi", transition, self.x)
+            if shift is not None:
+                added = to_vector("shift", shift)
+                if added.shape != end.shape:
+                    raise _core.Error(f"shift has {len(added)} entries; here it takes {len(end)}")
+                end = end + added
+        entry = np.eye(len(self.x)) if Gamma is None else to_matrix("Gamma", Gamma)
+        noise = to_symmetric("Q", Q)
+        if not self._core.predict(end, transition, entry, noise):
+            raise refusal(
+                "predict()",
+                {"Phi": transition, "Gamma": entry, "x": end},
+                {"Q": noise},
+                "the state leaves the range of numbers"
+                if self._core.information_root is None
+                else "Phi is singular, and form 'information' divides by it; take 'square_root'",
             )
-        noise = np.eye(len(self.x)) if Gamma is None else to_matrix("Gamma", Gamma)
-        if not self._core.predict(to_vector("x", x), transition, noise, to_matrix("Q", Q)):
-            raise _core.Error(f"predict(): {REFUSED}")
 
     def update(
         self, y: ArrayLike, H: ArrayLike, R: ArrayLike, *, expected: ArrayLike | None = None
@@ -154,9 +178,10 @@ class Filter:
         """
         slope = to_matrix("H", H)
         value = times("H", slope, self.x) if expected is None else to_vector("expected", expected)
-        found = self._core.update(to_vector("y", y), value, slope, to_matrix("R", R))
+        measured, noise = to_vector("y", y), to_symmetric("R", R)
+        found = self._core.update(measured, value, slope, noise)
         if found is None:
-            raise _core.Error(f"update(): {REFUSED}")
+            raise self._refused_update("update()", measured, noise, H=slope, expected=value)
         self._count(found)
         return found
 
@@ -189,18 +214,27 @@ class Filter:
             Exception: What `outputs` raises, as it is; the filter is as it was.
         """
 
+        if to_whole_number("iterations", iterations) < 1 or not tolerance > 0.0:
+            raise _core.Error(
+                f"iterations and tolerance must be above 0; they are {iterations} and {tolerance}"
+            )
+
         def linearise(at: Array) -> tuple[Array, Array]:
             expected, H = outputs(at)
             return to_vector("expected", expected), to_matrix("H", H)
 
+        measured, noise = to_vector("y", y), to_symmetric("R", R)
         answer = self._core.iterated_update(
-            to_vector("y", y),
+            measured,
             linearise,
-            to_matrix("R", R),
+            noise,
             _core.IterationOptions(iterations=iterations, tolerance=tolerance),
         )
         if answer is None:
-            raise _core.Error(f"iterated_update(): {REFUSED}")
+            expected, slope = linearise(self.x)
+            raise self._refused_update(
+                "iterated_update()", measured, noise, H=slope, expected=expected
+            )
         found, converged = answer
         self._count(found)
         if not converged:
@@ -231,6 +265,19 @@ class Filter:
             np.array(P),
             np.array(w).reshape((len(w), n_w)),
             np.array(Q).reshape((len(w), n_w, n_w)),
+        )
+
+    def _refused_update(
+        self, verb: str, y: Array, R: Array, *, H: Array, expected: Array
+    ) -> _core.Error:
+        seen = ~np.isnan(y)
+        return refusal(
+            verb,
+            {"y": y[seen], "H": H[seen], "expected": expected[seen]},
+            {"R": R},
+            "H P H' + R is singular: outputs agree without any noise; give R above 0"
+            if self._core.information_root is None
+            else "R is singular, and form 'information' divides by it; take 'square_root'",
         )
 
     def _count(self, found: Innovation) -> None:

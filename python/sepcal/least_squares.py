@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Integral
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,7 +13,16 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal.columns import Array
-from sepcal.matrices import REFUSED, finite, to_covariance, to_matrix, to_vector
+from sepcal.matrices import (
+    finite,
+    refusal,
+    to_covariance,
+    to_matrix,
+    to_numbers,
+    to_symmetric,
+    to_vector,
+    to_whole_number,
+)
 from sepcal.states_module import states_module
 
 if TYPE_CHECKING:
@@ -81,14 +91,16 @@ def iterate_least_squares(
         given = sample(k, at)
         if len(given) not in (2, 3):
             raise _core.Error(f"sample() gave {len(given)} parts; it gives z, H or z, H, W")
-        z = np.atleast_1d(to_vector("z", given[0]))
-        H = to_matrix("H", np.atleast_2d(np.asarray(given[1], dtype=np.float64)))
-        W = np.eye(len(z)) if len(given) == 2 else np.atleast_2d(np.asarray(given[2], np.float64))
-        return z, H, to_matrix("W", W)
+        z = to_vector("z", np.atleast_1d(to_numbers("z", given[0])))
+        H = to_matrix("H", np.atleast_2d(to_numbers("H", given[1])))
+        W = np.eye(len(z)) if len(given) == 2 else np.atleast_2d(to_numbers("W", given[2]))
+        return z, H, to_symmetric("W", W)
 
     for name, number in (("count", count), ("iterations", iterations)):
-        if number < 1:
+        if to_whole_number(name, number) < 1:
             raise _core.Error(f"{name} is {number}; it must be above 0")
+    if not tolerance > 0.0:
+        raise _core.Error(f"tolerance is {tolerance}; it must be above 0")
     status, *found = states_module().iterate_least_squares(
         rows, count, finite("p", to_vector("p", p)), iterations, tolerance, halvings
     )
@@ -108,8 +120,9 @@ class RecursiveLeastSquares:
     System Identification Summary, S 4.9 to 4.14.
 
     Args:
-        p: The parameters to begin with, (n,), or how many there are.
-        covariance: Theirs, (n, n); None: nothing is known before (with "square_root").
+        p: The parameters to begin with, (n,); or how many there are, of which nothing is known
+            before (with "square_root").
+        covariance: Of those to begin with, (n, n).
         form: What is kept: the root of the information, the information itself (S 4.13), or its
             inverse (S 4.14, corrected).
     """
@@ -120,9 +133,17 @@ class RecursiveLeastSquares:
         covariance: ArrayLike | None = None,
         form: Literal["square_root", "information", "covariance"] | str = "square_root",
     ) -> None:
-        if isinstance(p, int) and p < 1:
-            raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
-        begin = np.zeros(p) if isinstance(p, int) else finite("p", to_vector("p", p))
+        if isinstance(p, Integral):
+            if p < 1:
+                raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
+            begin = np.zeros(int(p))
+        else:
+            begin = finite("p", to_vector("p", p))
+            if covariance is None:
+                raise _core.Error(
+                    "p has no weight without a covariance; give it, or in p's place the number of "
+                    "parameters"
+                )
         known = None if covariance is None else to_covariance("covariance", covariance)
         self._core: _states.RecursiveLeastSquares = states_module().RecursiveLeastSquares(
             begin, known, form
@@ -140,12 +161,17 @@ class RecursiveLeastSquares:
             Error: Another shape, what is not finite, a covariance that is not positive definite;
                 nothing was changed.
         """
-        values = np.atleast_1d(np.asarray(y, dtype=np.float64))
-        weights = np.eye(len(values)) if W is None else np.atleast_2d(np.asarray(W))
-        if not self._core.absorb(
-            to_matrix("H", np.atleast_2d(H)), to_vector("y", values), to_matrix("W", weights)
-        ):
-            raise _core.Error(f"absorb(): {REFUSED}")
+        values = to_vector("y", np.atleast_1d(to_numbers("y", y)))
+        slope = to_matrix("H", np.atleast_2d(to_numbers("H", H)))
+        noise = np.eye(len(values)) if W is None else np.atleast_2d(to_numbers("W", W))
+        if not self._core.absorb(slope, values, to_symmetric("W", noise)):
+            seen = ~np.isnan(values)
+            raise refusal(
+                "absorb()",
+                {"y": values[seen], "H": slope[seen]},
+                {"W": noise},
+                "W is singular; it must be positive definite",
+            )
 
     @property
     def solution(self) -> Array:
@@ -154,8 +180,9 @@ class RecursiveLeastSquares:
 
     @property
     def covariance(self) -> Array:
-        """Of p, (n, n), where W is the noise's covariance."""
-        return self._core.covariance
+        """Of p, (n, n), where W is the noise's covariance; NaN where a parameter is open."""
+        found = self._core.covariance
+        return found if self.determined else np.full_like(found, np.nan)
 
     @property
     def determined(self) -> bool:

@@ -13,18 +13,20 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.differences import CENTRAL, Fan, step_sizes
-from sepcal.matrices import finite, to_matrix, to_vector
+from sepcal.matrices import finite, to_covariance, to_matrix, to_vector
 from sepcal.states_module import states_module
+
+MOST_STEPS = 1e6  # the compiled code's limit
 
 
 def matrix_exponential(A: ArrayLike) -> Array:
     """exp(A), (n, n), by scaling, a Pade approximant and squaring (S 3.9).
 
     Raises:
-        Error: A is not square, or not finite.
+        Error: A is not square, or not finite, or exp(A) is beyond the range of numbers.
     """
     exponential: Array = states_module().matrix_exponential(finite("A", to_matrix("A", A)))
-    return exponential
+    return _in_range("exp(A)", exponential)
 
 
 @dataclass(frozen=True)
@@ -54,12 +56,13 @@ def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
         dt: [s].
 
     Raises:
-        Error: Another shape, or what is not finite.
+        Error: Another shape, what is not finite, a density that is no covariance, a step back in
+            time, or one so long that the result is beyond the range of numbers.
     """
     Phi, Q = states_module().discretise(
-        finite("F", to_matrix("F", F)), finite("density", to_matrix("density", density)), _time(dt)
+        finite("F", to_matrix("F", F)), to_covariance("density", density), _duration("dt", dt)
     )
-    return Transition(Phi, Q)
+    return Transition(_in_range("exp(F dt)", Phi), _in_range("Q", Q))
 
 
 @dataclass(frozen=True)
@@ -89,9 +92,9 @@ def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
         Error: Another shape, or what is not finite.
     """
     parts = states_module().discretise_inputs(
-        finite("F", to_matrix("F", F)), finite("B", to_matrix("B", B)), _time(dt)
+        finite("F", to_matrix("F", F)), finite("B", to_matrix("B", B)), _duration("dt", dt)
     )
-    return DiscreteInputs(*parts)
+    return DiscreteInputs(*(_in_range("what inputs add", part) for part in parts))
 
 
 Rate = Callable[[Array, float], ArrayLike]
@@ -121,7 +124,7 @@ def propagate(
         x: The state at `begin`, (n,).
         Q: Density of w, (n_w, n_w) [unit^2 s].
         begin: [s].
-        end: [s].
+        end: [s], not before `begin`.
         rate_jacobian: df/dx at (x, t), (n, n) [differences of fourth order].
         noise_input: G at (x, t), (n, n_w) [the identity].
         longest_step: [s]; the time between is cut into equal steps of at most that.
@@ -134,6 +137,12 @@ def propagate(
     identity = np.eye(len(state))
     if not longest_step > 0.0:
         raise _core.Error(f"longest_step is {longest_step}; it is a time above 0 [s]")
+    duration = _duration("end - begin", end - begin)
+    if duration / longest_step > MOST_STEPS:
+        raise _core.Error(
+            f"longest_step is {longest_step:g} s, which cuts {duration:g} s into more than "
+            f"{MOST_STEPS:.0e} steps; give a longer one"
+        )
 
     fan = Fan([CENTRAL] * len(state))
 
@@ -156,9 +165,9 @@ def propagate(
         jacobian,
         input_of_noise,
         state,
-        finite("Q", to_matrix("Q", Q)),
-        _time(begin),
-        _time(end),
+        to_covariance("Q", Q),
+        begin,
+        end,
         longest_step,
     )
     if not all(np.isfinite(part).all() for part in (moved, Phi, noise)):
@@ -166,7 +175,13 @@ def propagate(
     return Transition(Phi, noise, moved)
 
 
-def _time(seconds: float) -> float:
-    if not math.isfinite(seconds):
-        raise _core.Error(f"a time is {seconds}; it must be a number [s]")
+def _duration(name: str, seconds: float) -> float:
+    if not 0.0 <= seconds < math.inf:
+        raise _core.Error(f"{name} is {seconds}; it is a time, 0 or more [s]")
     return float(seconds)
+
+
+def _in_range(name: str, result: Array) -> Array:
+    if not np.isfinite(result).all():
+        raise _core.Error(f"{name} is beyond the range of numbers; take a shorter step")
+    return result

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal._core import NoiseFit, NoiseModel
 from sepcal.columns import Array
-from sepcal.matrices import to_vector
+from sepcal.matrices import to_vector, to_whole_number
 
 Segments = Sequence[tuple[int, int]]  # first row, row after the last
 
@@ -31,14 +31,22 @@ def fit_noise(
         e: (N,), zero in the mean unless it is slow.
         segments: (first row, row after the last) of each stretch, independent of the others; other
             rows are not read [one of all rows].
-        order: Of the autoregression [that of least AIC].
+        order: Of the autoregression [that of least AIC]; short segments allow no high one.
         max_order: At most so high then.
         start: An earlier fit's model, whose order and freedom of the level are kept.
 
     Raises:
-        Error: No rows, a segment that leaves e, what is not finite, an order below 0.
+        Error: No rows, a segment that leaves e, what is not finite, an order below 0 or above what
+            the segments allow.
     """
-    return _core.fit_noise(to_vector("e", e), _rows(segments), order, max_order, start)
+    wanted = None if order is None else to_whole_number("order", order)
+    most = to_whole_number("max_order", max_order)
+    found = _core.fit_noise(to_vector("e", e), _rows(segments), wanted, most, start)
+    if wanted is not None and 0 < len(found.model.phi) < wanted:
+        raise _core.Error(
+            f"order is {wanted}; segments of these lengths allow {len(found.model.phi)}"
+        )
+    return found
 
 
 def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None) -> Array:

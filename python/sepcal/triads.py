@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal.columns import Array
+from sepcal.matrices import to_matrix
 from sepcal.own_model import Row, Table, check_parts, to_rows
 
 
@@ -121,10 +122,20 @@ class Triad:
     def at(self, u: Any, xi2: Array) -> tuple[Array, Array]:  # noqa: ANN401
         """A (N, 3, 6) and b (N, 3): [N diag(f) | I] and N f."""
         of_reference, *of_factors = np.split(xi2, self._splits)
-        f = np.asarray(self.reference.at(u, of_reference))
+        f = to_matrix(f"{type(self.reference).__name__}.at()", self.reference.at(u, of_reference))
+        if f.shape[1] != 3:
+            raise _core.Error(
+                f"{type(self.reference).__name__}.at() gave the shape {f.shape}; it gives (N, 3)"
+            )
         N = np.eye(3)
         for factor, xi in zip(self.factors, of_factors, strict=True):
-            N = N @ np.asarray(factor.matrix(xi))
+            matrix = to_matrix(f"{type(factor).__name__}.matrix()", factor.matrix(xi))
+            if matrix.shape != (3, 3):
+                raise _core.Error(
+                    f"{type(factor).__name__}.matrix() gave the shape {matrix.shape}; it gives "
+                    "(3, 3)"
+                )
+            N = N @ matrix
         A = np.empty((len(f), 3, 6))
         A[:, :, :3] = N * f[:, None, :]
         A[:, :, 3:] = np.eye(3)

@@ -62,3 +62,16 @@ def test_what_is_missing_is_told() -> None:
     del data["ax"]
     refuse(lambda: sepcal.aero_coefficients(data, AIRCRAFT), "ax")
     refuse(lambda: sepcal.aero_coefficients(flown(), AIRCRAFT, ["CQ"]), "CQ")
+
+
+@pytest.mark.parametrize("name", ["rho", "mass"])
+def test_what_the_coefficients_divide_by_is_above_zero(name: str) -> None:
+    data = flown()
+    data[name] = np.full(len(data["time"]), 1.0)
+    data[name][3] = -1.0
+    refuse(lambda: sepcal.aero_coefficients(data, AIRCRAFT), f"{name} is -1 in row 3")
+
+
+@pytest.mark.parametrize("window", [np.inf, np.nan, -1.0])
+def test_a_window_is_a_time(window: float) -> None:
+    refuse(lambda: sepcal.aero_coefficients(flown(), AIRCRAFT, window=window), "window is")

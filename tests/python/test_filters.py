@@ -69,9 +69,18 @@ def test_a_nonlinear_system_says_what_it_expects() -> None:
 @pytest.mark.parametrize("form", FORMS)
 def test_what_is_refused_changes_nothing(form: str) -> None:
     filter = sepcal.Filter(np.zeros(3), P, form)
-    refuse(lambda: filter.update([np.inf, 0.0], H, R), "update()", "nothing was changed")
-    refuse(lambda: filter.update([0.0, 0.0], H, -100 * R), "update()", "not positive")
-    refuse(lambda: filter.predict(np.full((3, 3), np.nan), np.eye(3)), "predict()", "not finite")
+    def outputs(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return H @ x, H
+
+    y, here = [0.0, 0.0], "nothing was changed"
+    refuse(lambda: filter.update([np.inf, 0.0], H, R), "update()", "y is not", here)
+    refuse(lambda: filter.update(y, H, -100 * R), "update()", "R is no covariance", "below 0", here)
+    refuse(lambda: filter.update(y, [[1, np.nan, 0], [0, 0, 1]], R), "H is not a finite", here)
+    refuse(lambda: filter.iterated_update(y, outputs, -100 * R), "R is no covariance", here)
+    refuse(lambda: filter.iterated_update(y, outputs, R, tolerance=np.nan), "tolerance", "nan")
+    refuse(lambda: filter.iterated_update(y, outputs, R, iterations=0), "iterations", "above 0")
+    refuse(lambda: filter.predict(np.full((3, 3), np.nan), np.eye(3)), "Phi is not a finite", here)
+    refuse(lambda: filter.predict(np.eye(3), -100 * np.eye(3)), "Q is no covariance", here)
     assert_array_equal(filter.x, 0.0)
     assert_allclose(filter.covariance, P, rtol=1e-14)
     assert filter.log_likelihood == 0.0
@@ -87,6 +96,35 @@ def test_shapes_are_told() -> None:
     refuse(lambda: filter.update([1.0], H, R), "H", "(2, 3)", "(1, 3)")
     refuse(lambda: filter.update([1.0, 2.0], H, R, expected=[1.0]), "expected", "1 entries", "2")
     refuse(lambda: filter.update([[1.0]], H, R), "y", "vector")
+    refuse(lambda: filter.update(5.0, H, R), "y", "()", "vector")
+    refuse(lambda: filter.predict(np.eye(3), np.eye(3), shift=[5.0]), "shift has 1", "3")
+    refuse(lambda: filter.predict(np.eye(3), np.eye(3), shift=[0] * 3, x=[0] * 3), "x", "shift")
+    refuse(lambda: filter.iterated_update([0, 0], lambda x: (0.0, H), R), "expected", "()")
+
+
+def test_what_is_no_array_of_real_numbers_is_told() -> None:
+    filter = sepcal.Filter(np.zeros(3), P)
+    upper = np.array([[0.5, 0.2], [0.0, 0.1]])  # half of a covariance, or a root
+    refuse(lambda: filter.update([0, 0], H, upper), "R is no covariance", "symmetric")
+    refuse(lambda: filter.predict(np.eye(3), np.triu(P + 1.0)), "Q is no covariance", "symmetric")
+    refuse(lambda: filter.update([1j, 0], H, R), "y is complex")
+    refuse(lambda: filter.update(["high", 0], H, R), "y", "numbers")
+    refuse(lambda: filter.update([0, 0], [[1, 0], [1]], R), "H", "numbers")
+
+
+def test_what_is_masked_is_missing() -> None:
+    masked, missing = sepcal.Filter(np.zeros(3), P), sepcal.Filter(np.zeros(3), P)
+    masked.update(np.ma.masked_array([7.0, 1.0], [True, False]), H, R)
+    missing.update([np.nan, 1.0], H, R)
+    assert_array_equal(masked.x, missing.x)
+
+
+def test_what_singular_matrices_do_is_told() -> None:
+    twice, nothing = [[1.0, 0.0, 0.0]] * 2, np.zeros((2, 2))
+    refuse(lambda: sepcal.Filter(np.zeros(3), P).update([0, 0], twice, nothing), "R above 0")
+    information = sepcal.Filter(np.zeros(3), P, "information")
+    refuse(lambda: information.update([0, 0], H, nothing), "R is singular", "'square_root'")
+    refuse(lambda: information.predict(np.zeros((3, 3)), P), "Phi is singular", "'square_root'")
 
 
 @pytest.mark.parametrize(

@@ -54,11 +54,17 @@ def test_without_a_start_it_is_ordinary_least_squares() -> None:
 def test_what_a_recursion_refuses() -> None:
     recursion = sepcal.RecursiveLeastSquares(2)
     refuse(lambda: recursion.absorb([1.0, 2.0, 3.0], 1.0), "H", "(1, 3)", "(1, 2)")
-    refuse(lambda: recursion.absorb([1.0, 2.0], 1.0, -1.0), "absorb()", "not positive")
+    refuse(lambda: recursion.absorb([1.0, 2.0], 1.0, -1.0), "absorb()", "W is no covariance")
+    refuse(lambda: recursion.absorb([1.0, 2.0], 1.0, 0.0), "absorb()", "W is singular")
+    refuse(lambda: recursion.absorb([1.0, np.inf], 1.0), "H is not a finite")
+    refuse(lambda: recursion.absorb([1.0, 2.0], 1j), "y is complex")
+    refuse(lambda: sepcal.RecursiveLeastSquares([5.0, 5.0]), "p has no weight", "covariance")
     refuse(lambda: sepcal.RecursiveLeastSquares(2, form="information"), "'square_root' needs none")
     refuse(lambda: sepcal.RecursiveLeastSquares(2, np.eye(2), "fading"), "'fading'")
     refuse(lambda: sepcal.RecursiveLeastSquares(2, np.zeros((2, 2))), "positive definite")
     assert_array_equal(recursion.solution, 0.0)
+    assert np.isnan(recursion.covariance).all()  # all is open
+    assert len(sepcal.RecursiveLeastSquares(np.int64(2)).solution) == 2
     refuse(lambda: sepcal.RecursiveLeastSquares(2, -np.eye(2), "covariance"), "covariance", "-1")
     refuse(lambda: sepcal.RecursiveLeastSquares(-1), "p is -1")
 
@@ -115,6 +121,11 @@ def test_an_open_parameter_and_a_cap_are_statuses() -> None:
 
 def test_what_iterations_refuse() -> None:
     refuse(lambda: sepcal.iterate_least_squares(decay_at, 0, [1.0, 0.2]), "count is 0")
+    refuse(lambda: sepcal.iterate_least_squares(decay_at, 1.5, [1.0]), "count is 1.5")  # type: ignore[arg-type]
+    refuse(
+        lambda: sepcal.iterate_least_squares(decay_at, 16, [1.0, 0.2], tolerance=np.nan),
+        "tolerance is nan",
+    )
     refuse(lambda: sepcal.iterate_least_squares(lambda k, p: (1.0,), 3, [1.0]), "1 parts")
     refuse(
         lambda: sepcal.iterate_least_squares(lambda k, p: (1.0, [1.0, 2.0]), 3, [1.0]),

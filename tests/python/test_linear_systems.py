@@ -91,7 +91,19 @@ def test_what_is_refused() -> None:
     refuse(lambda: sepcal.discretise(np.eye(2), np.eye(3), 0.1), "density", "(3, 3)")
     refuse(lambda: sepcal.discretise(np.eye(2), np.eye(2), np.inf), "time")
     refuse(lambda: sepcal.discretise_inputs(np.eye(2), np.ones((3, 1)), 0.1), "B", "(3, 1)")
+    refuse(lambda: sepcal.matrix_exponential(1e300 * np.eye(2)), "exp(A)", "range of numbers")
+    refuse(lambda: sepcal.discretise(np.eye(2), np.eye(2), 1000), "range of numbers", "shorter")
+    refuse(lambda: sepcal.discretise(np.eye(2), -np.eye(2), 0.1), "density is no covariance")
+    refuse(lambda: sepcal.discretise(np.eye(2), np.eye(2), -0.1), "dt is -0.1")
     one = np.eye(1)
+    refuse(lambda: sepcal.propagate(lambda x, t: 0.0, [0.0], one, 0, 1), "rate(x, t)", "()")
+    refuse(lambda: sepcal.propagate(lambda x, t: -x, 1.0, one, 0, 1), "x", "()", "vector")
+    refuse(lambda: sepcal.propagate(lambda x, t: -x, [1.0], one, 1, 0), "end - begin is -1")
+    refuse(
+        lambda: sepcal.propagate(lambda x, t: -x, [1.0], one, 0, 1, longest_step=1e-9),
+        "longest_step is 1e-09",
+        "a longer one",
+    )
     refuse(lambda: sepcal.propagate(lambda x, t: [1.0, 2.0], [0.0], one, 0, 1), "rate(x, t)", "2")
     refuse(lambda: sepcal.propagate(lambda x, t: x + np.inf, [0.0], one, 0, 1), "not finite")
     refuse(lambda: sepcal.propagate(pendulum, [0.0, 0.0], one, 0, 1), "noise_input", "(2, 2)")

@@ -76,6 +76,8 @@ def test_what_is_refused() -> None:
     e = autoregression()
     refuse(lambda: sepcal.fit_noise([1.0, np.nan] * 20), "finite")
     refuse(lambda: sepcal.fit_noise(e, order=-1), "order")
+    refuse(lambda: sepcal.fit_noise(e, order=1.5), "order is 1.5", "whole number")  # type: ignore[arg-type]
+    refuse(lambda: sepcal.fit_noise(e[:60], order=50), "order is 50", "allow")
     refuse(lambda: sepcal.fit_noise(e, segments=[(0, ROWS + 1)]), str(ROWS))
     refuse(lambda: sepcal.fit_noise(e, segments=[(5, 5)]), "(5, 5)")
     refuse(lambda: sepcal.whiten(sepcal.NoiseModel(d=1.0), e), "d")

@@ -82,17 +82,29 @@ void check_surfaces(const Record& record) {
   }
 }
 
-void check_airspeed(const Record& record) {
-  if (!record.has("airspeed")) return;
-  const std::span<const double> airspeed = record.column("airspeed");
+/// Throws Error where there is such a column with a value of zero or less.
+void check_positive(const Record& record, const std::string& name, bool may_lack) {
+  if (!record.has(name)) return;
+  const std::span<const double> values = record.column(name);
   for (const Segment& segment : record.segments()) {
     for (std::size_t row = segment.first; row < segment.last; ++row) {
-      if (airspeed[row] > 0.0) continue;
-      throw Error("airspeed is " + base::short_number(airspeed[row]) + " in row " +
+      if (values[row] > 0.0 || (may_lack && std::isnan(values[row]))) continue;
+      throw Error(name + " is " + base::short_number(values[row]) + " in row " +
                   std::to_string(row) +
-                  " (counted from 0); coefficients need air that flows: leave such rows out");
+                  " (counted from 0); coefficients divide by it: leave such rows out");
     }
   }
+}
+
+void check_flow(const Record& record) {
+  check_positive(record, "airspeed", false);
+  for (const char* name : {"rho", "qbar", "mass"}) check_positive(record, name, true);
+}
+
+void check_window(double window) {
+  if (window >= 0.0 && std::isfinite(window)) return;
+  throw Error("window is " + base::short_number(window) +
+              "; it is a time above 0, s, or 0 for seven rows");
 }
 
 double seven_rows(const Record& record) {
@@ -115,7 +127,8 @@ Channels::Channels(const Record& record, const AircraftGeometry& geometry,
       vane_(geometry.vane - geometry.cg) {
   check_body_axes(record);
   check_surfaces(record);
-  check_airspeed(record);
+  check_flow(record);
+  check_window(window);
   need(record, "airspeed", "every coefficient", "add it, m/s");
   if (!record.has("qbar")) {
     need(record, "rho", "the dynamic pressure", "add it, kg/m^3, or qbar, Pa");
