@@ -73,3 +73,25 @@ def test_pairs_that_no_fit_bears_out_are_forgotten() -> None:
     assert str(found.verdict) == "adequate"
     assert not found.advice.get("effect")
     assert not any("+" in effect.name for effect in found.effects)
+
+
+IN_GUSTS = [(2400, 890000), (600, 890004), (1800, 890008)]  # upwash or a blockage was called found
+
+
+@pytest.mark.parametrize(("rows", "seed"), IN_GUSTS)
+def test_gusts_that_a_probe_reads_are_no_cause(rows: int, seed: int) -> None:
+    """A five-hole probe's readings hold the gusts that the velocity lacks, and so do columns that
+    are made of them.
+    """
+    _, flown = fly_key(("nothing", "five-hole", "gusts", 0.0, rows, seed))
+    found = sepcal.fit(MODELS["five-hole"], sepcal.Flight(flown.columns)).diagnose()
+    assert str(found.verdict) in ("adequate", "slow_change"), found.text
+
+
+def test_what_is_hidden_is_named_in_gusts() -> None:
+    """A bias that drifts by twice as much as the gusts."""
+    cause = "five-hole: drift of airspeed_bias along time"
+    _, flown = fly_key(("wander", cause, "gusts", 2.0, 1800, 890008))
+    found = sepcal.fit(MODELS["five-hole"], sepcal.Flight(flown.columns)).diagnose()
+    assert str(found.verdict) == "effect_missing"
+    assert "airspeed_bias[time]" in found.explanations

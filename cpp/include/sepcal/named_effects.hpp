@@ -80,6 +80,10 @@ struct EffectKit {
   /// Corrections whose size need not be constant: noise of the inputs, as an attitude's error that
   /// its filter lets wander. diagnose() takes nothing for found that they explain.
   std::vector<Maker> wandering = {};
+  /// Inputs that read what the outputs lack, as a probe's pressures hold the gusts: what the model
+  /// leaves of an error may stand in them. diagnose() takes nothing for found that it would not
+  /// find were they without it.
+  std::vector<std::string> disturbed = {};
   /// Errors that wander within bounds; none: each output's, by as much as its white noise.
   std::vector<WanderBound> wanders = {};
   std::map<std::string, std::function<std::string(const Record&)>> aliases;  // to whole names

@@ -45,11 +45,11 @@ Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::
     : Bench(fitted, {}, options, pool) {}
 
 Bench::Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
-             base::ThreadPool& pool)
+             base::ThreadPool& pool, Regressors regressors)
     : fitted_(fitted),
       options_(options),
       pool_(pool),
-      room_(fitted, released, pool),
+      room_(fitted, released, pool, regressors),
       refits_(std::make_unique<Refits>(room_)) {
   if (is_exact()) return;
   room_.add_wandering();
@@ -243,6 +243,16 @@ void Bench::calibrate_significant(Trials& trials, double threshold, bool slow_to
     const bool only_screened = trial.visible && !trial.tested && !trial.bounded;
     if (only_screened) trial.log10_p = std::max(trial.log10_p, least_sure);
   }
+}
+
+std::optional<double> Bench::bounded_tail(const std::string& name) {
+  Trials trials = make({name});
+  screen_all(trials);
+  if (trials.empty() || !trials.front().visible) return std::nullopt;
+  bound_all({&trials.front()});
+  const Trial& trial = trials.front();
+  if (!trial.bounded) return std::nullopt;
+  return trial.bounded->log10_p / trial.inflation;
 }
 
 void Bench::confirm_best(Trials& trials, double threshold) const {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,7 +41,7 @@ class Bench {
   Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::ThreadPool& pool);
   /// Where the fit has the candidate, as if it had not: see CandidateRoom.
   Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
-        base::ThreadPool& pool);
+        base::ThreadPool& pool, Regressors regressors = Regressors::read);
   Bench(const Bench&) = delete;  // the null hypothesis points into it
   Bench& operator=(const Bench&) = delete;
   ~Bench() = default;
@@ -83,6 +84,10 @@ class Bench {
   /// change; what was only screened is not significant, nor surer than the least sure of what was
   /// tested.
   void calibrate_significant(Trials& trials, double threshold, bool slow_too) const;
+
+  /// log10 of a candidate's tail in noise as instruments have it; none where such noise doesn't
+  /// say.
+  std::optional<double> bounded_tail(const std::string& name);
 
   /// One step may fail an effect that bends the model: those that explain more than the best that
   /// passed get real fits.

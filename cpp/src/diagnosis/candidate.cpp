@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/candidate.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -174,13 +175,13 @@ CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, base::ThreadPool& pool)
     : CandidateRoom(fitted, {}, pool) {}
 
 CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, const Candidate& released,
-                             base::ThreadPool& pool)
+                             base::ThreadPool& pool, Regressors regressors)
     : fitted_(fitted),
       record_(fitted.record),
       settings_(fitted.effects),
       effects_(make_effects(fitted.kit, *fitted.model, settings_, record_)),
       values_(fitted.fit.by_name()) {
-  linearise(released, pool);
+  linearise(released, pool, regressors);
 }
 
 void CandidateRoom::add_wandering() {
@@ -188,7 +189,8 @@ void CandidateRoom::add_wandering() {
   if (linearisation_.wandering.cols() > 0) linearisation_.times = times();
 }
 
-void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool) {
+void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool,
+                              Regressors regressors) {
   const Fit& fit = fitted_.fit;
   const auto model = this->model();
   const Tables& tables = model->tables();
@@ -229,7 +231,10 @@ void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool)
           : model::Sweep(*model, measurements, pool).tangent_columns(fit.xi1(), fit.xi2(), columns);
   regressors_ = record_;
   const bool has_readings = measurements.output_square(0) > 0.0;  // not an equation of the inputs
-  if (has_readings && !noise_ && !path_) smooth_regressors(columns, pool);
+  if (has_readings && !noise_ && !path_) {
+    if (regressors == Regressors::read) smooth_regressors(columns, pool);
+    if (regressors == Regressors::undisturbed) undisturb_regressors(columns, pool);
+  }
   for (Index k = 0; k < own; ++k) {
     const Index at = tangent.cols() - 1 - own + k;
     tangent.rightCols<1>() +=
@@ -271,6 +276,46 @@ void CandidateRoom::smooth_regressors(std::vector<Index> columns, base::ThreadPo
   columns.pop_back();
   tangent.leftCols(tangent.cols() - 1) = sweep.tangent_columns(fit.xi1(), fit.xi2(), columns);
   regressors_ = smooth;
+}
+
+/// By Newton's steps of the least disturbances, in units of each input's spread, that leave
+/// nothing.
+void CandidateRoom::undisturb_regressors(std::vector<Index> columns, base::ThreadPool& pool) {
+  constexpr int rounds = 3;
+  const auto model = compose(fitted_.model, effects_, record_);
+  const Index n_z = model->tables().n_z();
+  for (int round = 0; round < rounds; ++round) {
+    const ResidualSlopes slopes = slopes_by(*model, fitted_.kit.disturbed, regressors_);
+    const auto inputs = static_cast<Index>(slopes.inputs.size());
+    const Index rows = slopes.residual.size() / n_z;
+    MatrixXd disturbances(rows, inputs);
+    for (Index row = 0; row < rows; ++row) {
+      const auto of_row = Eigen::seqN(row, n_z, rows);
+      const MatrixXd slope = slopes.columns(of_row, Eigen::all) * slopes.spreads.asDiagonal();
+      disturbances.row(row) = slopes.spreads.cwiseProduct(
+          slope.completeOrthogonalDecomposition().solve(-slopes.residual(of_row)));
+    }
+    for (Index k = 0; k < inputs; ++k) {
+      const std::string& name = slopes.inputs[static_cast<std::size_t>(k)];
+      const auto read = regressors_.column(name);
+      std::vector<double> values(read.begin(), read.end());
+      Index row = 0;
+      for (const Segment& segment : fitted_.rows) {
+        for (std::size_t at = segment.first; at < segment.last; ++at, ++row) {
+          if (std::isfinite(disturbances(row, k))) values[at] += disturbances(row, k);
+        }
+      }
+      regressors_.replace(name, std::move(values));
+    }
+  }
+  Record rows = regressors_;
+  rows.cut(fitted_.rows);
+  const model::Measurements measurements(*model, rows);
+  columns.pop_back();  // the residual is that of the readings
+  MatrixXd& tangent = linearisation_.tangent;
+  tangent.leftCols(tangent.cols() - 1) =
+      model::Sweep(*model, measurements, pool)
+          .tangent_columns(fitted_.fit.xi1(), fitted_.fit.xi2(), columns);
 }
 
 /// Candidates derive columns of their own, after the fit was linearised.
@@ -358,36 +403,51 @@ MatrixXd CandidateRoom::composed_columns(const std::vector<Effect>& added,
   return stacked;
 }
 
-MatrixXd CandidateRoom::input_columns() const {
-  if (follows_path() || noise_) return {};
+CandidateRoom::ResidualSlopes CandidateRoom::slopes_by(const BlockModel& model,
+                                                       const std::vector<std::string>& inputs,
+                                                       const Record& at) const {
   constexpr double of_spread = 1e-4;
-  const auto model = compose(fitted_.model, effects_, regressors_);
-  const auto last = static_cast<Index>(model->tables().parameters().size());  // the residual
+  const auto last = static_cast<Index>(model.tables().parameters().size());  // the residual
   base::ThreadPool alone(1);
-  const auto residual = [&](Record record) {
+  const auto residual = [&](Record record) -> VectorXd {
     record.cut(fitted_.rows);
-    const model::Measurements measurements(*model, record);
-    return model::Sweep(*model, measurements, alone)
+    const model::Measurements measurements(model, record);
+    return model::Sweep(model, measurements, alone)
         .tangent_columns(fitted_.fit.xi1(), fitted_.fit.xi2(), {last});
   };
+  ResidualSlopes slopes{.residual = residual(at), .inputs = {}, .spreads = {}, .columns = {}};
   std::vector<VectorXd> columns;
-  VectorXd before;
-  for (const Variable& input : model->tables().inputs) {
-    if (input.name == "time" || !regressors_.has(input.name)) continue;
-    const auto values = regressors_.column(input.name);
+  std::vector<double> spreads;
+  for (const std::string& input : inputs) {
+    if (input == "time" || !at.has(input)) continue;
+    const auto values = at.column(input);
     const Eigen::Map<const VectorXd> known(values.data(), static_cast<Index>(values.size()));
-    const double spread = (known.array() - known.mean()).matrix().norm();
-    const double step = of_spread * spread / std::sqrt(static_cast<double>(known.size()));
+    const double spread = (known.array() - known.mean()).matrix().norm() /
+                          std::sqrt(static_cast<double>(known.size()));
+    const double step = of_spread * spread;
     if (!(step > 0.0) || !std::isfinite(step)) continue;
-    Record changed = regressors_;
+    Record changed = at;
     std::vector<double> moved(values.begin(), values.end());
     for (double& value : moved) value += step;
-    changed.replace(input.name, std::move(moved));
-    if (before.size() == 0) before = residual(regressors_);
-    columns.emplace_back((residual(std::move(changed)) - before) / step);
+    changed.replace(input, std::move(moved));
+    columns.emplace_back((residual(std::move(changed)) - slopes.residual) / step);
+    slopes.inputs.push_back(input);
+    spreads.push_back(spread);
   }
-  MatrixXd all(before.size(), static_cast<Index>(columns.size()));
-  for (Index k = 0; k < all.cols(); ++k) all.col(k) = columns[static_cast<std::size_t>(k)];
+  slopes.spreads = Eigen::Map<const VectorXd>(spreads.data(), static_cast<Index>(spreads.size()));
+  slopes.columns.resize(slopes.residual.size(), static_cast<Index>(columns.size()));
+  for (Index k = 0; k < slopes.columns.cols(); ++k) {
+    slopes.columns.col(k) = columns[static_cast<std::size_t>(k)];
+  }
+  return slopes;
+}
+
+MatrixXd CandidateRoom::input_columns() const {
+  if (follows_path() || noise_) return {};
+  const auto model = compose(fitted_.model, effects_, regressors_);
+  std::vector<std::string> inputs;
+  for (const Variable& input : model->tables().inputs) inputs.push_back(input.name);
+  MatrixXd all = slopes_by(*model, inputs, regressors_).columns;
   if (all.cols() > 0) scale_outputs(all);
   return all;
 }

@@ -61,6 +61,11 @@ bool is_of_lines(const Candidate& candidate, std::size_t effects);
 /// port or at the same.
 bool is_line_of(const Candidate& line, const Candidate& curve, bool at_its_port);
 
+/// Of which inputs columns are made: as they were read, without their white noise where that leaves
+/// clearly less of the error; or as the kit's disturbed ones would have been read without what the
+/// model leaves.
+enum class Regressors { read, undisturbed };
+
 /// A candidate's columns, as many as coefficients.
 struct CandidateColumns {
   Columns whole;
@@ -77,7 +82,8 @@ class CandidateRoom {
   /// At a fit that has the candidate as its last effects, as if it had not: their columns are the
   /// candidate's, and the residual is what it was before they explained their share. Of a model
   /// that integrates a state.
-  CandidateRoom(const DiagnosedFit& fitted, const Candidate& released, base::ThreadPool& pool);
+  CandidateRoom(const DiagnosedFit& fitted, const Candidate& released, base::ThreadPool& pool,
+                Regressors regressors = Regressors::read);
 
   /// Adds to fit() what corrections of inputs that may wander do to the outputs.
   void add_wandering();
@@ -89,8 +95,7 @@ class CandidateRoom {
   const Record& record() const { return record_; }
   const std::vector<Segment>& rows() const { return fitted_.rows; }
 
-  /// The record of which columns are made: inputs without their white noise where that leaves
-  /// clearly less of the error. The residual is that of the readings.
+  /// The record of which columns are made. The residual is that of the readings.
   Record regressors() const;
 
   const Fit& fitted() const { return fitted_.fit; }
@@ -137,6 +142,16 @@ class CandidateRoom {
   CandidateColumns columns(const Candidate& candidate, double shape) const;
 
  private:
+  /// What a change of inputs that vary does to the model's residual, by differences.
+  struct ResidualSlopes {
+    Eigen::VectorXd residual;         // every output's, stacked
+    std::vector<std::string> inputs;  // a column each
+    Eigen::VectorXd spreads;          // of their values
+    Eigen::MatrixXd columns;
+  };
+
+  ResidualSlopes slopes_by(const BlockModel& model, const std::vector<std::string>& inputs,
+                           const Record& at) const;
   Candidate make_anew(const std::string& name);
   CandidateColumns effect_columns(const Candidate& candidate, std::size_t place,
                                   std::span<const Variable> coefficients, double shape) const;
@@ -155,8 +170,9 @@ class CandidateRoom {
                                    const std::vector<std::string>& names) const;
   /// Rows of all outputs become those of the used ones, over their RMSE.
   void scale_outputs(Eigen::MatrixXd& stacked) const;
-  void linearise(const Candidate& released, base::ThreadPool& pool);
+  void linearise(const Candidate& released, base::ThreadPool& pool, Regressors regressors);
   void smooth_regressors(std::vector<Eigen::Index> columns, base::ThreadPool& pool);
+  void undisturb_regressors(std::vector<Eigen::Index> columns, base::ThreadPool& pool);
   void release(const Candidate& released, const Eigen::MatrixXd& columns);
   Eigen::MatrixXd wandering_columns();
 

@@ -102,10 +102,11 @@ class Recipe {
   void in_time(const std::string& step, const std::function<void()>& work);
   std::vector<EffectFinding> collect(const Trials& trials, double tests) const;
   /// `tests`: how many could have been chosen; `slow_too`: whether slow changes are told.
-  std::vector<EffectFinding> judge(Trials& trials, double tests, bool slow_too) const;
+  std::vector<EffectFinding> judge(Trials& trials, double tests, bool slow_too);
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
   bool takes_too_little(const EffectFinding& finding) const;
+  void doubt_readings(Trial& trial);
   double threshold_of(const Trials& trials, double tests) const;
   bool has(FindingStatus status) const;
   Trials::iterator find_trial(const std::string& name);
@@ -136,6 +137,7 @@ class Recipe {
   base::ThreadPool pool_;
   Bench bench_;
   Trials trials_;
+  std::unique_ptr<Bench> undisturbed_;                       // made where it is asked
   std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
   Contest contest_;
   std::vector<std::string> withdrawn_;  // were found, but no fit bears them out
@@ -233,11 +235,27 @@ double Recipe::threshold_of(const Trials& trials, double tests) const {
   return std::log10(options_.significance / number) + about;
 }
 
-std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) const {
+/// No surer than where what the model leaves stands in the readings that columns are made of: there
+/// it goes with them, and imitates whatever changes their errors. Noise of free size would take a
+/// cause for its own there, so noise as instruments have it is asked.
+void Recipe::doubt_readings(Trial& trial) {
+  if (fitted_.kit.disturbed.empty() || bench_.room().follows_path()) return;
+  if (!undisturbed_) {
+    undisturbed_ =
+        std::make_unique<Bench>(fitted_, Candidate{}, options_, pool_, Regressors::undisturbed);
+  }
+  const std::optional<double> log10_p = undisturbed_->bounded_tail(trial.candidate.name);
+  if (log10_p) trial.log10_p = std::max(trial.log10_p, *log10_p);
+}
+
+std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) {
   bench_.hold_out_significant(trials, slow_too);
   const double threshold = threshold_of(trials, tests);
   bench_.calibrate_significant(trials, threshold, slow_too);
   bench_.confirm_best(trials, threshold);
+  for (Trial& trial : trials) {
+    if (trial.held_out.passed && trial.log10_p < threshold) doubt_readings(trial);
+  }
   std::vector<EffectFinding> findings = collect(trials, tests);
   rank(findings);
   return findings;
@@ -509,6 +527,7 @@ void Recipe::weigh_held_out() {
     tell_held_out(trial, *finding);
     if (!trial.held_out.passed || !(finding->held_out_gain >= objects_from)) continue;
     bound_by_fit(bench_, trial);
+    if (trial.log10_p < significant) doubt_readings(trial);
     if (trial.log10_p < significant) {
       finding->status = FindingStatus::found;
       finding->log10_p = trial.log10_p;

@@ -64,6 +64,7 @@ EffectKit catalogue::kit_of(const EffectTable& table) {
   }
   kit.wandering = table.wandering;
   kit.wanders = table.wanders;
+  kit.disturbed = table.disturbed;
   return kit;
 }
 

@@ -77,6 +77,7 @@ struct EffectTable {
   std::vector<Channel> channels;
   std::vector<EffectKit::Maker> wandering = {};  // errors of the attitude: roll, pitch, yaw
   std::vector<WanderBound> wanders = {};         // as sensors of the kind let them
+  std::vector<std::string> disturbed = {};       // readings that meet gusts
   /// What drives effects under the name that a record gives it, where it is there.
   std::vector<std::string> state_drivers = {"alpha", "beta", "q", "r"};
   /// Outputs that a log may have under the name that a record gives them: no effect follows them.

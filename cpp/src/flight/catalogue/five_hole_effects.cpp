@@ -221,6 +221,7 @@ EffectTable five_hole_effects() {
   table.wanders = {velocity_bound(), gust_bound(), airspeed_bound(), tilt_bound(), heading_bound()};
   table.wanders[0].outputs = table.wanders[1].outputs = {"vn", "ve", "vd"};
   table.wanders[2].port = "airspeed_bias";
+  table.disturbed = {"pt", "dpa", "dpb"};
   return table;
 }
 
