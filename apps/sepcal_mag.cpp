@@ -57,7 +57,7 @@ class Magnetometer final : public Instrument {
   std::shared_ptr<const Probe> probe_for_flight(
       std::shared_ptr<const Probe> fitted) const override {
     if (field_.empty()) return fitted;
-    if (fitted->name() != "magnetometer") {
+    if (fitted->settings().contains("field_strength")) {
       throw Error(
           "--field is of no use to a calibration against the field's strength alone; leave it out");
     }

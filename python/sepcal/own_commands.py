@@ -7,12 +7,14 @@ The file is run where it is named, and nowhere else.
 from __future__ import annotations
 
 import argparse
+import importlib
 import importlib.util
 import inspect
 import json
 import os
 import sys
 from collections.abc import Callable, Sequence
+from types import ModuleType
 from typing import Any
 
 from sepcal import _core
@@ -202,33 +204,45 @@ def _options(given: argparse.Namespace) -> dict[str, Any]:
 def read_model(named: str) -> Model:
     """Runs the file and makes an object of the class; an object there is taken as it is.
 
+    In the file's place may stand a module that Python finds: sepcal:Accelerometer.
+
     Raises:
         Error: Another form, no such file or class, a file that does not run, no model.
     """
     file, colon, name = named.rpartition(":")
     if not colon or not file or not name:
         raise _core.Error(f"--model {named}: write it as {FORM}, my_models.py:HotWire")
+    try:
+        module = _run(file, named)
+        if not hasattr(module, name):
+            raise _core.Error(f"--model {named}: {file} has no class {name}")
+        found = getattr(module, name)
+        made = found() if isinstance(found, type) or inspect.isroutine(found) else found
+    except _core.Error:
+        raise
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        raise _core.Error(f"--model {named}: it does not run: {in_line(what)}") from error
+    return to_own(made)
+
+
+def _run(file: str, named: str) -> ModuleType:
+    """A file as a module under a name of its own, so that it is pickled and found by nobody else's;
+    or the module of a name.
+    """
     if not os.path.isfile(file):
+        is_name = all(part.isidentifier() for part in file.split(".")) and not file.endswith(".py")
+        if is_name and importlib.util.find_spec(file.partition(".")[0]) is not None:
+            return importlib.import_module(file)
         raise _core.Error(f"--model {named}: there is no file {file}")
-    # Under a name of its own, so that it is pickled and found by nobody else's.
     spec = importlib.util.spec_from_file_location("sepcal_own_model", file)
     if spec is None or spec.loader is None:
         raise _core.Error(f"--model {named}: {file} is no Python file")
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     sys.path.insert(0, os.path.dirname(os.path.abspath(file)))  # as of a script that is run
-    try:
-        spec.loader.exec_module(module)
-        found = getattr(module, name)
-        made = found() if isinstance(found, type) or inspect.isroutine(found) else found
-    except AttributeError as error:
-        if hasattr(module, name):
-            raise _core.Error(f"--model {named}: {error}") from error
-        raise _core.Error(f"--model {named}: {file} has no class {name}") from None
-    except Exception as error:
-        what = f"{type(error).__name__}: {error}"
-        raise _core.Error(f"--model {named}: it does not run: {in_line(what)}") from error
-    return to_own(made)
+    spec.loader.exec_module(module)
+    return module
 
 
 def _read_flight(given: argparse.Namespace) -> Flight:

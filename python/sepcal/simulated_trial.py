@@ -57,7 +57,7 @@ class SimulatedTrial:
         self.options: FitOptions = {**options, "threads": options.get("threads") or 1}
         to_core({**self.options, "effects": name_effects(self.options.get("effects") or ())})
         tried = simulate(model, **{**self.simulation, "rows": ROWS_TO_TRY})
-        if model.name == "magnetometer-norm" and any(tried.truth[name] for name in ROTATION):
+        if any(tried.truth.get(name) for name in ROTATION if name not in model.parameters):
             raise Error(
                 "the field's strength alone doesn't show a rotation; fly without one: "
                 'simulation={"parameters": {"eta_x": 0, "eta_y": 0, "eta_z": 0}}'

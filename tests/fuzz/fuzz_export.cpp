@@ -138,8 +138,9 @@ bool is_known(const std::string& name) {
     std::set<std::string> names{"maneuver", "temperature", "alpha", "beta"};
     for (std::size_t at = 0; at < makers().size(); ++at) {
       for (const Flight::Column& column : fitted(at).flight.columns()) names.insert(column.header);
-      const std::string_view model = fitted(at).calibration.probe->name();
-      for (const auto& quantity : probes::quantities_of(model)) names.emplace(quantity.name);
+      for (const auto& quantity : fitted(at).calibration.probe->quantities()) {
+        names.emplace(quantity.name);
+      }
     }
     return names;
   }();

@@ -4,7 +4,9 @@
 # ruff: noqa: RUF012
 
 import copy
+import json
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -238,6 +240,34 @@ def test_it_says_what_it_is_and_travels() -> None:
             other.evaluate(SWUNG, [3, 0.4, 2, 0.8, -0.3])[1],
             model.evaluate(SWUNG, [3, 0.4, 2, 0.8, -0.3])[1],
         )
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, ("substeps = 2", "the one given has 1")),
+        ({"substeps": 2, "inputs": "hold"}, ('inputs_between_rows = "linear"', '"hold"')),
+        ({"substeps": 2, "shoot": 3.0}, ("shoot = null", "3.0")),
+    ],
+    ids=str,
+)
+def test_a_file_is_read_by_the_model_as_it_was_laid(
+    options: dict[str, Any], words: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Laid otherwise, its parameters would make other readings of the same inputs."""
+    model = sepcal.Trajectory(RollMode(), substeps=2)
+    flight = sepcal.Flight({"time_s": ROLL["time"], "aileron": ROLL["aileron"], "p_m": ROLL["p_m"]})
+    fitted = sepcal.fit(model, flight)
+    file = tmp_path / "roll.json"
+    fitted.save(file)
+    again = sepcal.load(file, model=model).apply(flight)
+    assert_array_equal(again["p_m_fit_radps"], fitted.apply(flight)["p_m_fit_radps"])
+    other = sepcal.Trajectory(RollMode(), **options)
+    refuse(lambda: sepcal.load(file, model=other), "roll.json", *words)
+    before = json.loads(file.read_text())  # files of before don't tell
+    del before["trajectory"]
+    file.write_text(json.dumps(before))
+    assert sepcal.load(file, model=other).status == fitted.status
 
 
 def test_effects_predictions_and_intervals_work_on_it() -> None:

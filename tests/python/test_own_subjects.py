@@ -250,6 +250,9 @@ def test_every_verb_from_the_command_line(tmp_path: Path) -> None:
         ("HotWire", "FILE.py:CLASS"),
         ("nowhere.py:HotWire", "there is no file nowhere.py"),
         (f"{FILE}:ColdWire", "has no class ColdWire"),
+        ("sepcal:ColdWire", "sepcal has no class ColdWire"),
+        ("nowhere:HotWire", "there is no file nowhere"),
+        ("sepcal:Magnetometer", "Magnetometer ships with sepcal"),
     ],
 )
 def test_a_model_that_is_not_there_is_named(named: str, said: str, tmp_path: Path) -> None:
@@ -261,6 +264,19 @@ def test_a_model_that_is_not_there_is_named(named: str, said: str, tmp_path: Pat
     assert said in refused.stderr
     assert len(refused.stderr.splitlines()) == 1
     assert not (tmp_path / "base.json").exists()
+
+
+def test_a_model_of_a_module_is_found(tmp_path: Path) -> None:
+    """One that ships without a probe, say."""
+    turned = np.random.default_rng(5).standard_normal((3, 60))
+    force = dict(zip(("fx", "fy", "fz"), 9.81 * turned / np.linalg.norm(turned, axis=0)))
+    read = {f"a{axis}": 1.01 * force[f"f{axis}"] + 0.2 for axis in "xyz"}
+    log, base = tmp_path / "turntable.csv", tmp_path / "base.json"
+    _write(sepcal.Flight({"time_s": 0.1 * np.arange(60.0), **force, **read}), log)
+    fitted = _run("fit", "--model", "sepcal:Accelerometer", str(log), "-o", str(base))
+    assert fitted.returncode == 0, fitted.stderr
+    again = sepcal.load(base, model=sepcal.Accelerometer())
+    assert again["n_z"].value == pytest.approx(0.2, abs=1e-9)
 
 
 def test_a_calibration_needs_its_model(tmp_path: Path) -> None:

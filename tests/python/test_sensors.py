@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 import sepcal
 from refusals import refuse
@@ -107,6 +107,26 @@ def test_two_sensors_are_one_model() -> None:
     assert repr(both) == "concatenate(mag=Magnetometer(), acc=Accelerometer())"
 
 
+def test_a_calibration_of_labelled_sensors_is_read_back(tmp_path: Path) -> None:
+    """Their parameters have dots in their names, as those of effects do."""
+    columns = log()
+    columns["temp_c"] = np.linspace(15.0, 35.0, len(columns["time_s"]))
+    both = sepcal.concatenate(mag=sepcal.Magnetometer(), acc=sepcal.Accelerometer())
+    flight = sepcal.Flight(columns)
+    fitted = sepcal.fit(both, flight, effects=["acc.n_x[temp_c]"])
+    file = tmp_path / "both.json"
+    fitted.save(file)
+    for again in (sepcal.load(file, model=both), pickle.loads(pickle.dumps(fitted))):
+        assert [again[name].value for name in both.parameters] == [
+            fitted[name].value for name in both.parameters
+        ]
+        for header, column in fitted.apply(flight).items():
+            assert_array_equal(again.apply(flight)[header], column)
+    text = file.read_text().replace('"acc.n_x[temp_c].s"', '"acc.n_q[temp_c].s"')
+    file.write_text(text)
+    refuse(lambda: sepcal.load(file, model=both), "damaged", "acc.n_q[temp_c].s", "does not list")
+
+
 def test_the_rows_of_a_concatenation_are_those_of_its_sensors() -> None:
     one, other = sepcal.Magnetometer(), sepcal.ScalarExample2()
     whole = sepcal.concatenate(other, a=one)
@@ -195,6 +215,14 @@ def test_what_is_no_part_of_a_triad_is_told() -> None:
     class Flat(triads.FieldInBody):
         outputs = (("mx", "uT"), ("my", "uT"))
 
+    class Odd(triads.Misalignment):
+        def matrix(self, eta: np.ndarray) -> np.ndarray:
+            return np.eye(2)
+
+    odd = sepcal.Triad(triads.FieldInBody(), Odd())
+    inputs = {"hx": [1.0], "hy": [1.0], "hz": [1.0]}
+    wrong = sepcal.own_model.OwnModel(odd)
+    refuse(lambda: wrong.evaluate(inputs, np.zeros(3)), "Odd.matrix()", "(2, 2)", "(3, 3)")
     refuse(lambda: sepcal.Triad(Flat()), "three outputs", "Flat has 2")
     refuse(lambda: sepcal.Triad(triads.Misalignment()), "inputs")  # type: ignore[arg-type]
     refuse(lambda: sepcal.Triad(triads.FieldInBody(), triads.FieldInBody()), "matrix")  # type: ignore[arg-type]

@@ -474,6 +474,9 @@ void define_calibration(py::module_& module) {
       .def("apply_to_file", &apply_file)
       .def_property_readonly("model", [](const Calibration& self) { return self.probe->name(); })
       .def_property_readonly(
+          "app", [](const Calibration& self) { return self.probe->app(); },
+          "The program that calibrates it.")
+      .def_property_readonly(
           "unit",
           [](const Calibration& self) { return self.probe->model().tables().outputs.front().unit; })
       .def("to_json", [](const Calibration& self) { return to_json(self); })

@@ -2,6 +2,11 @@
 // Flights from physics. The truth crosses over as the JSON that the apps' --truth reads.
 #include "sepcal/simulation/simulate.hpp"
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
 #include "bindings.hpp"
 #include "released.hpp"
 #include "sepcal/error.hpp"
@@ -11,22 +16,34 @@
 namespace sepcal::bindings {
 namespace {
 
+template <auto parse, auto fly>
+SimulatedFlight simulate_from(const std::string& truth, const Hidden& hidden,
+                              const SimulationOptions& options) {
+  return fly(with_hidden(parse(truth, "simulate"), hidden), options);
+}
+
+struct Simulator {
+  std::string_view probe;
+  SimulatedFlight (*simulate)(const std::string& truth, const Hidden& hidden,
+                              const SimulationOptions& options);
+};
+
+constexpr auto simulate_field = &simulate_from<parse_magnetometer_truth, simulate_magnetometer>;
+constexpr std::array simulators{
+    Simulator{"five-hole", &simulate_from<parse_five_hole_truth, simulate_five_hole>},
+    Simulator{"pitot-static", &simulate_from<parse_pitot_static_truth, simulate_pitot_static>},
+    Simulator{"magnetometer", simulate_field},
+    Simulator{"magnetometer-norm", simulate_field},
+};
+
 SimulatedFlight simulate(const std::string& probe, const std::string& truth, const Hidden& hidden,
                          const SimulationOptions& options) {
-  const char* source = "simulate";
-  if (probe == "five-hole") {
-    return simulate_five_hole(with_hidden(parse_five_hole_truth(truth, source), hidden), options);
-  }
-  if (probe == "pitot-static") {
-    return simulate_pitot_static(with_hidden(parse_pitot_static_truth(truth, source), hidden),
-                                 options);
-  }
-  if (probe == "magnetometer" || probe == "magnetometer-norm") {
-    return simulate_magnetometer(with_hidden(parse_magnetometer_truth(truth, source), hidden),
-                                 options);
-  }
-  throw Error("there is no probe '" + probe +
-              "' to simulate; known: five-hole, pitot-static, magnetometer, magnetometer-norm");
+  const auto* const one = std::ranges::find(simulators, probe, &Simulator::probe);
+  if (one != simulators.end()) return one->simulate(truth, hidden, options);
+  std::string known;
+  for (const Simulator& each : simulators)
+    known += (known.empty() ? "" : ", ") + std::string(each.probe);
+  throw Error("there is no probe '" + probe + "' to simulate; known: " + known);
 }
 
 }  // namespace

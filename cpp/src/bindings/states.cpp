@@ -116,8 +116,8 @@ Model python_state_model(const std::string& name, const StateTables& tables,
         TrajectoryPlan(tables, record, options_for(record, options)), kept);
   };
   Model model{Along(lay)};
-  model.own =
-      own_if_free(name, LaidAlong([=](const Record* record) { return laid_model(lay(record)); }));
+  model.own = own_if_free(
+      name, LaidAlong([=](const Record* record) { return laid_model(lay(record), options); }));
   return model;
 }
 

@@ -50,10 +50,6 @@ void check_increases(std::span<const double> time, const Segment& segment) {
 
 }  // namespace
 
-std::string_view to_string(InputsBetweenRows inputs) {
-  return inputs == InputsBetweenRows::linear ? "linear" : "hold";
-}
-
 TrajectoryPlan::TrajectoryPlan(const StateTables& model, const Record* record,
                                const TrajectoryOptions& options)
     : model_(model), options_(options) {

@@ -212,8 +212,7 @@ def next_command(material: Material, file: str) -> str:
     if material.last.own_model is not None:
         app = ["python", "-m", "sepcal", "add", "--model", OWN_MODEL]
     else:
-        is_magnetometer = material.model.startswith("magnetometer")
-        app = ["sepcal-mag" if is_magnetometer else "sepcal-pitot", "add"]
+        app = [material.last.core.app, "add"]
     words = [*app, *material.flight_files, file, effect.name]
     return f"{in_shell(words)} -o NEXT.json"
 

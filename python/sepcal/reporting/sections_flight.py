@@ -20,6 +20,7 @@ from sepcal.reporting.figures_noise import draw_autocorrelation, draw_quantiles,
 from sepcal.reporting.gather import Material
 from sepcal.reporting.page import Figure, Grid, Section
 
+FIELD = "uT"  # the unit of what a magnetometer reads
 UNEVEN = 0.1  # share of the median interval: sampling that varies by more is uneven
 
 
@@ -85,7 +86,7 @@ def show_coverage(material: Material) -> Section:
     if own is not None:
         figures = _cover_inputs(material, own)
         lead = "What the inputs never were can't be calibrated: beyond, the model is a guess."
-    elif material.model.startswith("magnetometer"):
+    elif material.last.core.unit == FIELD:
         figures, told = _cover_field(material)
         lead = (
             "What was never flown can't be calibrated: directions all over the sphere separate the "

@@ -17,6 +17,7 @@
 
 #include "sepcal/block_model.hpp"
 #include "sepcal/flight/probe.hpp"
+#include "sepcal/states/trajectory_options.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
@@ -43,6 +44,7 @@ struct LaidModel {
   std::shared_ptr<const BlockModel> model;
   std::vector<std::string> initial_states;  // "theta_0" of "theta_0", "theta_0[turn]"
   std::size_t varying = 0;                  // so many of the linear parameters, the first, may vary
+  TrajectoryOptions options = {};           // how it was laid
 };
 
 /// Lays it; without a record along any, each of whose segments begins at one initial state.

@@ -18,9 +18,11 @@
 namespace sepcal {
 
 /// What own_model() takes of a model that is laid along a record.
-inline LaidModel laid_model(const std::shared_ptr<const StateBlockModel>& model) {
+inline LaidModel laid_model(const std::shared_ptr<const StateBlockModel>& model,
+                            const TrajectoryOptions& options) {
   const TrajectoryPlan& plan = model->plan();
-  LaidModel laid{.model = model, .initial_states = {}, .varying = plan.linear().size()};
+  LaidModel laid{
+      .model = model, .initial_states = {}, .varying = plan.linear().size(), .options = options};
   for (const int i : plan.integrated()) {
     laid.initial_states.push_back(plan.model().states[static_cast<std::size_t>(i)].name + "_0");
   }
@@ -32,11 +34,12 @@ std::shared_ptr<const Probe> own_model(std::string name, const M& model,
                                        const TrajectoryOptions& options = {}) {
   const LaidAlong lay = [=](const Record* record) {
     if (record != nullptr) {
-      return laid_model(std::make_shared<const TrajectoryModel<M>>(model, *record, options));
+      return laid_model(std::make_shared<const TrajectoryModel<M>>(model, *record, options),
+                        options);
     }
     TrajectoryOptions uncut = options;
     uncut.shoot = infinity;  // there is nothing to cut
-    return laid_model(std::make_shared<const TrajectoryModel<M>>(model, uncut));
+    return laid_model(std::make_shared<const TrajectoryModel<M>>(model, uncut), options);
   };
   return own_model(std::move(name), lay);
 }

@@ -21,9 +21,13 @@
 namespace sepcal {
 
 struct Fit;
+struct TrajectoryOptions;
 
 namespace catalogue {
 struct EffectTable;
+}
+namespace exporting {
+struct Exporter;
 }
 namespace probes {
 struct ProbeQuantity;
@@ -96,10 +100,16 @@ class Probe {
   /// model has no state.
   virtual std::vector<std::string> initial_states() const { return {}; }
 
-  /// All that is known of the effects that it may lack, and all that it reads of a log: unless
-  /// overridden what ships under its name.
-  virtual const catalogue::EffectTable& effects() const;
-  virtual std::span<const probes::ProbeQuantity> quantities() const;
+  /// How a model of the caller's own is laid along a record; its calibration's file tells, and is
+  /// read with no other. Else nullptr.
+  virtual const TrajectoryOptions* trajectory() const { return nullptr; }
+
+  /// All that is known of the effects that it may lack, and all that it reads of a log.
+  virtual const catalogue::EffectTable& effects() const = 0;
+  virtual std::span<const probes::ProbeQuantity> quantities() const = 0;
+
+  /// How its correction is exported; nullptr: it has none.
+  virtual const exporting::Exporter* exporter() const { return nullptr; }
 
   /// What must be known of the instrument, by the names of the options, e.g. k_alpha {4.5},
   /// lever_arm {0.35, 0, -0.02}. make_probe() takes them back.

@@ -12,7 +12,9 @@
 namespace sepcal {
 
 /// "linear", "hold".
-std::string_view to_string(InputsBetweenRows inputs);
+constexpr std::string_view to_string(InputsBetweenRows inputs) {
+  return inputs == InputsBetweenRows::linear ? "linear" : "hold";
+}
 
 struct TrajectoryOptions {
   InputsBetweenRows inputs = InputsBetweenRows::linear;

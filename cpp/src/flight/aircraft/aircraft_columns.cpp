@@ -60,11 +60,57 @@ Record without_jumps(const Record& record) {
 
 }  // namespace
 
+probes::ModelQuantities quantities_of(AircraftModel model) {
+  using files::UnitKind;
+  static constexpr std::array quantities{
+      probes::ProbeQuantity{"time", UnitKind::time},
+      probes::ProbeQuantity{"ax", UnitKind::acceleration},
+      probes::ProbeQuantity{"ay", UnitKind::acceleration},
+      probes::ProbeQuantity{"az", UnitKind::acceleration},
+      probes::ProbeQuantity{"p", UnitKind::rate},
+      probes::ProbeQuantity{"q", UnitKind::rate},
+      probes::ProbeQuantity{"r", UnitKind::rate},
+      probes::ProbeQuantity{"airspeed", UnitKind::speed},
+      probes::ProbeQuantity{"alpha", UnitKind::angle},
+      probes::ProbeQuantity{"beta", UnitKind::angle},
+      probes::ProbeQuantity{
+          .name = "roll", .kind = UnitKind::angle, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "pitch", .kind = UnitKind::angle, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "yaw", .kind = UnitKind::angle, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "vn", .kind = UnitKind::speed, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "ve", .kind = UnitKind::speed, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "vd", .kind = UnitKind::speed, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{"elevator", UnitKind::angle},
+      probes::ProbeQuantity{"aileron", UnitKind::angle},
+      probes::ProbeQuantity{"rudder", UnitKind::angle},
+      probes::ProbeQuantity{"throttle", UnitKind::share},
+      probes::ProbeQuantity{"thrust", UnitKind::force},
+      probes::ProbeQuantity{"mass", UnitKind::mass},
+      probes::ProbeQuantity{.name = "rho", .kind = UnitKind::density, .unless = {"qbar"}},
+      probes::ProbeQuantity{"qbar", UnitKind::pressure},
+      probes::ProbeQuantity{.name = "ps", .kind = UnitKind::pressure, .unless = {"qbar", "rho"}},
+      probes::ProbeQuantity{.name = "temp",
+                            .kind = UnitKind::temperature,
+                            .is_driver = true,
+                            .unless = {"qbar", "rho"}},
+      probes::ProbeQuantity{"pdot", UnitKind::angular_acceleration},
+      probes::ProbeQuantity{"qdot", UnitKind::angular_acceleration},
+      probes::ProbeQuantity{"rdot", UnitKind::angular_acceleration},
+  };
+  const bool by_row = model == AircraftModel::aero;
+  return {quantities, by_row ? probes::LooksAt::coefficients : probes::LooksAt::trajectory};
+}
+
 ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log) {
   const ReadFlight read = read_as(logged, log);
   const BelievedFlight believed = believe(read.flight, model, log);
   const Flight& flight = believed.flight;
-  RecordBuilder builder(flight, probes::quantities_of(to_string(model)), log);
+  RecordBuilder builder(flight, quantities_of(model).list, log);
   refuse_load_factor(builder, flight);
   builder.keep([&](std::size_t row) { return !std::ranges::binary_search(believed.left_out, row); },
                "a code stands there in a reading's place");

@@ -2,10 +2,14 @@
 // From an aircraft's log to the record that its models take.
 #pragma once
 
+#include "flight/probes/quantities.hpp"
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 
 namespace sepcal::aircraft_log {
+
+/// What its models read of a log, needed or not.
+probes::ModelQuantities quantities_of(AircraftModel model);
 
 /// time [s]; ax ay az [m/s^2]; p q r [rad/s]; of an aircraft airspeed [m/s], alpha and beta [rad],
 /// rho [kg/m^3] or qbar [Pa]; and whatever else of the models' columns is logged. Throws Error as

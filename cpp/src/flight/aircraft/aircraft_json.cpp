@@ -34,16 +34,10 @@ std::vector<AeroEquation> read_equations(const Json& object) {
 }
 
 Json write_model(const AircraftOptions& options) {
-  const TrajectoryOptions& along = options.trajectory;
-  Json object = {{"equations", write_equations(options.equations)},
-                 {"inputs_between_rows", to_string(along.inputs)},
-                 {"substeps", along.substeps},
-                 {"shoot", number(along.shoot)},
-                 {"measured", along.measured},
-                 {"outputs", along.outputs},
-                 {"scales_about_start", along.scales_about_start},
-                 {"gravity", options.gravity},
-                 {"window", options.window}};
+  Json object = {{"equations", write_equations(options.equations)}};
+  object.update(write_trajectory(options.trajectory));
+  object["gravity"] = options.gravity;
+  object["window"] = options.window;
   if (options.geometry) object["geometry"] = Json::parse(to_json(*options.geometry));
   return object;
 }

@@ -3,6 +3,7 @@
 
 #include <iterator>
 
+#include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/checks/taken_rows.hpp"
@@ -14,10 +15,10 @@
 namespace sepcal::aircraft_log {
 
 BelievedFlight believe(const Flight& flight, AircraftModel model, const LogChoice& choice) {
-  verbs::MendedFlight mended = verbs::mend(to_string(model), flight, choice);
+  verbs::MendedFlight mended = verbs::mend(quantities_of(model), flight, choice);
   BelievedFlight believed{std::move(mended.flight), {}, std::move(mended.filled)};
-  const checks::TakenRows taken = checks::take_rows(to_string(model), flight, choice);
-  const checks::Log log(to_string(model), taken.flight);
+  const checks::TakenRows taken = checks::take_rows(quantities_of(model), flight, choice);
+  const checks::Log log(quantities_of(model), taken.flight);
   std::vector<LogNote> found;
   checks::check_constants(log, found);
   const std::vector<checks::SuspectColumn> suspects = checks::find_suspects(log);
@@ -38,7 +39,7 @@ AircraftFit without_suspects(const AircraftFit& fitted, const Flight& flight,
   AircraftOptions options = options_on(fitted, flight);
   LogChoice& log = options.calibration.log;
   const ReadFlight read = read_as(flight, log);
-  const verbs::MendedFlight mended = verbs::mend(to_string(options.model), read.flight, log);
+  const verbs::MendedFlight mended = verbs::mend(quantities_of(options.model), read.flight, log);
   if (mended.all.condition.empty()) return fitted;
   log.where = checks::join_conditions(log.where, {mended.all.condition});
   AircraftFit left = fitted;

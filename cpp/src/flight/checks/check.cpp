@@ -41,7 +41,7 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
   const probes::Sequence sequence = read != log.columns().end()
                                         ? read->sequence
                                         : probes::find_sequence(column.values, log.stretches());
-  if (read != log.columns().end()) described.quantity = read->quantity;
+  if (read != log.columns().end()) described.quantity = read->name();
   if (is_time) described.quantity = "time";
   described.step = sequence.step;
   described.repeated = sequence.repeated;

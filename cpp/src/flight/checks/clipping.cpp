@@ -81,7 +81,7 @@ void note_clipping(const Log& log, const LoggedColumn& column, double noise,
     largest = std::max(largest, value);
   }
   for (const double extreme : {least, largest}) {
-    if (extreme == 0 && manner_of(column.quantity, *column.logged.unit).rests) continue;
+    if (extreme == 0 && manner_of(column.name(), *column.logged.unit).rests) continue;
     RowList rows;
     for (const Segment& stretch : log.stretches()) {
       const RowList found = find_clipped(column, stretch, extreme, noise);
@@ -106,7 +106,7 @@ void note_clipping(const Log& log, const LoggedColumn& column, double noise,
 void check_clipping(const Log& log, std::vector<LogNote>& notes) {
   for (const LoggedColumn& column : log.columns()) {
     const bool turns = column.kind() == UnitKind::angle || column.kind() == UnitKind::rate;
-    if (!column.used || turns || column.sequence.knot_spacing > 1.0) continue;
+    if (!column.used() || turns || column.sequence.knot_spacing > 1.0) continue;
     const double noise = reading_noise(column.values, log.stretches());
     if (std::isnan(noise)) continue;
     const double step =

@@ -12,31 +12,20 @@
 #include "numerics/order_statistics.hpp"
 
 namespace sepcal::checks {
-namespace {
 
 using files::UnitKind;
 
-/// Whether a fit of the model takes the quantity: a field's strength alone takes no attitude and no
-/// true field.
-bool is_used(std::string_view model, const probes::ProbeQuantity& quantity) {
-  if (model == "magnetometer-norm") return quantity.name.starts_with('m');
-  return !quantity.is_extra;
-}
-
-}  // namespace
-
 Log::Log(const probes::ModelQuantities& model, const Flight& flight)
-    : model_(model.model), flight_(flight) {
+    : looks_at_(model.looks_at), flight_(flight) {
   time_ = files::read_quantity(flight, "time", UnitKind::time);
   stretches_ = probes::find_stretches(time_, flight.maneuvers());
   for (const probes::ProbeQuantity& quantity : model.list) {
     if (quantity.kind == UnitKind::time) continue;
     const auto logged = files::find_quantity(flight, quantity.name, quantity.kind, quantity.bare);
     if (!logged) continue;
-    LoggedColumn column{quantity.name, *logged, logged->values(), {}, true};
+    LoggedColumn column{&quantity, *logged, logged->values(), {}};
     if (quantity.kind == UnitKind::angle) unwrap(column.values, 2 * std::numbers::pi);
     column.sequence = probes::find_sequence(logged->column->values, stretches_);
-    column.used = is_used(model_, quantity);
     columns_.push_back(std::move(column));
   }
 }
@@ -52,7 +41,7 @@ double Log::interval() const {
 }
 
 const LoggedColumn* Log::find(std::string_view quantity) const {
-  const auto found = std::ranges::find(columns_, quantity, &LoggedColumn::quantity);
+  const auto found = std::ranges::find(columns_, quantity, &LoggedColumn::name);
   return found == columns_.end() ? nullptr : &*found;
 }
 

@@ -17,12 +17,16 @@ namespace sepcal::checks {
 
 /// A quantity of the probe that was logged.
 struct LoggedColumn {
-  std::string_view quantity;
+  const probes::ProbeQuantity* quantity;
   files::LoggedQuantity logged;
   std::vector<double> values;  // in the unit used inside, NaN where the cell is none; no turn is
                                // jumped over by an angle
   probes::Sequence sequence;
-  bool used = true;  // by a fit; else a channel beside it
+
+  std::string_view name() const { return quantity->name; }
+
+  /// By a fit; else a channel beside it.
+  bool used() const { return !quantity->is_extra && quantity->taken != probes::Taken::never; }
 
   const std::string& header() const { return logged.column->header; }
   files::UnitKind kind() const { return logged.unit->kind; }
@@ -32,7 +36,7 @@ class Log {
  public:
   Log(const probes::ModelQuantities& model, const Flight& flight);
 
-  std::string_view model() const { return model_; }
+  probes::LooksAt looks_at() const { return looks_at_; }
   const Flight& flight() const { return flight_; }
   const std::vector<LoggedColumn>& columns() const { return columns_; }
 
@@ -53,7 +57,7 @@ class Log {
   std::vector<const LoggedColumn*> find_all(std::initializer_list<std::string_view> names) const;
 
  private:
-  std::string model_;
+  probes::LooksAt looks_at_;
   const Flight& flight_;
   std::vector<double> time_;
   std::vector<Segment> stretches_;

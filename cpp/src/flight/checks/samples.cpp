@@ -39,11 +39,11 @@ std::vector<SlowColumns> find_slow(const Log& log, Counts counts) {
     if (rate <= 1.0 || !counts(column)) continue;
     const bool held = column.sequence.hold > 1.0;
     const auto alike = std::ranges::find_if(groups, [&](const SlowColumns& group) {
-      return group.held == held && group.used == column.used &&
+      return group.held == held && group.used == column.used() &&
              std::abs(group.rows_per_sample / rate - 1) < 0.1;
     });
     if (alike == groups.end()) {
-      groups.push_back({held, column.used, rate, {column.header()}});
+      groups.push_back({held, column.used(), rate, {column.header()}});
     } else {
       alike->headers.push_back(column.header());
     }
@@ -119,7 +119,7 @@ void check_samples(const Log& log, std::vector<LogNote>& notes) {
   const std::vector<SlowColumns> groups = find_slow(log, [](const LoggedColumn&) { return true; });
   for (const SlowColumns& group : groups) note_slow(log, group, groups, notes);
   for (const LoggedColumn& column : log.columns()) {
-    if (column.used && column.sequence.coarse) note_coarse(log, column, notes);
+    if (column.used() && column.sequence.coarse) note_coarse(log, column, notes);
   }
 }
 
@@ -128,7 +128,7 @@ std::vector<std::string> find_slowest(const Log& log) {
   const std::vector<SlowColumns> groups = find_slow(log, [&](const LoggedColumn& column) {
     constexpr std::array lively{"vn", "ve", "airspeed", "dp", "pt", "dpa", "dpb", "mx", "my", "mz"};
     return role_of(log, column) == Role::measured &&
-           std::ranges::find(lively, column.quantity) != lively.end();
+           std::ranges::find(lively, column.name()) != lively.end();
   });
   const SlowColumns* slowest = find_slowest_of(groups);
   if (slowest == nullptr) return {};

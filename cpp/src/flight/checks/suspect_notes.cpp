@@ -156,9 +156,9 @@ void check_constants(const Log& log, std::vector<LogNote>& notes) {
   for (const LoggedColumn& column : log.columns()) {
     const std::span<const double> values = column.logged.column->values;
     const bool reads =
-        std::ranges::find(readings, column.quantity) != readings.end() ||
-        (std::ranges::find(or_unused, column.quantity) != or_unused.end() && values.front() != 0);
-    if (!reads || !column.used || !is_constant(values)) continue;
+        std::ranges::find(readings, column.name()) != readings.end() ||
+        (std::ranges::find(or_unused, column.name()) != or_unused.end() && values.front() != 0);
+    if (!reads || !column.used() || !is_constant(values)) continue;
     LogNote note = note_on(log, "frozen", Concern::wrong, {column.header()});
     note.found = fmt::format("{} reads {} in every row", column.header(),
                              say_size(values.front(), std::string(column.logged.unit->suffix)));

@@ -39,9 +39,7 @@ bool is_axis(std::string_view quantity) {
   return quantity == "mx" || quantity == "my" || quantity == "mz";
 }
 
-bool is_of_aircraft(const Log& log) {
-  return log.model() == "aero" || probes::has_state(log.model());
-}
+bool is_of_aircraft(const Log& log) { return log.looks_at() != probes::LooksAt::readings; }
 
 /// What reads the quantity, and at a fault all that it reads: of a probe the attitude and the rest,
 /// of an aircraft, whose motion all of them show, each unit.
@@ -50,7 +48,7 @@ std::string_view sensor_of(const Log& log, const LoggedColumn& column) {
     const bool turns = column.kind() == UnitKind::angle || column.kind() == UnitKind::rate;
     return turns ? "attitude" : "others";
   }
-  const std::string_view name = column.quantity;
+  const std::string_view name = column.name();
   if (name == "roll" || name == "pitch" || name == "yaw") return "attitude";
   if (name == "vn" || name == "ve" || name == "vd") return "receiver";
   const UnitKind kind = column.kind();
@@ -60,7 +58,7 @@ std::string_view sensor_of(const Log& log, const LoggedColumn& column) {
 
 /// Of an aircraft's rates too: they are logged fast, and others tell whether it turned.
 Manner manner_in(const Log& log, const LoggedColumn& column) {
-  Manner manner = manner_of(column.quantity, *column.logged.unit);
+  Manner manner = manner_of(column.name(), *column.logged.unit);
   if (is_of_aircraft(log)) manner.flows = true;
   return manner;
 }
@@ -85,7 +83,7 @@ std::vector<SuspectColumn> find_in_quantities(const Log& log,
     const RowList own = join(suspect.rows.spikes, suspect.rows.bursts);
     RowList& all = jumps[sensor_of(log, column)];
     all = join(all, own);
-    if (is_axis(column.quantity)) axes[static_cast<std::size_t>(column.quantity[1] - 'x')] = own;
+    if (is_axis(column.name())) axes[static_cast<std::size_t>(column.name()[1] - 'x')] = own;
     columns.push_back(std::move(suspect));
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -98,8 +96,8 @@ std::vector<SuspectColumn> find_in_quantities(const Log& log,
     forget_motion(columns[i], elsewhere);
     const bool may_turn = sensor == "attitude" && !is_of_aircraft(log);
     if (may_turn) columns[i].rows.spikes.clear();  // it may turn as fast
-    if (!is_axis(column.quantity)) continue;
-    const auto own = static_cast<std::size_t>(column.quantity[1] - 'x');
+    if (!is_axis(column.name())) continue;
+    const auto own = static_cast<std::size_t>(column.name()[1] - 'x');
     forget_motion(columns[i], join(axes[(own + 1) % 3], axes[(own + 2) % 3]));
   }
   return columns;
@@ -116,32 +114,18 @@ std::string unit_of_channel(const std::string& header) {
   return split == std::string::npos ? "" : header.substr(split + 1);
 }
 
-/// Whether equation error takes it, of an atmosphere what is there.
-bool is_in_coefficients(const Log& log, std::string_view quantity) {
-  const bool needs_density = log.find("qbar") == nullptr;
-  if (quantity == "rho") return needs_density;
-  if (quantity == "ps" || quantity == "temp") return needs_density && log.find("rho") == nullptr;
-  constexpr std::array beside{"roll", "pitch", "yaw", "vn", "ve", "vd"};
-  return std::ranges::find(beside, quantity) == beside.end();
-}
-
 /// Whether a fit of the model measures it, row by row.
 bool is_measured(const Log& log, const LoggedColumn& column) {
-  if (!column.used) return false;
-  if (log.model() == "aero") return is_in_coefficients(log, column.quantity);
-  const bool tube = log.model() == "pitot-static";
-  const bool needs_density = !tube || log.find("airspeed") == nullptr;
-  if (column.quantity == "rho") return needs_density;
-  if (column.quantity == "temp") return needs_density && log.find("rho") == nullptr;
-  if (column.quantity == "ps" && tube) return needs_density && log.find("rho") == nullptr;
-  constexpr std::array slow{"bn", "be", "bd", "field_strength"};
-  return std::ranges::find(slow, column.quantity) == slow.end();
+  if (!column.used() || column.quantity->taken == probes::Taken::as_known) return false;
+  return std::ranges::none_of(column.quantity->unless, [&](std::string_view other) {
+    return !other.empty() && log.find(other) != nullptr;
+  });
 }
 
 }  // namespace
 
 Role role_of(const Log& log, const LoggedColumn& column) {
-  if (probes::has_state(log.model())) return Role::integrated;
+  if (log.looks_at() == probes::LooksAt::trajectory) return Role::integrated;
   return is_measured(log, column) ? Role::measured : Role::driver;
 }
 

@@ -37,7 +37,9 @@ Role role_of(const Log& log, const LoggedColumn& column);
 
 /// Whether a fit of the model leaves out the rows of codes in what it measures by itself: equation
 /// error does, which else refuses them.
-inline bool leaves_codes_out(const Log& log) { return log.model() == "aero"; }
+inline bool leaves_codes_out(const Log& log) {
+  return log.looks_at() == probes::LooksAt::coefficients;
+}
 
 /// Conditions that leave these rows out, as --where takes them, all of which must hold: "not (100
 /// <= time_s <= 101.8)". None where the log has no time to say it by.

@@ -7,6 +7,7 @@
 
 #include "flight/export/bodies.hpp"
 #include "flight/export/driver_origin.hpp"
+#include "flight/export/exporter.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
@@ -16,8 +17,6 @@ Constant parameter(const Calibration& calibration, const std::string& name) {
   const Parameter& one = calibration.fit[name];
   return {name, {one.value}, 0, one.name + ", " + one.unit};
 }
-
-}  // namespace
 
 ProbeBody pitot_static_body(const Calibration& calibration, const Correction& correction,
                             const Dialect& dialect) {
@@ -122,6 +121,52 @@ ProbeBody five_hole_body(const Calibration& calibration, const Correction& corre
                  {ps + 250.0, ps, -7.5 * k_alpha, 5.0 * k_beta, 1.1},
                  {ps + 400.0, ps, 40.0 * k_alpha, 20.0 * k_beta, 1.05}};
   return body;
+}
+
+/// What a five-hole probe reads before anything is corrected: effects may follow it.
+std::string read_angles(const Dialect& dialect) {
+  return fmt::format(
+      "  const double pressure = {};\n"
+      "  if (!(pressure > 0.0) || !(rho_kgpm3 > 0.0)) return {};\n"
+      "  const double alpha_read = dpa_pa / ({} * pressure);\n"
+      "  const double beta_read = dpb_pa / ({} * pressure);\n",
+      dialect.is_single() ? "pt_less_ps_pa" : "pt_pa - ps_pa", dialect.own("bad_input"),
+      dialect.constant("k_alpha"), dialect.constant("k_beta"));
+}
+
+}  // namespace
+
+const Exporter& pitot_static_exporter() {
+  static const Exporter exporter{
+      .instrument = "a Pitot-static tube",
+      .header_name = "pitot_static",
+      .readings = {{"airspeed", "airspeed_mps"}, {"airspeed_mps", "airspeed_mps"}},
+      .density_scales = "airspeed_scale",
+      .held = HeldAs::airspeed,
+      .body = pitot_static_body};
+  return exporter;
+}
+
+const Exporter& five_hole_exporter() {
+  static const Exporter exporter{.instrument = "a five-hole probe",
+                                 .header_name = "five_hole",
+                                 .readings = {{"alpha", "alpha_read"},
+                                              {"beta", "beta_read"},
+                                              {"pt", "pt_pa"},
+                                              {"ps", "ps_pa"},
+                                              {"dpa", "dpa_pa"},
+                                              {"dpb", "dpb_pa"},
+                                              {"rho", "rho_kgpm3"},
+                                              {"pt_pa", "pt_pa"},
+                                              {"ps_pa", "ps_pa"},
+                                              {"dpa_pa", "dpa_pa"},
+                                              {"dpb_pa", "dpb_pa"},
+                                              {"rho_kgpm3", "rho_kgpm3"}},
+                                 .by_difference = true,
+                                 .density_scales = "reading_scale",
+                                 .body = five_hole_body,
+                                 .before_effects = read_angles};
+  return exporter;
 }
 
 }  // namespace sepcal::exporting

@@ -26,9 +26,5 @@ FieldMatrix field_matrix(const Calibration& calibration);
 
 ProbeBody magnetometer_body(const FieldMatrix& field, bool up_to_rotation,
                             const Correction& correction, const Dialect& dialect);
-ProbeBody pitot_static_body(const Calibration& calibration, const Correction& correction,
-                            const Dialect& dialect);
-ProbeBody five_hole_body(const Calibration& calibration, const Correction& correction,
-                         const Dialect& dialect);
 
 }  // namespace sepcal::exporting

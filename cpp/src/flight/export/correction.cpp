@@ -103,13 +103,13 @@ class Description {
 
   /// A channel that is a reading, or follows from some.
   std::optional<Followed> at_hand(const std::string& name) {
-    const std::string_view probe = calibration_.probe->name();
+    const Exporter& exporter = exporter_of(calibration_);
     const bool is_total = name == "pt" || name == "pt_pa";
-    if (dialect_.is_single() && probe == "five-hole" && is_total) {
+    if (dialect_.is_single() && exporter.by_difference && is_total) {
       const Driver& ps = driver_of("ps", {});
       return Followed{fmt::format("({} + pt_less_ps_pa)", ps.argument), ps.origin, true};
     }
-    const auto& readings = names_of_readings(probe, dialect_.is_single());
+    const auto readings = names_of_readings(exporter, dialect_.is_single());
     const auto found = readings.find(name);
     if (found == readings.end()) return std::nullopt;
     const std::string_view axes = "xyz";
@@ -190,7 +190,7 @@ class Description {
   /// Where each driver is counted from, so that a float holds it.
   void find_origins() {
     if (!dialect_.is_single()) return;
-    const auto& readings = names_of_readings(calibration_.probe->name(), true);
+    const auto readings = names_of_readings(exporter_of(calibration_), true);
     for (const EffectSetting& setting : calibration_.options.effects) {
       const EffectName name = parse_effect_name(setting.name);
       const bool is_counted = name.shape == Shape::power || name.shape == Shape::product ||
@@ -458,7 +458,6 @@ class Description {
   void add_physics(const EffectSetting& setting) {
     const auto why = stranded().find(setting.name);
     if (why != stranded().end()) refuse(setting.name, why->second);
-    const bool five_hole = calibration_.probe->name() == "five-hole";
     if (setting.name == "cubic_nonlinearity") {
       result_.is_cubic = true;
       add_cubic();
@@ -467,7 +466,7 @@ class Description {
     } else if (setting.name == "density_error") {
       const std::string x =
           local(fmt::format("0.5 / {}", follow("temperature").whole()), setting.name);
-      add_coefficients(setting, five_hole ? "reading_scale" : "airspeed_scale", {"s"}, x);
+      add_coefficients(setting, std::string(exporter_of(calibration_).density_scales), {"s"}, x);
     } else if (setting.name == "compressibility") {
       const std::string x = local(compressible(), setting.name);
       add_coefficients(setting, "airspeed_scale", {"s"}, x);

@@ -63,25 +63,13 @@ const KnownChannel* find_known(std::string_view channel) {
   return found == known_channels.end() ? nullptr : found;
 }
 
-const std::map<std::string, std::string, std::less<>>& names_of_readings(std::string_view probe,
-                                                                         bool single) {
-  static const std::map<std::string, std::string, std::less<>> field{
-      {"mx", "m_ut[0]"},    {"my", "m_ut[1]"},    {"mz", "m_ut[2]"},
-      {"mx_ut", "m_ut[0]"}, {"my_ut", "m_ut[1]"}, {"mz_ut", "m_ut[2]"}};
-  static const std::map<std::string, std::string, std::less<>> tube{
-      {"airspeed", "airspeed_mps"}, {"airspeed_mps", "airspeed_mps"}};
-  static const std::map<std::string, std::string, std::less<>> ports{
-      {"alpha", "alpha_read"}, {"beta", "beta_read"}, {"pt", "pt_pa"},
-      {"ps", "ps_pa"},         {"dpa", "dpa_pa"},     {"dpb", "dpb_pa"},
-      {"rho", "rho_kgpm3"},    {"pt_pa", "pt_pa"},    {"ps_pa", "ps_pa"},
-      {"dpa_pa", "dpa_pa"},    {"dpb_pa", "dpb_pa"},  {"rho_kgpm3", "rho_kgpm3"}};
-  static const auto ports_in_single = [] {
-    auto names = ports;
+std::map<std::string, std::string, std::less<>> names_of_readings(const Exporter& exporter,
+                                                                  bool single) {
+  auto names = exporter.readings;
+  if (single && exporter.by_difference) {
     for (const char* pressure : {"pt", "ps", "pt_pa", "ps_pa"}) names.erase(pressure);
-    return names;
-  }();
-  if (probe == "five-hole") return single ? ports_in_single : ports;
-  return probe == "pitot-static" ? tube : field;
+  }
+  return names;
 }
 
 std::string identifier(const std::string& header) {

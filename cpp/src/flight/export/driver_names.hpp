@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "flight/export/exporter.hpp"
+
 namespace sepcal::exporting {
 
 /// Quantities that a record has under their own name: the argument, its unit, and what it may be.
@@ -21,10 +23,9 @@ struct KnownChannel {
 /// By its name in a record or as a column in that unit; nullptr for any other column of the log.
 const KnownChannel* find_known(std::string_view channel);
 
-/// Expressions of a correction by channel, for a probe by its Probe::name(); a five-hole probe's
-/// header in float takes the difference of its pressures, and these by themselves as drivers.
-const std::map<std::string, std::string, std::less<>>& names_of_readings(std::string_view probe,
-                                                                         bool single);
+/// Expressions of a correction by channel, as the header has them.
+std::map<std::string, std::string, std::less<>> names_of_readings(const Exporter& exporter,
+                                                                  bool single);
 
 /// A column's header as an argument of a function.
 std::string identifier(const std::string& header);

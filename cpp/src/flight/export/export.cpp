@@ -12,6 +12,7 @@
 #include <ranges>
 
 #include "flight/export/bodies.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/export/fit_for_use.hpp"
 #include "flight/export/header_text.hpp"
 #include "flight/export/held_rotation.hpp"
@@ -70,17 +71,9 @@ class FlightAtHand {
   bool one_of_several_;
 };
 
-std::string_view instrument(const Calibration& calibration) {
-  const std::string_view name = calibration.probe->name();
-  if (name == "five-hole") return "a five-hole probe";
-  return name == "pitot-static" ? "a Pitot-static tube" : "a magnetometer";
-}
-
 /// A number beside a name, as the header's names have it.
 std::string header_name(const Calibration& calibration, const ExportOptions& options) {
-  std::string name(calibration.probe->name());
-  std::ranges::replace(name, '-', '_');
-  if (name == "magnetometer_norm") name = "magnetometer";
+  const std::string name(exporter_of(calibration).header_name);
   if (!options.sensor) return "sepcal_" + name;
   if (*options.sensor < 0) throw OptionError({Option{"sensor"}, " is below zero; count from 0"});
   return fmt::format("sepcal_{}_{}", name, *options.sensor);
@@ -111,7 +104,7 @@ void export_header(const Calibration& given, const Calibration& held, const std:
   const Dialect dialect(options.target == ExportTarget::cpp, options.single,
                         header_name(held, options));
   std::vector<std::string> comment =
-      provenance(fmt::format("The correction of {}", instrument(held)), given, held);
+      provenance(fmt::format("The correction of {}", exporter_of(held).instrument), given, held);
   if (exported.loss) std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
   Header header = header_text(held, dialect, id, comment);
   exported.text = std::move(header.text);
@@ -178,7 +171,7 @@ OnAutopilot export_parameters(const Calibration& given, const Calibration& base,
                               const FlightAtHand& flight, const ExportOptions& options,
                               Exported& exported) {
   check_held(base, options.target);
-  const bool is_field = base.probe->app() == "sepcal-mag";
+  const bool is_field = is_magnetometer(base);
   OnAutopilot there = is_field ? export_field(given, base, flight, options, exported)
                                : export_airspeed(given, base, flight, options, exported);
   for (const std::string& effect : options.without) {
@@ -194,7 +187,7 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
                Exported& exported) {
   const Flight& flight = at_hand.need("a fit without an effect");
   CalibrationOptions fewer = options_without(given, options.without, options.progress);
-  if (!is_header(options.target) && given.probe->app() != "sepcal-mag") {
+  if (!is_header(options.target) && !is_magnetometer(given)) {
     exported.calibration.options = std::move(fewer);
     return;
   }
@@ -209,14 +202,13 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
 
 Exported export_calibration(const Calibration& calibration, const Flight* flight,
                             const ExportOptions& options) {
-  if (calibration.probe->predicts()) {
-    throw Error(
-        fmt::format("{} is a model of your own, which gives no correction to export; read its "
-                    "parameters from the "
-                    "JSON",
-                    calibration.probe->name()));
+  if (calibration.probe->exporter() == nullptr) {
+    throw Error(fmt::format(
+        "{} is a model of your own, which gives no correction to export; read its parameters "
+        "from the JSON",
+        calibration.probe->name()));
   }
-  refuse_five_hole(calibration, options);
+  refuse_homeless(calibration, options);
   refuse_idle(calibration, options);
   const Calibration given = of_one_flight(calibration, flight, options);
   check_without(given, options.without);

@@ -9,6 +9,7 @@
 #include "base/escaping.hpp"
 #include "flight/export/crc32.hpp"
 #include "flight/export/driver_origin.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/export/guards.hpp"
 #include "flight/export/probe_body.hpp"
 #include "flight/export/self_test.hpp"
@@ -137,18 +138,6 @@ std::string check_outputs(const ProbeBody& body, const Correction& correction,
                             dialect.own("ok"));
 }
 
-/// What a five-hole probe reads before anything is corrected: effects may follow it.
-std::string read_angles(const Calibration& calibration, const Dialect& dialect) {
-  if (calibration.probe->name() != "five-hole") return "";
-  return fmt::format(
-      "  const double pressure = {};\n"
-      "  if (!(pressure > 0.0) || !(rho_kgpm3 > 0.0)) return {};\n"
-      "  const double alpha_read = dpa_pa / ({} * pressure);\n"
-      "  const double beta_read = dpb_pa / ({} * pressure);\n",
-      dialect.is_single() ? "pt_less_ps_pa" : "pt_pa - ps_pa", dialect.own("bad_input"),
-      dialect.constant("k_alpha"), dialect.constant("k_beta"));
-}
-
 /// Each with its bytes into the CRC.
 class Constants {
  public:
@@ -196,7 +185,8 @@ class Constants {
 Header header_text(const Calibration& calibration, const Dialect& dialect, const std::string& id,
                    const std::vector<std::string>& comment) {
   const Correction correction = describe_correction(calibration, dialect);
-  const ProbeBody body = body_of(calibration, correction, dialect);
+  const Exporter& exporter = exporter_of(calibration);
+  const ProbeBody body = exporter.body(calibration, correction, dialect);
   std::string text = "/*\n";
   for (const std::string& line : comment) text += fmt::format(" * {}\n", in_c_comment(line));
   for (const std::string& effect : correction.left_to_others) {
@@ -214,7 +204,8 @@ Header header_text(const Calibration& calibration, const Dialect& dialect, const
   if (correction.has_splines) code += spline_function(dialect);
   code += explain_arguments(body, correction, dialect);
   code += dialect.function(dialect.status_type(), "correct", arguments_of(body, correction));
-  code += check_inputs(body, correction, dialect) + read_angles(calibration, dialect);
+  code += check_inputs(body, correction, dialect);
+  if (exporter.before_effects != nullptr) code += exporter.before_effects(dialect);
   code += guard_statement(correction, dialect);
   for (const std::string& statement : correction.statements) code += "  " + statement + "\n";
   code += body.text + check_outputs(body, correction, dialect) + "}\n\n";

@@ -12,6 +12,7 @@
 
 #include "flight/catalogue/effect_channels.hpp"
 #include "flight/export/bodies.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/export/polar.hpp"
 #include "flight/export/symmetric_magnetometer.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -33,10 +34,6 @@ constexpr std::array motor_columns{MotorColumn{"current_a", Motor::current, 1.0}
                                    MotorColumn{"throttle", Motor::throttle, 1.0},
                                    MotorColumn{"throttle_1", Motor::throttle, 1.0},
                                    MotorColumn{"throttle_pct", Motor::throttle, 0.01}};
-
-bool is_magnetometer(const Calibration& calibration) {
-  return calibration.probe->app() == "sepcal-mag";
-}
 
 bool acts_on_reading(const Calibration& calibration, const EffectSetting& setting) {
   if (calibration.options.own_effects.contains(setting.name)) return true;
@@ -133,7 +130,7 @@ std::vector<std::string> effects_on_the_world(const Calibration& calibration) {
 }
 
 bool is_of_known_field(const Calibration& calibration) {
-  return calibration.probe->name() == "magnetometer";
+  return exporter_of(calibration).of_known_field;
 }
 
 std::vector<std::string> motor_effects(const Calibration& calibration) {

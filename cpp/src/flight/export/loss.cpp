@@ -10,6 +10,7 @@
 
 #include "base/thread_pool.hpp"
 #include "flight/export/bodies.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/export/kept_field.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/verbs/prepared_flight.hpp"
@@ -217,7 +218,7 @@ ExportLoss refit_loss(const Calibration& full, const Calibration& refitted, cons
   Columns held = apply(refitted, flight);
   held.resize(full.probe->corrected_headers().size());
   const BothCorrected both(apply(full, flight), std::move(held));
-  if (full.probe->app() == "sepcal-mag") {
+  if (is_magnetometer(full)) {
     compare_fields(both, read_flight(full, flight).flight, is_of_known_field(full), loss);
   } else {
     compare_airspeeds(both, loss);

@@ -29,8 +29,4 @@ struct ProbeBody {
       trials;  // three inputs for the self-test, in the readings' order
 };
 
-/// Throws Error where the calibration can't be inverted.
-ProbeBody body_of(const Calibration& calibration, const Correction& correction,
-                  const Dialect& dialect);
-
 }  // namespace sepcal::exporting

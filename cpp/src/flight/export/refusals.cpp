@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ranges>
 
+#include "flight/export/exporter.hpp"
 #include "flight/export/held.hpp"
 #include "sepcal/flight/joint.hpp"
 #include "sepcal/option_error.hpp"
@@ -23,8 +24,7 @@ Calibration of_one_flight(const Calibration& calibration, const Flight* flight,
   const JointSetup* const joint = joint_setup(*calibration.probe);
   if (joint == nullptr) return calibration;
   const auto files = joint->flights | std::views::transform(&JoinedFlight::file);
-  const bool keeps =
-      calibration.probe->app() == "sepcal-mag" && options.rotation != ExportRotation::refit;
+  const bool keeps = is_magnetometer(calibration) && options.rotation != ExportRotation::refit;
   const bool fits_anew = !is_header(options.target) && !keeps;
   if (fits_anew || !options.without.empty()) {
     throw Error(fmt::format(
@@ -52,18 +52,19 @@ void check_without(const Calibration& calibration, const std::vector<std::string
   }
 }
 
-void refuse_five_hole(const Calibration& calibration, const ExportOptions& options) {
-  if (is_header(options.target) || calibration.probe->name() != "five-hole") return;
-  throw OptionError({std::string("a five-hole probe has no home in ") +
+void refuse_homeless(const Calibration& calibration, const ExportOptions& options) {
+  const Exporter& exporter = exporter_of(calibration);
+  if (is_header(options.target) || exporter.held != HeldAs::nothing) return;
+  throw OptionError({std::string(exporter.instrument) + " has no home in " +
                          (options.target == ExportTarget::px4 ? "PX4" : "ArduPilot") +
                          ", which knows no flow angles; ",
                      Option{"to"}, " c or cpp holds all of it"});
 }
 
 void refuse_idle(const Calibration& calibration, const ExportOptions& options) {
-  const bool px4_field =
-      options.target == ExportTarget::px4 && calibration.probe->app() == "sepcal-mag";
-  const bool airspeed = !is_header(options.target) && calibration.probe->name() == "pitot-static";
+  const bool px4_field = options.target == ExportTarget::px4 && is_magnetometer(calibration);
+  const bool airspeed =
+      !is_header(options.target) && exporter_of(calibration).held == HeldAs::airspeed;
   const auto idle = [](const char* option, const std::string& of) {
     throw OptionError({Option{option}, " is of " + of + "; leave it out"});
   };

@@ -19,8 +19,8 @@ Calibration of_one_flight(const Calibration& calibration, const Flight* flight,
 /// Throws Error for an effect that the calibration doesn't have.
 void check_without(const Calibration& calibration, const std::vector<std::string>& names);
 
-/// Throws Error for a five-hole probe in an autopilot.
-void refuse_five_hole(const Calibration& calibration, const ExportOptions& options);
+/// Throws Error for an autopilot that holds nothing of it, as of a five-hole probe.
+void refuse_homeless(const Calibration& calibration, const ExportOptions& options);
 
 /// Throws Error for an option that does nothing here.
 void refuse_idle(const Calibration& calibration, const ExportOptions& options);

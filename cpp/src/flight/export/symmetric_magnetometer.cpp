@@ -14,9 +14,12 @@ class SymmetricProbe final : public Probe {
   explicit SymmetricProbe(std::shared_ptr<const Probe> one)
       : one_(std::move(one)), model_(SymmetricMagnetometer{}) {}
 
-  std::string_view name() const override { return one_->name(); }  // whose effects it has
+  std::string_view name() const override { return one_->name(); }
   std::string_view app() const override { return one_->app(); }
   const BlockModel& model() const override { return model_; }
+  const catalogue::EffectTable& effects() const override { return one_->effects(); }
+  std::span<const probes::ProbeQuantity> quantities() const override { return one_->quantities(); }
+  const Exporter* exporter() const override { return one_->exporter(); }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }
 
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {

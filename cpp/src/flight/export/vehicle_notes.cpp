@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "flight/export/bodies.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/export/numbered_rotations.hpp"
 #include "flight/export/parameters.hpp"
 #include "flight/files/headers.hpp"
@@ -122,7 +123,7 @@ void note_ardupilot_mounting(const VehicleMounting& mounting, const ExportOption
 
 std::string vehicle_title(const Calibration& calibration, const ExportOptions& options) {
   const bool px4 = options.target == ExportTarget::px4;
-  const bool field = calibration.probe->app() == "sepcal-mag";
+  const bool field = is_magnetometer(calibration);
   return fmt::format("{}'s {} {}", px4 ? "PX4" : "ArduPilot",
                      !field ? "airspeed"
                      : px4  ? "magnetometer"

@@ -18,6 +18,7 @@
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/joint.hpp"
 #include "sepcal/option_error.hpp"
+#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal {
 
@@ -31,7 +32,8 @@ std::vector<std::string> output_names(const Probe& probe) {
   return names;
 }
 
-/// Throws Error where an effect is listed twice, or a parameter's effect is not.
+/// Throws Error where an effect is listed twice, or a parameter's effect is not. A model may have
+/// dots in names of its own, as sensors side by side do.
 void check_effects(const Calibration& calibration) {
   const std::vector<EffectSetting>& effects = calibration.options.effects;
   for (auto one = effects.begin(); one != effects.end(); ++one) {
@@ -40,7 +42,9 @@ void check_effects(const Calibration& calibration) {
     }
   }
   if (!calibration.departures.empty()) return;  // parameters are called by their flights too
+  const std::vector<Variable> lasting = lasting_parameters(*calibration.probe);
   for (const Parameter& parameter : calibration.fit.parameters) {
+    if (std::ranges::find(lasting, parameter.name, &Variable::name) != lasting.end()) continue;
     const auto is_of = [&](const EffectSetting& effect) {
       return parameter.name.starts_with(effect.name + ".");
     };
@@ -63,6 +67,18 @@ Json write_tables(const Probe& probe) {
   return {{"inputs", write_units(tables.inputs)},
           {"outputs", write_units(tables.outputs)},
           {"parameters", write_units(lasting_parameters(probe))}};
+}
+
+/// Throws Error where the model would be laid along a record otherwise than it was.
+void check_trajectory(const Json& fitted, const TrajectoryOptions& given,
+                      const std::string& source) {
+  const Json as_given = write_trajectory(given);
+  for (const auto& [option, value] : as_given.items()) {
+    if (!fitted.contains(option) || fitted[option] == value) continue;
+    throw Error(fmt::format(
+        "{}: the model was fitted with {} = {}, and the one given has {}; give it as it was fitted",
+        source, option, fitted[option].dump(), value.dump()));
+  }
 }
 
 Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
@@ -122,6 +138,9 @@ std::string to_json(const Calibration& calibration) {
   if (calibration.probe->predicts()) {
     root["tables"] = write_tables(*calibration.probe);
   }
+  if (const TrajectoryOptions* along = calibration.probe->trajectory()) {
+    root["trajectory"] = write_trajectory(*along);
+  }
   root["inputs"] = write_inputs(calibration.flight);
   if (joint_setup(*calibration.probe) != nullptr) root["joint"] = write_joint(calibration);
   root["options"] = write_options(calibration);
@@ -161,9 +180,12 @@ Calibration parse(std::string_view json, const std::string& source,
         "model as it was, or fit the flight again",
         source, model));
   }
+  if (own && own->trajectory() != nullptr && root.contains("trajectory")) {
+    check_trajectory(root["trajectory"], *own->trajectory(), source);
+  }
   if (!own && !catalogue::effect_tables().contains(model)) {
     throw Error(
-        fmt::format("{}: its model, '{}', is none of sepcal's; give yours: {} VERB --model "
+        fmt::format("{}: its model, '{}', is no probe of sepcal's; give it: {} VERB --model "
                     "FILE.py:CLASS, or sepcal.load(file, model=...)",
                     source, model, own_app));
   }

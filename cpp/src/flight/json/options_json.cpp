@@ -6,6 +6,7 @@
 
 #include "base/thread_pool.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal::json {
 namespace {
@@ -102,6 +103,15 @@ LogChoice read_choice_of_log(const Json& options) {
 }
 
 }  // namespace
+
+Json write_trajectory(const TrajectoryOptions& along) {
+  return {{"inputs_between_rows", to_string(along.inputs)},
+          {"substeps", along.substeps},
+          {"shoot", number(along.shoot)},
+          {"measured", along.measured},
+          {"outputs", along.outputs},
+          {"scales_about_start", along.scales_about_start}};
+}
 
 Json write_options(const Calibration& calibration) {
   Json options = Json::object();

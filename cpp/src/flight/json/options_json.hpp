@@ -16,6 +16,9 @@ Json write_options(const Calibration& calibration);
 /// The fit's options alone.
 Json write_options(const CalibrationOptions& options);
 
+/// How a model with a state is laid along a record.
+Json write_trajectory(const TrajectoryOptions& along);
+
 /// Throw Error or Json::exception for an object that write_options() did not write.
 CalibrationOptions read_options(const Json& options);
 std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& options);

@@ -2,6 +2,7 @@
 // The columns of a five-hole probe: attitude and rates, inertial velocity, the four pressures and
 // density (Sun & Gebre-Egziabher, Eqs. 35-41).
 #include "flight/probes/air_columns.hpp"
+#include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/record_builder.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 
@@ -38,8 +39,32 @@ void compute_angle(RecordBuilder& builder, const char* name, const char* port, d
 
 }  // namespace
 
+std::span<const ProbeQuantity> probes::five_hole_quantities() {
+  using files::UnitKind;
+  static constexpr std::array quantities{
+      ProbeQuantity{"time", UnitKind::time},
+      ProbeQuantity{"roll", UnitKind::angle},
+      ProbeQuantity{"pitch", UnitKind::angle},
+      ProbeQuantity{"yaw", UnitKind::angle},
+      ProbeQuantity{"p", UnitKind::rate},
+      ProbeQuantity{"q", UnitKind::rate},
+      ProbeQuantity{"r", UnitKind::rate},
+      ProbeQuantity{"vn", UnitKind::speed},
+      ProbeQuantity{"ve", UnitKind::speed},
+      ProbeQuantity{"vd", UnitKind::speed},
+      ProbeQuantity{"pt", UnitKind::pressure},
+      ProbeQuantity{"ps", UnitKind::pressure},
+      ProbeQuantity{"dpa", UnitKind::pressure},
+      ProbeQuantity{"dpb", UnitKind::pressure},
+      ProbeQuantity{"rho", UnitKind::density},
+      ProbeQuantity{
+          .name = "temp", .kind = UnitKind::temperature, .is_driver = true, .unless = {"rho"}},
+  };
+  return quantities;
+}
+
 ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& options) {
-  RecordBuilder builder(flight, quantities_of("five-hole"), options.log);
+  RecordBuilder builder(flight, five_hole_quantities(), options.log);
   builder.need({"time", "roll", "pitch", "yaw", "vn", "ve", "vd"});
   if (options.lever_arm) builder.need({"p", "q", "r"});
   need_readings(builder, flight);
@@ -58,7 +83,7 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
 }
 
 ProbeReadings read_five_hole(const Flight& flight, const LogChoice& log) {
-  RecordBuilder builder(flight, quantities_of("five-hole"), log);
+  RecordBuilder builder(flight, five_hole_quantities(), log);
   need_readings(builder, flight);
   builder.keep(air_moves(builder), still_air);
   return builder.finish_readings();

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "flight/probes/mounting.hpp"
+#include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/record_builder.hpp"
 #include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/option_error.hpp"
@@ -101,9 +102,45 @@ bool differs(const LoggedQuantity& logged, std::size_t rows, double field_streng
 
 }  // namespace
 
+std::span<const ProbeQuantity> probes::magnetometer_quantities() {
+  using files::UnitKind;
+  static constexpr std::array quantities{
+      ProbeQuantity{"time", UnitKind::time},
+      ProbeQuantity{"mx", UnitKind::field},
+      ProbeQuantity{"my", UnitKind::field},
+      ProbeQuantity{"mz", UnitKind::field},
+      ProbeQuantity{"hx", UnitKind::field},
+      ProbeQuantity{"hy", UnitKind::field},
+      ProbeQuantity{"hz", UnitKind::field},
+      ProbeQuantity{"roll", UnitKind::angle},
+      ProbeQuantity{"pitch", UnitKind::angle},
+      ProbeQuantity{"yaw", UnitKind::angle},
+      ProbeQuantity{"p", UnitKind::rate, false, true},
+      ProbeQuantity{"q", UnitKind::rate, false, true},
+      ProbeQuantity{"r", UnitKind::rate, false, true},
+      ProbeQuantity{.name = "bn", .kind = UnitKind::field, .taken = Taken::as_known},
+      ProbeQuantity{.name = "be", .kind = UnitKind::field, .taken = Taken::as_known},
+      ProbeQuantity{.name = "bd", .kind = UnitKind::field, .taken = Taken::as_known},
+      ProbeQuantity{.name = "field_strength", .kind = UnitKind::field, .taken = Taken::as_known},
+  };
+  return quantities;
+}
+
+std::span<const ProbeQuantity> probes::attitude_independent_quantities() {
+  static const std::vector<ProbeQuantity> quantities = [] {
+    const auto all = magnetometer_quantities();
+    std::vector<ProbeQuantity> list(all.begin(), all.end());
+    for (ProbeQuantity& quantity : list) {
+      if (!quantity.name.starts_with('m')) quantity.taken = Taken::never;
+    }
+    return list;
+  }();
+  return quantities;
+}
+
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
   if (options.field) check_field(*options.field);
-  RecordBuilder builder(flight, quantities_of("magnetometer"), options.log);
+  RecordBuilder builder(flight, magnetometer_quantities(), options.log);
   builder.need({"time"});
   need_field_read(builder, options.mounting);
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
@@ -136,7 +173,7 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
 
 ProbeRecord prepare_attitude_independent(const Flight& flight, double field_strength,
                                          const LogChoice& log) {
-  RecordBuilder builder(flight, quantities_of("magnetometer"), log);
+  RecordBuilder builder(flight, magnetometer_quantities(), log);
   builder.need({"time", "mx", "my", "mz"});
   if (builder.has({"field_strength"})) {
     builder.consult({"field_strength"});
@@ -159,7 +196,7 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, double field_stre
 
 ProbeReadings read_magnetometer(const Flight& flight, const LogChoice& log,
                                 const Mounting& mounting) {
-  RecordBuilder builder(flight, quantities_of("magnetometer"), log);
+  RecordBuilder builder(flight, magnetometer_quantities(), log);
   need_field_read(builder, mounting);
   builder.keep_valid();
   return builder.finish_readings();

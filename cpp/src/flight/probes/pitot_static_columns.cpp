@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "flight/probes/air_columns.hpp"
+#include "flight/probes/probe_quantities.hpp"
 #include "sepcal/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/probe_columns.hpp"
@@ -56,8 +57,33 @@ const char* still_in_tube(const RecordBuilder& builder) {
 
 }  // namespace
 
+std::span<const ProbeQuantity> probes::pitot_static_quantities() {
+  using files::UnitKind;
+  static constexpr std::array quantities{
+      ProbeQuantity{"time", UnitKind::time},
+      ProbeQuantity{"roll", UnitKind::angle, false, true},
+      ProbeQuantity{"pitch", UnitKind::angle, false, true},
+      ProbeQuantity{"yaw", UnitKind::angle, false, true},
+      ProbeQuantity{"p", UnitKind::rate, false, true},
+      ProbeQuantity{"q", UnitKind::rate, false, true},
+      ProbeQuantity{"r", UnitKind::rate, false, true},
+      ProbeQuantity{"vn", UnitKind::speed},
+      ProbeQuantity{"ve", UnitKind::speed},
+      ProbeQuantity{"vd", UnitKind::speed},
+      ProbeQuantity{"airspeed", UnitKind::speed},
+      ProbeQuantity{"dp", UnitKind::pressure},
+      ProbeQuantity{.name = "ps", .kind = UnitKind::pressure, .unless = {"airspeed", "rho"}},
+      ProbeQuantity{.name = "rho", .kind = UnitKind::density, .unless = {"airspeed"}},
+      ProbeQuantity{.name = "temp",
+                    .kind = UnitKind::temperature,
+                    .is_driver = true,
+                    .unless = {"airspeed", "rho"}},
+  };
+  return quantities;
+}
+
 ProbeRecord prepare_pitot_static(const Flight& flight, const LogChoice& log) {
-  RecordBuilder builder(flight, quantities_of("pitot-static"), log);
+  RecordBuilder builder(flight, pitot_static_quantities(), log);
   builder.need({"time", "vn", "ve", "vd"});
   need_airspeed(builder, flight);
   builder.check_time();
@@ -75,7 +101,7 @@ ProbeRecord prepare_pitot_static(const Flight& flight, const LogChoice& log) {
 }
 
 ProbeReadings read_pitot_static(const Flight& flight, const LogChoice& log) {
-  RecordBuilder builder(flight, quantities_of("pitot-static"), log);
+  RecordBuilder builder(flight, pitot_static_quantities(), log);
   need_airspeed(builder, flight);
   builder.keep(air_meets_tube(builder), still_in_tube(builder));
   if (has_airspeed(builder) && !offer_density(builder)) {

@@ -7,10 +7,13 @@
 #include <vector>
 
 #include "base/parameter_values.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
+#include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
+#include "flight/probes/shipped.hpp"
 #include "numerics/order_statistics.hpp"
 #include "sepcal/compiled_models.hpp"
 #include "sepcal/fit.hpp"
@@ -39,9 +42,18 @@ class StrengthOnlyMagnetometer final : public Probe {
     }
   }
 
-  std::string_view name() const override { return "magnetometer-norm"; }
+  std::string_view name() const override { return shipped_attitude_independent.name; }
   std::string_view app() const override { return "sepcal-mag"; }
   const BlockModel& model() const override { return model_; }
+  const catalogue::EffectTable& effects() const override {
+    return catalogue::effect_table(shipped_attitude_independent.name);
+  }
+  std::span<const ProbeQuantity> quantities() const override {
+    return attitude_independent_quantities();
+  }
+  const exporting::Exporter* exporter() const override {
+    return &exporting::field_strength_exporter();
+  }
 
   std::map<std::string, std::vector<double>> settings() const override {
     return {{"field_strength", {setup_.field_strength}}, {"field_noise", {setup_.noise}}};
@@ -112,5 +124,17 @@ class StrengthOnlyMagnetometer final : public Probe {
 std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, double noise) {
   return std::make_unique<const StrengthOnlyMagnetometer>(field_strength, noise);
 }
+
+namespace probes {
+
+const Shipped shipped_attitude_independent{.name = "magnetometer-norm",
+                                           .effects = catalogue::attitude_independent_effects,
+                                           .make = [](const Settings& settings) {
+                                             return attitude_independent_probe(
+                                                 one_number(settings, "field_strength"),
+                                                 one_number(settings, "field_noise"));
+                                           }};
+
+}  // namespace probes
 
 }  // namespace sepcal

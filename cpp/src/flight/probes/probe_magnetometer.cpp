@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include "base/parameter_values.hpp"
+#include "flight/export/exporter.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/mounting.hpp"
 #include "flight/probes/plausible_scales.hpp"
+#include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
+#include "flight/probes/shipped.hpp"
 #include "sepcal/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
@@ -31,9 +34,16 @@ class KnownFieldMagnetometer final : public Probe {
                          const std::optional<Mounting>& mounting)
       : field_(field), mounting_(mounting), model_(Magnetometer{}) {}
 
-  std::string_view name() const override { return "magnetometer"; }
+  std::string_view name() const override { return shipped_magnetometer.name; }
   std::string_view app() const override { return "sepcal-mag"; }
   const BlockModel& model() const override { return model_; }
+  const catalogue::EffectTable& effects() const override {
+    return catalogue::effect_table(shipped_magnetometer.name);
+  }
+  std::span<const ProbeQuantity> quantities() const override { return magnetometer_quantities(); }
+  const exporting::Exporter* exporter() const override {
+    return &exporting::known_field_exporter();
+  }
 
   std::map<std::string, std::vector<double>> settings() const override {
     std::map<std::string, std::vector<double>> settings;
@@ -154,5 +164,20 @@ std::unique_ptr<const Probe> magnetometer_probe(const std::optional<std::array<d
                                                 const std::optional<Mounting>& mounting) {
   return std::make_unique<const KnownFieldMagnetometer>(field, mounting);
 }
+
+namespace probes {
+
+static std::unique_ptr<const Probe> make_magnetometer(const Settings& settings) {
+  std::optional<std::array<double, 3>> field;
+  if (settings.contains("field")) field = three_numbers(settings, "field");
+  if (!settings.contains("mounting")) return magnetometer_probe(field);
+  if (settings.at("mounting").empty()) return magnetometer_probe(field, std::nullopt);
+  return magnetometer_probe(field, three_numbers(settings, "mounting"));
+}
+
+const Shipped shipped_magnetometer{
+    .name = "magnetometer", .effects = catalogue::magnetometer_effects, .make = make_magnetometer};
+
+}  // namespace probes
 
 }  // namespace sepcal

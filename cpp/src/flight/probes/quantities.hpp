@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each probe, or model of an aircraft, reads of a log: its quantities by the base name of
-// their columns.
+// What a model reads of a log: its quantities by the base name of their columns.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string_view>
 
@@ -15,6 +15,10 @@ class Probe;
 
 namespace sepcal::probes {
 
+/// How a fit takes a quantity that was logged: row by row, as a truth that is not looked at, or not
+/// at all.
+enum class Taken { by_row, as_known, never };
+
 /// A quantity of a probe: the base name of its column and what kind of unit follows it.
 struct ProbeQuantity {
   std::string_view name;
@@ -22,26 +26,25 @@ struct ProbeQuantity {
   bool is_driver = false;             // may drive effects too, then under its whole header
   bool is_extra = false;              // no fit needs it: effects may
   const files::Unit* bare = nullptr;  // of a header that is its name alone; nullptr: none may be
+  Taken taken = Taken::by_row;
+  std::array<std::string_view, 2> unless = {};  // logged, these are taken in its place
 };
 
-/// What a model reads of a log, needed or not, and the model's name.
+/// How a fit looks at a log: at an instrument's readings, at the coefficients of each row, or at a
+/// trajectory, whose state goes on from row to row; the latter two of an aircraft, whose motion all
+/// its sensors show.
+enum class LooksAt { readings, coefficients, trajectory };
+
+/// What a model reads of a log, needed or not.
 struct ModelQuantities {
-  // Implicit: whoever asks for a model's quantities has its name or a probe.
-  // NOLINTBEGIN(google-explicit-constructor)
-  ModelQuantities(std::string_view name);
-  ModelQuantities(const char* name) : ModelQuantities(std::string_view(name)) {}
-  ModelQuantities(const Probe& probe);
-  // NOLINTEND(google-explicit-constructor)
+  // Implicit: whoever asks for a model's quantities has its probe.
+  ModelQuantities(const Probe& probe);  // NOLINT(google-explicit-constructor)
+  ModelQuantities(std::span<const ProbeQuantity> quantities, LooksAt what)
+      : list(quantities), looks_at(what) {}
 
-  std::string_view model;
   std::span<const ProbeQuantity> list;
+  LooksAt looks_at = LooksAt::readings;
 };
-
-/// Whether the model carries a state from row to row: one of an aircraft's, but for equation error.
-bool has_state(std::string_view model);
-
-/// Of the model by that name, needed or not. Throws Error where there is no such model.
-std::span<const ProbeQuantity> quantities_of(std::string_view model);
 
 /// Whether a choice takes a row by what it holds and when it was logged; empty where it takes all.
 /// `flight` as read_as() gives it. Throws OptionError as the choice's condition and times do.

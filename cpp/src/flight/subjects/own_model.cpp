@@ -121,6 +121,8 @@ class OwnProbe final : public Probe {
 
   std::vector<std::string> initial_states() const override { return laid_.initial_states; }
 
+  const TrajectoryOptions* trajectory() const override { return lay_ ? &laid_.options : nullptr; }
+
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
     probes::RecordBuilder builder(flight, quantities_.list(), log);
     builder.need({"time"});
@@ -195,7 +197,9 @@ std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const B
                 "a record (LaidAlong)");
   }
   const auto linear = static_cast<std::size_t>(model->tables().n_1());
-  return std::make_shared<const OwnProbe>(std::move(name), LaidModel{std::move(model), {}, linear});
+  return std::make_shared<const OwnProbe>(
+      std::move(name),
+      LaidModel{.model = std::move(model), .initial_states = {}, .varying = linear});
 }
 
 std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay) {

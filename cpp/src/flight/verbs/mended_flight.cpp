@@ -123,7 +123,7 @@ bool can_be_bridged(const Log& log, const Flight::Column& column) {
 /// Whether no fit needs a number in each cell.
 bool may_be_empty(const Log& log, const Flight::Column& column) {
   const auto read = std::ranges::find(log.columns(), column.header, &checks::LoggedColumn::header);
-  return read == log.columns().end() || !read->used || read->quantity == "temp";
+  return read == log.columns().end() || !read->used() || read->name() == "temp";
 }
 
 }  // namespace
