@@ -213,7 +213,6 @@ class Filter:
                 holds the last one's state.
             Exception: What `outputs` raises, as it is; the filter is as it was.
         """
-
         if to_whole_number("iterations", iterations) < 1 or not tolerance > 0.0:
             raise _core.Error(
                 f"iterations and tolerance must be above 0; they are {iterations} and {tolerance}"

@@ -3,6 +3,7 @@
 
 import operator
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,14 +15,13 @@ from sepcal.columns import Array
 def to_numbers(name: str, values: ArrayLike) -> Array:
     """An array of what is like one; what is masked in it is NaN."""
     try:
-        array = np.ma.asarray(values)
-        is_complex = array.dtype.kind == "c"
-        numbers = array.real.astype(np.float64)
+        array: Any = np.ma.asarray(values)
+        numbers = array.real.astype(np.float64).filled(np.nan)
     except (TypeError, ValueError):
         raise _core.Error(f"{name} is no array of numbers") from None
-    if is_complex:
+    if array.dtype.kind == "c":
         raise _core.Error(f"{name} is complex; give real numbers")
-    return np.asarray(numbers.filled(np.nan))
+    return np.asarray(numbers)
 
 
 def to_whole_number(name: str, value: int) -> int:

@@ -227,8 +227,9 @@ def read_model(named: str) -> Model:
 
 
 def _run(file: str, named: str) -> ModuleType:
-    """A file as a module under a name of its own, so that it is pickled and found by nobody else's;
-    or the module of a name.
+    """The module that a file is, or that has the name.
+
+    A file's has a name of its own, so that it is pickled and found by nobody else's.
     """
     if not os.path.isfile(file):
         is_name = all(part.isidentifier() for part in file.split(".")) and not file.endswith(".py")

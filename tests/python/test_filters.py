@@ -69,6 +69,7 @@ def test_a_nonlinear_system_says_what_it_expects() -> None:
 @pytest.mark.parametrize("form", FORMS)
 def test_what_is_refused_changes_nothing(form: str) -> None:
     filter = sepcal.Filter(np.zeros(3), P, form)
+
     def outputs(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return H @ x, H
 

@@ -80,9 +80,7 @@ IN_GUSTS = [(2400, 890000), (600, 890004), (1800, 890008)]  # upwash or a blocka
 
 @pytest.mark.parametrize(("rows", "seed"), IN_GUSTS)
 def test_gusts_that_a_probe_reads_are_no_cause(rows: int, seed: int) -> None:
-    """A five-hole probe's readings hold the gusts that the velocity lacks, and so do columns that
-    are made of them.
-    """
+    """A five-hole probe's readings hold what the velocity lacks, and so do columns made of them."""
     _, flown = fly_key(("nothing", "five-hole", "gusts", 0.0, rows, seed))
     found = sepcal.fit(MODELS["five-hole"], sepcal.Flight(flown.columns)).diagnose()
     assert str(found.verdict) in ("adequate", "slow_change"), found.text

@@ -269,7 +269,8 @@ def test_a_model_that_is_not_there_is_named(named: str, said: str, tmp_path: Pat
 def test_a_model_of_a_module_is_found(tmp_path: Path) -> None:
     """One that ships without a probe, say."""
     turned = np.random.default_rng(5).standard_normal((3, 60))
-    force = dict(zip(("fx", "fy", "fz"), 9.81 * turned / np.linalg.norm(turned, axis=0)))
+    turned *= 9.81 / np.linalg.norm(turned, axis=0)
+    force = dict(zip(("fx", "fy", "fz"), turned, strict=True))
     read = {f"a{axis}": 1.01 * force[f"f{axis}"] + 0.2 for axis in "xyz"}
     log, base = tmp_path / "turntable.csv", tmp_path / "base.json"
     _write(sepcal.Flight({"time_s": 0.1 * np.arange(60.0), **force, **read}), log)
