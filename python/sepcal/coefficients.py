@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.geometry import Aircraft
+from sepcal.matrices import to_number
 from sepcal.states_module import states_module
 
 
@@ -56,7 +57,12 @@ def aero_coefficients(
     given = by_name(data)
     numbers = [name for name in given if name != "maneuver"]
     columns = take_columns("aero_coefficients", given, numbers)
-    found, names, window, notes = states_module().aero_coefficients(
-        columns, labels_in(given), aircraft.to_json(), list(coefficients), window
+    seconds = to_number("window", window)
+    found, names, used, notes = states_module().aero_coefficients(
+        columns,
+        labels_in(given),
+        aircraft.to_json(),
+        list(coefficients),
+        seconds,
     )
-    return AeroCoefficients(found, names, window, notes)
+    return AeroCoefficients(found, names, used, notes)

@@ -15,14 +15,17 @@ from sepcal import _core
 from sepcal._core import Innovation
 from sepcal.columns import Array
 from sepcal.matrices import (
+    UNCHANGED,
+    check_refused,
     finite,
-    refusal,
     times,
     to_covariance,
     to_matrix,
+    to_number,
     to_symmetric,
     to_vector,
     to_whole_number,
+    without_rounding,
 )
 from sepcal.states_module import states_module
 
@@ -80,6 +83,8 @@ class Filter:
         keep_pass: bool = False,
     ) -> None:
         begin = finite("x", to_vector("x", x))
+        if not isinstance(form, str):
+            raise _core.Error(f"form is {form!r}; it is 'square_root', 'joseph' or 'information'")
         self._core: _states.Filter
         if P is not None and information_root is None:
             self._core = states_module().Filter(begin, to_covariance("P", P), form)
@@ -143,21 +148,18 @@ class Filter:
         else:
             end = times("Phi", transition, self.x)
             if shift is not None:
-                added = to_vector("shift", shift)
+                added = finite("shift", to_vector("shift", shift))
                 if added.shape != end.shape:
                     raise _core.Error(f"shift has {len(added)} entries; here it takes {len(end)}")
                 end = end + added
         entry = np.eye(len(self.x)) if Gamma is None else to_matrix("Gamma", Gamma)
         noise = to_symmetric("Q", Q)
-        if not self._core.predict(end, transition, entry, noise):
-            raise refusal(
-                "predict()",
-                {"Phi": transition, "Gamma": entry, "x": end},
-                {"Q": noise},
-                "the state leaves the range of numbers"
-                if self._core.information_root is None
-                else "Phi is singular, and form 'information' divides by it; take 'square_root'",
-            )
+        if self._core.predict(end, transition, entry, noise):
+            return
+        given = {"Phi": transition, "Gamma": entry, "Phi x + shift" if x is None else "x": end}
+        check_refused("predict()", given, {"Q": noise})
+        if not self._core.predict(end, transition, entry, without_rounding(noise)):
+            raise _core.Error(f"predict(): {self._why_not_predicted(transition)}; {UNCHANGED}")
 
     def update(
         self, y: ArrayLike, H: ArrayLike, R: ArrayLike, *, expected: ArrayLike | None = None
@@ -178,10 +180,16 @@ class Filter:
         """
         slope = to_matrix("H", H)
         value = times("H", slope, self.x) if expected is None else to_vector("expected", expected)
-        measured, noise = to_vector("y", y), to_symmetric("R", R)
+        measured = to_vector("y", y)
+        noise = to_symmetric("R", R, measured)
         found = self._core.update(measured, value, slope, noise)
         if found is None:
-            raise self._refused_update("update()", measured, noise, H=slope, expected=value)
+            self._check_refused("update()", measured, noise, H=slope, expected=value)
+            seen = np.ix_(~np.isnan(measured), ~np.isnan(measured))
+            noise[seen] = without_rounding(noise[seen])
+            found = self._core.update(measured, value, slope, noise)
+        if found is None:
+            raise _core.Error(f"update(): {self._why_not_updated}; {UNCHANGED}")
         self._count(found)
         return found
 
@@ -213,27 +221,32 @@ class Filter:
                 holds the last one's state.
             Exception: What `outputs` raises, as it is; the filter is as it was.
         """
-        if to_whole_number("iterations", iterations) < 1 or not tolerance > 0.0:
+        most, step = to_whole_number("iterations", iterations), to_number("tolerance", tolerance)
+        if most < 1 or not step > 0.0:
             raise _core.Error(
                 f"iterations and tolerance must be above 0; they are {iterations} and {tolerance}"
             )
 
-        def linearise(at: Array) -> tuple[Array, Array]:
-            expected, H = outputs(at)
-            return to_vector("expected", expected), to_matrix("H", H)
+        last: tuple[Array, Array] = (np.zeros(0), np.zeros((0, 0)))
 
-        measured, noise = to_vector("y", y), to_symmetric("R", R)
+        def linearise(at: Array) -> tuple[Array, Array]:
+            nonlocal last
+            expected, H = outputs(at)
+            last = to_vector("expected", expected), to_matrix("H", H)
+            return last
+
+        measured = to_vector("y", y)
+        noise = to_symmetric("R", R, measured)
         answer = self._core.iterated_update(
             measured,
             linearise,
             noise,
-            _core.IterationOptions(iterations=iterations, tolerance=tolerance),
+            _core.IterationOptions(iterations=most, tolerance=step),
         )
         if answer is None:
-            expected, slope = linearise(self.x)
-            raise self._refused_update(
-                "iterated_update()", measured, noise, H=slope, expected=expected
-            )
+            expected, slope = last
+            self._check_refused("iterated_update()", measured, noise, H=slope, expected=expected)
+            raise _core.Error(f"iterated_update(): {self._why_not_updated}; {UNCHANGED}")
         found, converged = answer
         self._count(found)
         if not converged:
@@ -266,18 +279,21 @@ class Filter:
             np.array(Q).reshape((len(w), n_w, n_w)),
         )
 
-    def _refused_update(
-        self, verb: str, y: Array, R: Array, *, H: Array, expected: Array
-    ) -> _core.Error:
+    def _why_not_predicted(self, Phi: Array) -> str:
+        if self._core.information_root is None or np.linalg.matrix_rank(Phi) == len(Phi):
+            return "the state or its covariance leaves the range of numbers"
+        return "Phi is singular, and form 'information' divides by it; take 'square_root'"
+
+    def _check_refused(self, verb: str, y: Array, R: Array, *, H: Array, expected: Array) -> None:
         seen = ~np.isnan(y)
-        return refusal(
-            verb,
-            {"y": y[seen], "H": H[seen], "expected": expected[seen]},
-            {"R": R},
-            "H P H' + R is singular: outputs agree without any noise; give R above 0"
-            if self._core.information_root is None
-            else "R is singular, and form 'information' divides by it; take 'square_root'",
-        )
+        given = {"y": y[seen], "H": H[seen], "expected": expected[seen]}
+        check_refused(verb, given, {"R": R[np.ix_(seen, seen)]})
+
+    @property
+    def _why_not_updated(self) -> str:
+        if self._core.information_root is None:
+            return "H P H' + R is singular: outputs agree without any noise; give R above 0"
+        return "R is singular, and form 'information' divides by it; take 'square_root'"
 
     def _count(self, found: Innovation) -> None:
         self.log_likelihood -= found.cost + 0.5 * found.count * math.log(2.0 * math.pi)

@@ -14,10 +14,12 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.matrices import (
+    UNCHANGED,
+    check_refused,
     finite,
-    refusal,
     to_covariance,
     to_matrix,
+    to_number,
     to_numbers,
     to_symmetric,
     to_vector,
@@ -86,6 +88,7 @@ def iterate_least_squares(
         Error: Another shape, what is not finite, a W that is not positive definite.
         Exception: What `sample` raises, as it is.
     """
+    last: tuple[int, Array, Array, Array] = (0, np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)))
 
     def rows(k: int, at: Array) -> tuple[Array, Array, Array]:
         given = sample(k, at)
@@ -94,20 +97,25 @@ def iterate_least_squares(
         z = to_vector("z", np.atleast_1d(to_numbers("z", given[0])))
         H = to_matrix("H", np.atleast_2d(to_numbers("H", given[1])))
         W = np.eye(len(z)) if len(given) == 2 else np.atleast_2d(to_numbers("W", given[2]))
-        return z, H, to_symmetric("W", W)
+        nonlocal last
+        last = k, z, H, to_symmetric("W", W, z)
+        return z, H, last[3]
 
     for name, number in (("count", count), ("iterations", iterations)):
         if to_whole_number(name, number) < 1:
             raise _core.Error(f"{name} is {number}; it must be above 0")
-    if not tolerance > 0.0:
+    if not to_number("tolerance", tolerance) > 0.0:
         raise _core.Error(f"tolerance is {tolerance}; it must be above 0")
+    if to_whole_number("halvings", halvings) < 0:
+        raise _core.Error(f"halvings is {halvings}; it is 0 or more")
     status, *found = states_module().iterate_least_squares(
         rows, count, finite("p", to_vector("p", p)), iterations, tolerance, halvings
     )
     if status == "refused":
-        raise _core.Error(
-            "a sample has a number that is not finite, or a W that is not positive definite"
-        )
+        k, z, H, W = last
+        seen = ~np.isnan(z)
+        check_refused(f"sample({k})", {"z": z[seen], "H": H[seen]}, {"W": W[np.ix_(seen, seen)]})
+        raise _core.Error(f"sample({k}): W is singular; it must be positive definite")
     taken, at, root, covariance, values, cost = found
     if status == "not_determined":
         covariance = np.full_like(covariance, np.nan)
@@ -144,6 +152,10 @@ class RecursiveLeastSquares:
                     "p has no weight without a covariance; give it, or in p's place the number of "
                     "parameters"
                 )
+        if form not in ("square_root", "information", "covariance"):
+            raise _core.Error(
+                f"form is {form!r}; it is 'square_root', 'information' or 'covariance'"
+            )
         known = None if covariance is None else to_covariance("covariance", covariance)
         self._core: _states.RecursiveLeastSquares = states_module().RecursiveLeastSquares(
             begin, known, form
@@ -164,14 +176,16 @@ class RecursiveLeastSquares:
         values = to_vector("y", np.atleast_1d(to_numbers("y", y)))
         slope = to_matrix("H", np.atleast_2d(to_numbers("H", H)))
         noise = np.eye(len(values)) if W is None else np.atleast_2d(to_numbers("W", W))
-        if not self._core.absorb(slope, values, to_symmetric("W", noise)):
+        if not self._core.absorb(slope, values, to_symmetric("W", noise, values)):
             seen = ~np.isnan(values)
-            raise refusal(
-                "absorb()",
-                {"y": values[seen], "H": slope[seen]},
-                {"W": noise},
-                "W is singular; it must be positive definite",
+            given = {"y": values[seen], "H": slope[seen]}
+            check_refused("absorb()", given, {"W": noise[np.ix_(seen, seen)]})
+            why = (
+                "the rows leave the range of numbers"
+                if W is None
+                else "W is singular; it must be positive definite"
             )
+            raise _core.Error(f"absorb(): {why}; {UNCHANGED}")
 
     @property
     def solution(self) -> Array:

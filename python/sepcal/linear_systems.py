@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.differences import CENTRAL, Fan, step_sizes
-from sepcal.matrices import finite, to_covariance, to_matrix, to_vector
+from sepcal.matrices import finite, to_covariance, to_matrix, to_number, to_vector
 from sepcal.states_module import states_module
 
 MOST_STEPS = 1e6  # the compiled code's limit
@@ -135,9 +135,12 @@ def propagate(
     """
     state = finite("x", to_vector("x", x))
     identity = np.eye(len(state))
-    if not longest_step > 0.0:
+    if not to_number("longest_step", longest_step) > 0.0:
         raise _core.Error(f"longest_step is {longest_step}; it is a time above 0 [s]")
-    duration = _duration("end - begin", end - begin)
+    duration = _duration("end - begin", to_number("end", end) - to_number("begin", begin))
+    density = to_covariance("Q", Q)
+    if noise_input is None and density.shape != identity.shape:
+        raise _core.Error(f"Q has the shape {density.shape}; here it takes {identity.shape}")
     if duration / longest_step > MOST_STEPS:
         raise _core.Error(
             f"longest_step is {longest_step:g} s, which cuts {duration:g} s into more than "
@@ -148,7 +151,9 @@ def propagate(
 
     def jacobian(at: Array, t: float) -> Array:
         if rate_jacobian is not None:
-            return to_matrix("rate_jacobian(x, t)", rate_jacobian(at, t))
+            return finite(
+                "rate_jacobian(x, t)", to_matrix("rate_jacobian(x, t)", rate_jacobian(at, t))
+            )
         steps = step_sizes(at)
         points = at[:, np.newaxis] + steps[:, np.newaxis] * fan.offsets
         rates = np.array([rate(point, t) for point in points.T])
@@ -165,10 +170,10 @@ def propagate(
         jacobian,
         input_of_noise,
         state,
-        to_covariance("Q", Q),
-        begin,
-        end,
-        longest_step,
+        density,
+        float(begin),
+        float(end),
+        float(longest_step),
     )
     if not all(np.isfinite(part).all() for part in (moved, Phi, noise)):
         raise _core.Error(f"x is not finite on the way from {begin:g} to {end:g} s")
@@ -176,7 +181,7 @@ def propagate(
 
 
 def _duration(name: str, seconds: float) -> float:
-    if not 0.0 <= seconds < math.inf:
+    if not 0.0 <= to_number(name, seconds) < math.inf:
         raise _core.Error(f"{name} is {seconds}; it is a time, 0 or more [s]")
     return float(seconds)
 

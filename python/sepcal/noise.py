@@ -31,7 +31,8 @@ def fit_noise(
         e: (N,), zero in the mean unless it is slow.
         segments: (first row, row after the last) of each stretch, independent of the others; other
             rows are not read [one of all rows].
-        order: Of the autoregression [that of least AIC]; short segments allow no high one.
+        order: Of the autoregression [that of least AIC]; short segments allow no high one. Not of
+            a start, which has its own.
         max_order: At most so high then.
         start: An earlier fit's model, whose order and freedom of the level are kept.
 
@@ -42,10 +43,9 @@ def fit_noise(
     wanted = None if order is None else to_whole_number("order", order)
     most = to_whole_number("max_order", max_order)
     found = _core.fit_noise(to_vector("e", e), _rows(segments), wanted, most, start)
-    if wanted is not None and 0 < len(found.model.phi) < wanted:
-        raise _core.Error(
-            f"order is {wanted}; segments of these lengths allow {len(found.model.phi)}"
-        )
+    allowed = len(found.model.phi)
+    if wanted is not None and start is None and allowed < wanted and found.model.sigma > 0.0:
+        raise _core.Error(f"order is {wanted}; segments of these lengths allow {allowed}")
     return found
 
 
@@ -57,6 +57,8 @@ def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None)
     Raises:
         Error: A model that isn't stationary or whose sigma is 0, a segment that leaves e.
     """
+    if isinstance(model, NoiseFit):
+        raise _core.Error("whiten() takes the fit's model; give found.model")
     return _core.whiten(model, to_vector("e", e), _rows(segments))
 
 
@@ -83,7 +85,10 @@ def simulate_noise(
 def _rows(segments: Segments | None) -> list[tuple[str, int, int]] | None:
     if segments is None:
         return None
-    for first, last in segments:
+    for segment in segments:
+        if not isinstance(segment, Sequence) or len(segment) != 2:
+            raise _core.Error(f"the segment {segment!r} is no pair; it is (first, after last)")
+        first, last = segment
         if not 0 <= first < last:
             raise _core.Error(
                 f"the segment ({first}, {last}) has no rows; it is (first, after last)"

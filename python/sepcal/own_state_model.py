@@ -166,7 +166,10 @@ def to_own(model: AnyModel) -> Model:
     """As sepcal takes it. Raises Error for a probe, which a calibration's file names."""
     own = own_among(as_model(model))
     if own is None:
-        raise _core.Error(f"{type(model).__name__} ships with sepcal; leave model out")
+        raise _core.Error(
+            f"{type(model).__name__} ships with sepcal; use its own program, or in Python leave "
+            "model out"
+        )
     return own
 
 

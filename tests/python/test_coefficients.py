@@ -72,6 +72,15 @@ def test_what_the_coefficients_divide_by_is_above_zero(name: str) -> None:
     refuse(lambda: sepcal.aero_coefficients(data, AIRCRAFT), f"{name} is -1 in row 3")
 
 
+def test_what_is_not_used_may_be_anything() -> None:
+    data = flown()
+    rows = len(data["time"])
+    data["qbar"] = 0.5 * data["rho"] * data["airspeed"] ** 2
+    data["rho"], data["mass"] = np.zeros(rows), np.zeros(rows)
+    found = sepcal.aero_coefficients(data, AIRCRAFT, ["Cm"])
+    assert np.isfinite(found.columns["Cm"]).all()
+
+
 @pytest.mark.parametrize("window", [np.inf, np.nan, -1.0])
 def test_a_window_is_a_time(window: float) -> None:
     refuse(lambda: sepcal.aero_coefficients(flown(), AIRCRAFT, window=window), "window is")

@@ -101,6 +101,11 @@ def test_shapes_are_told() -> None:
     refuse(lambda: filter.predict(np.eye(3), np.eye(3), shift=[5.0]), "shift has 1", "3")
     refuse(lambda: filter.predict(np.eye(3), np.eye(3), shift=[0] * 3, x=[0] * 3), "x", "shift")
     refuse(lambda: filter.iterated_update([0, 0], lambda x: (0.0, H), R), "expected", "()")
+    nowhere = (np.full(2, np.nan), H)
+    refuse(lambda: filter.iterated_update([0, 0], lambda x: nowhere, R), "expected is not a finite")
+    refuse(lambda: filter.predict(np.eye(3), np.eye(3), shift=[np.nan, 0, 0]), "shift is not a")
+    refuse(lambda: filter.predict(1e308 * np.eye(3), np.eye(3), shift=[0] * 3), "range of numbers")
+    refuse(lambda: sepcal.Filter(np.zeros(3), P, None), "form is None")  # type: ignore[arg-type]
 
 
 def test_what_is_no_array_of_real_numbers_is_told() -> None:
@@ -111,6 +116,30 @@ def test_what_is_no_array_of_real_numbers_is_told() -> None:
     refuse(lambda: filter.update([1j, 0], H, R), "y is complex")
     refuse(lambda: filter.update(["high", 0], H, R), "y", "numbers")
     refuse(lambda: filter.update([0, 0], [[1, 0], [1]], R), "H", "numbers")
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("unknown", [np.nan, np.inf])
+def test_noise_of_what_is_missing_may_be_unknown(form: str, unknown: float) -> None:
+    """A log that carries accuracies has none where it has no reading."""
+    filter, known = sepcal.Filter(np.zeros(3), P, form), sepcal.Filter(np.zeros(3), P, form)
+    noise = R.copy()
+    noise[0, :] = noise[:, 0] = unknown
+    filter.update([np.nan, 1.0], H, noise)
+    known.update([np.nan, 1.0], H, R)
+    assert_array_equal(filter.x, known.x)
+    assert_array_equal(filter.covariance, known.covariance)
+
+
+def test_what_rounding_has_made_negative_is_a_covariance() -> None:
+    wide = np.random.default_rng(138).standard_normal((6, 3))
+    low = wide @ wide.T  # its lowest eigenvalue is -6e-16
+    assert np.linalg.eigvalsh(low)[0] < 0.0
+    filter = sepcal.Filter(np.zeros(6), low)
+    filter.predict(np.eye(6), low)
+    assert_allclose(filter.covariance, 2 * low, atol=1e-12)
+    filter.update(np.zeros(6), np.eye(6), low)
+    assert_allclose(filter.covariance, 2 / 3 * low, atol=1e-7)
 
 
 def test_what_is_masked_is_missing() -> None:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Least squares over samples from Python, recursive and iterated: batches, SciPy, refusals."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -122,6 +124,10 @@ def test_an_open_parameter_and_a_cap_are_statuses() -> None:
 def test_what_iterations_refuse() -> None:
     refuse(lambda: sepcal.iterate_least_squares(decay_at, 0, [1.0, 0.2]), "count is 0")
     refuse(lambda: sepcal.iterate_least_squares(decay_at, 1.5, [1.0]), "count is 1.5")  # type: ignore[arg-type]
+    for word, given in (("z", (np.inf, [1.0])), ("H", (1.0, [np.nan])), ("W", (1.0, [1.0], 0.0))):
+        sample = partial(lambda given, k, p: given, given)
+        refuse(lambda sample=sample: sepcal.iterate_least_squares(sample, 3, [1.0]), f"(0): {word}")
+    refuse(lambda: sepcal.iterate_least_squares(decay_at, 9, [1.0, 1.0], halvings=-1), "halvings")
     refuse(
         lambda: sepcal.iterate_least_squares(decay_at, 16, [1.0, 0.2], tolerance=np.nan),
         "tolerance is nan",

@@ -106,7 +106,11 @@ def test_what_is_refused() -> None:
     )
     refuse(lambda: sepcal.propagate(lambda x, t: [1.0, 2.0], [0.0], one, 0, 1), "rate(x, t)", "2")
     refuse(lambda: sepcal.propagate(lambda x, t: x + np.inf, [0.0], one, 0, 1), "not finite")
-    refuse(lambda: sepcal.propagate(pendulum, [0.0, 0.0], one, 0, 1), "noise_input", "(2, 2)")
+    refuse(
+        lambda: sepcal.propagate(lambda x, t: x, [0.0], np.eye(2), 0, 1), "Q", "(2, 2)", "(1, 1)"
+    )
+    refuse(lambda: sepcal.discretise(one, one, None), "dt is None")  # type: ignore[arg-type]
+    refuse(lambda: sepcal.propagate(pendulum, [0.0, 0.0], one, 0, 1), "Q", "(1, 1)", "(2, 2)")
     refuse(
         lambda: sepcal.propagate(pendulum, [0.0, 0.0], np.eye(2), 0, 1, longest_step=0),
         "longest_step",

@@ -78,6 +78,11 @@ def test_what_is_refused() -> None:
     refuse(lambda: sepcal.fit_noise(e, order=-1), "order")
     refuse(lambda: sepcal.fit_noise(e, order=1.5), "order is 1.5", "whole number")  # type: ignore[arg-type]
     refuse(lambda: sepcal.fit_noise(e[:60], order=50), "order is 50", "allow")
+    refuse(lambda: sepcal.fit_noise(e[:8], order=3), "order is 3", "allow 0")
+    refuse(lambda: sepcal.whiten(sepcal.fit_noise(e), e), "found.model")  # type: ignore[arg-type]
+    refuse(lambda: sepcal.fit_noise(e, segments=[0, 100]), "0", "no pair")  # type: ignore[list-item]
+    start = sepcal.fit_noise(e, order=1).model
+    assert len(sepcal.fit_noise(e, order=3, start=start).model.phi) == 1
     refuse(lambda: sepcal.fit_noise(e, segments=[(0, ROWS + 1)]), str(ROWS))
     refuse(lambda: sepcal.fit_noise(e, segments=[(5, 5)]), "(5, 5)")
     refuse(lambda: sepcal.whiten(sepcal.NoiseModel(d=1.0), e), "d")

@@ -16,6 +16,7 @@ from studies.trust.by_key import fly_key
 STEP = 0.1  # [s]
 ROWS = 1200
 SEEDS = range(40, 46)
+WIND = (-3.8, 2.4, 0.3)  # of simulated flights
 
 
 def fly(seed: int, noise: float, of_throttle: float = 0.0) -> sepcal.Flight:
@@ -93,3 +94,23 @@ def test_what_is_hidden_is_named_in_gusts() -> None:
     found = sepcal.fit(MODELS["five-hole"], sepcal.Flight(flown.columns)).diagnose()
     assert str(found.verdict) == "effect_missing"
     assert "airspeed_bias[time]" in found.explanations
+
+
+@pytest.mark.parametrize("standing", [1, 5])
+def test_rows_of_air_that_stands_take_no_cause_away(standing: int) -> None:
+    """No reading of a probe makes such rows' velocity: they stay as they were read."""
+    flown = sepcal.simulate(
+        sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(1, 0, 0)), rate=10
+    )
+    columns = {name: np.array(flown[name]) for name in flown}
+    for row in range(standing):  # hardly any air, and 0.4 m/s through it
+        pitch, yaw = columns["pitch_rad"][row], columns["yaw_rad"][row]
+        ahead = [np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), -np.sin(pitch)]
+        for name, wind, along in zip(("vn", "ve", "vd"), WIND, ahead, strict=True):
+            columns[f"{name}_mps"][row] = wind + 0.4 * along
+        columns["pt_pa"][row] = columns["ps_pa"][row] + 1.0
+        columns["dpa_pa"][row] = columns["dpb_pa"][row] = 0.0
+    probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5)
+    found = sepcal.fit(probe, sepcal.Flight(columns), samples=40).diagnose(only=["lever_arm"])
+    assert found.effects[0].name == "lever_arm"
+    assert found.effects[0].p_value < 1e-6

@@ -246,8 +246,8 @@ def test_it_says_what_it_is_and_travels() -> None:
     ("options", "words"),
     [
         ({}, ("substeps = 2", "the one given has 1")),
-        ({"substeps": 2, "inputs": "hold"}, ('inputs_between_rows = "linear"', '"hold"')),
-        ({"substeps": 2, "shoot": 3.0}, ("shoot = null", "3.0")),
+        ({"substeps": 2, "inputs": "hold"}, ('inputs = "linear"', '"hold"')),
+        ({"substeps": 2, "shoot": 3.0}, ("shoot = none", "3.0")),
     ],
     ids=str,
 )

@@ -82,23 +82,26 @@ void check_surfaces(const Record& record) {
   }
 }
 
-/// Throws Error where there is such a column with a value of zero or less.
+/// Throws Error where there is such a column with a value that is not above zero, or not finite.
 void check_positive(const Record& record, const std::string& name, bool may_lack) {
   if (!record.has(name)) return;
   const std::span<const double> values = record.column(name);
   for (const Segment& segment : record.segments()) {
     for (std::size_t row = segment.first; row < segment.last; ++row) {
-      if (values[row] > 0.0 || (may_lack && std::isnan(values[row]))) continue;
+      if (values[row] > 0.0 && std::isfinite(values[row])) continue;
+      if (may_lack && std::isnan(values[row])) continue;
       throw Error(name + " is " + base::short_number(values[row]) + " in row " +
                   std::to_string(row) +
-                  " (counted from 0); coefficients divide by it: leave such rows out");
+                  " (counted from 0); coefficients need it above zero: leave such rows out");
     }
   }
 }
 
-void check_flow(const Record& record) {
+/// What the coefficients are made of.
+void check_flow(const Record& record, bool forces) {
   check_positive(record, "airspeed", false);
-  for (const char* name : {"rho", "qbar", "mass"}) check_positive(record, name, true);
+  check_positive(record, record.has("qbar") ? "qbar" : "rho", true);
+  if (forces) check_positive(record, "mass", true);
 }
 
 void check_window(double window) {
@@ -127,7 +130,6 @@ Channels::Channels(const Record& record, const AircraftGeometry& geometry,
       vane_(geometry.vane - geometry.cg) {
   check_body_axes(record);
   check_surfaces(record);
-  check_flow(record);
   check_window(window);
   need(record, "airspeed", "every coefficient", "add it, m/s");
   if (!record.has("qbar")) {
@@ -135,6 +137,7 @@ Channels::Channels(const Record& record, const AircraftGeometry& geometry,
   }
   for (const std::string& name : coefficients) check_coefficient(record, geometry, name);
   const bool forces = std::ranges::any_of(coefficients, is_force);
+  check_flow(record, forces);
   const bool moments = !std::ranges::all_of(coefficients, is_force);
   const bool levers = !imu_.isZero() && forces;
   if (levers) {

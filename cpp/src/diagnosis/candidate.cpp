@@ -279,31 +279,41 @@ void CandidateRoom::smooth_regressors(std::vector<Index> columns, base::ThreadPo
 }
 
 /// By Newton's steps of the least disturbances, in units of each input's spread, that leave
-/// nothing.
+/// nothing. A row stays as it was read where no such reading is one: of air that stands, say.
 void CandidateRoom::undisturb_regressors(std::vector<Index> columns, base::ThreadPool& pool) {
   constexpr int rounds = 3;
   const auto model = compose(fitted_.model, effects_, record_);
   const Index n_z = model->tables().n_z();
-  for (int round = 0; round < rounds; ++round) {
+  std::vector<std::size_t> places;  // of the rows in the record
+  for (const Segment& segment : fitted_.rows) {
+    for (std::size_t at = segment.first; at < segment.last; ++at) places.push_back(at);
+  }
+  const auto rows_fitted = static_cast<Index>(places.size());
+  std::vector<bool> as_read(places.size(), false);
+  for (int round = 0; round <= rounds; ++round) {
     const ResidualSlopes slopes = slopes_by(*model, fitted_.kit.disturbed, regressors_);
     const auto inputs = static_cast<Index>(slopes.inputs.size());
-    const Index rows = slopes.residual.size() / n_z;
-    MatrixXd disturbances(rows, inputs);
-    for (Index row = 0; row < rows; ++row) {
-      const auto of_row = Eigen::seqN(row, n_z, rows);
+    if (inputs == 0) break;
+    MatrixXd disturbances = MatrixXd::Zero(rows_fitted, inputs);
+    for (Index row = 0; row < rows_fitted; ++row) {
+      const auto of_row = Eigen::seqN(row, n_z, rows_fitted);
+      const auto at = static_cast<std::size_t>(row);
+      as_read[at] = as_read[at] || !slopes.residual(of_row).allFinite();
+      if (as_read[at] || round == rounds) continue;
       const MatrixXd slope = slopes.columns(of_row, Eigen::all) * slopes.spreads.asDiagonal();
-      disturbances.row(row) = slopes.spreads.cwiseProduct(
+      const VectorXd least = slopes.spreads.cwiseProduct(
           slope.completeOrthogonalDecomposition().solve(-slopes.residual(of_row)));
+      as_read[at] = !least.allFinite();
+      if (!as_read[at]) disturbances.row(row) = least;
     }
     for (Index k = 0; k < inputs; ++k) {
       const std::string& name = slopes.inputs[static_cast<std::size_t>(k)];
-      const auto read = regressors_.column(name);
-      std::vector<double> values(read.begin(), read.end());
-      Index row = 0;
-      for (const Segment& segment : fitted_.rows) {
-        for (std::size_t at = segment.first; at < segment.last; ++at, ++row) {
-          if (std::isfinite(disturbances(row, k))) values[at] += disturbances(row, k);
-        }
+      const auto read = record_.column(name);
+      const auto now = regressors_.column(name);
+      std::vector<double> values(now.begin(), now.end());
+      for (std::size_t row = 0; row < places.size(); ++row) {
+        double& value = values[places[row]];
+        value = as_read[row] ? read[places[row]] : value + disturbances(static_cast<Index>(row), k);
       }
       regressors_.replace(name, std::move(values));
     }

@@ -105,7 +105,7 @@ class Recipe {
   std::vector<EffectFinding> judge(Trials& trials, double tests, bool slow_too);
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
-  bool takes_too_little(const EffectFinding& finding) const;
+  bool takes_too_little(double held_out_gain) const;
   void doubt_readings(Trial& trial);
   double threshold_of(const Trials& trials, double tests) const;
   bool has(FindingStatus status) const;
@@ -212,7 +212,7 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
       if (!finding.held_out_passed) {
         // whatever it is, it does not predict
       } else if (finding.p_adjusted < options_.significance) {
-        if (!takes_too_little(finding)) finding.status = FindingStatus::found;
+        if (!takes_too_little(finding.held_out_gain)) finding.status = FindingStatus::found;
         finding.share_after_selection =
             share_after_selection(finding, options_.significance, number);
       } else if (may_be_slow(trials[i], std::log10(options_.significance / number))) {
@@ -224,8 +224,8 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   return findings;
 }
 
-bool Recipe::takes_too_little(const EffectFinding& finding) const {
-  return !fitted_.kit.wanders.empty() && finding.held_out_gain < least_gain;
+bool Recipe::takes_too_little(double held_out_gain) const {
+  return !fitted_.kit.wanders.empty() && held_out_gain < least_gain;
 }
 
 /// log10 of about what Holm's correction asks for, where `tests` could have been chosen.
@@ -254,7 +254,8 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow
   bench_.calibrate_significant(trials, threshold, slow_too);
   bench_.confirm_best(trials, threshold);
   for (Trial& trial : trials) {
-    if (trial.held_out.passed && trial.log10_p < threshold) doubt_readings(trial);
+    const bool would_be_found = trial.held_out.passed && trial.log10_p < threshold;
+    if (would_be_found && !takes_too_little(trial.held_out.gain)) doubt_readings(trial);
   }
   std::vector<EffectFinding> findings = collect(trials, tests);
   rank(findings);
@@ -654,6 +655,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     result_.limits = find_limits(bench_.room(), fitted_.kit, bench_.null(), bench_.instruments(),
                                  options_.significance, trials_.size());
   });
+  if (undisturbed_) bench_.count(undisturbed_->work());
   result_.work = bench_.work();
   return result_;
 }

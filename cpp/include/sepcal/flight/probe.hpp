@@ -26,9 +26,6 @@ struct TrajectoryOptions;
 namespace catalogue {
 struct EffectTable;
 }
-namespace exporting {
-struct Exporter;
-}
 namespace probes {
 struct ProbeQuantity;
 }
@@ -104,12 +101,12 @@ class Probe {
   /// read with no other. Else nullptr.
   virtual const TrajectoryOptions* trajectory() const { return nullptr; }
 
-  /// All that is known of the effects that it may lack, and all that it reads of a log.
-  virtual const catalogue::EffectTable& effects() const = 0;
+  /// All that it reads of a log.
   virtual std::span<const probes::ProbeQuantity> quantities() const = 0;
 
-  /// How its correction is exported; nullptr: it has none.
-  virtual const exporting::Exporter* exporter() const { return nullptr; }
+  /// All that is known of the effects that it may lack: unless overridden what is registered under
+  /// its name.
+  virtual const catalogue::EffectTable& effects() const;
 
   /// What must be known of the instrument, by the names of the options, e.g. k_alpha {4.5},
   /// lever_arm {0.35, 0, -0.02}. make_probe() takes them back.

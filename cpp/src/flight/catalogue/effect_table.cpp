@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "flight/probes/shipped.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/probe.hpp"
 
 namespace sepcal::catalogue {
 
@@ -22,13 +22,11 @@ const EffectRow* EffectTable::find_effect(const std::string& name) const {
 }
 
 const std::map<std::string, EffectTable, std::less<>>& effect_tables() {
-  static const std::map<std::string, EffectTable, std::less<>> tables = [] {
-    std::map<std::string, EffectTable, std::less<>> by_name;
-    for (const probes::Shipped* probe : probes::shipped()) {
-      by_name.emplace(probe->name, probe->effects());
-    }
-    return by_name;
-  }();
+  static const std::map<std::string, EffectTable, std::less<>> tables{
+      {"five-hole", five_hole_effects()},
+      {"pitot-static", pitot_static_effects()},
+      {"magnetometer", magnetometer_effects()},
+      {"magnetometer-norm", attitude_independent_effects()}};
   return tables;
 }
 
@@ -39,3 +37,9 @@ const EffectTable& effect_table(std::string_view probe) {
 }
 
 }  // namespace sepcal::catalogue
+
+namespace sepcal {
+
+const catalogue::EffectTable& Probe::effects() const { return catalogue::effect_table(name()); }
+
+}  // namespace sepcal

@@ -202,7 +202,7 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
 
 Exported export_calibration(const Calibration& calibration, const Flight* flight,
                             const ExportOptions& options) {
-  if (calibration.probe->exporter() == nullptr) {
+  if (find_exporter(calibration.probe->name()) == nullptr) {
     throw Error(fmt::format(
         "{} is a model of your own, which gives no correction to export; read its parameters "
         "from the JSON",

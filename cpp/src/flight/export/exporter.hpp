@@ -37,6 +37,9 @@ const Exporter& pitot_static_exporter();
 const Exporter& known_field_exporter();
 const Exporter& field_strength_exporter();
 
+/// Of a probe by its name; nullptr: it has no correction to export.
+const Exporter* find_exporter(std::string_view probe);
+
 /// Of its probe, which has one: export_calibration() refuses any other.
 const Exporter& exporter_of(const Calibration& calibration);
 

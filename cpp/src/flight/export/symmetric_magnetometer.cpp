@@ -19,7 +19,6 @@ class SymmetricProbe final : public Probe {
   const BlockModel& model() const override { return model_; }
   const catalogue::EffectTable& effects() const override { return one_->effects(); }
   std::span<const probes::ProbeQuantity> quantities() const override { return one_->quantities(); }
-  const Exporter* exporter() const override { return one_->exporter(); }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }
 
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {

@@ -38,7 +38,6 @@ class JointProbe final : public Probe {
   std::vector<std::string> initial_states() const override { return one_->initial_states(); }
   const catalogue::EffectTable& effects() const override { return one_->effects(); }
   std::span<const probes::ProbeQuantity> quantities() const override { return one_->quantities(); }
-  const exporting::Exporter* exporter() const override { return one_->exporter(); }
   const TrajectoryOptions* trajectory() const override { return one_->trajectory(); }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }
   std::unique_ptr<const Probe> settle(const Flight& flight, const LogChoice& log) const override;

@@ -69,15 +69,23 @@ Json write_tables(const Probe& probe) {
           {"parameters", write_units(lasting_parameters(probe))}};
 }
 
-/// Throws Error where the model would be laid along a record otherwise than it was.
+/// Throws Error where the model would be laid along a record otherwise than it was. Outputs that
+/// are measured stand in the tables.
 void check_trajectory(const Json& fitted, const TrajectoryOptions& given,
                       const std::string& source) {
+  const auto sorted = [](Json value) {
+    if (value.is_array()) std::sort(value.begin(), value.end());
+    return value;
+  };
+  const auto in_words = [](const Json& value) { return value.is_null() ? "none" : value.dump(); };
   const Json as_given = write_trajectory(given);
   for (const auto& [option, value] : as_given.items()) {
-    if (!fitted.contains(option) || fitted[option] == value) continue;
+    if (option == "outputs" || !fitted.contains(option)) continue;
+    if (sorted(fitted[option]) == sorted(value)) continue;
     throw Error(fmt::format(
         "{}: the model was fitted with {} = {}, and the one given has {}; give it as it was fitted",
-        source, option, fitted[option].dump(), value.dump()));
+        source, option == "inputs_between_rows" ? "inputs" : option, in_words(fitted[option]),
+        in_words(value)));
   }
 }
 
@@ -174,14 +182,14 @@ Calibration parse(std::string_view json, const std::string& source,
     throw Error(fmt::format("{}: its model is '{}', and the one given is '{}'; give its own",
                             source, model, own->name()));
   }
+  if (own && own->trajectory() != nullptr && root.contains("trajectory")) {
+    check_trajectory(root["trajectory"], *own->trajectory(), source);
+  }
   if (own && root.contains("tables") && root["tables"] != write_tables(*own)) {
     throw Error(fmt::format(
         "{}: the names or units in the tables of {} have changed since it was fitted; give the "
-        "model as it was, or fit the flight again",
+        "model as it was, with its outputs, or fit the flight again",
         source, model));
-  }
-  if (own && own->trajectory() != nullptr && root.contains("trajectory")) {
-    check_trajectory(root["trajectory"], *own->trajectory(), source);
   }
   if (!own && !catalogue::effect_tables().contains(model)) {
     throw Error(

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/parameter_values.hpp"
-#include "flight/export/exporter.hpp"
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
@@ -45,14 +44,8 @@ class StrengthOnlyMagnetometer final : public Probe {
   std::string_view name() const override { return shipped_attitude_independent.name; }
   std::string_view app() const override { return "sepcal-mag"; }
   const BlockModel& model() const override { return model_; }
-  const catalogue::EffectTable& effects() const override {
-    return catalogue::effect_table(shipped_attitude_independent.name);
-  }
   std::span<const ProbeQuantity> quantities() const override {
     return attitude_independent_quantities();
-  }
-  const exporting::Exporter* exporter() const override {
-    return &exporting::field_strength_exporter();
   }
 
   std::map<std::string, std::vector<double>> settings() const override {
@@ -127,13 +120,11 @@ std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, d
 
 namespace probes {
 
-const Shipped shipped_attitude_independent{.name = "magnetometer-norm",
-                                           .effects = catalogue::attitude_independent_effects,
-                                           .make = [](const Settings& settings) {
-                                             return attitude_independent_probe(
-                                                 one_number(settings, "field_strength"),
-                                                 one_number(settings, "field_noise"));
-                                           }};
+const Shipped shipped_attitude_independent{
+    .name = "magnetometer-norm", .make = [](const Settings& settings) {
+      return attitude_independent_probe(one_number(settings, "field_strength"),
+                                        one_number(settings, "field_noise"));
+    }};
 
 }  // namespace probes
 

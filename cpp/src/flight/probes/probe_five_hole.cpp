@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "flight/export/exporter.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/probe_quantities.hpp"
@@ -43,11 +42,7 @@ class FiveHole final : public Probe {
   std::string_view name() const override { return shipped_five_hole.name; }
   std::string_view app() const override { return "sepcal-pitot"; }
   const BlockModel& model() const override { return model_; }
-  const catalogue::EffectTable& effects() const override {
-    return catalogue::effect_table(shipped_five_hole.name);
-  }
   std::span<const ProbeQuantity> quantities() const override { return five_hole_quantities(); }
-  const exporting::Exporter* exporter() const override { return &exporting::five_hole_exporter(); }
 
   std::map<std::string, std::vector<double>> settings() const override {
     const auto& arm = setup_.lever_arm;
@@ -125,9 +120,7 @@ std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
 
 namespace probes {
 
-const Shipped shipped_five_hole{.name = "five-hole",
-                                .effects = catalogue::five_hole_effects,
-                                .make = [](const Settings& settings) {
+const Shipped shipped_five_hole{.name = "five-hole", .make = [](const Settings& settings) {
                                   return five_hole_probe(one_number(settings, "k_alpha"),
                                                          one_number(settings, "k_beta"),
                                                          three_numbers(settings, "lever_arm"));

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/parameter_values.hpp"
-#include "flight/export/exporter.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/mounting.hpp"
 #include "flight/probes/plausible_scales.hpp"
@@ -37,13 +36,7 @@ class KnownFieldMagnetometer final : public Probe {
   std::string_view name() const override { return shipped_magnetometer.name; }
   std::string_view app() const override { return "sepcal-mag"; }
   const BlockModel& model() const override { return model_; }
-  const catalogue::EffectTable& effects() const override {
-    return catalogue::effect_table(shipped_magnetometer.name);
-  }
   std::span<const ProbeQuantity> quantities() const override { return magnetometer_quantities(); }
-  const exporting::Exporter* exporter() const override {
-    return &exporting::known_field_exporter();
-  }
 
   std::map<std::string, std::vector<double>> settings() const override {
     std::map<std::string, std::vector<double>> settings;
@@ -175,8 +168,7 @@ static std::unique_ptr<const Probe> make_magnetometer(const Settings& settings) 
   return magnetometer_probe(field, three_numbers(settings, "mounting"));
 }
 
-const Shipped shipped_magnetometer{
-    .name = "magnetometer", .effects = catalogue::magnetometer_effects, .make = make_magnetometer};
+const Shipped shipped_magnetometer{.name = "magnetometer", .make = make_magnetometer};
 
 }  // namespace probes
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "flight/export/exporter.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/probe_quantities.hpp"
@@ -30,13 +29,7 @@ class PitotStaticTube final : public Probe {
   std::string_view name() const override { return shipped_pitot_static.name; }
   std::string_view app() const override { return "sepcal-pitot"; }
   const BlockModel& model() const override { return model_; }
-  const catalogue::EffectTable& effects() const override {
-    return catalogue::effect_table(shipped_pitot_static.name);
-  }
   std::span<const ProbeQuantity> quantities() const override { return pitot_static_quantities(); }
-  const exporting::Exporter* exporter() const override {
-    return &exporting::pitot_static_exporter();
-  }
   std::map<std::string, std::vector<double>> settings() const override { return {}; }
 
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
@@ -107,7 +100,6 @@ std::unique_ptr<const Probe> pitot_static_probe() {
 namespace probes {
 
 const Shipped shipped_pitot_static{.name = "pitot-static",
-                                   .effects = catalogue::pitot_static_effects,
                                    .make = [](const Settings&) { return pitot_static_probe(); }};
 
 }  // namespace probes

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "flight/catalogue/effect_table.hpp"
 #include "sepcal/flight/probe.hpp"
 
 namespace sepcal::probes {
@@ -20,7 +19,6 @@ using Settings = std::map<std::string, std::vector<double>>;
 /// A probe by its name in a calibration's file, which is made of settings as it gives them.
 struct Shipped {
   std::string_view name;
-  catalogue::EffectTable (*effects)();
   std::unique_ptr<const Probe> (*make)(const Settings& settings);
 };
 
