@@ -3,6 +3,7 @@
 #include "flight/verbs/mended_flight.hpp"
 
 #include "checked_logs.hpp"
+#include "flight/aircraft/aircraft_columns.hpp"
 
 namespace mended_flight_test {
 
@@ -36,8 +37,12 @@ test::Log aircraft_log() {
   return log;
 }
 
-std::vector<double> mended(std::string_view model, const test::Log& log, const char* header) {
-  const verbs::MendedFlight mended = verbs::mend(model, log.build(), {});
+verbs::MendedFlight mend(AircraftModel model, const test::Log& log) {
+  return verbs::mend(sepcal::aircraft_log::quantities_of(model), log.build(), {});
+}
+
+std::vector<double> mended(AircraftModel model, const test::Log& log, const char* header) {
+  const verbs::MendedFlight mended = mend(model, log);
   const auto values = mended.flight.find(header)->values;
   return {values.begin(), values.end()};
 }
@@ -49,12 +54,12 @@ TEST_CASE("a model with a state takes the line over codes in what it is driven b
     test::Log log = aircraft_log();
     const std::vector<double> clean = log[header];
     for (const std::size_t row : coded) log[header][row] = -9999;
-    const std::vector<double> path = mended("path", log, header);
+    const std::vector<double> path = mended(AircraftModel::path, log, header);
     for (const std::size_t row : coded) CHECK(std::abs(path[row] - clean[row]) < 0.06);
-    CHECK(verbs::mend("path", log.build(), {}).all.condition.empty());
+    CHECK(mend(AircraftModel::path, log).all.condition.empty());
     if (std::string(header) == "yaw_rad") continue;  // drives effects there
-    CHECK(mended("aero", log, header)[400] == -9999);
-    CHECK(verbs::mend("aero", log.build(), {}).all.condition == std::string(header) + " != -9999");
+    CHECK(mended(AircraftModel::aero, log, header)[400] == -9999);
+    CHECK(mend(AircraftModel::aero, log).all.condition == std::string(header) + " != -9999");
   }
 }
 
@@ -65,7 +70,7 @@ TEST_CASE("no line is taken over the end of a turn") {
   CHECK(before > 3);
   CHECK(yaw[502] < -3);
   for (const std::size_t row : {500U, 501U}) yaw[row] = 9999;
-  const std::vector<double> path = mended("path", log, "yaw_rad");
+  const std::vector<double> path = mended(AircraftModel::path, log, "yaw_rad");
   CHECK(path[500] == before);
   CHECK(path[501] == before);
 }
@@ -73,8 +78,8 @@ TEST_CASE("no line is taken over the end of a turn") {
 TEST_CASE("rows that stand still are left out, as no line tells what was there") {
   test::Log log = aircraft_log();
   std::fill_n(log["q_radps"].begin() + 300, 200, log["q_radps"][300]);
-  for (const char* model : {"path", "aero"}) {
-    const verbs::MendedFlight found = verbs::mend(model, log.build(), {});
+  for (const AircraftModel model : {AircraftModel::path, AircraftModel::aero}) {
+    const verbs::MendedFlight found = mend(model, log);
     CHECK(found.all.columns == "q_radps");
     CHECK(found.all.condition == "not (6 <= time_s <= 9.98)");
   }
