@@ -21,15 +21,6 @@ const EffectRow* EffectTable::find_effect(const std::string& name) const {
   return row == effects.end() ? nullptr : &*row;
 }
 
-const std::map<std::string, EffectTable, std::less<>>& effect_tables() {
-  static const std::map<std::string, EffectTable, std::less<>> tables{
-      {"five-hole", five_hole_effects()},
-      {"pitot-static", pitot_static_effects()},
-      {"magnetometer", magnetometer_effects()},
-      {"magnetometer-norm", attitude_independent_effects()}};
-  return tables;
-}
-
 const EffectTable& effect_table(std::string_view probe) {
   const auto found = effect_tables().find(probe);
   if (found == effect_tables().end()) throw Error(fmt::format("there is no model '{}'", probe));

@@ -93,7 +93,7 @@ EffectTable pitot_static_effects();
 EffectTable magnetometer_effects();
 EffectTable attitude_independent_effects();
 
-/// All of them, by Probe::name().
+/// Of all probes that ship, by Probe::name(). Defined in registry/, which knows them.
 const std::map<std::string, EffectTable, std::less<>>& effect_tables();
 
 /// Those along a trajectory: of "path", and of "aircraft", one that is integrated.

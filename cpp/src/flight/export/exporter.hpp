@@ -37,7 +37,8 @@ const Exporter& pitot_static_exporter();
 const Exporter& known_field_exporter();
 const Exporter& field_strength_exporter();
 
-/// Of a probe by its name; nullptr: it has no correction to export.
+/// Of a probe by its name; nullptr: it has no correction to export. Defined in registry/, which
+/// knows all that ship.
 const Exporter* find_exporter(std::string_view probe);
 
 /// Of its probe, which has one: export_calibration() refuses any other.

@@ -25,12 +25,6 @@ const std::vector<double>& numbers(const Settings& settings, const std::string& 
 
 }  // namespace
 
-std::span<const Shipped* const> shipped() {
-  static constexpr std::array all{&shipped_five_hole, &shipped_pitot_static, &shipped_magnetometer,
-                                  &shipped_attitude_independent};
-  return all;
-}
-
 double one_number(const Settings& settings, const std::string& name) {
   return numbers(settings, name, 1).front();
 }

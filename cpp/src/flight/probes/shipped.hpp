@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The probes that ship. Each row stands beside its probe.
+// A probe that ships: its name, and how it is made. Each stands beside its probe.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ extern const Shipped shipped_pitot_static;
 extern const Shipped shipped_magnetometer;
 extern const Shipped shipped_attitude_independent;
 
-/// All of them.
+/// All of them. Defined in registry/.
 std::span<const Shipped* const> shipped();
 
 /// A setting of one number or three. Throws Error where it is missing or of another length.
