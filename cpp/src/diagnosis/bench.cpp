@@ -45,18 +45,33 @@ Bench::Bench(const DiagnosedFit& fitted, const DiagnosisOptions& options, base::
     : Bench(fitted, {}, options, pool) {}
 
 Bench::Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
-             base::ThreadPool& pool, Regressors regressors)
+             base::ThreadPool& pool)
     : fitted_(fitted),
       options_(options),
       pool_(pool),
-      room_(fitted, released, pool, regressors),
+      room_(fitted, released, pool),
       refits_(std::make_unique<Refits>(room_)) {
   if (is_exact()) return;
   room_.add_wandering();
   room_.orthonormalise();
   null_ = find_null(room_.fit());
-  if (room_.follows_path()) return;
-  instruments_ = std::make_unique<InstrumentNoise>(room_, fitted.kit, null_, options.wanders);
+  if (!room_.follows_path()) know_instruments();
+}
+
+Bench::Bench(const Bench& first, Regressors regressors)
+    : fitted_(first.fitted_),
+      options_(first.options_),
+      pool_(first.pool_),
+      room_(fitted_, {}, pool_, regressors),
+      refits_(std::make_unique<Refits>(room_)) {
+  room_.add_wandering();
+  room_.orthonormalise();
+  null_ = find_null(room_.fit(), first.null_.whiteners);
+  know_instruments();
+}
+
+void Bench::know_instruments() {
+  instruments_ = std::make_unique<InstrumentNoise>(room_, fitted_.kit, null_, options_.wanders);
   const Eigen::MatrixXd inputs = room_.input_columns();
   const Eigen::MatrixXd& corrections = room_.fit().wandering;
   Eigen::MatrixXd slopes(room_.fit().layout.count(), inputs.cols() + corrections.cols());
@@ -245,14 +260,16 @@ void Bench::calibrate_significant(Trials& trials, double threshold, bool slow_to
   }
 }
 
-std::optional<double> Bench::bounded_tail(const std::string& name) {
-  Trials trials = make({name});
+std::map<std::string, double> Bench::bounded_tails(const std::vector<std::string>& names) {
+  Trials trials = make(names);
   screen_all(trials);
-  if (trials.empty() || !trials.front().visible) return std::nullopt;
-  bound_all({&trials.front()});
-  const Trial& trial = trials.front();
-  if (!trial.bounded) return std::nullopt;
-  return trial.bounded->log10_p / trial.inflation;
+  std::map<std::string, double> tails;
+  for (Trial& trial : trials) {
+    if (!trial.visible) continue;
+    bound_all({&trial});
+    if (trial.bounded) tails[trial.candidate.name] = trial.bounded->log10_p / trial.inflation;
+  }
+  return tails;
 }
 
 void Bench::confirm_best(Trials& trials, double threshold) const {

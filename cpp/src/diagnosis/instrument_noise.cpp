@@ -21,7 +21,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using ByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr Index most_filtered_rows = 800;
 constexpr std::array correlation_times{10.0, 60.0, 300.0, 1500.0};  // [s]
@@ -81,6 +80,20 @@ std::vector<double> reduce_times(const RowLayout& full, const ReducedRows& rows,
   return reduced;
 }
 
+/// -2 ln L of the residual, the last of the columns, beyond the others, but for a constant,
+/// whatever its size: by products alone, for what is asked often.
+double minus_two_log_likelihood(const WanderingFilter& filter, const MatrixXd& columns) {
+  const MatrixXd white = filter.whiten(columns);
+  const Index others = white.cols() - 1;
+  const MatrixXd products = white.transpose() * white;
+  const numerics::ExplainedSquares by = numerics::explained_squares(
+      products.topLeftCorner(others, others), products.col(others).head(others),
+      products.diagonal().head(others).cwiseSqrt());
+  const auto count = static_cast<double>(white.rows());
+  const double left = products(others, others) - by.square;
+  return count * std::log(left / count) + filter.log_determinant();
+}
+
 }  // namespace
 
 /// Half the squares apart are white + variance (1 - exp(-lag / rows)): least squares in the two for
@@ -133,13 +146,10 @@ struct InstrumentNoise::Source {
   VectorXd slopes = {};  // output after output
 };
 
-/// Noise from row to row beside wandering of known sizes, as a Kalman filter: its gains do not
-/// depend on what is filtered. Rows stand by time, the outputs of each side by side.
+/// Noise from row to row beside wandering of known sizes, and what it makes of the null hypothesis.
+/// What is whitened stands by time, the outputs of each row side by side.
 struct InstrumentNoise::Noise {
-  MatrixXd decay = {};         // of each state from the row before (states x n)
-  ByRow slopes = {};           // of the states (m n x states)
-  ByRow gains = {};            // (m n x states)
-  VectorXd roots = {};         // one over the innovations' standard deviation (m n)
+  WanderingFilter filter;
   MatrixXd basis = {};         // orthonormal, of the whitened tangent
   VectorXd residual = {};      // whitened and orthogonal to it
   double left = not_a_number;  // the variance beside all candidates, once that is known
@@ -150,7 +160,7 @@ struct InstrumentNoise::Noise {
   /// The least of that and of another.
   double least_left(double other) const { return left < other ? left : other; }
 
-  MatrixXd whiten(const MatrixXd& columns) const;
+  MatrixXd whiten(const MatrixXd& columns) const { return filter.whiten(columns); }
 
   /// Whitened, and orthogonal to the tangent.
   MatrixXd whiten_beyond(const MatrixXd& columns) const {
@@ -162,12 +172,6 @@ struct InstrumentNoise::Noise {
     const MatrixXd white = whiten(columns);
     const MatrixXd others = orthonormal_basis(white.leftCols(white.cols() - 1));
     return remove_span(others, white.rightCols<1>()).squaredNorm();
-  }
-
-  /// Of the residual, but for a constant, whatever its size.
-  double minus_two_log_likelihood() const {
-    const auto count = static_cast<double>(residual.size());
-    return count * std::log(residual.squaredNorm() / count) - 2.0 * roots.array().log().sum();
   }
 
   double freedom_beside(Index columns) const {
@@ -193,30 +197,6 @@ struct InstrumentNoise::Noise {
     return numerics::log10_f_tail(by.square / q / std::max(1.0, variance), q, freedom);
   }
 };
-
-MatrixXd InstrumentNoise::Noise::whiten(const MatrixXd& columns) const {
-  const Index n = decay.cols();
-  const Index outputs = roots.size() / n;
-  const Index states = decay.rows();
-  ByRow state = ByRow::Zero(states, columns.cols());
-  ByRow white(roots.size(), columns.cols());
-  Eigen::RowVectorXd innovation(columns.cols());
-  for (Index t = 0; t < n; ++t) {
-    for (Index k = 0; k < states; ++k) state.row(k) *= decay(k, t);
-    for (Index j = 0; j < outputs; ++j) {
-      const Index at = t * outputs + j;
-      innovation = columns.row(j * n + t);
-      for (Index k = 0; k < states; ++k) {
-        if (slopes(at, k) != 0.0) innovation -= slopes(at, k) * state.row(k);
-      }
-      for (Index k = 0; k < states; ++k) {
-        if (gains(at, k) != 0.0) state.row(k) += gains(at, k) * innovation;
-      }
-      white.row(at) = roots[at] * innovation;
-    }
-  }
-  return white;
-}
 
 InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
                                  const NullHypothesis& null,
@@ -321,16 +301,16 @@ std::vector<InstrumentNoise::Noise> InstrumentNoise::make_noises(const std::vect
       std::ranges::any_of(bounds_, [](const WanderBound& bound) { return bound.time_s > 0.0; });
   const VectorXd whole = VectorXd::Ones(static_cast<Index>(bounds_.size()));
   std::vector<Noise> noises;
-  noises.push_back(filter(sized(whole, 0.0, 0.0), 0.0));
+  noises.push_back(make_noise(sized(whole, 0.0, 0.0), 0.0));
   for (const double size : times) {
-    if (has_timed) noises.push_back(filter(sized(shares.front(), 0.0, size), 0.0));
+    if (has_timed) noises.push_back(make_noise(sized(shares.front(), 0.0, size), 0.0));
     for (std::size_t k = 0; k < correlation_times.size(); ++k) {
-      noises.push_back(filter(sized(shares[k + 1], size, size), correlation_times[k]));
+      noises.push_back(make_noise(sized(shares[k + 1], size, size), correlation_times[k]));
     }
   }
   if (!has_timed) return noises;
   for (std::size_t k = 0; k < correlation_times.size(); ++k) {
-    noises.push_back(filter(sized(shares[k + 1], 1.0, 0.0), correlation_times[k]));
+    noises.push_back(make_noise(sized(shares[k + 1], 1.0, 0.0), correlation_times[k]));
   }
   return noises;
 }
@@ -348,14 +328,17 @@ VectorXd InstrumentNoise::find_share(const VectorXd& whole, double time_s) const
   constexpr double loud = 0.5;
   constexpr double middle = std::numbers::sqrt2 / 2.0;  // of a whole and its half
   VectorXd share = whole;
-  double now = filter(middle * share, time_s).minus_two_log_likelihood();
+  const auto fits = [&] {
+    return sepcal::diagnosis::minus_two_log_likelihood(filter(middle * share, time_s), known_);
+  };
+  double now = fits();
   bool is_open = true;
   while (is_open) {
     is_open = false;
     for (double& one : share) {
       if (!(one > least)) continue;
       one *= 0.5;
-      const double half = filter(middle * share, time_s).minus_two_log_likelihood();
+      const double half = fits();
       if (half < now - clearly_likelier) {
         now = half;
         is_open = true;
@@ -383,71 +366,29 @@ InstrumentNoise::Shares InstrumentNoise::find_shares() const {
   return shares;
 }
 
-InstrumentNoise::Noise InstrumentNoise::filter(const VectorXd& shares, double time_s) const {
-  const Index n = rows_.layout.rows;
-  const auto outputs = static_cast<Index>(short_.size());
-  struct State {
-    double variance;
-    double time;             // [s], or
-    double rows;             // where that is not 0
-    const VectorXd* slopes;  // of a source, or those of an output
-    Index output;
-  };
-  std::vector<State> states;
+WanderingFilter InstrumentNoise::filter(const VectorXd& shares, double time_s) const {
+  std::vector<WanderingState> states;
   for (const Source& source : sources_) {
     const WanderBound& bound = bounds_[source.bound];
     const double size = shares[static_cast<Index>(source.bound)] * bound.size;
     if (!(size > 0.0)) continue;
-    const double time = bound.time_s > 0.0 ? bound.time_s : time_s;
-    states.push_back({size * size, time, 0.0, &source.slopes, 0});
+    states.push_back({.variance = size * size,
+                      .time = bound.time_s > 0.0 ? bound.time_s : time_s,
+                      .slopes = &source.slopes});
   }
-  for (Index j = 0; j < outputs; ++j) {
+  VectorXd white(std::ssize(short_));
+  for (Index j = 0; j < white.size(); ++j) {
     const ShortNoise& own = short_[static_cast<std::size_t>(j)];
-    if (own.variance > 0.0) states.push_back({own.variance, 0.0, own.rows, nullptr, j});
-  }
-  const auto count = static_cast<Index>(states.size());
-  Noise noise{.decay = MatrixXd::Zero(count, n),
-              .slopes = ByRow::Zero(n * outputs, count),
-              .gains = ByRow(n * outputs, count),
-              .roots = VectorXd(n * outputs)};
-  VectorXd variances(count);
-  for (Index k = 0; k < count; ++k) {
-    const State& state = states[static_cast<std::size_t>(k)];
-    variances[k] = state.variance;
-    for (Index j = 0; j < outputs; ++j) {
-      for (Index t = 0; t < n; ++t) {
-        if (state.slopes != nullptr) {
-          noise.slopes(t * outputs + j, k) = (*state.slopes)[j * n + t];
-        } else if (j == state.output) {
-          noise.slopes(t * outputs + j, k) = 1.0;
-        }
-      }
+    white[j] = own.white;
+    if (own.variance > 0.0) {
+      states.push_back({.variance = own.variance, .rows = own.rows, .output = j});
     }
   }
-  MatrixXd P = variances.asDiagonal();
-  VectorXd decay(count);
-  for (Index t = 0; t < n; ++t) {
-    if (t > 0) {
-      const auto row = static_cast<std::size_t>(t);
-      const double elapsed = std::max(0.0, times_[row] - times_[row - 1]);
-      for (Index k = 0; k < count; ++k) {
-        const State& state = states[static_cast<std::size_t>(k)];
-        decay[k] = std::exp(state.rows > 0.0 ? -1.0 / state.rows : -elapsed / state.time);
-      }
-      noise.decay.col(t) = decay;
-      P = decay.asDiagonal() * P * decay.asDiagonal();
-      P.diagonal().array() += variances.array() * (1.0 - decay.array().square());
-    }
-    for (Index j = 0; j < outputs; ++j) {
-      const Index at = t * outputs + j;
-      const VectorXd carried = P * noise.slopes.row(at).transpose();
-      const double innovation =
-          short_[static_cast<std::size_t>(j)].white + noise.slopes.row(at).dot(carried);
-      noise.roots[at] = 1.0 / std::sqrt(innovation);
-      noise.gains.row(at) = carried.transpose() / innovation;
-      P -= carried * carried.transpose() / innovation;
-    }
-  }
+  return {states, white, times_};
+}
+
+InstrumentNoise::Noise InstrumentNoise::make_noise(const VectorXd& shares, double time_s) const {
+  Noise noise{.filter = filter(shares, time_s)};
   const MatrixXd white = noise.whiten(known_);
   noise.basis = orthonormal_basis(white.leftCols(white.cols() - 1));
   noise.residual = remove_span(noise.basis, white.rightCols<1>());
@@ -518,7 +459,7 @@ double InstrumentNoise::minus_two_log_likelihood(const LinearisedFit& fit) const
   double least = infinity;
   for (const Noise& noise : noises_) {
     const double sum = noise.sum_left(columns) / noise.variance();
-    least = std::min(least, sum - 2.0 * noise.roots.array().log().sum());
+    least = std::min(least, sum + noise.filter.log_determinant());
   }
   return least;
 }

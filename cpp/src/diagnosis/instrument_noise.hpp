@@ -16,6 +16,7 @@
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/reduced_rows.hpp"
+#include "diagnosis/wandering_filter.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -100,7 +101,8 @@ class InstrumentNoise {
   Eigen::VectorXd find_share(const Eigen::VectorXd& whole, double time_s) const;
   Shares find_shares() const;
   std::vector<Noise> make_noises(const std::vector<double>& times, const Shares& shares) const;
-  Noise filter(const Eigen::VectorXd& shares, double time_s) const;
+  WanderingFilter filter(const Eigen::VectorXd& shares, double time_s) const;
+  Noise make_noise(const Eigen::VectorXd& shares, double time_s) const;
   Eigen::MatrixXd reduce(const Columns& columns) const;
   /// [tangent, residual] of another fit, in this one's units; none where it leaves nothing of an
   /// output.

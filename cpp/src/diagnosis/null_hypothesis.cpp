@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/null_hypothesis.hpp"
 
+#include <utility>
+
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
 
@@ -8,6 +10,18 @@ namespace sepcal::diagnosis {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+namespace {
+
+void whiten_null(NullHypothesis& null) {
+  MatrixXd white = null.basis.columns().dense(null.fit().layout);
+  null.whiten(white);
+  null.white_basis = orthonormal_basis(std::move(white));
+  white = null.residual;
+  null.whiten(white);
+  null.white_residual = remove_span(null.white_basis, white);
+}
+
+}  // namespace
 
 void NullHypothesis::whiten(MatrixXd& columns) const {
   const RowLayout& layout = fit().layout;
@@ -22,6 +36,13 @@ NullHypothesis find_plain_null(const LinearisedFit& fit) {
   return null;
 }
 
+NullHypothesis find_null(const LinearisedFit& fit, std::vector<Whitener> whiteners) {
+  NullHypothesis null = find_plain_null(fit);
+  null.whiteners = std::move(whiteners);
+  whiten_null(null);
+  return null;
+}
+
 NullHypothesis find_null(const LinearisedFit& fit) {
   NullHypothesis null = find_plain_null(fit);
   const Columns basis = null.basis.columns();
@@ -32,12 +53,7 @@ NullHypothesis find_null(const LinearisedFit& fit) {
     null.whiteners.emplace_back(model, fit.layout.runs);
     orders.push_back(model.order());
   }
-  MatrixXd white = basis.dense(fit.layout);
-  null.whiten(white);
-  null.white_basis = orthonormal_basis(std::move(white));
-  white = null.residual;
-  null.whiten(white);
-  null.white_residual = remove_span(null.white_basis, white);
+  whiten_null(null);
   null.test = std::make_shared<const NoiseTest>(null.basis, std::move(orders));
   return null;
 }

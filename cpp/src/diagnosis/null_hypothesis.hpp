@@ -15,12 +15,12 @@ namespace sepcal::diagnosis {
 /// The fit without any candidate, in a noise model of its own.
 struct NullHypothesis {
   TangentBasis basis = {};
-  Eigen::VectorXd residual = {};         // beyond the tangent
-  Hypothesis best = {};                  // of the residual on the basis
-  std::vector<Whitener> whiteners = {};  // of each used output, in that noise
-  Eigen::MatrixXd white_basis = {};      // orthonormal, of the whitened tangent
-  Eigen::VectorXd white_residual = {};   // whitened and orthogonal to white_basis
-  std::shared_ptr<const NoiseTest> test = {};
+  Eigen::VectorXd residual = {};               // beyond the tangent
+  Hypothesis best = {};                        // of the residual on the basis, in noise of its own
+  std::vector<Whitener> whiteners = {};        // of each used output, in that noise or as given
+  Eigen::MatrixXd white_basis = {};            // orthonormal, of the whitened tangent
+  Eigen::VectorXd white_residual = {};         // whitened and orthogonal to white_basis
+  std::shared_ptr<const NoiseTest> test = {};  // in noise of its own
 
   const LinearisedFit& fit() const { return basis.fit(); }
   void whiten(Eigen::MatrixXd& columns) const;  // of count() rows
@@ -33,6 +33,9 @@ struct NullHypothesis {
 
 /// Without its noise. `fit` must outlive it.
 NullHypothesis find_plain_null(const LinearisedFit& fit);
+
+/// In the noise of another to the same rows. `fit` must outlive it.
+NullHypothesis find_null(const LinearisedFit& fit, std::vector<Whitener> whiteners);
 
 /// `fit` must outlive it.
 NullHypothesis find_null(const LinearisedFit& fit);

@@ -22,6 +22,14 @@ using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
 inline void load(const double* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); }
 inline void store(const Lanes& lanes, double* to) { std::memcpy(to, &lanes, sizeof lanes); }
 
+/// Half as many, which fill a register of AVX2: for what is loaded and stored at every step, as
+/// compilers take wider ones through memory there.
+inline constexpr Eigen::Index quad_count = 4;
+using Quad [[gnu::vector_size(quad_count * sizeof(double))]] = double;
+
+inline void load(const double* from, Quad& quad) { std::memcpy(&quad, from, sizeof quad); }
+inline void store(const Quad& quad, double* to) { std::memcpy(to, &quad, sizeof quad); }
+
 inline double add_lanes(const Lanes& lanes) {
   using Half [[gnu::vector_size(lane_count / 2 * sizeof(double))]] = double;
   using Quarter [[gnu::vector_size(lane_count / 4 * sizeof(double))]] = double;
