@@ -260,16 +260,14 @@ void Bench::calibrate_significant(Trials& trials, double threshold, bool slow_to
   }
 }
 
-std::map<std::string, double> Bench::bounded_tails(const std::vector<std::string>& names) {
-  Trials trials = make(names);
+std::optional<double> Bench::bounded_tail(const std::string& name) {
+  Trials trials = make({name});
   screen_all(trials);
-  std::map<std::string, double> tails;
-  for (Trial& trial : trials) {
-    if (!trial.visible) continue;
-    bound_all({&trial});
-    if (trial.bounded) tails[trial.candidate.name] = trial.bounded->log10_p / trial.inflation;
-  }
-  return tails;
+  if (trials.empty() || !trials.front().visible) return std::nullopt;
+  bound_all({&trials.front()});
+  const Trial& trial = trials.front();
+  if (!trial.bounded) return std::nullopt;
+  return trial.bounded->log10_p / trial.inflation;
 }
 
 void Bench::confirm_best(Trials& trials, double threshold) const {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <functional>
 #include <initializer_list>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,7 +43,7 @@ class Bench {
   Bench(const DiagnosedFit& fitted, const Candidate& released, const DiagnosisOptions& options,
         base::ThreadPool& pool);
   /// The same fit with other regressors, in the noise of `first`, which must outlive it: for
-  /// bounded_tails() alone.
+  /// bounded_tail() alone.
   Bench(const Bench& first, Regressors regressors);
   Bench(const Bench&) = delete;  // the null hypothesis points into it
   Bench& operator=(const Bench&) = delete;
@@ -88,9 +88,9 @@ class Bench {
   /// tested.
   void calibrate_significant(Trials& trials, double threshold, bool slow_too) const;
 
-  /// log10 of candidates' tails in noise as instruments have it, that beside each alone, by their
-  /// names; without those of which such noise doesn't say.
-  std::map<std::string, double> bounded_tails(const std::vector<std::string>& names);
+  /// log10 of a candidate's tail in noise as instruments have it, that beside it alone; none where
+  /// such noise doesn't say.
+  std::optional<double> bounded_tail(const std::string& name);
 
   /// One step may fail an effect that bends the model: those that explain more than the best that
   /// passed get real fits.

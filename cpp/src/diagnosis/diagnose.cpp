@@ -106,7 +106,7 @@ class Recipe {
   /// Where a trial was made.
   const Bench& bench_of(const Trial& trial) const;
   bool takes_too_little(double held_out_gain) const;
-  void doubt_readings(const std::vector<Trial*>& trials);
+  void doubt_readings(Trial& trial);
   double threshold_of(const Trials& trials, double tests) const;
   bool has(FindingStatus status) const;
   Trials::iterator find_trial(const std::string& name);
@@ -235,19 +235,14 @@ double Recipe::threshold_of(const Trials& trials, double tests) const {
   return std::log10(options_.significance / number) + about;
 }
 
-/// They are no surer than where what the model leaves stands in the readings that columns are made
-/// of: there it goes with them, and imitates whatever changes their errors. Noise of free size
-/// would take a cause for its own there, so noise as instruments have it is asked.
-void Recipe::doubt_readings(const std::vector<Trial*>& trials) {
-  if (trials.empty() || fitted_.kit.disturbed.empty() || bench_.room().follows_path()) return;
+/// No surer than where what the model leaves stands in the readings that columns are made of: there
+/// it goes with them, and imitates whatever changes their errors. Noise of free size would take a
+/// cause for its own there, so noise as instruments have it is asked.
+void Recipe::doubt_readings(Trial& trial) {
+  if (fitted_.kit.disturbed.empty() || bench_.room().follows_path()) return;
   if (!undisturbed_) undisturbed_ = std::make_unique<Bench>(bench_, Regressors::undisturbed);
-  std::vector<std::string> names;
-  for (const Trial* trial : trials) names.push_back(trial->candidate.name);
-  const std::map<std::string, double> tails = undisturbed_->bounded_tails(names);
-  for (Trial* trial : trials) {
-    const auto tail = tails.find(trial->candidate.name);
-    if (tail != tails.end()) trial->log10_p = std::max(trial->log10_p, tail->second);
-  }
+  const std::optional<double> log10_p = undisturbed_->bounded_tail(trial.candidate.name);
+  if (log10_p) trial.log10_p = std::max(trial.log10_p, *log10_p);
 }
 
 std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) {
@@ -255,12 +250,10 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow
   const double threshold = threshold_of(trials, tests);
   bench_.calibrate_significant(trials, threshold, slow_too);
   bench_.confirm_best(trials, threshold);
-  std::vector<Trial*> would_be_found;
   for (Trial& trial : trials) {
-    const bool is_sure = trial.held_out.passed && trial.log10_p < threshold;
-    if (is_sure && !takes_too_little(trial.held_out.gain)) would_be_found.push_back(&trial);
+    const bool would_be_found = trial.held_out.passed && trial.log10_p < threshold;
+    if (would_be_found && !takes_too_little(trial.held_out.gain)) doubt_readings(trial);
   }
-  doubt_readings(would_be_found);
   std::vector<EffectFinding> findings = collect(trials, tests);
   rank(findings);
   return findings;
@@ -532,7 +525,7 @@ void Recipe::weigh_held_out() {
     tell_held_out(trial, *finding);
     if (!trial.held_out.passed || !(finding->held_out_gain >= objects_from)) continue;
     bound_by_fit(bench_, trial);
-    if (trial.log10_p < significant) doubt_readings({&trial});
+    if (trial.log10_p < significant) doubt_readings(trial);
     if (trial.log10_p < significant) {
       finding->status = FindingStatus::found;
       finding->log10_p = trial.log10_p;
