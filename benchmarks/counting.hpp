@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <utility>
 
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/lanewise.hpp"
 
 namespace benchmark {
 

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "benchmark.hpp"
-#include "sepcal/innovation_model.hpp"
+#include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/recursive_likelihood.hpp"
 #include "sepcal/triangular_factor.hpp"

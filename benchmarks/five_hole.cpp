@@ -13,7 +13,7 @@
 #include "five_hole_file.hpp"
 #include "model/sweep.hpp"
 #include "numerics/basins.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/probe_effects.hpp"

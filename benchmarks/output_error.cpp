@@ -3,9 +3,9 @@
 #include <array>
 
 #include "benchmark.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace benchmark {
 namespace {

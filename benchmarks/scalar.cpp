@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal on many small problems: trials of scalar example 1, a fit each.
 #include "benchmark.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_trials.hpp"
 #include "sepcal/models/scalar_examples.hpp"

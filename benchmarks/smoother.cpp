@@ -3,8 +3,8 @@
 #include "sepcal/states/smoother.hpp"
 
 #include "benchmark.hpp"
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/states/filter.hpp"
-#include "sepcal/states/joseph_form.hpp"
 
 namespace benchmark {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibrated_flights.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "simulated_records.hpp"
 

@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/pitot_static.hpp"

@@ -7,10 +7,10 @@
 #include <array>
 
 #include "noises.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/static_concatenation.hpp"
 
 namespace concatenation_test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corrections on board, each with three effects: what a sensor reads of a truth is written down
 // here once more, and the correction has to give the truth back.
-#include "sepcal/correction.hpp"
+#include "sepcal/detail/correction.hpp"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace discretise_test {
 

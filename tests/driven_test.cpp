@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effects `port[driver^k]` at compile time: their names, units and phi = (d - centre)^k.
-#include "sepcal/effects/driven.hpp"
+#include "sepcal/detail/effects/driven.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,13 +8,13 @@
 #include <random>
 #include <vector>
 
-#include "sepcal/compiled_models.hpp"
-#include "sepcal/enclosed_dual.hpp"
+#include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/enclosed_dual.hpp"
+#include "sepcal/detail/nested_dual.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
-#include "sepcal/nested_dual.hpp"
 
 namespace enclosure_test {
 

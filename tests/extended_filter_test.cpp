@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "draws.hpp"
-#include "sepcal/states/autodiff.hpp"
+#include "sepcal/detail/states/autodiff.hpp"
 #include "sepcal/states/filter.hpp"
 
 namespace extended_filter_test {

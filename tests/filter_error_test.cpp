@@ -16,11 +16,11 @@
 
 #include "draws.hpp"
 #include "estimation/scoring.hpp"
+#include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/innovation_model.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "short_periods.hpp"
 #include "trajectories.hpp"

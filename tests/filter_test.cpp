@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/states/information_form.hpp"
-#include "sepcal/states/joseph_form.hpp"
 #include "sepcal/states/smoother.hpp"
 #include "stacked_system.hpp"
 

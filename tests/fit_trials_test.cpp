@@ -12,7 +12,7 @@
 
 #include "block_inputs.hpp"
 #include "model/lane_kit.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "simulated_records.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The five-hole probe against Eqs. 36-41 written out entry by entry.
 #include "sepcal/models/five_hole_probe.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flight path reconstruction on a motion that is written down in closed form.
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/states/reconstruct.hpp"
 
 #include <doctest/doctest.h>

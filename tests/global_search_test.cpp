@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "profile_cost.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "small_models.hpp"

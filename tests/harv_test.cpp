@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace harv_test {
 

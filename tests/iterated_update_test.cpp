@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 #include <type_traits>
 
-#include "sepcal/states/autodiff.hpp"
-#include "sepcal/states/joseph_form.hpp"
+#include "sepcal/detail/states/autodiff.hpp"
+#include "sepcal/detail/states/joseph_form.hpp"
 
 namespace iterated_update_test {
 

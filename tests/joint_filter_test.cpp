@@ -10,10 +10,10 @@
 
 #include "draws.hpp"
 #include "noises.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/information_form.hpp"
-#include "sepcal/states/joseph_form.hpp"
 #include "short_periods.hpp"
 
 namespace joint_filter_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The small refinement against minima that are known, and against Ceres' of the same record.
-#include "sepcal/states/levenberg_marquardt.hpp"
+#include "sepcal/detail/states/levenberg_marquardt.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "draws.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/states/model_rows.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/states/model_rows.hpp"
 
 namespace levenberg_marquardt_test {
 

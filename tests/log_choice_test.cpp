@@ -6,8 +6,8 @@
 #include <random>
 
 #include "flight_log.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_columns.hpp"
 
 namespace log_choice_test {
 

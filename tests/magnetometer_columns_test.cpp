@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "flight_log.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_columns.hpp"
 
 namespace magnetometer_columns_test {
 

@@ -2,7 +2,7 @@
 // The magnetometer against a known field (Eqs. B1-B3), its nine-parameter matrix multiplied by
 // hand.
 #include "sepcal/models/magnetometer.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,7 @@
 
 #include "draws.hpp"
 #include "noises.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // First and second derivatives by nested duals, against closed forms and differences.
-#include "sepcal/nested_dual.hpp"
+#include "sepcal/detail/nested_dual.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "block_inputs.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "simulated_records.hpp"

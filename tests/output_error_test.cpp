@@ -5,11 +5,11 @@
 
 #include <cmath>
 
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "short_periods.hpp"
 #include "simulated_fleets.hpp"
 #include "trajectories.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "flight_log.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_columns.hpp"
 
 namespace pitot_static_columns_test {
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/static_model.hpp"
 #include "simulated_records.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "numerics/decompositions.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/static_model.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "sepcal/models/scale.hpp"
+#include "sepcal/detail/models/scale.hpp"
 
 namespace plausible_scales_test {
 

@@ -13,7 +13,7 @@
 #include "model/fixed_model.hpp"
 #include "model/lane_kit.hpp"
 #include "model/sweep.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/effects/magnetic.hpp"
 #include "sepcal/fit.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a flight to a five-hole probe's record: quantities, units, bad rows, drivers, segments.
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 
 #include <doctest/doctest.h>
 

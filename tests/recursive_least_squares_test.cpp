@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "draws.hpp"
-#include "sepcal/states/information_root.hpp"
+#include "sepcal/detail/states/information_root.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace recursive_least_squares_test {

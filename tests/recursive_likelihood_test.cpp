@@ -10,10 +10,10 @@
 #include <map>
 #include <string>
 
+#include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/innovation_model.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/track.hpp"
 #include "sepcal/triangular_factor.hpp"
 #include "short_periods.hpp"

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"

@@ -10,7 +10,7 @@
 #include "dense_reference.hpp"
 #include "flights_with_outliers.hpp"
 #include "numerics/decompositions.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "simulated_records.hpp"

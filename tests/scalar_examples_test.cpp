@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's two tutorial examples (Eqs. 21 and 33).
 #include "sepcal/models/scalar_examples.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 
 #include <doctest/doctest.h>
 

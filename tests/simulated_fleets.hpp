@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "simulated_records.hpp"

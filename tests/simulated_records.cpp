@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "block_inputs.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/scalar_examples.hpp"

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "trajectories.hpp"
 
 namespace state_model_test {

@@ -9,7 +9,7 @@
 
 #include "dense_reference.hpp"
 #include "noises.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/scalar_examples.hpp"

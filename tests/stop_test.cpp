@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/thread_pool.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "flight_paths.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/track.hpp"
 
 namespace track_flight_path_test {

@@ -11,11 +11,11 @@
 #include <cmath>
 
 #include "noises.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "short_periods.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The two-stage start on board against the host's of the same rows, and on rows that are no start.
-#include "sepcal/states/two_stage_start.hpp"
+#include "sepcal/detail/states/two_stage_start.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 
 #include "draws.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/states/stream_start.hpp"

@@ -136,7 +136,9 @@ def main(roots: list[str]) -> int:
     for name in roots:
         root = Path(name)
         print(f"{name}\n\nfolders of cpp/src:\n{folders(root)}")
-        print(f"public headers: {len(list((root / 'cpp/include').rglob('*.hpp')))}")
+        headers = list((root / "cpp/include").rglob("*.hpp"))
+        hidden = sum("detail" in header.parts for header in headers)
+        print(f"public headers: {len(headers) - hidden}, and {hidden} in detail/")
         print(f"longest functions:\n{longest(root)}")
         print(f'"{FACT}" stands in: {places(root)}')
         print(f"a user's file with one model and one fit: {compile_seconds(root):.1f} s of CPU")

@@ -2,11 +2,11 @@
 // Every filter, smoother and recursion, in sizes at which Eigen's own products would allocate. It
 // is compiled as flight software is, and its object must not refer to an allocator or to
 // exceptions.
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/states/extended_filter.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/iterated_update.hpp"
-#include "sepcal/states/joseph_form.hpp"
 #include "sepcal/states/least_squares.hpp"
 #include "sepcal/states/recursive_least_squares.hpp"
 #include "sepcal/states/smoother.hpp"

@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "sepcal/aircraft/rigid_aircraft.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/states/filter.hpp"
-#include "sepcal/states/joseph_form.hpp"
 #include "sepcal/states/smoother.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "flights_with_outliers.hpp"
 #include "noises.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "studies/seeds.hpp"

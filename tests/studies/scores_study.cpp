@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sepcal/innovation_model.hpp"
+#include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/triangular_factor.hpp"
 #include "short_periods.hpp"
 #include "studies/seeds.hpp"

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/lane_kernel.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/lane_kernel.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/tables.hpp"
 

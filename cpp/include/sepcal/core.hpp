@@ -17,15 +17,15 @@
 #include "sepcal/models/triad.hpp"
 #include "sepcal/effects/air_data.hpp"
 #include "sepcal/effects/magnetic.hpp"
-#include "sepcal/correction.hpp"            // a calibration at work
-#include "sepcal/states/information_root.hpp"         // least squares, row by row
+#include "sepcal/detail/correction.hpp"            // a calibration at work
+#include "sepcal/detail/states/information_root.hpp"         // least squares, row by row
 #include "sepcal/states/recursive_least_squares.hpp"
 #include "sepcal/states/least_squares.hpp"            // iterated
-#include "sepcal/states/model_rows.hpp"               // of a separable model
-#include "sepcal/states/levenberg_marquardt.hpp"      // a small refinement, row by row
-#include "sepcal/states/two_stage_start.hpp"          // a start from nothing, a piece a call
+#include "sepcal/detail/states/model_rows.hpp"               // of a separable model
+#include "sepcal/detail/states/levenberg_marquardt.hpp"      // a small refinement, row by row
+#include "sepcal/detail/states/two_stage_start.hpp"          // a start from nothing, a piece a call
 #include "sepcal/states/filter.hpp"                   // Kalman's, in three forms of covariance
-#include "sepcal/states/joseph_form.hpp"
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/extended_filter.hpp"
 #include "sepcal/states/iterated_update.hpp"

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "sepcal/choices.hpp"
+#include "sepcal/detail/path_model.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/named_effects.hpp"
 #include "sepcal/noise_model.hpp"
-#include "sepcal/path_model.hpp"
 
 namespace sepcal {
 

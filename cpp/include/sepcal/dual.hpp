@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/lanewise.hpp"
 
 namespace sepcal {
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/passes.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/identifiability.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/options.hpp"
-#include "sepcal/passes.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/stage_one.hpp"
 

@@ -13,11 +13,11 @@
 #include <utility>
 #include <xsimd/xsimd.hpp>
 
-#include "sepcal/hoisted_model.hpp"
-#include "sepcal/lane_angles.hpp"
-#include "sepcal/lane_dual.hpp"
-#include "sepcal/lane_kernel.hpp"
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/hoisted_model.hpp"
+#include "sepcal/detail/lane_angles.hpp"
+#include "sepcal/detail/lane_dual.hpp"
+#include "sepcal/detail/lane_kernel.hpp"
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/model.hpp"
 
 namespace sepcal {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/lanewise.hpp"
 #include "sepcal/quantity.hpp"
 
 namespace sepcal {

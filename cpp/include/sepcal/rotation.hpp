@@ -2,8 +2,8 @@
 // Attitude: the 3-2-1 Euler sequence from body axes (forward, right, down) to north-east-down.
 #pragma once
 
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/lanewise.hpp"
 
 namespace sepcal {
 

@@ -26,9 +26,9 @@
 #include "sepcal/static_model.hpp"       // from a struct to the waist
 #include "sepcal/static_concatenation.hpp" // several sensors side by side
 #include "sepcal/concatenation.hpp"      // the same at run time
-#include "sepcal/joined_tables.hpp"
+#include "sepcal/detail/joined_tables.hpp"
 #include "sepcal/dual.hpp"               // derivatives in flight
-#include "sepcal/nested_dual.hpp"        // second derivatives
+#include "sepcal/detail/nested_dual.hpp" // second derivatives
 #include "sepcal/natural_spline.hpp"     // smooth functions
 #include "sepcal/driver.hpp"             // what drives an effect
 #include "sepcal/effect.hpp"             // a physical term that a model lacks
@@ -50,18 +50,18 @@
 #include "sepcal/models/triad.hpp"       // the canonical form of a sensor of three axes
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/damped_sinusoids.hpp" // Prony's problem
-#include "sepcal/compiled_models.hpp"    // those that the library has compiled
+#include "sepcal/detail/compiled_models.hpp" // those that the library has compiled
 #include "sepcal/states/state_model.hpp"       // a model with a state
 #include "sepcal/states/trajectory_options.hpp"
 #include "sepcal/states/trajectory_model.hpp"  // from it to the waist, along a record
 #include "sepcal/states/smooth_record.hpp"  // states and process noise along a record
 #include "sepcal/states/integration.hpp"
-#include "sepcal/states/trajectory_plan.hpp"
+#include "sepcal/detail/states/trajectory_plan.hpp"
 #include "sepcal/states/track.hpp"             // estimates against time
 #include "sepcal/states/stream_start.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/states/reconstruct.hpp"  // what was flown
 #include "sepcal/aircraft/geometry.hpp"        // an aircraft as its equations of motion know it
 #include "sepcal/aircraft/equations.hpp"       // coefficients as sums of regressors

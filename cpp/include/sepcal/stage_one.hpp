@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/passes.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/options.hpp"
-#include "sepcal/passes.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "sepcal/hoisted_model.hpp"
-#include "sepcal/joined_tables.hpp"
+#include "sepcal/detail/hoisted_model.hpp"
+#include "sepcal/detail/joined_tables.hpp"
 #include "sepcal/static_effect.hpp"
 
 namespace sepcal {
@@ -109,7 +109,7 @@ struct Composed {
   }
 
   /// What a model tells of itself it still tells beside an effect that leaves its inputs alone
-  /// (sepcal/hoisted_model.hpp).
+  /// (sepcal/detail/hoisted_model.hpp).
   template <class U>
   auto prepare(const Vec<U, static_cast<int>(inputs.size())>& u) const
     requires(HoistedModel<M> && !InputCorrection<E>)

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "sepcal/joined_tables.hpp"
+#include "sepcal/detail/joined_tables.hpp"
 #include "sepcal/model.hpp"
 
 namespace sepcal {

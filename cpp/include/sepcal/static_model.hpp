@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "sepcal/block_model.hpp"
-#include "sepcal/enclosed_dual.hpp"
+#include "sepcal/detail/enclosed_dual.hpp"
+#include "sepcal/detail/nested_dual.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/nested_dual.hpp"
 
 namespace sepcal {
 

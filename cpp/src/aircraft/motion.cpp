@@ -7,9 +7,9 @@
 #include "base/short_number.hpp"
 #include "numerics/local_cubic.hpp"
 #include "numerics/order_statistics.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal::aircraft {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/aircraft/path.hpp"
+#include "sepcal/detail/aircraft/path.hpp"
 
 #include <algorithm>
 #include <cmath>

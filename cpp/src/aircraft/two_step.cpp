@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/short_number.hpp"
-#include "sepcal/aircraft/path.hpp"
+#include "sepcal/detail/aircraft/path.hpp"
 #include "sepcal/states/reconstruct.hpp"
 
 namespace sepcal {

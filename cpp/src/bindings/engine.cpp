@@ -19,14 +19,14 @@
 #include "python_model.hpp"
 #include "released.hpp"
 #include "results.hpp"
-#include "sepcal/compiled_models.hpp"
 #include "sepcal/concatenation.hpp"
+#include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/own_model.hpp"
-#include "sepcal/innovation_model.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 
 namespace sepcal::bindings {

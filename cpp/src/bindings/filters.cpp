@@ -15,14 +15,14 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "sepcal/detail/states/information_root.hpp"
+#include "sepcal/detail/states/joseph_form.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/states/discretise.hpp"
 #include "sepcal/states/extended_filter.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
-#include "sepcal/states/information_root.hpp"
 #include "sepcal/states/iterated_update.hpp"
-#include "sepcal/states/joseph_form.hpp"
 #include "sepcal/states/least_squares.hpp"
 #include "sepcal/states/recursive_least_squares.hpp"
 #include "sepcal/states/smoother.hpp"

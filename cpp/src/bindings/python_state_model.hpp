@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/states/state_steps.hpp"
-#include "sepcal/states/trajectory_plan.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
+#include "sepcal/detail/states/trajectory_plan.hpp"
 
 namespace sepcal::bindings {
 

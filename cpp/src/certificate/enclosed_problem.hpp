@@ -9,7 +9,7 @@
 
 #include "model/measurements.hpp"
 #include "sepcal/block_model.hpp"
-#include "sepcal/enclosure.hpp"
+#include "sepcal/detail/enclosure.hpp"
 
 namespace sepcal::certificate {
 

@@ -19,8 +19,8 @@
 #include "diagnosis/columns.hpp"
 #include "diagnosis/linearisation.hpp"
 #include "diagnosis/projection.hpp"
+#include "sepcal/detail/path_model.hpp"
 #include "sepcal/diagnosis.hpp"
-#include "sepcal/path_model.hpp"
 
 namespace sepcal::diagnosis {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal::diagnosis {
 

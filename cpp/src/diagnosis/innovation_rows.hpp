@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "sepcal/detail/path_model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/path_model.hpp"
 
 namespace sepcal::diagnosis {
 

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "effects/composed_tables.hpp"
+#include "sepcal/detail/path_model.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/path_model.hpp"
 
 namespace sepcal::effects {
 namespace {

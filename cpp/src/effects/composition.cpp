@@ -6,8 +6,8 @@
 #include "effects/composed_model.hpp"
 #include "effects/composed_tables.hpp"
 #include "sepcal/composition.hpp"
+#include "sepcal/detail/path_model.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/path_model.hpp"
 
 namespace sepcal {
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/innovation_model.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

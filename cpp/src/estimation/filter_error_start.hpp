@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "estimation/problem.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal::estimation {
 

@@ -5,7 +5,7 @@
 
 #include "estimation/step_times.hpp"
 #include "sepcal/composition.hpp"
-#include "sepcal/path_model.hpp"
+#include "sepcal/detail/path_model.hpp"
 
 namespace sepcal {
 

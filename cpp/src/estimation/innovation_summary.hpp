@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
-#include "sepcal/innovation_model.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/triangular_factor.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "estimation/objective.hpp"
 #include "numerics/box.hpp"
-#include "sepcal/innovation_model.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {

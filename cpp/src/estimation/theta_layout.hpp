@@ -11,8 +11,8 @@
 #include "estimation/problem.hpp"
 #include "estimation/scored_estimate.hpp"
 #include "numerics/box.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal::estimation {
 

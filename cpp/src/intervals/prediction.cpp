@@ -8,8 +8,8 @@
 #include "estimation/theta_layout.hpp"
 #include "model/measurements.hpp"
 #include "numerics/quantiles.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal {
 namespace {

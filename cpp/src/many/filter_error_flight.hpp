@@ -11,8 +11,8 @@
 #include "estimation/problem.hpp"
 #include "estimation/theta_layout.hpp"
 #include "many/split.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/fit_many.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal::many {
 

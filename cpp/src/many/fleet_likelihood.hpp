@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "many/split.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/fit_many.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal::many {
 

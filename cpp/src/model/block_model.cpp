@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "model/differences.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/innovation_model.hpp"
 
 namespace sepcal {
 

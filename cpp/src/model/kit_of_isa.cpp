@@ -4,7 +4,7 @@
 // set here.
 #include "model/lane_factor.hpp"
 #include "model/lane_kit.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/lanes.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"

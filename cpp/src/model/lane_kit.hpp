@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-#include "sepcal/lane_kernel.hpp"
+#include "sepcal/detail/lane_kernel.hpp"
 
 namespace sepcal::lanes {
 

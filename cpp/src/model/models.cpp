@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The models that sepcal brings, compiled once: who fits them doesn't differentiate them again.
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"

@@ -15,7 +15,7 @@
 #include "model/measurements.hpp"
 #include "model/pass_memory.hpp"
 #include "sepcal/block_model.hpp"
-#include "sepcal/passes.hpp"
+#include "sepcal/detail/passes.hpp"
 #include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::model {

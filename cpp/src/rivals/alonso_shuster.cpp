@@ -15,7 +15,7 @@
 #include "estimation/covariance.hpp"
 #include "model/soft_iron_and_scale.hpp"
 #include "numerics/symmetric.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/rivals/two_step_problems.hpp"

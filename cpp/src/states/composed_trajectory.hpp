@@ -12,7 +12,7 @@
 
 #include "effects/composed_parts.hpp"
 #include "effects/corrected_inputs.hpp"
-#include "sepcal/states/state_steps.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 #include "states/differences.hpp"
 
 namespace sepcal::states {

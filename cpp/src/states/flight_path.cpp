@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/models/flight_path.hpp"
 #include "numerics/order_statistics.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/states/score_filter.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/innovation_model.hpp"
-#include "sepcal/states/score_filter.hpp"
-#include "sepcal/states/state_steps.hpp"
 #include "states/known_inputs.hpp"
 #include "states/start_deviations.hpp"
 

@@ -3,7 +3,7 @@
 // size, on a computer that has a heap; the tests hold the two beside each other.
 #pragma once
 
-#include "sepcal/states/state_steps.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/states/track.hpp"
 
 namespace sepcal::states {

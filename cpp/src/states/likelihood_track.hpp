@@ -3,7 +3,7 @@
 // heap.
 #pragma once
 
-#include "sepcal/states/state_steps.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/states/track.hpp"
 
 namespace sepcal::states {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/path_model.hpp"
-#include "sepcal/states/state_steps.hpp"
+#include "sepcal/detail/path_model.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 
 namespace sepcal::states {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/columns.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/reconstruct.hpp"
 
 namespace sepcal {

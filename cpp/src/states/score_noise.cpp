@@ -7,7 +7,7 @@
 // kept.
 #include "base/stop.hpp"
 #include "model/measurements.hpp"
-#include "sepcal/states/state_steps.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 #include "states/start_deviations.hpp"
 
 namespace sepcal {

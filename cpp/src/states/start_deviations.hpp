@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/state_steps.hpp"
 
 namespace sepcal::states {
 

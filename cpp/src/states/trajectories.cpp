@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/stop.hpp"
-#include "sepcal/states/state_steps.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
 #include "states/start_deviations.hpp"
 
 namespace sepcal {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/states/trajectory_plan.hpp"
+#include "sepcal/detail/states/trajectory_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <sepcal/core.hpp>
+#include <sepcal/detail/states/information_root.hpp>
 #include <sepcal/states/filter.hpp>
-#include <sepcal/states/information_root.hpp>
 #include <sepcal/states/least_squares.hpp>
 
 namespace {

@@ -18,11 +18,11 @@
 
 #include "sepcal/aircraft/equations.hpp"
 #include "sepcal/aircraft/geometry.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/natural_spline.hpp"
 #include "sepcal/record.hpp"
 #include "sepcal/rotation.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 #include "sepcal/states/trajectory_model.hpp"
 
 namespace sepcal {

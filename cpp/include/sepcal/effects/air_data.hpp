@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "sepcal/effects/driven.hpp"
+#include "sepcal/detail/effects/driven.hpp"
 #include "sepcal/rotation.hpp"
 
 namespace sepcal::effects {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "sepcal/effects/driven.hpp"
+#include "sepcal/detail/effects/driven.hpp"
 #include "sepcal/eigen.hpp"
 
 namespace sepcal::effects {

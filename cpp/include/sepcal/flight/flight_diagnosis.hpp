@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/flight/sized_effect.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
-#include "sepcal/flight/sized_effect.hpp"
 
 namespace sepcal {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/flight/own_model.hpp"
 #include "sepcal/states/state_model.hpp"
-#include "sepcal/states/state_steps.hpp"
 #include "sepcal/states/trajectory_model.hpp"
 #include "sepcal/states/trajectory_options.hpp"
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/options.hpp"
 
 namespace sepcal {

@@ -9,8 +9,8 @@
 #include <array>
 #include <cmath>
 
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 
 namespace sepcal {

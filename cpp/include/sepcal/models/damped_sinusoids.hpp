@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/model.hpp"
 
 namespace sepcal {

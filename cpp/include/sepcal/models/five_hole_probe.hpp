@@ -9,10 +9,10 @@
 #include <numbers>
 #include <tuple>
 
+#include "sepcal/detail/hoisted_model.hpp"
+#include "sepcal/detail/models/scale.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/hoisted_model.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/models/scale.hpp"
 #include "sepcal/rotation.hpp"
 
 namespace sepcal {

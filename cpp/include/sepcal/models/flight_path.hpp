@@ -15,7 +15,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/rotation.hpp"
 #include "sepcal/states/state_model.hpp"
 

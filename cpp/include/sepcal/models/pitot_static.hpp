@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/lanewise.hpp"
+#include "sepcal/detail/models/scale.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/models/scale.hpp"
 
 namespace sepcal {
 

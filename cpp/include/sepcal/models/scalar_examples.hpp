@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/model.hpp"
 
 namespace sepcal {

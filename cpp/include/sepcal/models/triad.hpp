@@ -7,10 +7,10 @@
 
 #include <array>
 
-#include "sepcal/joined_tables.hpp"
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/joined_tables.hpp"
+#include "sepcal/detail/lanewise.hpp"
+#include "sepcal/detail/models/scale.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/models/scale.hpp"
 
 namespace sepcal {
 

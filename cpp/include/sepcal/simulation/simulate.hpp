@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/flight/sized_effect.hpp"
+#include "sepcal/detail/flight/sized_effect.hpp"
 
 namespace sepcal {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "sepcal/detail/states/linearisation.hpp"
 #include "sepcal/states/discretise.hpp"
-#include "sepcal/states/linearisation.hpp"
 
 namespace sepcal {
 

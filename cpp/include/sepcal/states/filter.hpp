@@ -7,11 +7,11 @@
 
 #include <utility>
 
-#include "sepcal/states/estimate.hpp"
-#include "sepcal/states/linearisation.hpp"
-#include "sepcal/states/measured.hpp"
-#include "sepcal/states/product.hpp"
-#include "sepcal/states/square_root_form.hpp"
+#include "sepcal/detail/states/estimate.hpp"
+#include "sepcal/detail/states/linearisation.hpp"
+#include "sepcal/detail/states/measured.hpp"
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/square_root_form.hpp"
 
 namespace sepcal {
 

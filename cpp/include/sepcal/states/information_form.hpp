@@ -8,9 +8,9 @@
 #include <concepts>
 #include <limits>
 
-#include "sepcal/states/product.hpp"
-#include "sepcal/states/square_root_form.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/square_root_form.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "sepcal/states/inputs_between_rows.hpp"
+#include "sepcal/detail/states/inputs_between_rows.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {

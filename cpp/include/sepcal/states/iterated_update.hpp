@@ -5,8 +5,8 @@
 
 #include <utility>
 
+#include "sepcal/detail/states/triangle.hpp"
 #include "sepcal/states/filter.hpp"
-#include "sepcal/states/triangle.hpp"
 
 namespace sepcal {
 

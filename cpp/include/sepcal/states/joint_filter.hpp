@@ -6,13 +6,13 @@
 
 #include <utility>
 
+#include "sepcal/detail/states/autodiff.hpp"
+#include "sepcal/detail/states/step_noise.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/states/autodiff.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/integration.hpp"
 #include "sepcal/states/iterated_update.hpp"
 #include "sepcal/states/state_model.hpp"
-#include "sepcal/states/step_noise.hpp"
 
 namespace sepcal {
 

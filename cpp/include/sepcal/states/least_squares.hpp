@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "sepcal/states/information_root.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/information_root.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

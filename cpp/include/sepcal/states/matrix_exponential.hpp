@@ -10,8 +10,8 @@
 #include <limits>
 #include <utility>
 
-#include "sepcal/lanewise.hpp"
-#include "sepcal/states/product.hpp"
+#include "sepcal/detail/lanewise.hpp"
+#include "sepcal/detail/states/product.hpp"
 
 namespace sepcal {
 namespace states {

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal {
 

@@ -5,10 +5,10 @@
 
 #include <utility>
 
-#include "sepcal/states/measured.hpp"
-#include "sepcal/states/product.hpp"
-#include "sepcal/states/square_root_form.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/measured.hpp"
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/square_root_form.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

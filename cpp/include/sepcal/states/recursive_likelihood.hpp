@@ -14,8 +14,8 @@
 #include <span>
 #include <utility>
 
-#include "sepcal/states/score_filter.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/score_filter.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

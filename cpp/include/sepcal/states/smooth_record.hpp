@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/state_steps.hpp"
 
 namespace sepcal {
 

@@ -7,11 +7,11 @@
 #include <iterator>
 #include <ranges>
 
-#include "sepcal/states/estimate.hpp"
-#include "sepcal/states/linearisation.hpp"
-#include "sepcal/states/measured.hpp"
-#include "sepcal/states/product.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/estimate.hpp"
+#include "sepcal/detail/states/linearisation.hpp"
+#include "sepcal/detail/states/measured.hpp"
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

@@ -10,8 +10,8 @@
 #include <limits>
 #include <string_view>
 
+#include "sepcal/detail/lanewise.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/lanewise.hpp"
 #include "sepcal/model.hpp"
 #include "sepcal/quantity.hpp"
 

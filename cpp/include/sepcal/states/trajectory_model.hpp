@@ -17,11 +17,11 @@
 #include <utility>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/states/model_steps.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
+#include "sepcal/detail/states/trajectory_plan.hpp"
 #include "sepcal/states/integration.hpp"
-#include "sepcal/states/model_steps.hpp"
 #include "sepcal/states/state_model.hpp"
-#include "sepcal/states/state_steps.hpp"
-#include "sepcal/states/trajectory_plan.hpp"
 
 namespace sepcal {
 

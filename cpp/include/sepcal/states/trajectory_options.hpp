@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sepcal/detail/states/inputs_between_rows.hpp"
 #include "sepcal/quantity.hpp"
-#include "sepcal/states/inputs_between_rows.hpp"
 
 namespace sepcal {
 

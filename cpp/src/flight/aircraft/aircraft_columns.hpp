@@ -3,8 +3,8 @@
 #pragma once
 
 #include "flight/probes/quantities.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/flight/aircraft.hpp"
-#include "sepcal/flight/probe_columns.hpp"
 
 namespace sepcal::aircraft_log {
 

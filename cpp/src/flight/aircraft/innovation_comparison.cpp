@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "estimation/theta_layout.hpp"
-#include "sepcal/innovation_model.hpp"
+#include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/states/smooth_record.hpp"
 
 namespace sepcal::aircraft_log {

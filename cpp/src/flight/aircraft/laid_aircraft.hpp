@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/option_error.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal::aircraft_log {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sepcal/detail/path_model.hpp"
 #include "sepcal/option_error.hpp"
-#include "sepcal/path_model.hpp"
 
 namespace sepcal {
 

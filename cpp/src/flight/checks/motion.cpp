@@ -7,7 +7,7 @@
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/mounting.hpp"
 #include "numerics/order_statistics.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/rotation.hpp"
 

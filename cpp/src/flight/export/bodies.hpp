@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "flight/export/probe_body.hpp"
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 
 namespace sepcal::exporting {
 

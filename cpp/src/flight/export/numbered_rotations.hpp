@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 
 namespace sepcal::exporting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/sized_effect.hpp"
+#include "sepcal/detail/flight/sized_effect.hpp"
 
 #include <fmt/format.h>
 

@@ -15,7 +15,7 @@
 #include "estimation/check_options.hpp"
 #include "flight/probes/ellipsoid.hpp"
 #include "model/soft_iron_and_scale.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/option_error.hpp"
 

@@ -4,7 +4,7 @@
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/record_builder.hpp"
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 
 namespace sepcal {
 

@@ -10,7 +10,7 @@
 #include "flight/probes/mounting.hpp"
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/record_builder.hpp"
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/option_error.hpp"
 
 namespace sepcal {

@@ -7,9 +7,9 @@
 
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/probe_quantities.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_columns.hpp"
 #include "sepcal/models/pitot_static.hpp"
 
 namespace sepcal {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/sentences.hpp"
-#include "sepcal/models/scale.hpp"
+#include "sepcal/detail/models/scale.hpp"
 
 namespace sepcal::probes {
 

@@ -14,7 +14,7 @@
 #include "flight/probes/restatements.hpp"
 #include "flight/probes/shipped.hpp"
 #include "numerics/order_statistics.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"

@@ -10,7 +10,7 @@
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
 #include "flight/probes/shipped.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/option_error.hpp"

@@ -11,7 +11,7 @@
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
 #include "flight/probes/shipped.hpp"
-#include "sepcal/compiled_models.hpp"
+#include "sepcal/detail/compiled_models.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/flight/read_as.hpp"

@@ -17,7 +17,7 @@
 #include "flight/probes/kept_rows.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "flight/probes/quantities.hpp"
-#include "sepcal/flight/probe_columns.hpp"
+#include "sepcal/detail/flight/probe_columns.hpp"
 
 namespace sepcal::probes {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sepcal/models/scale.hpp"
+#include "sepcal/detail/models/scale.hpp"
 
 namespace sepcal::verbs {
 

@@ -2,7 +2,7 @@
 // An estimated state with its covariance, kept as the triangular root of it.
 #pragma once
 
-#include "sepcal/states/product.hpp"
+#include "sepcal/detail/states/product.hpp"
 
 namespace sepcal {
 

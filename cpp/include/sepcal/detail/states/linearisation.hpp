@@ -4,7 +4,7 @@
 // linearisation. Equation numbers (S 2.7) are the System Identification Summary's.
 #pragma once
 
-#include "sepcal/states/product.hpp"
+#include "sepcal/detail/states/product.hpp"
 
 namespace sepcal {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <xsimd/xsimd.hpp>
 
-#include "sepcal/lane_angles.hpp"
-#include "sepcal/lanewise.hpp"
+#include "sepcal/detail/lane_angles.hpp"
+#include "sepcal/detail/lanewise.hpp"
 
 namespace sepcal {
 

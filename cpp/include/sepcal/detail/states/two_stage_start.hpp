@@ -11,10 +11,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "sepcal/detail/states/information_root.hpp"
+#include "sepcal/detail/states/levenberg_marquardt.hpp"
+#include "sepcal/detail/states/model_rows.hpp"
 #include "sepcal/model.hpp"
-#include "sepcal/states/information_root.hpp"
-#include "sepcal/states/levenberg_marquardt.hpp"
-#include "sepcal/states/model_rows.hpp"
 
 namespace sepcal {
 

@@ -7,7 +7,7 @@
 
 #include <utility>
 
-#include "sepcal/states/square_root_form.hpp"
+#include "sepcal/detail/states/square_root_form.hpp"
 
 namespace sepcal {
 

@@ -4,8 +4,8 @@
 // is multiplied out. Kailath, Sayed & Hassibi, Linear Estimation, Ch. 12.
 #pragma once
 
-#include "sepcal/states/product.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

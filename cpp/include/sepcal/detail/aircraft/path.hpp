@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/compiled_trajectories.hpp"
 
 namespace sepcal {
 

@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "sepcal/block_model.hpp"
+#include "sepcal/detail/path_model.hpp"
+#include "sepcal/detail/states/bent_step.hpp"
+#include "sepcal/detail/states/trajectory_plan.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/path_model.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/bent_step.hpp"
-#include "sepcal/states/trajectory_plan.hpp"
 
 namespace sepcal {
 

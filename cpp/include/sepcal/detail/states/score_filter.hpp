@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sepcal/states/bent_step.hpp"
+#include "sepcal/detail/states/bent_step.hpp"
 #include "sepcal/states/filter.hpp"
 
 namespace sepcal {

@@ -10,12 +10,12 @@
 #include <limits>
 #include <string_view>
 
+#include "sepcal/detail/states/triangle.hpp"
 #include "sepcal/dual.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
-#include "sepcal/states/triangle.hpp"
 #include "sepcal/static_composition.hpp"
 
 namespace sepcal {

@@ -87,8 +87,8 @@ struct LaneKernel {
 
 /// A model M whose at() takes several numbers side by side, too, says `using LanesOf = M`: it
 /// chooses between two values by where() and never by if, as one lane may need the one and its
-/// neighbour the other (sepcal/lanewise.hpp). What derives from it has no lanes, unless it says so
-/// itself.
+/// neighbour the other (sepcal/detail/lanewise.hpp). What derives from it has no lanes, unless it
+/// says so itself.
 template <class M>
 constexpr bool has_lanes() {
   if constexpr (requires { typename M::LanesOf; }) {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cstddef>
 
+#include "sepcal/detail/enclosure.hpp"
 #include "sepcal/eigen.hpp"
-#include "sepcal/enclosure.hpp"
 
 namespace sepcal {
 

@@ -11,9 +11,9 @@
 #include <concepts>
 #include <limits>
 
-#include "sepcal/states/information_root.hpp"
+#include "sepcal/detail/states/information_root.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 #include "sepcal/states/least_squares.hpp"
-#include "sepcal/states/triangle.hpp"
 
 namespace sepcal {
 

@@ -9,11 +9,11 @@
 #include <cstddef>
 #include <span>
 
+#include "sepcal/detail/nested_dual.hpp"
+#include "sepcal/detail/states/noise_response.hpp"
+#include "sepcal/detail/states/product.hpp"
 #include "sepcal/dual.hpp"
-#include "sepcal/nested_dual.hpp"
 #include "sepcal/states/integration.hpp"
-#include "sepcal/states/noise_response.hpp"
-#include "sepcal/states/product.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {

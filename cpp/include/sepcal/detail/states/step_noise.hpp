@@ -2,10 +2,10 @@
 // What the process noise of a state model adds to the covariance from a row to the next.
 #pragma once
 
-#include "sepcal/states/autodiff.hpp"
+#include "sepcal/detail/states/autodiff.hpp"
+#include "sepcal/detail/states/product.hpp"
 #include "sepcal/states/discretise.hpp"
 #include "sepcal/states/integration.hpp"
-#include "sepcal/states/product.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {

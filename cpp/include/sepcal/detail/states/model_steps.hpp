@@ -11,12 +11,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "sepcal/states/bent_step.hpp"
+#include "sepcal/detail/states/bent_step.hpp"
+#include "sepcal/detail/states/noise_response.hpp"
+#include "sepcal/detail/states/state_steps.hpp"
+#include "sepcal/detail/states/step_noise.hpp"
 #include "sepcal/states/integration.hpp"
-#include "sepcal/states/noise_response.hpp"
 #include "sepcal/states/state_model.hpp"
-#include "sepcal/states/state_steps.hpp"
-#include "sepcal/states/step_noise.hpp"
 
 namespace sepcal {
 

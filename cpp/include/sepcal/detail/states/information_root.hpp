@@ -5,9 +5,9 @@
 
 #include <utility>
 
-#include "sepcal/states/measured.hpp"
-#include "sepcal/states/product.hpp"
-#include "sepcal/states/triangle.hpp"
+#include "sepcal/detail/states/measured.hpp"
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/triangle.hpp"
 
 namespace sepcal {
 

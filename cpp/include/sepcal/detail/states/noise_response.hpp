@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sepcal/states/product.hpp"
+#include "sepcal/detail/states/product.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {
