@@ -53,7 +53,7 @@ def test_a_centre_hole_that_loses_with_the_angle(tmp_path: Path, seed: int):
     assert diagnosed["verdict"] == "effect_missing"
     first = diagnosed["effects"][0]
     assert first["name"] == "angle_loss"
-    assert first["sentence"] == "the centre hole loses pressure with the flow's angle"
+    assert first["sentence"] == "the Pitot hole loses pressure with the flow's angle"
     next_ = run(app, "add", "flight.csv", "base.json", "angle_loss", "--json", folder=tmp_path)
     assert next_.code == 0, next_.err
     found = next_.result["parameters"]["angle_loss.s"]

@@ -3,19 +3,28 @@
 // (Sun & Gebre-Egziabher, Eqs. 36-42):  V = C_b^n [C(eps) V_s - w x r] + W.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
-#include "sepcal/detail/hoisted_model.hpp"
-#include "sepcal/detail/models/scale.hpp"
-#include "sepcal/eigen.hpp"
-#include "sepcal/model.hpp"
-#include "sepcal/rotation.hpp"
+#include "sepcal/detail/models/air_velocity.hpp"
 
 namespace sepcal {
+
+/// Of an angle of attack atan2(w, u) and one of sideslip asin(v / V): [cos a cos b, sin b, sin a
+/// cos b] (Eq. 41).
+template <class X>
+struct SideslipDirection {
+  SideslipDirection(const X& alpha, const X& beta) {
+    std::tie(cos_a, sin_a) = cos_sin(alpha);
+    std::tie(cos_b, sin_b) = cos_sin(beta);
+  }
+  Vec<X, 3> at() const { return {cos_a * cos_b, sin_b, sin_a * cos_b}; }
+  Vec<X, 3> by_alpha() const { return {-sin_a * cos_b, X(Real<X>(0)), cos_a * cos_b}; }
+  Vec<X, 3> by_beta() const { return {-cos_a * sin_b, cos_b, -sin_a * sin_b}; }
+
+  X cos_a, sin_a, cos_b, sin_b;
+};
 
 /// The last three inputs are ports, zero unless an effect drives them: pressure_offset joins pt -
 /// ps where the airspeed is read from it (not where the flow angles are), alpha_offset and
@@ -23,23 +32,17 @@ namespace sepcal {
 /// dp/(pt - ps) per radian [1/rad]. lever_arm: from the velocity's reference point to the probe,
 /// body axes [m].
 struct FiveHoleProbe {
+  using Air = AirVelocity<SideslipDirection>;
+  static constexpr double ten_degrees = Air::ten_degrees;
   static constexpr std::array inputs{
       Quantity{"roll", "rad"},     Quantity{"pitch", "rad"},  Quantity{"yaw", "rad"},
       Quantity{"p", "rad/s"},      Quantity{"q", "rad/s"},    Quantity{"r", "rad/s"},
       Quantity{"pt", "Pa"},        Quantity{"ps", "Pa"},      Quantity{"dpa", "Pa"},
       Quantity{"dpb", "Pa"},       Quantity{"rho", "kg/m^3"}, port("pressure_offset", "Pa"),
       port("alpha_offset", "rad"), port("beta_offset", "rad")};
-  static constexpr std::array outputs{Quantity{"vn", "m/s"}, Quantity{"ve", "m/s"},
-                                      Quantity{"vd", "m/s"}};
-  static constexpr std::array linear{scale_error("lambda_va"), Quantity{"b_va", "m/s"},
-                                     Quantity{"w_n", "m/s"}, Quantity{"w_e", "m/s"},
-                                     Quantity{"w_d", "m/s"}};
-  static constexpr double ten_degrees = 10.0 * std::numbers::pi / 180.0;
-  static constexpr std::array nonlinear{Quantity{"lambda_alpha", "1", -0.5, 0.5},
-                                        Quantity{"b_alpha", "rad", -ten_degrees, ten_degrees},
-                                        Quantity{"lambda_beta", "1", -0.5, 0.5},
-                                        Quantity{"b_beta", "rad", -ten_degrees, ten_degrees},
-                                        Quantity{"eps_phi", "rad", -0.2618, 0.2618}};
+  static constexpr auto outputs = Air::outputs;
+  static constexpr auto linear = Air::linear;
+  static constexpr auto nonlinear = Air::nonlinear;
   static constexpr bool dual_inputs = true;
   static constexpr bool nested_duals = true;
   static constexpr bool enclosed = true;
@@ -49,18 +52,8 @@ struct FiveHoleProbe {
   double k_beta;
   Eigen::Vector3d lever_arm = Eigen::Vector3d::Zero();
 
-  /// What of a row depends on its inputs alone.
   template <class U>
-  struct Prepared {
-    Eigen::Matrix<U, 3, 3> C_bn;
-    Vec<U, 3> of_rotation;  // C_bn (w x r)
-    U airspeed;             // as read
-    U alpha;
-    U beta;
-  };
-
-  template <class U>
-  Prepared<U> prepare(const Vec<U, 14>& u) const {
+  Air::Prepared<U> prepare(const Vec<U, 14>& u) const {
     using std::sqrt;
     const Real<U> two = 2;
     const auto sensitivity_a = static_cast<Real<U>>(k_alpha);
@@ -75,92 +68,25 @@ struct FiveHoleProbe {
             u[dpb] / (sensitivity_b * pressure) + u[d_beta]};
   }
 
-  /// What depends on xi2 alone.
   template <class X>
-  struct Settled {
-    Vec<X, 5> xi2;
-    X cos_eps;
-    X sin_eps;
-  };
-
-  template <class X>
-  static Settled<X> settle(const Vec<X, 5>& xi2) {
-    const auto [cosine, sine] = cos_sin(xi2[4]);
-    return {xi2, cosine, sine};
+  static Air::Settled<X> settle(const Vec<X, 5>& xi2) {
+    return Air::settle(xi2);
   }
 
   template <class U, class X>
-  static Affine<X, 3, 5> combine(const Prepared<U>& row, const Settled<X>& settled) {
-    const Vec<X, 2> angles = flow_angles<U, X>(row.alpha, row.beta, settled.xi2);
-    return place(row, air_direction(angles[0], angles[1], settled));
+  static Affine<X, 3, 5> combine(const Air::Prepared<U>& row, const Air::Settled<X>& settled) {
+    return Air::combine(row, settled);
   }
 
-  /// With d(A xi1 + b)/dxi2 by hand: the air's direction alone moves with xi2.
   template <class U, class X>
-  static Tangent<X, 3, 5, 5> tangent(const Prepared<U>& row, const Settled<X>& settled,
+  static Tangent<X, 3, 5, 5> tangent(const Air::Prepared<U>& row, const Air::Settled<X>& settled,
                                      const Vec<X, 5>& xi1) {
-    const Vec<X, 2> angles = flow_angles<U, X>(row.alpha, row.beta, settled.xi2);
-    const AirDirection<X> air(angles[0], angles[1]);
-    const Vec<X, 3> in_body = to_body(air.at(), settled);
-    const X speed = row.airspeed * (Real<X>(1) + xi1[0]) + xi1[1];
-    const Vec<X, 3> by_alpha = row.C_bn * to_body(air.by_alpha(), settled) * speed;
-    const Vec<X, 3> by_beta = row.C_bn * to_body(air.by_beta(), settled) * speed;
-    const Vec<X, 3> by_eps = row.C_bn * Vec<X, 3>(X(Real<X>(0)), in_body[2], -in_body[1]) * speed;
-    Tangent<X, 3, 5, 5> result{place(row, in_body), {}};
-    result.D << by_alpha * row.alpha, by_alpha, by_beta * row.beta, by_beta, by_eps;
-    return result;
+    return Air::tangent(row, settled, xi1);
   }
 
   template <class U, class X>
   Affine<X, 3, 5> at(const Vec<U, 14>& u, const Vec<X, 5>& xi2) const {
     return combine<U, X>(prepare<U>(u), settle<X>(xi2));
-  }
-
-  /// [alpha, beta] (rad) from the angles as read (Eq. 36).
-  template <class U, class X>
-  static Vec<X, 2> flow_angles(const U& alpha_read, const U& beta_read, const Vec<X, 5>& xi2) {
-    const Real<X> one = 1;
-    return {(one + xi2[0]) * alpha_read + xi2[1], (one + xi2[2]) * beta_read + xi2[3]};
-  }
-
-  /// C(eps) [cos a cos b, sin b, sin a cos b]: the air's direction in body axes (Eqs. 38, 41).
-  template <class X>
-  static Vec<X, 3> air_direction(const X& alpha, const X& beta, const Settled<X>& settled) {
-    return to_body(AirDirection<X>(alpha, beta).at(), settled);
-  }
-
- private:
-  /// The air's direction in the probe's axes, and its slopes.
-  template <class X>
-  struct AirDirection {
-    AirDirection(const X& alpha, const X& beta) {
-      std::tie(cos_a, sin_a) = cos_sin(alpha);
-      std::tie(cos_b, sin_b) = cos_sin(beta);
-    }
-    Vec<X, 3> at() const { return {cos_a * cos_b, sin_b, sin_a * cos_b}; }
-    Vec<X, 3> by_alpha() const { return {-sin_a * cos_b, X(Real<X>(0)), cos_a * cos_b}; }
-    Vec<X, 3> by_beta() const { return {-cos_a * sin_b, cos_b, -sin_a * sin_b}; }
-
-    X cos_a, sin_a, cos_b, sin_b;
-  };
-
-  /// C(eps) x (Eq. 41).
-  template <class X>
-  static Vec<X, 3> to_body(const Vec<X, 3>& x, const Settled<X>& settled) {
-    return {x[0], settled.cos_eps * x[1] + settled.sin_eps * x[2],
-            settled.cos_eps * x[2] - settled.sin_eps * x[1]};
-  }
-
-  /// A and b of a row whose air comes from there, in body axes.
-  template <class U, class X>
-  static Affine<X, 3, 5> place(const Prepared<U>& row, const Vec<X, 3>& in_body) {
-    const Vec<X, 3> F = row.C_bn * in_body;
-    Affine<X, 3, 5> z;
-    z.A.col(0) = F * row.airspeed;                                     // lambda_va
-    z.A.col(1) = F;                                                    // b_va
-    z.A.template rightCols<3>() = Eigen::Matrix<X, 3, 3>::Identity();  // w_n, w_e, w_d
-    z.b = z.A.col(0) - row.of_rotation.template cast<X>();
-    return z;
   }
 };
 

@@ -65,6 +65,18 @@ EffectRow pressure_zero_row(const std::string& equation) {
           .better_with = {"rho"}};
 }
 
+EffectRow density_error_row(const std::string& equation, const Port& airspeed_scale) {
+  return {.entry = CataloguedEffect{"density_error", equation, "temp_k", "K"},
+          .sentence = "the temperature behind the density is off",
+          .channels = {"temperature"},
+          .maker =
+              [=](const BlockModel& model, EffectSetting& setting, Record& record) {
+                return make_driven(setting.name, airspeed_scale, derive_half_coldness(record), "K",
+                                   model, record);
+              },
+          .plausible = {{"s", {-largest_kelvin, largest_kelvin}}}};
+}
+
 EffectRow icing_ramp_row(const std::string& equation, const Port& airspeed_scale) {
   return {.entry = CataloguedEffect{"icing_ramp", equation, "time", "1 per s"},
           .sentence = "the airspeed's scale drifts steadily from some time on",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the five-hole probe's table and the pitot-static tube's have in common.
+// What the tables of all air data probes have in common.
 #pragma once
 
 #include <string>
@@ -23,6 +23,9 @@ PortRow pressure_offset_row(const std::vector<Form>& forms);
 
 /// The pressure's zero is off: a constant on that port.
 EffectRow pressure_zero_row(const std::string& equation);
+
+/// The temperature behind the density is off, and with it the airspeed's scale.
+EffectRow density_error_row(const std::string& equation, const Port& airspeed_scale);
 
 EffectRow icing_ramp_row(const std::string& equation, const Port& airspeed_scale);
 EffectRow water_blockage_row(const std::string& equation, const Port& airspeed_scale);

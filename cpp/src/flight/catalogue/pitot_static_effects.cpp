@@ -5,16 +5,6 @@
 #include "flight/catalogue/effect_makers.hpp"
 
 namespace sepcal::catalogue {
-namespace {
-
-EffectKit::Maker temperature_error(const Port& airspeed_scale) {
-  return [=](const BlockModel& model, EffectSetting& setting, Record& record) {
-    return make_driven(setting.name, airspeed_scale, derive_half_coldness(record), "K", model,
-                       record);
-  };
-}
-
-}  // namespace
 
 EffectTable pitot_static_effects() {
   const Port airspeed_scale = on_input("airspeed_scale", "1", largest_scale);
@@ -42,13 +32,7 @@ EffectTable pitot_static_effects() {
        .channels = {"time"},
        .maker = in_time(Delay::Kind::outputs_lagging, longest_sensor_lag),
        .plausible = {{"tau", {0.0, longest_sensor_lag}}}},
-      {.entry =
-           CataloguedEffect{"density_error",
-                            "V = V_met + s V_met / 2T: the temperature is off by s", "temp_k", "K"},
-       .sentence = "the temperature behind the density is off",
-       .channels = {"temperature"},
-       .maker = temperature_error(airspeed_scale),
-       .plausible = {{"s", {-largest_kelvin, largest_kelvin}}}},
+      density_error_row("V = V_met + s V_met / 2T: the temperature is off by s", airspeed_scale),
       pressure_zero_row("rho V^2 / 2 = rho V_met^2 / 2 + s"),
       icing_ramp_row("V = V_met + s (t - t0)+ V_met, t0 fitted", airspeed_scale),
       water_blockage_row("V = V_met + s V_met from t0 on, t0 by a scan", airspeed_scale)};

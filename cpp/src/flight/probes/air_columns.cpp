@@ -72,6 +72,52 @@ bool offer_density(RecordBuilder& builder) {
   return true;
 }
 
+AirspeedSource choose_airspeed(const RecordBuilder& builder, const Flight& flight,
+                               AirspeedSource first) {
+  const bool reads = builder.has({"airspeed"});
+  const bool has_density = builder.has({"rho"}) || builder.has({"temp", "ps"});
+  if (reads && first == AirspeedSource::reading) return AirspeedSource::reading;
+  if (builder.has({"dp"}) && (has_density || !reads)) return AirspeedSource::pressure;
+  if (reads) return AirspeedSource::reading;
+  throw Error(fmt::format(
+      "{}: the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3 or "
+      "with temp_k and ps_pa{}; {}",
+      flight.name(), builder.ask_for_near_miss({"airspeed", "dp"}), flight.list_columns()));
+}
+
+void need_airspeed(RecordBuilder& builder, const Flight& flight, AirspeedSource source) {
+  if (source == AirspeedSource::reading) {
+    builder.need({"airspeed"});
+    builder.keep_valid();
+    return;
+  }
+  builder.need({"dp"});
+  need_density(builder, flight, "rho_kgpm3, or temp_k and ps_pa, or airspeed_mps instead of dp_pa");
+  builder.keep_valid();
+  keep_positive_density(builder);
+  builder.compute("airspeed",
+                  [dp = builder.logged("dp"), density = density_of(builder)](std::size_t row) {
+                    return std::sqrt(2.0 * dp.at(row) / density(row));
+                  });
+}
+
+RecordBuilder::RowTest air_meets_tube(const RecordBuilder& builder, AirspeedSource source) {
+  const bool reads = source == AirspeedSource::reading;
+  return [reading = builder.logged(reads ? "airspeed" : "dp")](std::size_t row) {
+    return reading.at(row) > 0;
+  };
+}
+
+const char* still_in_tube(AirspeedSource source) {
+  return source == AirspeedSource::reading ? "airspeed is not above zero" : "dp is not above zero";
+}
+
+void zero_rates(RecordBuilder& builder) {
+  for (const char* rate : {"p", "q", "r"}) {
+    builder.compute(rate, [](std::size_t) { return 0.0; });
+  }
+}
+
 void offer_temperature(RecordBuilder& builder) {
   if (!builder.has({"temp"}) || !is_positive(builder, "temp")) return;
   builder.compute("temperature",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the columns of all air data probes have in common: the density, logged or computed, the
-// temperature, and rows in which no air moves.
+// What the columns of all air data probes have in common: the density and the airspeed, logged or
+// computed, the temperature, and rows in which no air moves.
 #pragma once
 
 #include <string_view>
@@ -24,6 +24,25 @@ RecordBuilder::RowValue density_of(const RecordBuilder& builder);
 /// the record has none; returns whether it has. To be called after the rows were chosen, like the
 /// next.
 bool offer_density(RecordBuilder& builder);
+
+/// Where the airspeed as read comes from: a column of it, or the impact pressure dp, sqrt(2 dp /
+/// rho).
+enum class AirspeedSource { reading, pressure };
+
+/// `first` where the log has what it takes, else the other. Throws Error where both are incomplete.
+AirspeedSource choose_airspeed(const RecordBuilder& builder, const Flight& flight,
+                               AirspeedSource first);
+
+/// The column "airspeed" [m/s] and what it takes: needed, and its rows valid.
+void need_airspeed(RecordBuilder& builder, const Flight& flight, AirspeedSource source);
+
+/// A tube in still air reads noise about zero, or the zero that its driver makes of it; and what is
+/// said of rows that fail.
+RecordBuilder::RowTest air_meets_tube(const RecordBuilder& builder, AirspeedSource source);
+const char* still_in_tube(AirspeedSource source);
+
+/// Body rates of zero, where no fit needs any.
+void zero_rates(RecordBuilder& builder);
 
 /// The temperature [K] as the column "temperature", where it was logged in every kept row.
 void offer_temperature(RecordBuilder& builder);

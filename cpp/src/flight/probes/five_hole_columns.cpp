@@ -71,11 +71,7 @@ ProbeRecord prepare_five_hole(const Flight& flight, const FiveHoleColumns& optio
   builder.check_time();
   keep_moving_air(builder, flight, air_moves(builder), still_air,
                   "check the two columns, or cut the log to the flight");
-  if (!options.lever_arm && !builder.offer({"p", "q", "r"})) {
-    for (const char* rate : {"p", "q", "r"}) {
-      builder.compute(rate, [](std::size_t) { return 0.0; });
-    }
-  }
+  if (!options.lever_arm && !builder.offer({"p", "q", "r"})) zero_rates(builder);
   compute_angle(builder, "alpha", "dpa", options.k_alpha);
   compute_angle(builder, "beta", "dpb", options.k_beta);
   offer_temperature(builder);

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/corrected_air.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
@@ -62,12 +62,8 @@ class FiveHole final : public Probe {
     return read_five_hole(flight, log);
   }
 
-  std::vector<std::string> corrected_headers() const override {
-    return {"airspeed_cal_mps", "alpha_cal_rad", "beta_cal_rad"};
-  }
+  std::vector<std::string> corrected_headers() const override { return corrected_air_headers; }
 
-  /// Eq. 36 with what effects add, and the air's direction turned into body axes by C(eps): alpha =
-  /// atan2(w, u), beta = asin(v / V) at the probe.
   std::vector<CorrectedColumn> correct(const ProbeReadings& readings, const VectorXd& values,
                                        const ReadingEffects& effects) const override {
     const auto pt = readings.record.column("pt");
@@ -75,28 +71,12 @@ class FiveHole final : public Probe {
     const auto dpa = readings.record.column("dpa");
     const auto dpb = readings.record.column("dpb");
     const auto rho = readings.record.column("rho");
-    const Vec<double, 5> xi2 = values.tail<5>();
-    auto columns = empty_columns(corrected_headers(), pt.size());
-    for (std::size_t i = 0; i < pt.size(); ++i) {
-      if (!readings.valid[i]) continue;
+    return correct_air<FiveHoleProbe::Air>(readings, values, effects, [&](std::size_t i) {
       const double pressure = pt[i] - ps[i];
-      const auto angles = FiveHoleProbe::flow_angles<double, double>(
-          dpa[i] / (setup_.k_alpha * pressure) + effects.at("alpha_offset.s", i) +
-              effects.at("alpha_offset.k", i),
-          dpb[i] / (setup_.k_beta * pressure) + effects.at("beta_offset.s", i) +
-              effects.at("beta_offset.k", i),
-          xi2);
-      const double read =
-          std::sqrt(std::max(0.0, 2.0 * (pressure + effects.at("pressure_offset.s", i)) / rho[i])) *
-          (1.0 + effects.at("reading_scale.s", i));
-      const auto air = FiveHoleProbe::air_direction<double>(angles[0], angles[1],
-                                                            FiveHoleProbe::settle<double>(xi2));
-      columns[0].values[i] = (1.0 + values[0] + effects.at("airspeed_scale.s", i)) * read +
-                             values[1] + effects.at("airspeed_bias.s", i);
-      columns[1].values[i] = std::atan2(air[2], air[0]);
-      columns[2].values[i] = std::asin(std::clamp(air[1], -1.0, 1.0));
-    }
-    return columns;
+      return AirAsRead{
+          std::sqrt(std::max(0.0, 2.0 * (pressure + effects.at("pressure_offset.s", i)) / rho[i])),
+          dpa[i] / (setup_.k_alpha * pressure), dpb[i] / (setup_.k_beta * pressure)};
+    });
   }
 
   void judge(Fit& fit) const override { judge_scales(fit, std::array{Scale{"lambda_va", 0.0}}); }
