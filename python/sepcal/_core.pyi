@@ -108,6 +108,7 @@ __all__: list[str] = [
     "scalar_example_1",
     "scalar_example_2",
     "sdp3x_pressure",
+    "shipped_probes",
     "simulate",
     "simulate_noise",
     "smooth",
@@ -3189,6 +3190,7 @@ def sdp3x_pressure(
     arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> typing.Any: ...
+def shipped_probes() -> list[tuple[str, str]]: ...
 def simulate(
     arg0: str,
     arg1: str,

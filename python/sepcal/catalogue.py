@@ -4,15 +4,15 @@
 from sepcal import _core
 from sepcal.own_state_model import AnyModel, as_model
 
-PROBES = ("five-hole", "pitot-static", "magnetometer", "magnetometer-norm")
+PROBES = tuple(name for name, _ in _core.shipped_probes())
 
 
 def effects(model: AnyModel | str) -> list[_core.CataloguedEffect]:
     """The catalogue of a probe, of a probe's name, or of a model of your own.
 
     Raises:
-        Error: A model that takes no flight; another name than "five-hole", "pitot-static",
-            "magnetometer" (also with attitude) or "magnetometer-norm" (its field's strength alone).
+        Error: A model that takes no flight; a name that is none of PROBES: of a probe that ships,
+            as "magnetometer" (with attitude) and "magnetometer-norm" (its field's strength alone).
     """
     if not isinstance(model, str):
         return _core.effects_of(as_model(model)._core)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import sepcal
+from sepcal.catalogue import PROBES
 from sepcal.options import LOG_CHOICE, FitOptions
 from studies import effect_coverage
 
@@ -67,9 +68,7 @@ def test_an_option_stands_where_it_says(option: str) -> None:
         assert typed in apps, typed
 
 
-@pytest.mark.parametrize(
-    "probe", ["five-hole", "pitot-static", "magnetometer", "magnetometer-norm"]
-)
+@pytest.mark.parametrize("probe", PROBES)
 def test_an_effect_stands_where_it_says(probe: str) -> None:
     """Each that is called without a driver is in docs/effects.md, and is flown somewhere."""
     told = (ROOT / "docs" / "effects.md").read_text()

@@ -3,11 +3,13 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bindings.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/flight/probe.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -42,6 +44,14 @@ void define_effects(py::module_& module) {
     return std::vector(catalogue.begin(), catalogue.end());
   });
   module.def("channels", &channels);
+  // Names of those that ship, in their order, and what people call them.
+  module.def("shipped_probes", [] {
+    std::vector<std::pair<std::string, std::string>> names;
+    for (ShippedName& each : shipped_probes()) {
+      names.emplace_back(std::move(each.name), std::move(each.words));
+    }
+    return names;
+  });
 }
 
 }  // namespace sepcal::bindings

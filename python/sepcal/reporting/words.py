@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from sepcal import _core
 from sepcal.columns import Array
 from sepcal.markup import Html, as_html, html, in_figure
 
@@ -30,12 +31,7 @@ MEANINGS = {
     **{f"eta_{axis}": f"misalignment about {axis}" for axis in "xyz"},
     **{f"alpha_{pair}": f"soft iron, {pair}" for pair in ("xy", "xz", "yz")},
 }  # fmt: skip
-MODELS = {
-    "five-hole": "five-hole probe",
-    "pitot-static": "Pitot-static tube",
-    "magnetometer": "magnetometer",
-    "magnetometer-norm": "magnetometer without attitude",
-}
+MODELS = dict(_core.shipped_probes())
 VERDICTS = {
     "adequate": "Nothing found",
     "effect_missing": "An effect is missing",

@@ -80,7 +80,7 @@ class Probe {
   Probe& operator=(const Probe&) = delete;
   virtual ~Probe() = default;
 
-  /// "five-hole", "pitot-static", "magnetometer", "magnetometer-norm": the JSON's `model`.
+  /// "five-hole", say: the JSON's `model`. shipped_probes() lists those that ship.
   virtual std::string_view name() const = 0;
 
   /// The command that calibrates it: "sepcal-pitot", "sepcal-mag"; `own_app` of a model of your
@@ -189,6 +189,15 @@ std::unique_ptr<const Probe> magnetometer_probe(
 /// begins with the ellipsoid of the readings. Throws Error where the strength is not positive or
 /// the noise is negative.
 std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, double noise = 0.0);
+
+/// A probe that ships: its name, and what people call it, "five-hole probe".
+struct ShippedName {
+  std::string name;
+  std::string words;
+};
+
+/// All that ship.
+std::vector<ShippedName> shipped_probes();
 
 /// The probe of that name with settings as Probe::settings() gives them. Throws Error for a name
 /// that is unknown, a setting that is missing or of the wrong length.

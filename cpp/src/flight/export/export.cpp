@@ -204,9 +204,8 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
                             const ExportOptions& options) {
   if (find_exporter(calibration.probe->name()) == nullptr) {
     throw Error(fmt::format(
-        "{} is a model of your own, which gives no correction to export; read its parameters "
-        "from the JSON",
-        calibration.probe->name()));
+        "{} has no correction to export; there is one of {}; read the parameters from the JSON",
+        calibration.probe->name(), fmt::join(exported_probes(), ", ")));
   }
   refuse_homeless(calibration, options);
   refuse_idle(calibration, options);

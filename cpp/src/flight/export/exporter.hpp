@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "flight/export/bodies.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -40,6 +41,9 @@ const Exporter& field_strength_exporter();
 /// Of a probe by its name; nullptr: it has no correction to export. Defined in registry/, which
 /// knows all that ship.
 const Exporter* find_exporter(std::string_view probe);
+
+/// The probes that have one, by their names. Defined there too.
+std::vector<std::string_view> exported_probes();
 
 /// Of its probe, which has one: export_calibration() refuses any other.
 const Exporter& exporter_of(const Calibration& calibration);

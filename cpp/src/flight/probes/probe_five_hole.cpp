@@ -100,11 +100,11 @@ std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
 
 namespace probes {
 
-const Shipped shipped_five_hole{.name = "five-hole", .make = [](const Settings& settings) {
-                                  return five_hole_probe(one_number(settings, "k_alpha"),
-                                                         one_number(settings, "k_beta"),
-                                                         three_numbers(settings, "lever_arm"));
-                                }};
+const Shipped shipped_five_hole{
+    .name = "five-hole", .words = "five-hole probe", .make = [](const Settings& settings) {
+      return five_hole_probe(one_number(settings, "k_alpha"), one_number(settings, "k_beta"),
+                             three_numbers(settings, "lever_arm"));
+    }};
 
 }  // namespace probes
 

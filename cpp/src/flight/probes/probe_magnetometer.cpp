@@ -168,7 +168,8 @@ static std::unique_ptr<const Probe> make_magnetometer(const Settings& settings) 
   return magnetometer_probe(field, three_numbers(settings, "mounting"));
 }
 
-const Shipped shipped_magnetometer{.name = "magnetometer", .make = make_magnetometer};
+const Shipped shipped_magnetometer{
+    .name = "magnetometer", .words = "magnetometer", .make = make_magnetometer};
 
 }  // namespace probes
 

@@ -100,6 +100,7 @@ std::unique_ptr<const Probe> pitot_static_probe() {
 namespace probes {
 
 const Shipped shipped_pitot_static{.name = "pitot-static",
+                                   .words = "Pitot-static tube",
                                    .make = [](const Settings&) { return pitot_static_probe(); }};
 
 }  // namespace probes

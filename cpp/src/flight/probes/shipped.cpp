@@ -36,6 +36,14 @@ std::array<double, 3> three_numbers(const Settings& settings, const std::string&
 
 }  // namespace probes
 
+std::vector<ShippedName> shipped_probes() {
+  std::vector<ShippedName> names;
+  for (const probes::Shipped* each : probes::shipped()) {
+    names.push_back({std::string(each->name), std::string(each->words)});
+  }
+  return names;
+}
+
 std::unique_ptr<const Probe> make_probe(std::string_view name, const probes::Settings& settings) {
   const auto all = probes::shipped();
   const auto one = std::ranges::find(all, name, &probes::Shipped::name);

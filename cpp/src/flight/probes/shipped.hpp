@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A probe that ships: its name, and how it is made. Each stands beside its probe.
+// A probe that ships: its names, and how it is made. Each stands beside its probe.
 #pragma once
 
 #include <array>
@@ -19,6 +19,7 @@ using Settings = std::map<std::string, std::vector<double>>;
 /// A probe by its name in a calibration's file, which is made of settings as it gives them.
 struct Shipped {
   std::string_view name;
+  std::string_view words;  // what people call it: "five-hole probe"
   std::unique_ptr<const Probe> (*make)(const Settings& settings);
 };
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "flight/catalogue/effect_table.hpp"
 #include "flight/export/exporter.hpp"
@@ -24,7 +25,7 @@ using namespace catalogue;
 using namespace exporting;
 using namespace probes;
 
-constexpr std::array shipped_probes{
+constexpr std::array probe_rows{
     ShippedProbe{&shipped_five_hole, five_hole_effects, five_hole_exporter},
     ShippedProbe{&shipped_pitot_static, pitot_static_effects, pitot_static_exporter},
     ShippedProbe{&shipped_magnetometer, magnetometer_effects, known_field_exporter},
@@ -36,8 +37,8 @@ constexpr std::array shipped_probes{
 
 std::span<const Shipped* const> probes::shipped() {
   static const auto all = [] {
-    std::array<const Shipped*, shipped_probes.size()> each{};
-    std::ranges::transform(shipped_probes, each.begin(), &ShippedProbe::probe);
+    std::array<const Shipped*, probe_rows.size()> each{};
+    std::ranges::transform(probe_rows, each.begin(), &ShippedProbe::probe);
     return each;
   }();
   return all;
@@ -46,7 +47,7 @@ std::span<const Shipped* const> probes::shipped() {
 const std::map<std::string, EffectTable, std::less<>>& catalogue::effect_tables() {
   static const auto tables = [] {
     std::map<std::string, EffectTable, std::less<>> by_name;
-    for (const ShippedProbe& each : shipped_probes) {
+    for (const ShippedProbe& each : probe_rows) {
       by_name.emplace(each.probe->name, each.effects());
     }
     return by_name;
@@ -54,10 +55,18 @@ const std::map<std::string, EffectTable, std::less<>>& catalogue::effect_tables(
   return tables;
 }
 
+std::vector<std::string_view> exporting::exported_probes() {
+  std::vector<std::string_view> names;
+  for (const ShippedProbe& each : probe_rows) {
+    if (each.exporter != nullptr) names.push_back(each.probe->name);
+  }
+  return names;
+}
+
 const Exporter* exporting::find_exporter(std::string_view probe) {
   const auto named = [](const ShippedProbe& each) { return each.probe->name; };
-  const auto* const found = std::ranges::find(shipped_probes, probe, named);
-  const bool exports = found != shipped_probes.end() && found->exporter != nullptr;
+  const auto* const found = std::ranges::find(probe_rows, probe, named);
+  const bool exports = found != probe_rows.end() && found->exporter != nullptr;
   return exports ? &found->exporter() : nullptr;
 }
 
