@@ -18,7 +18,8 @@ using Names = std::set<std::string, std::less<>>;
 
 namespace {
 
-constexpr std::array models{"five-hole", "pitot-static", "magnetometer", "magnetometer-norm"};
+constexpr std::array models{"five-hole", "vane-boom", "pitot-static", "magnetometer",
+                            "magnetometer-norm"};
 
 }  // namespace
 

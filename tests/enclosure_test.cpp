@@ -163,6 +163,16 @@ TEST_CASE("models in ranges hold their values, slopes and second derivatives") {
     };
     check_model<sepcal::FiveHoleProbe, 5>(probed, std::vector(5, Enclosure(-0.3, 0.3)), width, 9,
                                           {4.5, 4.6, {0.35, -0.1, -0.02}}, 30);
+    const auto with_vanes = [](std::mt19937_64& generator) {
+      std::uniform_real_distribution<double> unit(-1.0, 1.0);
+      Vec<double, 13> u = Vec<double, 13>::Zero();
+      for (int i = 0; i < 6; ++i) u[i] = unit(generator);
+      u.segment<4>(6) << 25.0 + 10.0 * unit(generator), 0.2 * unit(generator),
+          0.2 * unit(generator), 1.2;
+      return u;
+    };
+    check_model<sepcal::VaneBoom, 5>(with_vanes, std::vector(5, Enclosure(-0.3, 0.3)), width, 10,
+                                     {{0.35, -0.1, -0.02}}, 30);
   }
 }
 

@@ -14,6 +14,7 @@ BUILT_IN = {
     "scalar_1": sepcal.ScalarExample1(),
     "scalar_2": sepcal.ScalarExample2(),
     "five_hole": sepcal.FiveHoleProbe(k_alpha=K_ALPHA, k_beta=K_BETA, lever_arm=LEVER_ARM),
+    "vane_boom": sepcal.VaneBoom(lever_arm=LEVER_ARM),
     "magnetometer": sepcal.Magnetometer(),
 }
 

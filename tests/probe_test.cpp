@@ -214,7 +214,7 @@ TEST_CASE("what no probe is, is refused") {
   }
   check_refused([] { five_hole_probe(4.5, 4.5, {0, infinite, 0}); }, {"lever_arm", "metres"});
   check_refused([] { make_probe("venturi", {}); },
-                {"'venturi'", "five-hole, pitot-static, magnetometer"});
+                {"'venturi'", "five-hole, vane-boom, pitot-static, magnetometer"});
   check_refused([] { make_probe("five-hole", {{"k_alpha", {4.5}}, {"lever_arm", {0, 0, 0}}}); },
                 {"'k_beta'", "1 number"});
   check_refused(

@@ -79,6 +79,7 @@ from sepcal.models import (
     PitotStatic,
     ScalarExample1,
     ScalarExample2,
+    VaneBoom,
 )
 from sepcal.monte_carlo_results import MonteCarlo, ParameterStudy
 from sepcal.noise import fit_noise, simulate_noise, whiten
@@ -187,6 +188,7 @@ __all__ = [
     "TrialRecord",
     "TwoSteps",
     "Validation",
+    "VaneBoom",
     "Window",
     "__version__",
     "aero_coefficients",

@@ -114,6 +114,7 @@ __all__: list[str] = [
     "smooth",
     "spectrum",
     "stream_csv",
+    "vane_boom",
     "whiten",
     "write_whole",
 ]
@@ -3233,6 +3234,11 @@ def spectrum(
     arg2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
 def stream_csv(arg0: str, arg1: str) -> Flight: ...
+def vane_boom(
+    arg0: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+) -> Model: ...
 def whiten(
     arg0: NoiseModel,
     arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],

@@ -46,7 +46,8 @@ def check(model: AnyModel, flight: Flight) -> FlightCheck:
     Nothing is fitted, and a log that a fit would refuse is described all the same.
 
     Args:
-        model: FiveHoleProbe, PitotStatic, Magnetometer or one of your own, as for the fit.
+        model: FiveHoleProbe, VaneBoom, PitotStatic, Magnetometer or one of your own, as for the
+            fit.
         flight: The log.
 
     Returns:

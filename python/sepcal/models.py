@@ -196,6 +196,30 @@ class FiveHoleProbe(Model):
         return {"k_alpha": self.k_alpha, "k_beta": self.k_beta, "lever_arm": self.lever_arm}
 
 
+class VaneBoom(Model):
+    """A boom with two vanes and a Pitot tube, against the velocity over the ground.
+
+    V = C_b^n [C(eps) V_s - w x r] + W as of a five-hole probe, but a vane's angle is that in its
+    plane: tan alpha = w / u and tan beta = v / u, a flank angle. A flight logs alpha_* and beta_*,
+    and dp_pa with the density, or else airspeed_mps.
+
+    Args:
+        lever_arm: From the velocity's reference point to the boom's head, body axes [m].
+
+    Raises:
+        Error: The lever arm has other than three numbers, or one is not finite.
+    """
+
+    name = "vane-boom"
+
+    def __init__(self, *, lever_arm: Vector = (0.0, 0.0, 0.0)) -> None:
+        self.lever_arm = _to_vector("lever_arm", lever_arm)
+        super().__init__(_core.vane_boom(self.lever_arm))
+
+    def _settings(self) -> dict[str, float | tuple[float, ...]]:
+        return {"lever_arm": self.lever_arm}
+
+
 class PitotStatic(Model):
     """A plain Pitot-static tube against the ground velocity: z = s_va |v_ground - W| + c_va.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The four problems that sepcal and the oracle both solve: model, record, truth, noise, bounds."""
+"""The problems that sepcal and the oracle both solve: model, record, truth, noise, bounds."""
 
 from dataclasses import dataclass, field
 
@@ -19,10 +19,19 @@ from oracle.simulate import (
     simulate_five_hole,
     simulate_magnetometer,
     simulate_scalar,
+    simulate_vane_boom,
 )
+from oracle.vane_boom import VaneBoom
 
 K_ALPHA, K_BETA = 4.5, 4.6  # [1/rad]; unequal, so that exchanging them shows
 LEVER_ARM = (0.35, -0.1, -0.02)  # [m]
+FLOW_BOUNDS = {
+    "lambda_alpha": (-0.5, 0.5),
+    "b_alpha": (-0.17, 0.17),
+    "lambda_beta": (-0.5, 0.5),
+    "b_beta": (-0.17, 0.17),
+    "eps_phi": (-0.26, 0.26),
+}
 
 
 @dataclass(frozen=True)
@@ -56,14 +65,11 @@ def state_case(name: str) -> Case:
     if name == "five_hole":
         probe = FiveHoleProbe(K_ALPHA, K_BETA, LEVER_ARM)
         record = simulate_five_hole(probe, seed=3, rows=500)
-        bounds = {
-            "lambda_alpha": (-0.5, 0.5),
-            "b_alpha": (-0.17, 0.17),
-            "lambda_beta": (-0.5, 0.5),
-            "b_beta": (-0.17, 0.17),
-            "eps_phi": (-0.26, 0.26),
-        }
-        return Case(name, probe, record, FIVE_HOLE_TRUTH, FIVE_HOLE_NOISE, bounds)
+        return Case(name, probe, record, FIVE_HOLE_TRUTH, FIVE_HOLE_NOISE, FLOW_BOUNDS)
+    if name == "vane_boom":
+        boom = VaneBoom(LEVER_ARM)
+        record = simulate_vane_boom(boom, seed=5, rows=500)
+        return Case(name, boom, record, FIVE_HOLE_TRUTH, FIVE_HOLE_NOISE, FLOW_BOUNDS)
     if name == "magnetometer":
         sensor = Magnetometer()
         record = simulate_magnetometer(sensor, seed=4, rows=500)
@@ -72,4 +78,4 @@ def state_case(name: str) -> Case:
     raise ValueError(f"no case '{name}'; there are: {', '.join(CASE_NAMES)}")
 
 
-CASE_NAMES = ("scalar_1", "scalar_2", "five_hole", "magnetometer")
+CASE_NAMES = ("scalar_1", "scalar_2", "five_hole", "vane_boom", "magnetometer")

@@ -55,13 +55,13 @@ def plain(
     return EffectCase(name, lambda *_: (Effect(name, ports),), sizes, held=held or {})
 
 
-def time_offset(port: str, size: float) -> EffectCase:
+def time_offset(port: str, size: float, name: str = "time_offset") -> EffectCase:
     """Readings that come late."""
     return EffectCase(
-        "time_offset",
-        lambda *_: (Effect("time_offset", {"tau": port}),),
+        name,
+        lambda *_: (Effect(name, {"tau": port}),),
         (size,),
-        delays=("time_offset.tau",),
+        delays=(f"{name}.tau",),
         reach=LONGEST,
     )
 
@@ -160,7 +160,7 @@ ON_AIRSPEED = (
     plain("density_error", {"s": "temperature_error"}, 20.0),
 )
 
-FIVE_HOLE = (
+ON_FLOW = (
     *ON_AIRSPEED,
     driven("airspeed_scale[alpha^2]", ICING, about_zero("alpha", 2), 2.0),
     driven("airspeed_scale[beta^2]", ICING, about_zero("beta", 2), 2.0),
@@ -180,13 +180,20 @@ FIVE_HOLE = (
     plain("angle_loss", {"s": "angle_loss"}, 1.5),
     time_offset("air_delay", 0.07),
     lag("pneumatic_lag", "air_lag", 0.06),
-    together(
-        plain("heading_bias", {"delta": "heading_error"}, 0.05),
-        driven("pressure_offset[throttle]", {"s": "pressure_offset"}, about_zero("throttle"), 30.0),
-        driven("wind[altitude_m]", WIND, centred("altitude_m"), 0.02, -0.03),
-        plain("upwash", {"k": "upwash"}, 0.4),
-    ),
 )  # fmt: skip
+SEVERAL = together(
+    plain("heading_bias", {"delta": "heading_error"}, 0.05),
+    driven("pressure_offset[throttle]", {"s": "pressure_offset"}, about_zero("throttle"), 30.0),
+    driven("wind[altitude_m]", WIND, centred("altitude_m"), 0.02, -0.03),
+    plain("upwash", {"k": "upwash"}, 0.4),
+)
+FIVE_HOLE = (*ON_FLOW, SEVERAL)
+VANE_BOOM = (
+    *ON_FLOW,
+    time_offset("vane_delay", 0.07, "vane_time_offset"),
+    lag("vane_lag", "vane_lag", 0.06),
+    SEVERAL,
+)
 
 PITOT_STATIC = (
     *ON_AIRSPEED,

@@ -14,6 +14,7 @@ from oracle.effects import (
     MagnetometerWithEffects,
     NormWithEffects,
     PitotStaticWithEffects,
+    VaneBoomWithEffects,
     WithEffects,
 )
 from oracle.five_hole_probe import FiveHoleProbe
@@ -29,7 +30,9 @@ from oracle.simulate import (
     draw_smooth,
     simulate_five_hole,
     simulate_magnetometer,
+    simulate_vane_boom,
 )
+from oracle.vane_boom import VaneBoom
 
 ROWS = 600
 PITOT_STATIC_TRUTH = np.array([0.96, 0.5, -3.8, 2.4, 0.0])
@@ -77,6 +80,14 @@ def hide_in_five_hole(case: EffectCase) -> Hidden:
     as_read = probe.read(inputs)
     record = _add_air_drivers(inputs) | {"alpha": as_read.alpha, "beta": as_read.beta}
     return _hide(case, record, FIVE_HOLE_TRUTH, FIVE_HOLE_NOISE, FiveHoleWithEffects, probe)
+
+
+def hide_in_vane_boom(case: EffectCase) -> Hidden:
+    """The same circle with vanes, of other draws."""
+    boom = VaneBoom(LEVER_ARM)
+    inputs = simulate_vane_boom(boom, seed=18, rows=ROWS, airspeed=case.airspeed)
+    record = _add_air_drivers(inputs | {"ps": np.full(ROWS, 95_000.0)})
+    return _hide(case, record, FIVE_HOLE_TRUTH, FIVE_HOLE_NOISE, VaneBoomWithEffects, boom)
 
 
 def hide_in_pitot_static(case: EffectCase) -> Hidden:

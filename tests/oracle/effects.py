@@ -2,7 +2,7 @@
 """Models with effects: every effect adds coefficient times phi(driver) to a port of a model.
 
 A port is a name for a place in a model's equations where there is nothing until an effect comes.
-The three models are written out with all their ports, and differentiated by a complex step.
+The models are written out with all their ports, and differentiated by a complex step.
 """
 
 from abc import abstractmethod
@@ -25,6 +25,7 @@ from oracle.five_hole_probe import (
 from oracle.magnetometer import Magnetometer, compose
 from oracle.model import Array, Model, Record
 from oracle.pitot_static import PitotStatic, find_air
+from oracle.vane_boom import VaneBoom, flank_direction
 
 Ports = Mapping[str, Any]  # arrays (N,) or numbers by port, zero where nothing drives it
 AIR_DATA = ("pt", "ps", "dpa", "dpb")
@@ -155,26 +156,7 @@ class FiveHoleWithEffects(WithEffects):
             true_speed
             * direction((1 + lambda_alpha) * alpha + b_alpha, (1 + lambda_beta) * beta + b_beta)
         )
-        arm = np.stack(
-            [
-                r + ports[f"lever_{axis}"] * np.ones_like(record["p"])
-                for r, axis in zip(self.base.lever_arm, "xyz", strict=True)
-            ]
-        )
-        rates = np.stack([record[name] for name in "pqr"])
-        in_vehicle = in_vehicle - np.cross(rates, arm, axis=0)
-        in_vehicle = _turn_about_down(
-            _turn_about_right(in_vehicle, ports["mount_pitch"]), ports["mount_yaw"]
-        )
-        attitude = {
-            "roll": record["roll"],
-            "pitch": record["pitch"],
-            "yaw": record["yaw"] - ports["heading_error"],
-        }
-        wind = xi[2:5, np.newaxis] + np.stack(
-            [ports[name] * np.ones_like(record["p"]) for name in ("wind_n", "wind_e", "wind_d")]
-        )
-        return turn(rotate_to_navigation(attitude), in_vehicle) + wind
+        return _over_ground(in_vehicle, self.base.lever_arm, record, xi, ports)
 
     def _find_air_data(self, record: Record, ports: Ports) -> dict[str, Array]:
         """Pressures and density at the time of the row, undelayed: u(t + tau), p + tau dp/dt."""
@@ -187,6 +169,50 @@ class FiveHoleWithEffects(WithEffects):
                 slope = interpolate(record["time"], record[name], 0.0, derivative=1)
                 air[name] = air[name] + ports["air_lag"] * slope
         return air
+
+
+class VaneBoomWithEffects(WithEffects):
+    """The same of a boom: v of rho v^2 / 2 and its offset, two vanes with a time of their own."""
+
+    base: VaneBoom
+
+    def compute(self, record: Record, xi: Array, ports: Ports) -> Array:
+        """Vn, ve, vd [m/s], shape (3, N)."""
+        lambda_va, b_va, *_, lambda_alpha, b_alpha, lambda_beta, b_beta, eps = xi
+        read = {name: record[name] for name in ("airspeed", "alpha", "beta", "rho")}
+        for port, names in (("air_delay", tuple(read)), ("vane_delay", ("alpha", "beta"))):
+            if port in ports:
+                shift = ports[port][0]
+                for name in names:
+                    read[name] = interpolate(record["time"], read[name], shift)
+        for port, names in (("air_lag", ("airspeed",)), ("vane_lag", ("alpha", "beta"))):
+            if port in ports:
+                for name in names:
+                    slope = interpolate(record["time"], record[name], 0.0, derivative=1)
+                    read[name] = read[name] + ports[port] * slope
+        impact = read["rho"] * read["airspeed"] ** 2 / 2
+        speed = np.sqrt(2 * (impact + ports["pressure_offset"]) / read["rho"])
+        scale = lambda_va + ports["airspeed_scale"]
+        if "temperature_error" in ports:
+            scale = scale + ports["temperature_error"] / (2 * record["temperature"])
+        if "angle_loss" in ports:
+            flow = flank_direction(record["alpha"], record["beta"])
+            scale = scale + ports["angle_loss"] * (flow[1] ** 2 + flow[2] ** 2)
+        if "compressibility" in ports:
+            own = record["rho"] * record["airspeed"] ** 2 / 2
+            mach_square = 5 * ((own / record["ps"] + 1) ** (2 / 7) - 1)
+            sound = np.sqrt(HEAT_RATIO * record["ps"] / record["rho"])
+            share = sound * np.sqrt(mach_square) / record["airspeed"] - 1
+            scale = scale + ports["compressibility"] * share
+        true_speed = (1 + scale) * speed + b_va + ports["airspeed_bias"]
+        v = record["airspeed"]
+        alpha = read["alpha"] + ports["alpha_offset"] + ports["upwash"] * record["q"] / v
+        beta = read["beta"] + ports["beta_offset"] + ports["sidewash"] * record["p"] / v
+        along = flank_direction(
+            (1 + lambda_alpha) * alpha + b_alpha, (1 + lambda_beta) * beta + b_beta
+        )
+        in_vehicle = misalign(eps) @ (true_speed * along)
+        return _over_ground(in_vehicle, self.base.lever_arm, record, xi, ports)
 
 
 class MagnetometerWithEffects(WithEffects):
@@ -278,6 +304,36 @@ class NormWithEffects(WithEffects):
                 ports["scale"] + ports[f"axis_scale_{axis}"] + np.zeros_like(record["mx"])
             )
         return self.base.predict(columns, xi)
+
+
+def _over_ground(
+    in_vehicle: Array,
+    lever_arm: tuple[float, float, float],
+    record: Record,
+    xi: Array,
+    ports: Ports,
+) -> Array:
+    """The velocity of a vehicle whose probe meets that air, in the vehicle's axes, (3, N) each."""
+    arm = np.stack(
+        [
+            r + ports[f"lever_{axis}"] * np.ones_like(record["p"])
+            for r, axis in zip(lever_arm, "xyz", strict=True)
+        ]
+    )
+    rates = np.stack([record[name] for name in "pqr"])
+    in_vehicle = in_vehicle - np.cross(rates, arm, axis=0)
+    in_vehicle = _turn_about_down(
+        _turn_about_right(in_vehicle, ports["mount_pitch"]), ports["mount_yaw"]
+    )
+    attitude = {
+        "roll": record["roll"],
+        "pitch": record["pitch"],
+        "yaw": record["yaw"] - ports["heading_error"],
+    }
+    wind = xi[2:5, np.newaxis] + np.stack(
+        [ports[name] * np.ones_like(record["p"]) for name in ("wind_n", "wind_e", "wind_d")]
+    )
+    return turn(rotate_to_navigation(attitude), in_vehicle) + wind
 
 
 def _turn_about_right(vectors: Array, angle: Any) -> Array:

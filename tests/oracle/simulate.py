@@ -11,6 +11,7 @@ from oracle.five_hole_probe import FiveHoleProbe
 from oracle.magnetometer import Magnetometer
 from oracle.model import Array, Model
 from oracle.scalar_examples import ScalarExample1, ScalarExample2
+from oracle.vane_boom import VaneBoom
 
 SCALAR_1_TRUTH = np.array([1.0, 1.0, 0.1])
 SCALAR_2_TRUTH = np.array([1.0, 1.0, 0.05, 0.1])
@@ -43,6 +44,36 @@ def simulate_five_hole(
 ) -> Columns:
     """A circle in the wind with doublets in every axis, at 10 Hz; the airspeed [m/s] varies."""
     rng = np.random.default_rng(seed)
+    motion, speed, alpha, beta = _circle(rng, rows, airspeed)
+    rho = np.full(rows, 1.15)
+    ps = np.full(rows, 95_000.0)
+    dynamic = 0.5 * rho * speed**2
+    inputs = motion | {
+        "pt": ps + dynamic,
+        "ps": ps,
+        "dpa": model.k_alpha * dynamic * alpha,
+        "dpb": model.k_beta * dynamic * beta,
+        "rho": rho,
+    }
+    return measure(rng, model, inputs, truth, FIVE_HOLE_NOISE)
+
+
+def simulate_vane_boom(
+    model: VaneBoom,
+    seed: int,
+    rows: int = 200,
+    truth: Array = FIVE_HOLE_TRUTH,
+    airspeed: float = 15.0,
+) -> Columns:
+    """The same flight with vanes."""
+    rng = np.random.default_rng(seed)
+    motion, speed, alpha, beta = _circle(rng, rows, airspeed)
+    inputs = motion | {"airspeed": speed, "alpha": alpha, "beta": beta}
+    return measure(rng, model, inputs, truth, FIVE_HOLE_NOISE)
+
+
+def _circle(rng: Generator, rows: int, airspeed: float) -> tuple[Columns, Array, Array, Array]:
+    """Attitude and rates, the airspeed and the flow angles."""
     time = 0.1 * np.arange(rows)
     roll, roll_rate = draw_smooth(rng, time, 0.5)
     pitch, pitch_rate = draw_smooth(rng, time, 0.25)
@@ -52,24 +83,15 @@ def simulate_five_hole(
     speed = airspeed + draw_smooth(rng, time, 0.2 * airspeed)[0]
     alpha = 0.08 + draw_smooth(rng, time, 0.08)[0]
     beta = draw_smooth(rng, time, 0.08)[0]
-
-    rho = np.full(rows, 1.15)
-    ps = np.full(rows, 95_000.0)
-    dynamic = 0.5 * rho * speed**2
-    inputs = {
+    motion = {
         "roll": roll,
         "pitch": pitch,
         "yaw": np.arctan2(np.sin(yaw), np.cos(yaw)),
         "p": roll_rate - yaw_rate * np.sin(pitch),
         "q": pitch_rate * np.cos(roll) + yaw_rate * np.sin(roll) * np.cos(pitch),
         "r": yaw_rate * np.cos(roll) * np.cos(pitch) - pitch_rate * np.sin(roll),
-        "pt": ps + dynamic,
-        "ps": ps,
-        "dpa": model.k_alpha * dynamic * alpha,
-        "dpb": model.k_beta * dynamic * beta,
-        "rho": rho,
     }
-    return measure(rng, model, inputs, truth, FIVE_HOLE_NOISE)
+    return motion, speed, alpha, beta
 
 
 def simulate_magnetometer(

@@ -16,6 +16,7 @@ from oracle.effect_cases import (
     FIVE_HOLE,
     MAGNETOMETER,
     PITOT_STATIC,
+    VANE_BOOM,
     EffectCase,
 )
 from oracle.effect_records import (
@@ -24,6 +25,7 @@ from oracle.effect_records import (
     hide_in_magnetometer,
     hide_in_norm,
     hide_in_pitot_static,
+    hide_in_vane_boom,
 )
 from oracle.maximum_likelihood import fit_at_fixed_noise
 from oracle.model import Array, Model, Record
@@ -31,10 +33,14 @@ from oracle.pitot_static import PitotStatic
 
 ALL = [
     *((hide_in_five_hole, case) for case in FIVE_HOLE),
+    *((hide_in_vane_boom, case) for case in VANE_BOOM),
     *((hide_in_pitot_static, case) for case in PITOT_STATIC),
     *((hide_in_magnetometer, case) for case in MAGNETOMETER),
     *((hide_in_norm, case) for case in ATTITUDE_INDEPENDENT),
 ]
+
+
+IN_TIME = ("time_offset", "vane_time_offset", "pneumatic_lag", "vane_lag", "sensor_lag")
 
 
 @pytest.fixture(params=ALL, ids=lambda pair: f"{pair[0].__name__[8:]}-{pair[1].name}")
@@ -158,7 +164,7 @@ def test_an_effect_of_no_size_leaves_the_model_as_it_is(hidden: Hidden) -> None:
     xi = hidden.truth.copy()
     shapes = tuple(f".{name}" for name in ("exponent", "tau", "t0"))
     for k, name in enumerate(model.parameters[own:]):
-        in_time = hidden.case.name in ("time_offset", "pneumatic_lag", "sensor_lag")
+        in_time = hidden.case.name in IN_TIME
         if not name.endswith(shapes):
             xi[own + k] = 0.0
         elif in_time:

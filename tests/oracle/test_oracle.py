@@ -13,6 +13,7 @@ from oracle.magnetometer import compose, compose_derivative
 from oracle.maximum_likelihood import fit_at_fixed_noise, fit_with_noise
 from oracle.model import Array
 from oracle.residual_sampling import estimate_linear
+from oracle.vane_boom import VaneBoom
 
 
 @pytest.fixture(params=CASE_NAMES)
@@ -74,6 +75,18 @@ def test_flow_angles_have_the_signs_of_the_pressures(
     record = {name: np.zeros(1) for name in names} | {"pt": np.array([0.5]), "rho": np.ones(1)}
     record[channel] = np.array([4.0 * 0.5 * np.arctan2(3, 4)])
     assert_allclose(model.predict(record, np.zeros(10))[:, 0], expected, atol=1e-15)
+
+
+def test_vanes_point_along_the_air_that_they_meet() -> None:
+    """Air of 3-4-12 over the axes: 13 m/s, the vanes at their angles in their own planes."""
+    names = ("roll", "pitch", "yaw", "p", "q", "r")
+    record = {name: np.zeros(1) for name in names} | {
+        "airspeed": np.array([13.0]),
+        "alpha": np.array([np.arctan2(4, 12)]),
+        "beta": np.array([np.arctan2(-3, 12)]),
+    }
+    expected = np.array([[12.0], [-3.0], [4.0]])
+    assert_allclose(VaneBoom().predict(record, np.zeros(10)), expected, atol=1e-13)
 
 
 def test_small_soft_iron_and_misalignment_enter_with_their_signs() -> None:

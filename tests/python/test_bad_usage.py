@@ -108,7 +108,7 @@ def test_sensitivities(pitot: Bench, options: tuple[str, ...], words: tuple[str,
         (("--lever-arm", "0.35,0,0,0"), ("--lever-arm 0.35,0,0,0", "three numbers")),
         (("--lever-arm", "0.35,0,long"), ("--lever-arm", "'long' is not a number")),
         (("--probe", "pitot-static"), ("--probe is pitot-static", "--k-alpha", "five-hole probe")),
-        (("--probe", "venturi"), ("--probe venturi", "known: five-hole, pitot-static")),
+        (("--probe", "venturi"), ("--probe venturi", "known: five-hole, vane-boom, pitot-static")),
     ],
 )
 def test_probe_options(pitot: Bench, options: tuple[str, ...], words: tuple[str, ...]):

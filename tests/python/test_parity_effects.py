@@ -21,6 +21,7 @@ from oracle.effect_cases import (
     LONGEST,
     MAGNETOMETER,
     PITOT_STATIC,
+    VANE_BOOM,
     EffectCase,
 )
 from oracle.effect_records import (
@@ -29,6 +30,7 @@ from oracle.effect_records import (
     hide_in_magnetometer,
     hide_in_norm,
     hide_in_pitot_static,
+    hide_in_vane_boom,
 )
 from oracle.maximum_likelihood import Estimate, fit_at_fixed_noise
 from oracle.model import Model
@@ -36,6 +38,7 @@ from oracle.model import Model
 NO_EFFECT = EffectCase("", lambda *_: (), ())
 HIDING = {
     "five-hole": (hide_in_five_hole, FIVE_HOLE),
+    "vane-boom": (hide_in_vane_boom, VANE_BOOM),
     "pitot-static": (hide_in_pitot_static, (NO_EFFECT, *PITOT_STATIC)),
     "magnetometer": (hide_in_magnetometer, MAGNETOMETER),
     "norm": (hide_in_norm, (NO_EFFECT, *ATTITUDE_INDEPENDENT)),
@@ -47,6 +50,8 @@ def make_model(probe: str, hidden: Hidden) -> sepcal.Model:
     """What sepcal calls the probe."""
     if probe == "five-hole":
         return sepcal.FiveHoleProbe(k_alpha=K_ALPHA, k_beta=K_BETA, lever_arm=LEVER_ARM)
+    if probe == "vane-boom":
+        return sepcal.VaneBoom(lever_arm=LEVER_ARM)
     if probe == "pitot-static":
         return sepcal.PitotStatic()
     if probe == "magnetometer":

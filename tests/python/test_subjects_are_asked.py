@@ -15,9 +15,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = (
-    "five-hole", "five_hole", "pitot-static", "pitot_static", "magnetometer", "magnetometer-norm",
-    "magnetometer_norm", "path", "longitudinal", "lateral", "six-dof", "aero", "sepcal-pitot",
-    "sepcal-mag", "sepcal-aircraft",
+    "five-hole", "five_hole", "vane-boom", "vane_boom", "pitot-static", "pitot_static",
+    "magnetometer", "magnetometer-norm", "magnetometer_norm", "path", "longitudinal", "lateral",
+    "six-dof", "aero", "sepcal-pitot", "sepcal-mag", "sepcal-aircraft",
 )  # fmt: skip
 NAME = rf"[\"'](?:{'|'.join(NAMES)})[\"'](?:sv)?"
 COMPARED = re.compile(

@@ -44,6 +44,7 @@
 #include "sepcal/effects/magnetic.hpp"
 #include "sepcal/triangular_factor.hpp"  // everything quadratic about a record
 #include "sepcal/models/five_hole_probe.hpp"
+#include "sepcal/models/vane_boom.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"

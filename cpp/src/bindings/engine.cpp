@@ -218,6 +218,9 @@ void define_engine(py::module_& module) {
   module.def("five_hole_probe", [](double k_alpha, double k_beta, const Vector& lever_arm) {
     return Model(std::shared_ptr<const Probe>(five_hole_probe(k_alpha, k_beta, lever_arm)));
   });
+  module.def("vane_boom", [](const Vector& lever_arm) {
+    return Model(std::shared_ptr<const Probe>(vane_boom_probe(lever_arm)));
+  });
   module.def("pitot_static",
              [] { return Model(std::shared_ptr<const Probe>(pitot_static_probe())); });
   module.def(

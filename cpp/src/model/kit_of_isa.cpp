@@ -11,6 +11,7 @@
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
+#include "sepcal/models/vane_boom.hpp"
 
 #define SEPCAL_TEXT_OF(name) #name
 #define SEPCAL_TEXT(name) SEPCAL_TEXT_OF(name)
@@ -28,12 +29,12 @@ constexpr auto absorbers(std::index_sequence<n...> /*columns*/) {
 }  // namespace
 
 extern const LaneKit SEPCAL_KIT;
-constinit const LaneKit SEPCAL_KIT{
-    SEPCAL_TEXT(SEPCAL_KIT),
-    Batch<Arch>::size,
-    {kernel_for<Arch, AttitudeIndependentMagnetometer>, kernel_for<Arch, FiveHoleProbe>,
-     kernel_for<Arch, Magnetometer>, kernel_for<Arch, PitotStatic>,
-     kernel_for<Arch, ScalarExample1>, kernel_for<Arch, ScalarExample2>},
-    absorbers(std::make_index_sequence<most_columns>())};
+constinit const LaneKit SEPCAL_KIT{SEPCAL_TEXT(SEPCAL_KIT),
+                                   Batch<Arch>::size,
+                                   {kernel_for<Arch, AttitudeIndependentMagnetometer>,
+                                    kernel_for<Arch, FiveHoleProbe>, kernel_for<Arch, Magnetometer>,
+                                    kernel_for<Arch, PitotStatic>, kernel_for<Arch, ScalarExample1>,
+                                    kernel_for<Arch, ScalarExample2>, kernel_for<Arch, VaneBoom>},
+                                   absorbers(std::make_index_sequence<most_columns>())};
 
 }  // namespace sepcal::lanes

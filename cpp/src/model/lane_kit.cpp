@@ -14,6 +14,7 @@
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
+#include "sepcal/models/vane_boom.hpp"
 
 namespace sepcal {
 namespace lanes {
@@ -138,6 +139,11 @@ const LaneKernel& lane_kernel<ScalarExample1>() {
 template <>
 const LaneKernel& lane_kernel<ScalarExample2>() {
   return lanes::kernel_of(ShippedModel::scalar_2);
+}
+
+template <>
+const LaneKernel& lane_kernel<VaneBoom>() {
+  return lanes::kernel_of(ShippedModel::vane_boom);
 }
 
 }  // namespace sepcal

@@ -19,9 +19,10 @@ enum class ShippedModel {
   magnetometer,
   pitot_static,
   scalar_1,
-  scalar_2
+  scalar_2,
+  vane_boom
 };
-inline constexpr std::size_t shipped_models = 6;
+inline constexpr std::size_t shipped_models = 7;
 
 /// A factor T (n x n, upper; row i, column j in the lanes from (i * n + j) * width on) and rows
 /// that join it, column c's row i in the lanes from columns[c] + i * width on, left destroyed.

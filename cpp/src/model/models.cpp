@@ -7,6 +7,7 @@
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/triad.hpp"
+#include "sepcal/models/vane_boom.hpp"
 
 namespace sepcal {
 
@@ -17,5 +18,6 @@ template class StaticModel<Magnetometer>;
 template class StaticModel<PitotStatic>;
 template class StaticModel<ScalarExample1>;
 template class StaticModel<ScalarExample2>;
+template class StaticModel<VaneBoom>;
 
 }  // namespace sepcal

@@ -20,6 +20,7 @@ from sepcal.models import (
     PitotStatic,
     ScalarExample1,
     ScalarExample2,
+    VaneBoom,
 )
 from sepcal.trajectories import FlightPath, ShortPeriod
 
@@ -77,30 +78,47 @@ def _swings(rows: int, *periods: float) -> Array:
     return total
 
 
-def _five_hole(rows: int) -> Design:
-    model = FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
-    speed = 18.0 + 3.0 * _swings(rows, 2.3, 5.1)
-    dynamic = 0.5 * DENSITY * speed**2
-    static = np.full(rows, 95_000.0)
-    inputs = {
+def _motion(rows: int) -> dict[str, Array]:
+    """Attitude and rates of a probe that reads flow angles."""
+    return {
         "roll": 0.4 * _swings(rows, 3.1, 7.7),
         "pitch": 0.1 + 0.15 * _swings(rows, 2.7, 8.3),
         "yaw": np.linspace(0.0, 3.0 * np.pi, rows),
         "p": 0.5 * _swings(rows, 3.1, 9.7),
         "q": 0.3 * _swings(rows, 2.9, 8.3),
         "r": 0.2 + 0.1 * _swings(rows, 1.9, 6.1),
+    }
+
+
+FLOW_TRUTH = {
+    "lambda_va": 0.05, "b_va": 0.6, "w_n": -3.8, "w_e": 2.4, "w_d": 0.3,
+    "lambda_alpha": 0.08, "b_alpha": -0.035, "lambda_beta": -0.06, "b_beta": 0.02,
+    "eps_phi": 0.05,
+}  # fmt: skip
+
+
+def _five_hole(rows: int) -> Design:
+    model = FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+    speed = 18.0 + 3.0 * _swings(rows, 2.3, 5.1)
+    dynamic = 0.5 * DENSITY * speed**2
+    static = np.full(rows, 95_000.0)
+    inputs = _motion(rows) | {
         "pt": static + dynamic,
         "ps": static,
         "dpa": model.k_alpha * dynamic * (0.08 + 0.06 * _swings(rows, 4.3, 11.9)),
         "dpb": model.k_beta * dynamic * 0.06 * _swings(rows, 5.3, 13.1),
         "rho": np.full(rows, DENSITY),
     }
-    truth = {
-        "lambda_va": 0.05, "b_va": 0.6, "w_n": -3.8, "w_e": 2.4, "w_d": 0.3,
-        "lambda_alpha": 0.08, "b_alpha": -0.035, "lambda_beta": -0.06, "b_beta": 0.02,
-        "eps_phi": 0.05,
-    }  # fmt: skip
-    return _design(model, inputs, truth, 0.15, 0.12, 0.2)
+    return _design(model, inputs, FLOW_TRUTH, 0.15, 0.12, 0.2)
+
+
+def _vane_boom(rows: int) -> Design:
+    inputs = _motion(rows) | {
+        "airspeed": 18.0 + 3.0 * _swings(rows, 2.3, 5.1),
+        "alpha": 0.08 + 0.06 * _swings(rows, 4.3, 11.9),
+        "beta": 0.06 * _swings(rows, 5.3, 13.1),
+    }
+    return _design(VaneBoom(lever_arm=(1.2, 0.0, -0.1)), inputs, FLOW_TRUTH, 0.15, 0.12, 0.2)
 
 
 def _pitot_static(rows: int) -> Design:
@@ -196,6 +214,7 @@ DESIGNS: dict[str, Callable[[int], Design]] = {
     "scalar-1": _scalar_1,
     "scalar-2": _scalar_2,
     "five-hole": _five_hole,
+    "vane-boom": _vane_boom,
     "pitot-static": _pitot_static,
     "magnetometer": _magnetometer,
     "magnetometer-norm": _field_strength,

@@ -9,9 +9,13 @@
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/triad.hpp"
+#include "sepcal/models/vane_boom.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {
+
+template <>
+const LaneKernel& lane_kernel<VaneBoom>();
 
 extern template class StaticModel<Accelerometer>;
 extern template class StaticModel<AttitudeIndependentMagnetometer>;
@@ -20,5 +24,6 @@ extern template class StaticModel<Magnetometer>;
 extern template class StaticModel<PitotStatic>;
 extern template class StaticModel<ScalarExample1>;
 extern template class StaticModel<ScalarExample2>;
+extern template class StaticModel<VaneBoom>;
 
 }  // namespace sepcal

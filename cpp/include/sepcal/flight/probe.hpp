@@ -176,6 +176,10 @@ std::vector<Variable> lasting_parameters(const Probe& probe);
 std::unique_ptr<const Probe> five_hole_probe(double k_alpha, double k_beta,
                                              const std::array<double, 3>& lever_arm);
 
+/// A boom with two vanes and a Pitot tube, its head there from the velocity's reference point [m,
+/// body axes]. Throws Error where the lever arm is not finite.
+std::unique_ptr<const Probe> vane_boom_probe(const std::array<double, 3>& lever_arm);
+
 /// A plain tube; w_d is held at zero.
 std::unique_ptr<const Probe> pitot_static_probe();
 

@@ -89,6 +89,7 @@ struct EffectTable {
 };
 
 EffectTable five_hole_effects();
+EffectTable vane_boom_effects();
 EffectTable pitot_static_effects();
 EffectTable magnetometer_effects();
 EffectTable attitude_independent_effects();

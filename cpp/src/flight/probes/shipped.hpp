@@ -24,6 +24,7 @@ struct Shipped {
 };
 
 extern const Shipped shipped_five_hole;
+extern const Shipped shipped_vane_boom;
 extern const Shipped shipped_pitot_static;
 extern const Shipped shipped_magnetometer;
 extern const Shipped shipped_attitude_independent;

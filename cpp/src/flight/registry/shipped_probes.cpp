@@ -27,6 +27,7 @@ using namespace probes;
 
 constexpr std::array probe_rows{
     ShippedProbe{&shipped_five_hole, five_hole_effects, five_hole_exporter},
+    ShippedProbe{&shipped_vane_boom, vane_boom_effects},
     ShippedProbe{&shipped_pitot_static, pitot_static_effects, pitot_static_exporter},
     ShippedProbe{&shipped_magnetometer, magnetometer_effects, known_field_exporter},
     ShippedProbe{&shipped_attitude_independent, attitude_independent_effects,
