@@ -21,8 +21,7 @@ class Pitot final : public Instrument {
   std::string app() const override { return "sepcal-pitot"; }
   std::string summary() const override {
     return "Calibrates a five-hole probe, a boom with vanes or a Pitot-static tube in flight "
-           "against the "
-           "velocity.";
+           "against the velocity.";
   }
   std::vector<std::string> models() const override {
     return {"five-hole", "vane-boom", "pitot-static"};

@@ -120,13 +120,13 @@ std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, d
 
 namespace probes {
 
-const Shipped shipped_attitude_independent{.name = "magnetometer-norm",
-                                           .words = "magnetometer without attitude",
-                                           .make = [](const Settings& settings) {
-                                             return attitude_independent_probe(
-                                                 one_number(settings, "field_strength"),
-                                                 one_number(settings, "field_noise"));
-                                           }};
+const Shipped shipped_attitude_independent{
+    .name = "magnetometer-norm",
+    .words = "magnetometer without attitude",
+    .make = [](const Settings& settings) {
+      const double strength = one_number(settings, "field_strength");
+      return attitude_independent_probe(strength, one_number(settings, "field_noise"));
+    }};
 
 }  // namespace probes
 
