@@ -19,7 +19,7 @@ std::function<double(std::size_t)> impact_in_the_holes(const Record& record) {
   };
 }
 
-std::string airspeed_in_the_holes(Record& record) {
+std::string_view airspeed_in_the_holes(Record& record) {
   const auto impact = impact_in_the_holes(record);
   const auto rho = record.column("rho");
   derive(record, "airspeed as read",

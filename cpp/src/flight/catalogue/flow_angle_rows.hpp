@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flight/catalogue/air_data_rows.hpp"
@@ -36,7 +37,7 @@ EffectRow late_probe_row(const std::vector<std::string>& inputs);
 EffectRow drifting_probe_row(const std::vector<std::string>& inputs);
 
 /// Gives a record the airspeed as read [m/s] where it has none, and says the column's name.
-using AirspeedColumn = std::string (*)(Record& record);
+using AirspeedColumn = std::string_view (*)(Record& record);
 
 /// The pitch rate turns the flow in alpha, the roll rate that in beta: by k times it, over the
 /// airspeed as read. `channels` are what a correction reads for it.

@@ -9,7 +9,7 @@
 namespace sepcal::catalogue {
 namespace {
 
-std::string airspeed_of_boom(Record& /*record*/) { return "airspeed"; }
+std::string_view airspeed_of_boom(Record& /*record*/) { return "airspeed"; }
 
 std::function<double(std::size_t)> impact_on_boom(const Record& record) {
   return [airspeed = record.column("airspeed"), rho = record.column("rho")](std::size_t row) {
