@@ -72,7 +72,7 @@ def test_the_loop_prints_what_readme_shows(loop):
 def test_the_loop_is_off_by_what_readme_says_and_then_right(loop):
     folder, _ = loop
     said = re.search(
-        r"on an airspeed bias `b_va` of ([\d.]+) m/s, where ([\d.]+) m/s was put in",
+        r"on an airspeed bias `b_va` of ([\d.]+) m/s. The truth is ([\d.]+) m/s",
         " ".join((ROOT / "README.md").read_text().split()),
     )
     wrong, true = map(float, said.groups())
