@@ -162,6 +162,7 @@ class FewRows {
   }
   FewRows(const FewRows&) = delete;
   FewRows& operator=(const FewRows&) = delete;
+  ~FewRows() = default;
 
   LaneRows all() const { return {inputs_.data(), width, rows_.kept}; }
 
