@@ -90,6 +90,15 @@ def _motion(rows: int) -> dict[str, Array]:
     }
 
 
+def _flow(rows: int) -> tuple[Array, Array, Array]:
+    """Airspeed [m/s] and the two flow angles [rad] as such a probe reads them."""
+    return (
+        18.0 + 3.0 * _swings(rows, 2.3, 5.1),
+        0.08 + 0.06 * _swings(rows, 4.3, 11.9),
+        0.06 * _swings(rows, 5.3, 13.1),
+    )
+
+
 FLOW_TRUTH = {
     "lambda_va": 0.05, "b_va": 0.6, "w_n": -3.8, "w_e": 2.4, "w_d": 0.3,
     "lambda_alpha": 0.08, "b_alpha": -0.035, "lambda_beta": -0.06, "b_beta": 0.02,
@@ -99,25 +108,21 @@ FLOW_TRUTH = {
 
 def _five_hole(rows: int) -> Design:
     model = FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
-    speed = 18.0 + 3.0 * _swings(rows, 2.3, 5.1)
+    speed, alpha, beta = _flow(rows)
     dynamic = 0.5 * DENSITY * speed**2
     static = np.full(rows, 95_000.0)
     inputs = _motion(rows) | {
         "pt": static + dynamic,
         "ps": static,
-        "dpa": model.k_alpha * dynamic * (0.08 + 0.06 * _swings(rows, 4.3, 11.9)),
-        "dpb": model.k_beta * dynamic * 0.06 * _swings(rows, 5.3, 13.1),
+        "dpa": model.k_alpha * dynamic * alpha,
+        "dpb": model.k_beta * dynamic * beta,
         "rho": np.full(rows, DENSITY),
     }
     return _design(model, inputs, FLOW_TRUTH, 0.15, 0.12, 0.2)
 
 
 def _vane_boom(rows: int) -> Design:
-    inputs = _motion(rows) | {
-        "airspeed": 18.0 + 3.0 * _swings(rows, 2.3, 5.1),
-        "alpha": 0.08 + 0.06 * _swings(rows, 4.3, 11.9),
-        "beta": 0.06 * _swings(rows, 5.3, 13.1),
-    }
+    inputs = _motion(rows) | dict(zip(("airspeed", "alpha", "beta"), _flow(rows), strict=True))
     return _design(VaneBoom(lever_arm=(1.2, 0.0, -0.1)), inputs, FLOW_TRUTH, 0.15, 0.12, 0.2)
 
 
