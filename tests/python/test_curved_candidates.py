@@ -152,6 +152,27 @@ def test_a_flap_that_is_off_at_one_setting(tmp_path: Path, seed: int):
     assert asked_for(found)[name]["held_out_gain"] > 0.5
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_no_port_follows_a_curve_with_more_knots_than_another(tmp_path: Path, seed: int):
+    """A scale that swings with the altitude: six knots of a zero would beat four of the scale."""
+
+    def swing(at: dict[str, Array]) -> Array:
+        speed = 20.0 + 4.0 * np.sin(2 * np.pi * np.arange(1500) / 5.0 / 83.0)
+        phase = 2 * np.pi * (at["altitude_m"] - 900.0) / 800.0
+        return 0.03 * np.sin(phase) * RHO * speed**2
+
+    found = fly_tube(tmp_path, seed, pressure=swing)
+    knots: dict[str, set[str]] = {}
+    for one in found["effects"]:
+        if one["name"].startswith("wind"):  # whose splines are the catalogue's
+            continue
+        for channel, count in re.findall(r"\[spline\((\w+),(\d)\)\]", one["name"]):
+            knots.setdefault(channel, set()).add(count)
+    assert len(knots["altitude_m"]) == 1
+    first = found["effects"][0]["name"]
+    assert re.fullmatch(r"airspeed_scale\[spline\(altitude_m,\d\)\]", first)
+
+
 def test_where_a_line_will_do_no_curve_stands_first(tmp_path: Path):
     found = fly_tube(tmp_path, 5, pressure=lambda at: 1.5 * (at["temp_degc"] - 20.0))
     assert found["effects"][0]["name"] == "pressure_offset[temp_degc]"

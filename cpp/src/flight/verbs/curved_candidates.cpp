@@ -341,32 +341,57 @@ std::string name_levels(const Levels& levels, const Bins& bins) {
   return fmt::format("{}", fmt::join(thresholds, ","));
 }
 
+/// Shares of the residual's squares that functions of one channel take at one port.
+struct AlongChannel {
+  const PortColumns* port = nullptr;
+  std::vector<BinSums> sums;
+  double line = 0.0;
+  std::array<double, knots_tried.size()> gains{};  // of splines, beyond the line
+};
+
+AlongChannel scan(const Bins& bins, const PortColumns& port, const Linearised& fit) {
+  AlongChannel along{.port = &port, .sums = sum_by_bin(bins, port.columns, fit)};
+  const double whole = fit.residual.squaredNorm();
+  along.line = explained_by(along.sums, with_constant(bins.mean)) / whole;
+  for (std::size_t i = 0; i < along.gains.size(); ++i) {
+    if (static_cast<std::size_t>(knots_tried[i]) > bins.size()) continue;
+    along.gains[i] = explained_by_spline(along.sums, bins, knots_tried[i]) / whole - along.line;
+  }
+  return along;
+}
+
+/// Which of knots_tried: the fewest with which some port has nearly all that any has. One number
+/// for all ports: where one has more knots than another, the wrong one may follow the curve closer.
+std::size_t choose_knots(const std::vector<AlongChannel>& ports) {
+  std::array<double, knots_tried.size()> best{};
+  for (const AlongChannel& port : ports) {
+    std::ranges::transform(best, port.gains, best.begin(), std::ranges::max);
+  }
+  const double enough = nearly_all * std::ranges::max(best);
+  return static_cast<std::size_t>(
+      std::ranges::find_if(best, [&](double gain) { return gain >= enough; }) - best.begin());
+}
+
 /// What tells enough along one channel at one port: a spline, levels, or both where it is close.
 std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
-                                const PortColumns& port, const Linearised& fit) {
-  const std::vector<BinSums> sums = sum_by_bin(bins, port.columns, fit);
+                                const AlongChannel& along, std::size_t chosen,
+                                const Linearised& fit) {
+  const PortColumns& port = *along.port;
   const double whole = fit.residual.squaredNorm();
   const auto readings = static_cast<double>(fit.residual.size());
   const auto components = static_cast<double>(port.columns.cols());
-  const double line = explained_by(sums, with_constant(bins.mean)) / whole;
+  const double line = along.line;
   const double left = 1.0 - line;
   const auto tells = [&](double gain, double functions) {
     return gain > left * std::max(telling, beyond_noise * components * functions / readings);
   };
   std::vector<Curved> found;
-  std::array<double, knots_tried.size()> gains{};
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    if (static_cast<std::size_t>(knots_tried[i]) > bins.size()) continue;
-    gains[i] = explained_by_spline(sums, bins, knots_tried[i]) / whole - line;
-  }
-  const double most = std::ranges::max(gains);
-  for (std::size_t i = 0; i < gains.size() && found.empty(); ++i) {
-    if (gains[i] < nearly_all * most || !tells(gains[i], knots_tried[i] - 2.0)) continue;
-    found.push_back({fmt::format("{}[spline({},{})]", port.port, channel, knots_tried[i]), channel,
-                     port.port, line + gains[i]});
+  if (tells(along.gains[chosen], knots_tried[chosen] - 2.0)) {
+    found.push_back({fmt::format("{}[spline({},{})]", port.port, channel, knots_tried[chosen]),
+                     channel, port.port, line + along.gains[chosen]});
   }
   const std::size_t most_cuts = channel == clock ? 1 : most_thresholds;
-  const Levels levels = LevelFinder(sums, bins).find(0.5 * telling * left * whole, most_cuts);
+  const Levels levels = LevelFinder(along.sums, bins).find(0.5 * telling * left * whole, most_cuts);
   const double gain = levels.explained / whole - line;
   const auto steps = static_cast<double>(levels.cuts.size());
   if (levels.cuts.empty() || !tells(gain, 2.0 * steps)) return found;
@@ -410,8 +435,11 @@ std::vector<std::string> find_curved(const DiagnosedFit& fitted,
   pool.for_each(channels.size(), [&](std::size_t i) {
     const auto bins = bin(gather_rows(fitted.record.column(channels[i]), fitted.rows));
     if (!bins) return;
-    for (const PortColumns& port : fit.ports) {
-      std::ranges::move(find_curves(channels[i], *bins, port, fit),
+    std::vector<AlongChannel> ports;
+    for (const PortColumns& port : fit.ports) ports.push_back(scan(*bins, port, fit));
+    const std::size_t knots = choose_knots(ports);
+    for (const AlongChannel& port : ports) {
+      std::ranges::move(find_curves(channels[i], *bins, port, knots, fit),
                         std::back_inserter(by_channel[i]));
     }
   });
