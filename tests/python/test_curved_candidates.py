@@ -158,7 +158,7 @@ def test_no_port_follows_a_curve_with_more_knots_than_another(tmp_path: Path, se
 
     def swing(at: dict[str, Array]) -> Array:
         speed = 20.0 + 4.0 * np.sin(2 * np.pi * np.arange(1500) / 5.0 / 83.0)
-        phase = 2 * np.pi * (at["altitude_m"] - 900.0) / 800.0
+        phase = 2 * np.pi * 1.2 * (at["altitude_m"] - 900.0) / 800.0
         return 0.03 * np.sin(phase) * RHO * speed**2
 
     found = fly_tube(tmp_path, seed, pressure=swing)
