@@ -14,6 +14,7 @@ north-east-down.
 
 from sepcal import rivals, triads
 from sepcal._core import (
+    Advice,
     Applied,
     CataloguedEffect,
     ChannelMisfit,
@@ -21,11 +22,15 @@ from sepcal._core import (
     Combination,
     Departure,
     Derived,
+    DetectionLimit,
+    DiagnosisWork,
+    EffectFinding,
     EffectSetting,
     Error,
     ExportLoss,
     FlightFit,
     HistoryEntry,
+    Injection,
     Innovation,
     LocalMinimum,
     LogNote,
@@ -34,8 +39,13 @@ from sepcal._core import (
     NoiseModel,
     Parameter,
     ParameterInterval,
+    ResidualNoise,
     ScreenResults,
     StageOne,
+    StepwiseStep,
+    Unexplained,
+    UnloggedCause,
+    WanderBound,
     Window,
     __version__,
 )
@@ -49,7 +59,7 @@ from sepcal.coefficients import AeroCoefficients, aero_coefficients
 from sepcal.comparison import Comparison
 from sepcal.concatenation import Concatenation, concatenate
 from sepcal.design_trial import DesignTrial
-from sepcal.diagnosis import Diagnosis, EffectFinding, Injection
+from sepcal.diagnosis import Diagnosis
 from sepcal.exporting import Exported, export
 from sepcal.filters import Filter, SmoothedPass
 from sepcal.fitting import fit
@@ -93,7 +103,7 @@ from sepcal.running_trials import monte_carlo, stream_trials
 from sepcal.simulated_trial import SimulatedTrial
 from sepcal.simulation import SimulatedFlight, simulate
 from sepcal.smoothing import Smoothed, smooth
-from sepcal.stepwise import Stepwise, StepwiseStep
+from sepcal.stepwise import Stepwise
 from sepcal.tracking import Track, track
 from sepcal.trajectories import FlightPath, ShortPeriod, TrajectoryModel, TrajectoryOptions
 from sepcal.triads import Triad
@@ -104,6 +114,7 @@ from sepcal.validation import Validation, validate
 __all__ = [
     "Accelerometer",
     "AddedRegressor",
+    "Advice",
     "Aero",
     "AeroCoefficients",
     "Aircraft",
@@ -122,7 +133,9 @@ __all__ = [
     "Departure",
     "Derived",
     "DesignTrial",
+    "DetectionLimit",
     "Diagnosis",
+    "DiagnosisWork",
     "DiscreteInputs",
     "EarthField",
     "Effect",
@@ -164,6 +177,7 @@ __all__ = [
     "PitotStatic",
     "Prediction",
     "RecursiveLeastSquares",
+    "ResidualNoise",
     "RigidAircraft",
     "ScalarExample1",
     "ScalarExample2",
@@ -187,8 +201,11 @@ __all__ = [
     "TrialFits",
     "TrialRecord",
     "TwoSteps",
+    "Unexplained",
+    "UnloggedCause",
     "Validation",
     "VaneBoom",
+    "WanderBound",
     "Window",
     "__version__",
     "aero_coefficients",

@@ -7,6 +7,7 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "Advice",
     "AlonsoShusterFit",
     "Applied",
     "Calibration",
@@ -19,9 +20,12 @@ __all__: list[str] = [
     "CostBound",
     "Departure",
     "Derived",
-    "Diagnosed",
+    "DetectionLimit",
+    "Diagnosis",
     "DiagnosisOptions",
+    "DiagnosisWork",
     "Disturbance",
+    "EffectFinding",
     "EffectSetting",
     "Error",
     "ExportLoss",
@@ -35,6 +39,7 @@ __all__: list[str] = [
     "FlightFit",
     "HauptKasdinFit",
     "HistoryEntry",
+    "Injection",
     "Innovation",
     "Intervals",
     "IterationOptions",
@@ -53,15 +58,20 @@ __all__: list[str] = [
     "Prediction",
     "PreparedFlight",
     "PythonFunctions",
+    "ResidualNoise",
     "SIGNIFICANT_BELOW",
     "ScreenResults",
     "SingleStageFit",
     "SmoothedRecord",
     "StageOne",
     "SteppedCalibration",
+    "StepwiseStep",
     "Track",
     "TwoStepProblem",
+    "Unexplained",
+    "UnloggedCause",
     "VISIBLE_FROM",
+    "WanderBound",
     "Window",
     "accelerometer",
     "attitude_independent_magnetometer",
@@ -1442,46 +1452,6 @@ class TwoStepProblem:
     @property
     def first(self) -> Model: ...
 
-class Flight:
-    def __getstate__(
-        self,
-    ) -> tuple[
-        str,
-        str,
-        list[tuple[str, numpy.typing.NDArray[numpy.float64], tuple[int, str] | None]],
-        list[str],
-    ]: ...
-    def __init__(self, arg0: str) -> None: ...
-    def __setstate__(
-        self,
-        arg0: tuple[
-            str,
-            str,
-            collections.abc.Sequence[
-                tuple[
-                    str,
-                    typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
-                    tuple[typing.SupportsInt | typing.SupportsIndex, str] | None,
-                ]
-            ],
-            collections.abc.Sequence[str],
-        ],
-    ) -> None: ...
-    def column(self, arg0: str) -> numpy.typing.NDArray[numpy.float64] | None: ...
-    def label(self, arg0: collections.abc.Sequence[str]) -> None: ...
-    def list_columns(self) -> str: ...
-    def view(self, header: str, values: numpy.typing.NDArray[numpy.float64]) -> None: ...
-    @property
-    def headers(self) -> list[str]: ...
-    @property
-    def maneuvers(self) -> list[str]: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def rows(self) -> int: ...
-    @property
-    def sha256(self) -> str: ...
-
 class Misfit:
     """
     One output over one stretch of a flight; NaN where there are too few rows.
@@ -1790,6 +1760,813 @@ class Comparison:
         The five worst in units of the fit's noise, worst first.
         """
 
+class EffectFinding:
+    """
+    What a flight says about one candidate; NaN where a number is undefined.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "sentence",
+        "drivers",
+        "estimate",
+        "standard_error",
+        "unit",
+        "is_fitted",
+        "shapes",
+        "p_value",
+        "log10_p",
+        "p_adjusted",
+        "p_listed",
+        "outputs",
+        "partial_f",
+        "sse",
+        "sse_reduction",
+        "pse",
+        "pse_without",
+        "predicted_drop",
+        "held_out_gain",
+        "held_out_before",
+        "held_out_after",
+        "held_out_passed",
+        "share_after_selection",
+        "held_out_interleaved",
+        "held_out_refitted",
+        "excuse",
+        "visibility",
+        "absorbed_by",
+        "status",
+        "beside",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def absorbed_by(self) -> dict[str, float]:
+        """
+        How far ignoring it shifts each parameter.
+        """
+    @property
+    def beside(self) -> str:
+        """
+        The first found: "equivalent", "fades", "counts"; "untried" of others.
+        """
+    @property
+    def beside_in_words(self) -> str:
+        """
+        What becomes of it beside the first found, as tables show it.
+        """
+    @property
+    def drivers(self) -> list[str]:
+        """
+        Channels.
+        """
+    @property
+    def estimate(self) -> dict[str, float]:
+        """
+        By coefficient, of one step from the fit, or of a fit.
+        """
+    @property
+    def excuse(self) -> float:
+        """
+        How many times too far noise would have to wander to look like it.
+        """
+    @property
+    def held_out_after(self) -> float:
+        """
+        The same with it.
+        """
+    @property
+    def held_out_before(self) -> float:
+        """
+        RMSE of rows left out.
+        """
+    @property
+    def held_out_gain(self) -> float:
+        """
+        The same on rows left out.
+        """
+    @property
+    def held_out_interleaved(self) -> bool:
+        """
+        Blocks in between, not whole segments, were left out.
+        """
+    @property
+    def held_out_passed(self) -> bool:
+        """
+        The mean gain of a block exceeds its standard error.
+        """
+    @property
+    def held_out_refitted(self) -> bool:
+        """
+        By real fits with it and without, not by one step.
+        """
+    @property
+    def in_words(self) -> str:
+        """
+        The status as tables show it; "not held out" and "too small" are sure, yet refused.
+        """
+    @property
+    def is_fitted(self) -> bool:
+        """
+        The estimates are those of a fit with it.
+        """
+    @property
+    def log10_p(self) -> float:
+        """
+        Of the same, which may be too small for a float.
+        """
+    @property
+    def name(self) -> str:
+        """
+        What add() takes.
+        """
+    @property
+    def outputs(self) -> list[str]:
+        """
+        That it can reach: all where they share parameters.
+        """
+    @property
+    def p_adjusted(self) -> float:
+        """
+        After Holm: for the verdict.
+        """
+    @property
+    def p_listed(self) -> float:
+        """
+        After Benjamini & Hochberg: for the list.
+        """
+    @property
+    def p_value(self) -> float:
+        """
+        For itself, corrected for its scan.
+        """
+    @property
+    def partial_f(self) -> float:
+        """
+        As stepwise regression has it, residuals taken for white; sums of squares over `outputs`, each in units of its RMSE in the fit.
+        """
+    @property
+    def predicted_drop(self) -> float:
+        """
+        Of the RMSE over these outputs, 1 - after / before.
+        """
+    @property
+    def pse(self) -> float:
+        """
+        Predicted square error, SSE/N + 2 s2max p/N.
+        """
+    @property
+    def pse_without(self) -> float:
+        """
+        The same without it.
+        """
+    @property
+    def sentence(self) -> str:
+        """
+        In plain words.
+        """
+    @property
+    def shapes(self) -> dict[str, float]:
+        """
+        Of a scan: {"bias_step.t0": 41.2}.
+        """
+    @property
+    def share_after_selection(self) -> float:
+        """
+        Of the estimates, allowing for the effect's choice.
+        """
+    @property
+    def sse(self) -> float:
+        """
+        Without it.
+        """
+    @property
+    def sse_reduction(self) -> float:
+        """
+        By orthogonal functions: what it takes of sse.
+        """
+    @property
+    def standard_error(self) -> dict[str, float]:
+        """
+        In the noise model with the effect, or the fit's.
+        """
+    @property
+    def status(self) -> str:
+        """
+        "found", "slow_change", "undecided", "not_seen", "cannot_be_seen".
+        """
+    @property
+    def unit(self) -> dict[str, str]:
+        """
+        By coefficient.
+        """
+    @property
+    def visibility(self) -> float:
+        """
+        Below 0.05 the flight can't show at least a part of it.
+        """
+
+class Advice:
+    """
+    What to add, once a fit with it has shown that it can be.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("effect", "withheld")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def effect(self) -> str | None:
+        """
+        None where nothing was found or all was withheld.
+        """
+    @property
+    def withheld(self) -> list[str]:
+        """
+        Why not what was found before it: a sentence each.
+        """
+
+class ResidualNoise:
+    """
+    An output's residual; NaN where a number is undefined.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "output",
+        "unit",
+        "rmse",
+        "lag_one",
+        "ljung_box_p",
+        "noise",
+        "floor",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def floor(self) -> float:
+        """
+        What no model of the past predicts better.
+        """
+    @property
+    def lag_one(self) -> float:
+        """
+        Correlation of neighbouring rows.
+        """
+    @property
+    def ljung_box_p(self) -> float:
+        """
+        Of 20 lags: small where the residual is not white.
+        """
+    @property
+    def noise(self) -> NoiseModel:
+        """
+        Its NoiseModel.
+        """
+    @property
+    def output(self) -> str: ...
+    @property
+    def rmse(self) -> float: ...
+    @property
+    def unit(self) -> str: ...
+
+class Unexplained:
+    """
+    Offsets of every output and every port by window of the flight, at once.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("p_value", "p_adjusted", "significant", "where", "windows")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def p_adjusted(self) -> float:
+        """
+        After Holm, with the unlogged causes.
+        """
+    @property
+    def p_value(self) -> float: ...
+    @property
+    def significant(self) -> bool: ...
+    @property
+    def where(self) -> str:
+        """
+        The port or output whose offsets explain most.
+        """
+    @property
+    def windows(self) -> list[tuple[str, float]]:
+        """
+        [(window, how far off it is [sigma]), ...].
+        """
+
+class UnloggedCause:
+    """
+    A cause that no logged channel follows. Rows and cycles a row where there is no time.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "kind",
+        "sentence",
+        "outputs",
+        "p_value",
+        "p_adjusted",
+        "all_along",
+        "first_s",
+        "last_s",
+        "frequency_hz",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def all_along(self) -> bool:
+        """
+        Strongest over the whole flight.
+        """
+    @property
+    def first_s(self) -> float:
+        """
+        Of the rows where it is strongest [s].
+        """
+    @property
+    def frequency_hz(self) -> float:
+        """
+        NaN where none stands out.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        "common_cause" or "spectral_line".
+        """
+    @property
+    def last_s(self) -> float: ...
+    @property
+    def outputs(self) -> list[str]:
+        """
+        That show it.
+        """
+    @property
+    def p_adjusted(self) -> float:
+        """
+        After Holm: for the verdict.
+        """
+    @property
+    def p_value(self) -> float:
+        """
+        For itself.
+        """
+    @property
+    def sentence(self) -> str:
+        """
+        In plain words.
+        """
+
+class DetectionLimit:
+    """
+    The smallest slow effect that the flight would have shown: a straight line in time that is found nine times in ten.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("port", "size", "unit")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def port(self) -> str: ...
+    @property
+    def size(self) -> float:
+        """
+        Change over the whole flight.
+        """
+    @property
+    def unit(self) -> str: ...
+
+class WanderBound:
+    """
+    How far an error was let wander.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("name", "size", "unit")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def name(self) -> str:
+        """
+        As `wanders` of diagnose() takes it.
+        """
+    @property
+    def size(self) -> float:
+        """
+        Standard deviation of each component, at most.
+        """
+    @property
+    def unit(self) -> str: ...
+
+class DiagnosisWork:
+    """
+    What a diagnosis did.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "screened",
+        "tested",
+        "calibrated",
+        "drawn",
+        "refitted",
+        "tried_on_some_rows",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def calibrated(self) -> int:
+        """
+        By draws of the noise.
+        """
+    @property
+    def drawn(self) -> int:
+        """
+        These draws, of each noise.
+        """
+    @property
+    def refitted(self) -> int:
+        """
+        Models with a candidate that were fitted.
+        """
+    @property
+    def screened(self) -> int:
+        """
+        Candidates.
+        """
+    @property
+    def tested(self) -> int:
+        """
+        By likelihood ratios, their noise estimated anew.
+        """
+    @property
+    def tried_on_some_rows(self) -> int:
+        """
+        The same to 400 rows, where a fit is far off.
+        """
+
+class Injection:
+    """
+    An effect that was put into the measurements, to see whether it would have been found.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("effect", "sizes", "found", "rank", "p_adjusted", "estimate")
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def effect(self) -> str: ...
+    @property
+    def estimate(self) -> dict[str, float]:
+        """
+        By coefficient.
+        """
+    @property
+    def found(self) -> bool:
+        """
+        Itself, or it would do as well as what was.
+        """
+    @property
+    def p_adjusted(self) -> float: ...
+    @property
+    def rank(self) -> int | None:
+        """
+        From 1, the first where it would do as well; None: the flight can't show it.
+        """
+    @property
+    def sizes(self) -> list[float]:
+        """
+        Of its coefficients.
+        """
+
+class StepwiseStep:
+    """
+    An effect that was added: what it promised and what came of it; NaN where undefined.
+
+    The RMSE is over `outputs`, of the rows that are fitted, in their unit; where these have different ones in units of each one's own before. partial_f, pse and pse_without are those of EffectFinding.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "effect",
+        "outputs",
+        "p_adjusted",
+        "partial_f",
+        "pse",
+        "pse_without",
+        "held_out_gain",
+        "predicted_drop",
+        "found_drop",
+        "rmse_before",
+        "rmse_after",
+        "as_good",
+        "dropped",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def as_good(self) -> list[str]:
+        """
+        What would have done as well in its place.
+        """
+    @property
+    def dropped(self) -> list[str]:
+        """
+        What was added before and counts no more beside it.
+        """
+    @property
+    def effect(self) -> str: ...
+    @property
+    def found_drop(self) -> float: ...
+    @property
+    def held_out_gain(self) -> float:
+        """
+        Promised, on rows left out.
+        """
+    @property
+    def outputs(self) -> list[str]:
+        """
+        That it can reach.
+        """
+    @property
+    def p_adjusted(self) -> float: ...
+    @property
+    def partial_f(self) -> float: ...
+    @property
+    def predicted_drop(self) -> float:
+        """
+        Promised, of the RMSE: 1 - after / before.
+        """
+    @property
+    def pse(self) -> float: ...
+    @property
+    def pse_without(self) -> float: ...
+    @property
+    def rmse_after(self) -> float: ...
+    @property
+    def rmse_before(self) -> float: ...
+
+class Diagnosis:
+    """
+    A verdict and the ranked candidates; NaN where a number is undefined.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "model",
+        "verdict",
+        "sentence",
+        "advice",
+        "pairs",
+        "rmse",
+        "noise_floor",
+        "correlation_time",
+        "wanders",
+        "work",
+        "left_undone",
+        "pse",
+        "effects",
+        "residual",
+        "where",
+        "unexplained",
+        "unlogged",
+        "limits",
+        "missing_channels",
+        "injected",
+        "status",
+        "message",
+        "notes",
+        "json",
+        "text",
+        "explained",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Diagnosis) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def advice(self) -> Advice: ...
+    @property
+    def correlation_time(self) -> float:
+        """
+        Over which the residual goes together [s].
+        """
+    @property
+    def effects(self) -> list[EffectFinding]:
+        """
+        Best first.
+        """
+    @property
+    def explained(self) -> str:
+        """
+        The same with the whole message, as by the apps' --explain.
+        """
+    @property
+    def injected(self) -> Injection | None:
+        """
+        None where nothing was put in.
+        """
+    @property
+    def json(self) -> str: ...
+    @property
+    def left_undone(self) -> list[str]:
+        """
+        Steps for which there was no time.
+        """
+    @property
+    def limits(self) -> dict[str, DetectionLimit]:
+        """
+        By port: the smallest slow effect that would have shown.
+        """
+    @property
+    def message(self) -> str: ...
+    @property
+    def missing_channels(self) -> list[str]:
+        """
+        Not logged, and could explain what is left.
+        """
+    @property
+    def model(self) -> str: ...
+    @property
+    def noise_floor(self) -> float:
+        """
+        Innovations alone.
+        """
+    @property
+    def notes(self) -> list[str]:
+        """
+        One line each, for people.
+        """
+    @property
+    def pairs(self) -> list[str]:
+        """
+        Two causes at once that explain it as well as anything, best first.
+        """
+    @property
+    def pse(self) -> str:
+        """
+        What bounds the noise of the effects' pse: "sidpac" var(z)/2, "classic" var(z).
+        """
+    @property
+    def residual(self) -> dict[str, ResidualNoise]:
+        """
+        By output.
+        """
+    @property
+    def rmse(self) -> float:
+        """
+        Over all outputs, in their unit.
+        """
+    @property
+    def sentence(self) -> str:
+        """
+        The verdict in one sentence.
+        """
+    @property
+    def status(self) -> str:
+        """
+        Of the calibration, repeated.
+        """
+    @property
+    def text(self) -> str:
+        """
+        What print() shows: the app's page.
+        """
+    @property
+    def unexplained(self) -> Unexplained:
+        """
+        Offsets that no candidate explains.
+        """
+    @property
+    def unlogged(self) -> list[UnloggedCause]:
+        """
+        Causes that follow no channel, the surest first.
+        """
+    @property
+    def verdict(self) -> str:
+        """
+        "adequate", "effect_missing", "slow_change", "unexplained".
+        """
+    @property
+    def wanders(self) -> dict[str, WanderBound]:
+        """
+        By name: how far errors were let wander.
+        """
+    @property
+    def where(self) -> list[Misfit]:
+        """
+        By segment and output, as compare() has it.
+        """
+    @property
+    def work(self) -> DiagnosisWork:
+        """
+        What was done.
+        """
+
+class Flight:
+    def __getstate__(
+        self,
+    ) -> tuple[
+        str,
+        str,
+        list[tuple[str, numpy.typing.NDArray[numpy.float64], tuple[int, str] | None]],
+        list[str],
+    ]: ...
+    def __init__(self, arg0: str) -> None: ...
+    def __setstate__(
+        self,
+        arg0: tuple[
+            str,
+            str,
+            collections.abc.Sequence[
+                tuple[
+                    str,
+                    typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+                    tuple[typing.SupportsInt | typing.SupportsIndex, str] | None,
+                ]
+            ],
+            collections.abc.Sequence[str],
+        ],
+    ) -> None: ...
+    def column(self, arg0: str) -> numpy.typing.NDArray[numpy.float64] | None: ...
+    def label(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    def list_columns(self) -> str: ...
+    def view(self, header: str, values: numpy.typing.NDArray[numpy.float64]) -> None: ...
+    @property
+    def headers(self) -> list[str]: ...
+    @property
+    def maneuvers(self) -> list[str]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def sha256(self) -> str: ...
+
 class Derived:
     """
     A quantity that follows from the estimates, in `unit`; errors by the delta method.
@@ -1842,7 +2619,7 @@ class Derived:
 
 class HistoryEntry:
     """
-    One step of a chain of added effects; None where a number is undefined. Errors are RMSE over all outputs together, on the rows of the new fit.
+    One step of a chain of added effects; NaN where a number is undefined. Errors are RMSE over all outputs together, on the rows of the new fit.
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -1868,18 +2645,18 @@ class HistoryEntry:
         Several that were added together: "E1+E2".
         """
     @property
-    def held_out_after(self) -> float | None: ...
+    def held_out_after(self) -> float: ...
     @property
-    def held_out_before(self) -> float | None: ...
+    def held_out_before(self) -> float: ...
     @property
-    def predicted_drop(self) -> float | None:
+    def predicted_drop(self) -> float:
         """
         Of the RMSE, 1 - after / before.
         """
     @property
-    def rmse_after(self) -> float | None: ...
+    def rmse_after(self) -> float: ...
     @property
-    def rmse_before(self) -> float | None: ...
+    def rmse_before(self) -> float: ...
 
 class Applied:
     """
@@ -1913,16 +2690,6 @@ class Applied:
         """
         Nothing to calibrate: total below static pressure, or dropped.
         """
-
-class Diagnosed:
-    @property
-    def explained(self) -> str: ...
-    @property
-    def json(self) -> str: ...
-    @property
-    def notes(self) -> list[str]: ...
-    @property
-    def text(self) -> str: ...
 
 class FlightDeparture:
     """
@@ -1986,7 +2753,7 @@ class Calibration:
         arg2: tuple[str, collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]]
         | None,
         arg3: DiagnosisOptions,
-    ) -> Diagnosed: ...
+    ) -> Diagnosis: ...
     def diagnose_stepwise(
         self,
         arg0: Flight,
@@ -2035,13 +2802,19 @@ class Calibration:
 
 class SteppedCalibration:
     @property
+    def end(self) -> str: ...
+    @property
     def explained(self) -> str: ...
     @property
     def fitted(self) -> Calibration: ...
     @property
     def json(self) -> str: ...
     @property
-    def last(self) -> Diagnosed: ...
+    def last(self) -> Diagnosis: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def steps(self) -> list[StepwiseStep]: ...
     @property
     def text(self) -> str: ...
 

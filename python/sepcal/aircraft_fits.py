@@ -186,7 +186,7 @@ class AircraftFit(Fit):
             within=within,
         )
         if not auto:
-            return Diagnosis._of(self.core.diagnose(chosen._core, asked))
+            return Diagnosis(self.core.diagnose(chosen._core, asked))
         stepped = self.core.diagnose_stepwise(chosen._core, most, asked)
         return Stepwise(AircraftFit(stepped.fitted, chosen), stepped)
 

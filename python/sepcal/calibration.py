@@ -215,8 +215,7 @@ class Calibration(Fit):
         own = to_core_effects(effects)
         if not auto:
             injected = hidden[0] if hidden else None
-            found = self.core.diagnose(chosen._core, own, injected, asked)
-            return Diagnosis._of(found)
+            return Diagnosis(self.core.diagnose(chosen._core, own, injected, asked))
         stepped = self.core.diagnose_stepwise(chosen._core, own, most, asked)
         return Stepwise(self._next(stepped.fitted, chosen, effects), stepped)
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from sepcal import _core
+from sepcal._core import StepwiseStep
 from sepcal.diagnosis import Diagnosis
 from sepcal.options import to_names
 from sepcal.pages import Page, Row
@@ -18,30 +18,6 @@ if TYPE_CHECKING:
     from sepcal import _states
 
 Fitted = TypeVar("Fitted")
-
-
-@dataclass(frozen=True)
-class StepwiseStep:
-    """An effect that was added: what it promised and what came of it; None where undefined.
-
-    The RMSE is over `outputs`, of the rows that are fitted, in their unit; where these have
-    different ones in units of each one's own before. partial_f, pse and pse_without are those of
-    EffectFinding.
-    """
-
-    effect: str
-    outputs: list[str]  # that it can reach
-    p_adjusted: float
-    partial_f: float | None
-    pse: float | None
-    pse_without: float | None
-    held_out_gain: float | None  # promised, on rows left out
-    predicted_drop: float | None  # promised, of the RMSE: 1 - after / before
-    found_drop: float | None
-    rmse_before: float
-    rmse_after: float
-    as_good: list[str]  # what would have done as well in its place
-    dropped: list[str]  # what was added before and counts no more beside it
 
 
 class Stepwise(Page, Generic[Fitted]):
@@ -59,16 +35,11 @@ class Stepwise(Page, Generic[Fitted]):
     _shown = ("name", "p_adjusted", "partial_f", "predicted_drop", "found_drop", "rmse_after")
 
     def __init__(self, fitted: Fitted, core: _core.SteppedCalibration | _states.SteppedFit) -> None:
-        told = json.loads(core.json)["stepwise"]
-        names = {field.name for field in fields(StepwiseStep)}
         self.fitted = fitted
-        self.steps = [
-            StepwiseStep(**{name: value for name, value in step.items() if name in names})
-            for step in told["steps"]
-        ]
-        self.end: str = told["end"]
-        self.reason: str = told["reason"]
-        self.diagnosis = Diagnosis._of(core.last)
+        self.steps: list[StepwiseStep] = core.steps
+        self.end: str = core.end
+        self.reason: str = core.reason
+        self.diagnosis = Diagnosis(core.last)
         self.json: str = core.json
         self.explained: str = core.explained
         self._text: str = core.text
@@ -99,7 +70,7 @@ class Stepwise(Page, Generic[Fitted]):
         return f"{', '.join(self.effects) or 'nothing'} added; {self.reason}"
 
     def _rows(self) -> list[Row]:
-        return [{"name": step.effect, **asdict(step)} for step in self.steps]
+        return [{"name": step.effect, **step._asdict()} for step in self.steps]
 
 
 def diagnosis_options(

@@ -166,10 +166,10 @@ def follow_advice(study: Study, base: sepcal.Calibration, told: Told) -> list[st
         found = current.diagnose()
         told.diagnoses += 1
         print_diagnosis(found)
-        told.withheld += len(found.advice["withheld"])
+        told.withheld += len(found.advice.withheld)
         if step == 0:
             first = [effect.name for effect in found.found[:1]]
-        effect = found.advice["effect"]
+        effect = found.advice.effect
         if effect is None:
             break
         current = add(study, current, effect, told, advised=True)
@@ -181,7 +181,7 @@ def print_diagnosis(found: sepcal.Diagnosis) -> None:
     print(f"diagnose: {found.verdict}: {found.sentence}")
     print(f"    {len(found.found)} found of {len(found.effects)}, floor {found.noise_floor:.3g}")
     for effect in found.effects[:6]:
-        shares = [100 * (share or 0.0) for share in (effect.predicted_drop, effect.held_out_gain)]
+        shares = [100 * share for share in (effect.predicted_drop, effect.held_out_gain)]
         print(
             f"    {effect.name}: {effect.in_words}, log10 p {effect.log10_p:.1f}, predicted "
             f"{shares[0]:.1f} %, held out {shares[1]:.1f} %, visibility {effect.visibility:.2f}"
@@ -189,9 +189,9 @@ def print_diagnosis(found: sepcal.Diagnosis) -> None:
     for group in ("equivalent", "fades", "counts"):
         print(f"    {group}: {', '.join(found.list_beside(group)) or '-'}")
     print(f"    pairs: {', '.join(found.pairs) or '-'}")
-    for reason in found.advice["withheld"]:
+    for reason in found.advice.withheld:
         print(f"    not to be added: {reason}")
-    print(f"    next: {found.advice['effect'] or '-'}")
+    print(f"    next: {found.advice.effect or '-'}")
 
 
 def add(

@@ -90,7 +90,7 @@ def tell(hidden: Hidden, sizes: list[float], seed: int) -> Told:
     own = next((e for e in diagnosis.effects if e.name == hidden.name), None)
     if own is None:
         return Told(False, False, np.nan, np.nan)
-    advised = diagnosis.advice["effect"] is not None
+    advised = diagnosis.advice.effect is not None
     first = advised and (own is diagnosis.effects[0] or own.beside == "equivalent")
     step = fit.add(hidden.name).history[-1]
     return Told(first, own.status == "found", step.predicted_drop, step.drop)

@@ -34,6 +34,8 @@ def results() -> dict[str, object]:
         "derived": added.derived["lambda_va"],
         "history": added.history[-1],
         "comparison": added.compare(),
+        "diagnosis": base.diagnose(inject={"wind[altitude_m]": 0.05}),
+        "step": base.diagnose(auto=True).steps[0],
         "check": sepcal.check(TUBE, flight),
         "intervals": base.intervals(names=["c_va"]),
         "prediction": base.predict(),
@@ -66,13 +68,48 @@ def test_pickles_and_copies_are_the_same(results):
             assert same(twin, result), name
 
 
+def test_a_diagnosis_has_the_numbers_of_its_json(results):
+    """Undefined ones are NaN here and null there; what has a name is keyed by it."""
+
+    def plain(one: object) -> object:
+        if hasattr(one, "_asdict"):
+            return plain(one._asdict())
+        if isinstance(one, dict):
+            return {key: plain(value) for key, value in one.items()}
+        if isinstance(one, list | tuple):
+            return [plain(value) for value in one]
+        if isinstance(one, np.ndarray):
+            return one.tolist()
+        return None if isinstance(one, float) and not np.isfinite(one) else one
+
+    diagnosis = results["diagnosis"]
+    written, read = diagnosis.to_dict(), plain(diagnosis)
+    assert written["effects"] == read["effects"]
+    for name in ("advice", "work", "injected", "pairs", "verdict", "sentence"):
+        assert written[name] == read[name], name
+    for name in ("rmse", "noise_floor", "correlation_time", "left_undone", "missing_channels"):
+        assert written[name] == read[name], name
+    assert [{**one, "unit": "m/s"} for one in written["where"]] == read["where"]
+    assert written["unexplained"].keys() == read["unexplained"].keys()
+    for port, limit in written["limits"].items():
+        assert read["limits"][port] == {"port": port, **limit}
+    for output, told in written["residual"].items():
+        known = read["residual"][output]
+        assert {key: known[key] for key in told if key != "noise"} == {
+            key: told[key] for key in told if key != "noise"
+        }
+        assert told["noise"].items() <= known["noise"].items()
+
+
 def test_what_differs_is_told_apart(results):
     """So that `same` above can fail."""
     assert not same(results["comparison"], results["fit"])
     assert not same(results["one"], results["many"].flights["a"])
 
 
-@pytest.mark.parametrize("name", ["fit", "parameter", "history", "comparison", "many", "effect"])
+@pytest.mark.parametrize(
+    "name", ["fit", "parameter", "history", "comparison", "diagnosis", "step", "many", "effect"]
+)
 def test_nobody_changes_a_result(results, name):
     result = results[name]
     for field in result._fields:

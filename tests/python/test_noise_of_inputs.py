@@ -72,7 +72,7 @@ def test_pairs_that_no_fit_bears_out_are_forgotten() -> None:
     _, flown = fly_key(("nothing", "five-hole", "inputs noisier than outputs", 0.0, 600, 57))
     found = sepcal.fit(MODELS["five-hole"], sepcal.Flight(flown.columns)).diagnose()
     assert str(found.verdict) == "adequate"
-    assert not found.advice.get("effect")
+    assert not found.advice.effect
     assert not any("+" in effect.name for effect in found.effects)
 
 

@@ -170,12 +170,10 @@ def test_the_loop(name: str, tmp_path: Path) -> None:
     found = base.diagnose()
     assert found.verdict == "effect_missing", found.text
     assert found.effects[0].name in subject.names, found.text
-    advised = found.advice["effect"]
+    advised = found.advice.effect
     assert advised is not None, found.text
     better = base.add(advised)
     entry = better.history[-1]
-    assert entry.rmse_before is not None
-    assert entry.rmse_after is not None
     achieved = 1.0 - entry.rmse_after / entry.rmse_before
     assert achieved == pytest.approx(found[advised].predicted_drop, abs=0.05)
     compared = better.compare()

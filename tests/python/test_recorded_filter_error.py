@@ -108,7 +108,7 @@ def test_halves_agree_and_predict_each_other(flight: sepcal.Flight) -> None:
 
 def test_the_units_lateness_is_named_and_keeps_its_promise(whole: sepcal.Fit) -> None:
     diagnosis = whole.diagnose(only=["imu_late", "vane_position", "gyro_bias[time]"])
-    assert diagnosis.advice["effect"] == "imu_late"
+    assert diagnosis.advice.effect == "imu_late"
     added = whole.add("imu_late")
     (step,) = added.history
     assert step.drop == pytest.approx(step.predicted_drop, abs=0.01)

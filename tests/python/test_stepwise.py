@@ -73,7 +73,7 @@ def test_steps_are_those_of_diagnose_and_add(
     now = bent
     for step in stepped.steps:
         told = now.diagnose()
-        assert told.advice["effect"] == step.effect
+        assert told.advice.effect == step.effect
         finding = told[step.effect]
         assert finding.predicted_drop == step.predicted_drop
         assert finding.partial_f == step.partial_f

@@ -48,7 +48,7 @@ def test_a_drifting_gyro_is_named(path: sepcal.AircraftFit) -> None:
     diagnosis = path.diagnose()
     assert diagnosis.verdict == "effect_missing"
     assert diagnosis.effects[0].name == "gyro_bias[imu_temp_degc]"
-    assert diagnosis.advice["effect"] == "gyro_bias[imu_temp_degc]"
+    assert diagnosis.advice.effect == "gyro_bias[imu_temp_degc]"
     assert diagnosis.effects[0].sentence == "the gyros' bias changes with imu_temp_degc"
 
 
@@ -86,7 +86,7 @@ def test_a_missing_regressor_is_named_and_keeps_its_promise() -> None:
     fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), fly({"Cm[alpha^2]": CURVE}))
     diagnosis = fit.diagnose()
     assert diagnosis.effects[0].name == "Cm[alpha^2]"
-    assert diagnosis.advice["effect"] == "Cm[alpha^2]"
+    assert diagnosis.advice.effect == "Cm[alpha^2]"
     added = fit.add("Cm[alpha^2]")
     assert added["Cm_alpha^2"].value == pytest.approx(CURVE, rel=0.1)
     assert added.history[-1].predicted_drop == pytest.approx(added.history[-1].drop, abs=PROMISE)
@@ -97,7 +97,7 @@ def test_a_spline_of_the_state_bends_as_the_moment_does(tmp_path: Path) -> None:
     flight = fly({"Cm[alpha^2]": CURVE / 2})
     fit = sepcal.fit(sepcal.RigidAircraft(LIGHT, "longitudinal"), flight)
     diagnosis = fit.diagnose(only=["Cm[spline(alpha,5)]"])
-    assert diagnosis.advice["effect"] == "Cm[spline(alpha,5)]"
+    assert diagnosis.advice.effect == "Cm[spline(alpha,5)]"
     added = fit.add("Cm[spline(alpha,5)]")
     step = added.history[-1]
     assert step.predicted_drop == pytest.approx(step.drop, abs=PROMISE)
@@ -154,7 +154,7 @@ def test_a_group_of_sensors_that_is_late_is_named(model: str, hidden: str, effec
     late = 0.06  # s
     kind = sepcal.FlightPath() if model == "path" else sepcal.RigidAircraft(LIGHT, model)
     fit = sepcal.fit(kind, fly({hidden: late}, seed=1))
-    assert fit.diagnose().advice["effect"] == effect
+    assert fit.diagnose().advice.effect == effect
     added = fit.add(effect)
     assert_allclose(added[f"{effect}.tau"].value, late, atol=0.15 * late)
     assert added.history[-1].predicted_drop == pytest.approx(added.history[-1].drop, abs=PROMISE)
@@ -235,7 +235,7 @@ def test_what_a_path_has_bent_to_is_found_from_its_own_fit() -> None:
     fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown))
     diagnosis = fit.diagnose()
     assert diagnosis.verdict == "effect_missing"
-    assert diagnosis.advice["effect"] == "gyro_bias[time]"
+    assert diagnosis.advice.effect == "gyro_bias[time]"
     added = fit.add("gyro_bias[time]")
     assert added.history[-1].drop > 0.6
     assert diagnosis.effects[0].predicted_drop == pytest.approx(added.history[-1].drop, abs=0.02)
@@ -249,7 +249,7 @@ def test_a_curve_that_holds_the_line_does_not_speak_against_it() -> None:
     flown = kinematic_flight.fly(1, rate=20.0, gyro_drift=[4e-5, -8e-5, 6e-5])
     diagnosis = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown)).diagnose()
     # The unit warms steadily: its temperature would do as well.
-    assert diagnosis.advice["effect"] in ("gyro_bias[time]", "gyro_bias[imu_temp_degc]")
+    assert diagnosis.advice.effect in ("gyro_bias[time]", "gyro_bias[imu_temp_degc]")
 
 
 def test_filter_error_promises_what_it_keeps() -> None:
@@ -257,7 +257,7 @@ def test_filter_error_promises_what_it_keeps() -> None:
     flown = kinematic_flight.fly(6, duration=30.0, rate=25.0, late=0.08)
     fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown), method="filter-error")
     diagnosis = fit.diagnose()
-    assert diagnosis.advice["effect"] == "imu_late"
+    assert diagnosis.advice.effect == "imu_late"
     added = fit.add("imu_late")
     assert added.history[-1].drop > 0.05
     assert diagnosis.effects[0].predicted_drop == pytest.approx(added.history[-1].drop, abs=0.01)

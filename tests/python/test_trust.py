@@ -32,7 +32,7 @@ def test_a_large_step_is_found_at_its_row(size: float):
     assert (diagnosis.verdict, first.name) == ("effect_missing", "bias_step")
     step = np.median(np.diff(flight["time_s"]))
     assert abs(first.shapes["bias_step.t0"] - flight.truth["bias_step.t0"]) < 1.5 * step
-    assert diagnosis.advice["effect"] == "bias_step"
+    assert diagnosis.advice.effect == "bias_step"
 
 
 def test_a_receivers_drift_is_no_effect():
@@ -77,9 +77,9 @@ def test_nothing_stands_in_for_an_effect_that_no_fit_takes():
     hide = {case.effect: case.sizes(size_for(case, 100.0))}
     flight, _ = fly(case.probe, "white", 52000, case.rows, hide)
     diagnosis = calibrate(case.probe, flight).diagnose()
-    assert diagnosis.advice["effect"] is None
+    assert diagnosis.advice.effect is None
     assert "wind[alpha]" not in diagnosis.explanations
-    assert "alpha_offset[beta]: fitted, it runs into the bounds" in diagnosis.advice["withheld"][0]
+    assert "alpha_offset[beta]: fitted, it runs into the bounds" in diagnosis.advice.withheld[0]
 
 
 @pytest.mark.parametrize("label", ["pitot-static: wind[altitude_m]", "pitot-static: wind[time]"])
@@ -92,7 +92,7 @@ def test_an_effect_that_one_step_misses_is_found_by_its_fit(label: str):
     first = diagnosis.effects[0]
     assert diagnosis.verdict == "effect_missing"
     assert case.effect in diagnosis.explanations  # the temperature goes with the height
-    assert diagnosis.advice["effect"] == first.name
+    assert diagnosis.advice.effect == first.name
     assert first.held_out_gain > 0.5
     if first.name == case.effect:
         for estimate, size in zip(first.estimate.values(), sizes, strict=False):
@@ -116,8 +116,8 @@ def test_nothing_is_advised_that_would_do_harm_were_another_the_cause():
     flight, _ = fly(case.probe, "white", 31000, case.rows, hide)
     diagnosis = calibrate(case.probe, flight).diagnose()
     assert {"alpha_offset[beta]", "beta_offset[alpha]"} <= set(diagnosis.explanations)
-    assert diagnosis.advice["effect"] != "beta_offset[alpha]"
-    assert any("would do as well, and has" in why for why in diagnosis.advice["withheld"])
+    assert diagnosis.advice.effect != "beta_offset[alpha]"
+    assert any("would do as well, and has" in why for why in diagnosis.advice.withheld)
 
 
 def test_what_would_do_as_well_instead_does_so():
@@ -417,7 +417,7 @@ def test_a_zero_in_levels_is_told_from_curves_that_go_with_it():
     case = "five-hole: step of pressure_offset along temp_degc"
     diagnosis = _fit_key("hidden", case, "white", 0.6, 900, 731004).diagnose()
     assert diagnosis.effects[0].name.startswith("pressure_offset[levels(temp_degc,")
-    assert diagnosis.advice["effect"] == diagnosis.effects[0].name
+    assert diagnosis.advice.effect == diagnosis.effects[0].name
 
 
 @pytest.mark.parametrize(
@@ -448,9 +448,9 @@ def test_a_curve_that_keeps_its_promise_is_not_withheld_for_a_coefficient():
     """Its columns are alike and exchange coefficients; the line of its channel stands before it."""
     case = "magnetometer: ramp of bias along throttle"
     diagnosis = _fit_key("hidden", case, "Gauss-Markov 60 s", 0.3, 1800, 760007).diagnose()
-    assert diagnosis.advice["effect"] == "bias[throttle]"
+    assert diagnosis.advice.effect == "bias[throttle]"
     assert "bias[spline(throttle,9)]" in diagnosis.explanations
-    assert not any("spline(throttle" in said for said in diagnosis.advice["withheld"])
+    assert not any("spline(throttle" in said for said in diagnosis.advice.withheld)
 
 
 def _row(part: str, case: str, noise: str, size: float, **said: object) -> dict[str, object]:

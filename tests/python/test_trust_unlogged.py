@@ -25,15 +25,15 @@ def test_what_swings_without_a_channel_is_told(cause: str, probe: str, kind: str
     flight, hidden = fly_with(cause, probe, "white", 3, rows=300, sigmas=30.0)
     diagnosis = calibrate(probe, flight).diagnose()
     assert diagnosis.verdict == "unexplained"
-    assert kind in [told["kind"] for told in diagnosis.unlogged]
+    assert kind in [told.kind for told in diagnosis.unlogged]
     assert names(diagnosis, hidden)
     for told in diagnosis.unlogged:
-        assert told["p_adjusted"] < 0.01
-        assert told["sentence"] in str(diagnosis)
-        assert "not logged: in " in told["sentence"]
-        assert " Hz" in told["sentence"]
+        assert told.p_adjusted < 0.01
+        assert told.sentence in str(diagnosis)
+        assert "not logged: in " in told.sentence
+        assert " Hz" in told.sentence
     offsets = diagnosis.unexplained
-    assert offsets["significant"] or "no channel of the log follows it" in diagnosis.sentence
+    assert offsets.significant or "no channel of the log follows it" in diagnosis.sentence
 
 
 @pytest.mark.parametrize("noise", ["bursty", "resonance 0.3 Hz"])
@@ -51,6 +51,6 @@ def test_noise_of_what_enters_the_model_is_no_cause(probe: str):
     for seed in range(871000, 871010):
         _, flown = fly_key(("nothing", probe, "noise of inputs", 0.0, 0, seed))
         diagnosis = fit(MODELS[probe], Flight(flown.columns)).diagnose()
-        assert [told["kind"] for told in diagnosis.unlogged] == []
+        assert [told.kind for told in diagnosis.unlogged] == []
         verdicts.append(diagnosis.verdict)
     assert verdicts.count("adequate") >= 8

@@ -135,8 +135,8 @@ Stepped<AircraftFit> diagnose_stepwise_on(const AircraftFit& fitted, const Fligh
       fitted, flight, stepwise_options(most, with_threads_of(fitted, asked)));
   std::string json = to_json(result);
   Page page = page_of(result);
-  return {std::move(result.fitted), diagnosed(result.course.last), std::move(json),
-          std::move(page)};
+  return stepped(std::move(result.fitted), std::move(result.course), std::move(json),
+                 std::move(page));
 }
 
 /// {column: values}, the coefficients' names, the window [s], notes.

@@ -71,6 +71,8 @@ const std::shared_ptr<const Probe>& subject_of(const Model& model);
 const Probe& probe_of(const Model& model);
 
 // Of sepcal._core.
+void define_comparison(py::module_& module);
+void define_diagnosis(py::module_& module);
 void define_certificate(py::module_& module);
 void define_check(py::module_& module);
 void define_options(py::module_& module);

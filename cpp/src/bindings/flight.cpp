@@ -5,7 +5,6 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "arrays.hpp"
@@ -154,8 +153,8 @@ Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const 
   find_departures(result.calibration, flight);
   std::string json = to_json(result);
   Page page = page_of(result);
-  return {std::move(result.calibration), diagnosed(result.course.last), std::move(json),
-          std::move(page)};
+  return stepped(std::move(result.calibration), std::move(result.course), std::move(json),
+                 std::move(page));
 }
 
 /// {header: values}
@@ -238,112 +237,9 @@ Calibration add_to(const Calibration& base, const Flight& flight, const std::str
   return next;
 }
 
-/// A number that is None where it is undefined.
-template <double HistoryEntry::* member>
-std::optional<double> defined(const HistoryEntry& entry) {
-  return std::isnan(entry.*member) ? std::nullopt : std::optional(entry.*member);
-}
-
-template <double HistoryEntry::* member>
-void define(HistoryEntry& entry, std::optional<double> value) {
-  entry.*member = value.value_or(not_a_number);
-}
-
 Calibration with_own_effects(Calibration calibration, const std::vector<PythonEffect>& own) {
   give_own_effects(calibration, own);
   return calibration;
-}
-
-void define_comparison(py::module_& module) {
-  BoundStruct<Misfit>(module, "Misfit",
-                      "One output over one stretch of a flight; NaN where there are too few rows.")
-      .field("segment", &Misfit::segment,
-             R"(Maneuver, or "120.0:180.5" [s] where there are no labels; empty: the whole.)")
-      .field("output", &Misfit::output, "")
-      .field("unit", &Misfit::unit, "")
-      .field("rows", &Misfit::rows, "")
-      .field("rmse", &Misfit::rmse, "")
-      .field("mean", &Misfit::mean, "Of z - model: what a constant offset would explain.")
-      .field("lag_one", &Misfit::lag_one,
-             "Correlation of neighbouring residuals, never across a segment's edge.")
-      .comparable()
-      .finish()
-      .def_property_readonly("verdict", &verdict_on_noise,
-                             "In words whether the residuals are noise.")
-      .def_property_readonly("is_white", &is_white,
-                             "Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen "
-                             "times in twenty.");
-
-  BoundStruct<ChannelMisfit>(module, "ChannelMisfit",
-                             "One output's residual against one channel of the flight.")
-      .field("driver", &ChannelMisfit::driver,
-             R"("altitude_m"; "time", "alpha", "roll" for what the probe knows by itself.)")
-      .field("output", &ChannelMisfit::output, "")
-      .field("share_line", &ChannelMisfit::share_line,
-             "Of the residual's variance that a straight line would explain.")
-      .field("share_smooth", &ChannelMisfit::share_smooth,
-             "The same of a natural spline of six even knots.")
-      .field("slope", &ChannelMisfit::slope, "Of the line.")
-      .field("slope_error", &ChannelMisfit::slope_error,
-             "Its standard error in the residual's own noise, rather too large.")
-      .field("unit", &ChannelMisfit::unit, "Of the slope.")
-      .comparable()
-      .finish();
-
-  BoundStruct<Window>(module, "Window", "A stretch of about a twentieth of the rows.")
-      .field("first_s", &Window::first_s, "Time of its first row.")
-      .field("last_s", &Window::last_s, "And of its last.")
-      .field("rows", &Window::rows, "")
-      .field("rmse", &Window::rmse, "By output.")
-      .field("mean", &Window::mean, "By output, of z - model.")
-      .comparable()
-      .finish();
-
-  BoundStruct<Disturbance>(module, "Disturbance",
-                           "By filter error: a noise that drives a state, in its own standard "
-                           "deviations along the flight.\n\nStandard normal where the model is "
-                           "right: beyond 3 in 0.27 % of the rows.")
-      .field("noise", &Disturbance::noise, "Its size, of the fit.")
-      .field("share_beyond", &Disturbance::share_beyond,
-             "Of the rows beyond 3; NaN of a noise that is none or at its floor.")
-      .field("rows", &Disturbance::rows, "Of the longest stretch beyond 3; 0: there is none.")
-      .field("first_s", &Disturbance::first_s, "")
-      .field("last_s", &Disturbance::last_s, "")
-      .field("peak", &Disturbance::peak, "The largest in it, with its sign.")
-      .comparable()
-      .finish();
-
-  BoundStruct<Compared>(module, "Comparison", "A calibration against a flight.")
-      .field("model", &Compared::comparison, &Comparison::model, "")
-      .field(
-          "file", [](const Compared& self) { return self.comparison.flight.file; },
-          [](Compared& self, std::string file) { self.comparison.flight.file = std::move(file); },
-          "Of the flight.")
-      .field("status", &Compared::comparison, &Comparison::status, "Of the calibration, repeated.")
-      .field("message", &Compared::comparison, &Comparison::message, "")
-      .field("overall", &Compared::comparison, &Comparison::overall, "One an output.")
-      .field("where", &Compared::comparison, &Comparison::where,
-             "Maneuver by maneuver, outputs within, in the flight's order.")
-      .field("channels", &Compared::comparison, &Comparison::channels,
-             "By share_smooth, largest first.")
-      .field("windows", &Compared::comparison, &Comparison::windows,
-             "The five worst in units of the fit's noise, worst first.")
-      .array("time", &Compared::comparison, &Comparison::time, "(N,) [s], of every row used.")
-      .field("residuals", &Compared::comparison, &Comparison::residuals,
-             "(N, n_z), z - model; of a fit by filter error innovations.")
-      .field("modelled", &Compared::comparison, &Comparison::modelled, "(N, n_z), z less them.")
-      .field("by", &Compared::comparison, &Comparison::by, R"("output-error" or "filter-error".)")
-      .field("sigma", &Compared::comparison, &Comparison::sigma,
-             "By filter error and output: rms of innovations in the filter's standard deviations.")
-      .field("disturbances", &Compared::comparison, &Comparison::disturbances,
-             "By filter error, one a process noise.")
-      .field("notes", &Compared::comparison, &Comparison::notes, "One line each, for people.")
-      .field("json", &Compared::json, "")
-      .field("text", &Compared::page, &Page::text, "What print() shows: the app's page.")
-      .field("explained", &Compared::page, &Page::explained,
-             "The same with the whole message, as by the apps' --explain.")
-      .copied()
-      .finish();
 }
 
 void define_calibration_parts(py::module_& module) {
@@ -366,17 +262,14 @@ void define_calibration_parts(py::module_& module) {
 
   using Entry = HistoryEntry;
   BoundStruct<Entry>(module, "HistoryEntry",
-                     "One step of a chain of added effects; None where a number is undefined. "
+                     "One step of a chain of added effects; NaN where a number is undefined. "
                      "Errors are RMSE over all outputs together, on the rows of the new fit.")
       .field("effect", &Entry::effect, R"(Several that were added together: "E1+E2".)")
-      .field("rmse_before", &defined<&Entry::rmse_before>, &define<&Entry::rmse_before>, "")
-      .field("rmse_after", &defined<&Entry::rmse_after>, &define<&Entry::rmse_after>, "")
-      .field("held_out_before", &defined<&Entry::held_out_before>, &define<&Entry::held_out_before>,
-             "")
-      .field("held_out_after", &defined<&Entry::held_out_after>, &define<&Entry::held_out_after>,
-             "")
-      .field("predicted_drop", &defined<&Entry::predicted_drop>, &define<&Entry::predicted_drop>,
-             "Of the RMSE, 1 - after / before.")
+      .field("rmse_before", &Entry::rmse_before, "")
+      .field("rmse_after", &Entry::rmse_after, "")
+      .field("held_out_before", &Entry::held_out_before, "")
+      .field("held_out_after", &Entry::held_out_after, "")
+      .field("predicted_drop", &Entry::predicted_drop, "Of the RMSE, 1 - after / before.")
       .comparable()
       .finish();
 
@@ -388,13 +281,6 @@ void define_calibration_parts(py::module_& module) {
       .field("notes", &Applied::notes, "One line each, for people.")
       .comparable()
       .finish();
-
-  py::class_<Diagnosed>(module, "Diagnosed")
-      .def_readonly("notes", &Diagnosed::notes)
-      .def_readonly("json", &Diagnosed::json)
-      .def_property_readonly("text", [](const Diagnosed& self) { return self.page.text; })
-      .def_property_readonly("explained",
-                             [](const Diagnosed& self) { return self.page.explained; });
 }
 
 /// As its app's page shows it.
@@ -496,7 +382,6 @@ const Probe& probe_of(const Model& model) {
 
 void define_flight(py::module_& module) {
   define_flights(module);
-  define_comparison(module);
   define_calibration_parts(module);
   define_calibration(module);
   module.def("calibrate", &calibrate_probe);

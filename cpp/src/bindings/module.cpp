@@ -60,6 +60,8 @@ PYBIND11_MODULE(_core, module) {
   define_intervals(module);
   define_certificate(module);
   define_rivals(module);
+  define_comparison(module);
+  define_diagnosis(module);
   define_flight(module);
   define_check(module);
   define_export(module);

@@ -10,10 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "sepcal/diagnosis.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/check.hpp"
+#include "sepcal/flight/stepwise.hpp"
 #include "sepcal/profile.hpp"
 
 namespace pybind11::detail {
@@ -61,8 +63,8 @@ struct PairCaster {
   }
 };
 
-/// {thing.name: thing}
-template <class Thing>
+/// {thing.*key: thing}
+template <class Thing, std::string Thing::* key = &Thing::name>
 struct NamedCaster {
   using List = std::vector<Thing>;
   PYBIND11_TYPE_CASTER(List, const_name("dict[str, ") + make_caster<Thing>::name + const_name("]"));
@@ -78,7 +80,7 @@ struct NamedCaster {
 
   static handle cast(const List& things, return_value_policy /*policy*/, handle /*parent*/) {
     dict by_name;
-    for (const Thing& thing : things) by_name[str(thing.name)] = pybind11::cast(thing);
+    for (const Thing& thing : things) by_name[str(thing.*key)] = pybind11::cast(thing);
     return by_name.release();
   }
 };
@@ -107,6 +109,37 @@ struct type_caster<sepcal::IntervalEnd>
                  sepcal::IntervalEnd::open, sepcal::IntervalEnd::failed> {};
 
 template <>
+struct type_caster<sepcal::Verdict>
+    : WordCaster<sepcal::Verdict, sepcal::Verdict::adequate, sepcal::Verdict::effect_missing,
+                 sepcal::Verdict::slow_change, sepcal::Verdict::unexplained> {};
+
+template <>
+struct type_caster<sepcal::FindingStatus>
+    : WordCaster<sepcal::FindingStatus, sepcal::FindingStatus::found,
+                 sepcal::FindingStatus::slow_change, sepcal::FindingStatus::undecided,
+                 sepcal::FindingStatus::not_seen, sepcal::FindingStatus::cannot_be_seen> {};
+
+template <>
+struct type_caster<sepcal::Beside>
+    : WordCaster<sepcal::Beside, sepcal::Beside::untried, sepcal::Beside::equivalent,
+                 sepcal::Beside::fades, sepcal::Beside::counts> {};
+
+template <>
+struct type_caster<sepcal::PseBound>
+    : WordCaster<sepcal::PseBound, sepcal::PseBound::sidpac, sepcal::PseBound::classic> {};
+
+template <>
+struct type_caster<sepcal::StepwiseEnd>
+    : WordCaster<sepcal::StepwiseEnd, sepcal::StepwiseEnd::nothing_found,
+                 sepcal::StepwiseEnd::most_added, sepcal::StepwiseEnd::withheld,
+                 sepcal::StepwiseEnd::fit_failed> {};
+
+template <>
+struct type_caster<sepcal::UnloggedKind>
+    : WordCaster<sepcal::UnloggedKind, sepcal::UnloggedKind::common_cause,
+                 sepcal::UnloggedKind::spectral_line> {};
+
+template <>
 struct type_caster<std::vector<sepcal::OutputValue>>
     : PairCaster<sepcal::OutputValue, double, &sepcal::OutputValue::name,
                  &sepcal::OutputValue::value> {};
@@ -124,6 +157,14 @@ template <>
 struct type_caster<std::vector<sepcal::FlightFit>> : NamedCaster<sepcal::FlightFit> {};
 template <>
 struct type_caster<std::vector<sepcal::ProfileInterval>> : NamedCaster<sepcal::ProfileInterval> {};
+template <>
+struct type_caster<std::vector<sepcal::WanderBound>> : NamedCaster<sepcal::WanderBound> {};
+template <>
+struct type_caster<std::vector<sepcal::ResidualNoise>>
+    : NamedCaster<sepcal::ResidualNoise, &sepcal::ResidualNoise::output> {};
+template <>
+struct type_caster<std::vector<sepcal::DetectionLimit>>
+    : NamedCaster<sepcal::DetectionLimit, &sepcal::DetectionLimit::port> {};
 
 template <>
 struct type_caster<sepcal::Interval> {

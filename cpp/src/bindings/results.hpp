@@ -83,15 +83,33 @@ inline Compared compared(Comparison comparison) {
   return {std::move(comparison), std::move(json), std::move(page)};
 }
 
+/// sepcal.EffectFinding
+struct FoundEffect {
+  EffectFinding finding;
+  std::string sentence;
+};
+
 /// sepcal.Diagnosis
 struct Diagnosed {
-  std::vector<std::string> notes;
+  FlightDiagnosis diagnosis;
+  std::vector<FoundEffect> effects;  // the diagnosis' own have gone there
+  std::string sentence;
   std::string json;
   Page page;
 };
 
-inline Diagnosed diagnosed(const FlightDiagnosis& diagnosis) {
-  return {diagnosis.notes, to_json(diagnosis), page_of(diagnosis)};
+inline Diagnosed diagnosed(FlightDiagnosis diagnosis) {
+  Diagnosed result{.diagnosis = {},
+                   .effects = {},
+                   .sentence = verdict_sentence(diagnosis),
+                   .json = to_json(diagnosis),
+                   .page = page_of(diagnosis)};
+  std::vector<EffectFinding> findings = std::move(diagnosis.diagnosis.effects);
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    result.effects.push_back({std::move(findings[i]), std::move(diagnosis.sentences[i])});
+  }
+  result.diagnosis = std::move(diagnosis);
+  return result;
 }
 
 /// With as many threads as the fit had.
@@ -107,20 +125,33 @@ inline StepwiseOptions stepwise_options(std::optional<std::size_t> most,
   return options;
 }
 
-/// sepcal.Stepwise
+/// What sepcal.Stepwise is made from.
 template <class Fitted>
 struct Stepped {
   Fitted fitted;
+  std::vector<StepwiseStep> steps;
+  StepwiseEnd end;
+  std::string reason;
   Diagnosed last;
   std::string json;
   Page page;
 };
 
 template <class Fitted>
+Stepped<Fitted> stepped(Fitted fitted, Stepwise course, std::string json, Page page) {
+  return {std::move(fitted),        std::move(course.steps),           course.end,
+          std::move(course.reason), diagnosed(std::move(course.last)), std::move(json),
+          std::move(page)};
+}
+
+template <class Fitted>
 void define_stepped(py::module_& module, const char* name) {
   using Self = Stepped<Fitted>;
   py::class_<Self>(module, name)
       .def_readonly("fitted", &Self::fitted)
+      .def_readonly("steps", &Self::steps)
+      .def_readonly("end", &Self::end)
+      .def_readonly("reason", &Self::reason)
       .def_readonly("last", &Self::last)
       .def_readonly("json", &Self::json)
       .def_property_readonly("text", [](const Self& self) { return self.page.text; })

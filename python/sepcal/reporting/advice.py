@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import LiteralString
 
 from sepcal import _core
-from sepcal.diagnosis import EffectFinding
+from sepcal._core import EffectFinding
 from sepcal.markup import Html, html, join
 from sepcal.printing import in_shell
 from sepcal.reporting import tables
@@ -162,9 +162,7 @@ def list_limits(material: Material) -> Html:
     rows = [
         [
             html("<b>{}</b>", port),
-            with_unit(limit["size"], limit["unit"])
-            if limit["size"] is not None and limit["size"] < BEYOND_ALL
-            else "none",
+            with_unit(limit.size, limit.unit) if limit.size < BEYOND_ALL else "none",
         ]
         for port, limit in limits.items()
     ]
@@ -200,7 +198,7 @@ def list_flights(material: Material) -> Html:
 
 def advised(material: Material) -> EffectFinding | None:
     """The effect to add next, which a fit bears out."""
-    name = material.diagnosis.advice["effect"]
+    name = material.diagnosis.advice.effect
     return material.diagnosis[name] if name else None
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,18 +19,18 @@ LEGIBLE = 26  # columns of a heat strip whose numbers can be read
 
 @dataclass(frozen=True)
 class Step:
-    """One bar of the waterfall; None where a number is unknown."""
+    """One bar of the waterfall; NaN where a number is unknown."""
 
     label: str
-    fitted: float | None  # RMSE over all outputs; of a step not taken, what is predicted
-    held_out: float | None
-    promised: float | None  # what was predicted before the effect was added
+    fitted: float  # RMSE over all outputs; of a step not taken, what is predicted
+    held_out: float
+    promised: float  # what was predicted before the effect was added
     is_next: bool = False  # not taken yet
 
 
-def draw_waterfall(steps: list[Step], floor: float | None, unit: str) -> Figure:
+def draw_waterfall(steps: list[Step], floor: float, unit: str) -> Figure:
     """A bar a step, fitted and held out, the promise as a tick, the noise floor as a line."""
-    held = any(step.held_out is not None for step in steps)
+    held = any(not math.isnan(step.held_out) for step in steps)
     data: list[dict[str, Any]] = [
         _bars("fitted", steps, [step.fitted for step in steps], -0.19 * held, words.MODELLED),
         _bars("held out", steps, [step.held_out for step in steps], 0.19, words.HELD_OUT),
@@ -38,19 +39,19 @@ def draw_waterfall(steps: list[Step], floor: float | None, unit: str) -> Figure:
     shapes: list[dict[str, Any]] = []
     notes: list[dict[str, Any]] = []
     for i, step in enumerate(steps):
-        if step.promised is not None:
+        if not math.isnan(step.promised):
             at = i - 0.19 * held
             shapes.append({
                 "type": "line", "x0": at - 0.23, "x1": at + 0.23, "y0": step.promised,
                 "y1": step.promised, "line": {"color": words.INK, "width": 3},
             })  # fmt: skip
-    if any(step.promised is not None for step in steps):
+    if any(not math.isnan(step.promised) for step in steps):
         line = {"color": words.INK, "width": 3}
         data.append({
             "type": "scatter", "mode": "lines", "name": "promised", "x": [None], "y": [None],
             "line": line,
         })  # fmt: skip
-    if floor is not None:
+    if not math.isnan(floor):
         shapes.append({
             "type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": floor, "y1": floor,
             "line": {"color": words.ALARM, "width": 1.5, "dash": "dash"},
@@ -80,12 +81,12 @@ def draw_waterfall(steps: list[Step], floor: float | None, unit: str) -> Figure:
 
 
 def _bars(
-    name: str, steps: list[Step], values: list[float | None], shift: float, colour: str
+    name: str, steps: list[Step], values: list[float], shift: float, colour: str
 ) -> dict[str, Any]:
     """One bar a step, pale where the step has not been taken."""
     return {
         "type": "bar", "name": name, "x": [i + shift for i in range(len(steps))], "y": values,
-        "width": 0.34, "text": ["" if at is None else words.number(at) for at in values],
+        "width": 0.34, "text": ["" if math.isnan(at) else words.number(at) for at in values],
         "textposition": "auto", "insidetextanchor": "middle", "textangle": 0, "cliponaxis": False,
         "hoverinfo": "y+name", "textfont": {"size": 13}, "insidetextfont": {
             "color": [words.INK if step.is_next else "#fff" for step in steps], "size": 13,

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from sepcal import _core
+from sepcal._core import EffectFinding
 from sepcal.calibration import Calibration
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
-from sepcal.diagnosis import Diagnosis, EffectFinding
+from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
 
 TRIED = 3  # of the ranked candidates: so many are added, to show what each explains
@@ -101,10 +102,7 @@ class Material:
     def floors(self) -> list[float]:
         """Of the outputs on this flight: innovations alone; its RMSE where that isn't known."""
         told = self.diagnosis.residual
-        return [
-            told.get(misfit.output, {}).get("floor") or misfit.rmse
-            for misfit in self.comparison.overall
-        ]
+        return [told[misfit.output].floor or misfit.rmse for misfit in self.comparison.overall]
 
     @property
     def is_fitted_flight(self) -> bool:

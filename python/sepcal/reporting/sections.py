@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from sepcal import _core
@@ -92,22 +94,18 @@ def show_waterfall(material: Material) -> Section:
     steps: list[Step] = []
     if history:
         before = history[0]
-        steps.append(Step("first model", before.rmse_before, before.held_out_before, None))
+        steps.append(Step("first model", before.rmse_before, before.held_out_before, math.nan))
     for entry in history:
-        promised = (
-            entry.rmse_before * (1 - entry.predicted_drop)
-            if entry.rmse_before is not None and entry.predicted_drop is not None
-            else None
-        )
+        promised = entry.rmse_before * (1 - entry.predicted_drop)
         steps.append(Step(f"+ {entry.effect}", entry.rmse_after, entry.held_out_after, promised))
     if not steps:
-        held = found[0].held_out_before if found else None
-        steps.append(Step("this model", material.diagnosis.rmse, held, None))
+        held = found[0].held_out_before if found else math.nan
+        steps.append(Step("this model", material.diagnosis.rmse, held, math.nan))
     best = advice.advised(material)
-    if best and material.diagnosis.rmse is not None and best.predicted_drop is not None:
-        promised = material.diagnosis.rmse * (1 - best.predicted_drop)
+    promised = material.diagnosis.rmse * (1 - best.predicted_drop) if best else math.nan
+    if best and not math.isnan(promised):
         label = f"next: + {best.name}"
-        steps.append(Step(label, promised, best.held_out_after, None, is_next=True))
+        steps.append(Step(label, promised, best.held_out_after, math.nan, is_next=True))
     blocks: list[str | Figure | Grid] = [
         draw_waterfall(steps, material.diagnosis.noise_floor, unit)
     ]
@@ -182,13 +180,13 @@ def show_candidates(material: Material) -> Section:
         extra.append(tables.list_absorbed(effect, material.last))
     unexplained = material.diagnosis.unexplained
     for cause in material.diagnosis.unlogged:
-        extra.append(html("<p>In this flight, {}.</p>", cause["sentence"]))
-    if unexplained["significant"]:
+        extra.append(html("<p>In this flight, {}.</p>", cause.sentence))
+    if unexplained.significant:
         extra.append(
             html(
                 "<p>Structure that no candidate explains, p = {}: {}.</p>",
-                words.probability(unexplained["p_adjusted"]),
-                unexplained["where"],
+                words.probability(unexplained.p_adjusted),
+                unexplained.where,
             )
         )
     return Section("Ranked candidates", lead, extra)

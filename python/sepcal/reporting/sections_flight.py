@@ -62,17 +62,16 @@ def _coverage_table(material: Material) -> Html:
     """By output: the share of rows inside the 95 % band, and the whiteness of the rest."""
     rows = []
     for i, misfit in enumerate(material.comparison.overall):
-        told = material.diagnosis.residual.get(misfit.output, {})
-        model = told.get("noise") or {}
+        told = material.diagnosis.residual[misfit.output]
         rows.append([
             html("<b>{}</b>", misfit.output),
             words.percent(material.figures.within_95[i]),
             words.with_unit(misfit.rmse, misfit.unit),
-            words.with_unit(told.get("floor"), misfit.unit),
+            words.with_unit(told.floor, misfit.unit),
             words.number(misfit.lag_one, 2),
-            words.probability(told.get("ljung_box_p")),
-            words.number(model.get("d"), 2),
-            f"{len(model.get('phi', []))}",
+            words.probability(told.ljung_box_p),
+            words.number(told.noise.d, 2),
+            f"{len(told.noise.phi)}",
         ])  # fmt: skip
     head = [("output", False), ("rows in the 95 % band", True), ("RMSE", True),
             ("noise floor", True), ("lag-one correlation", True), ("p, Ljung-Box", True),

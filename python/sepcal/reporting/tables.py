@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from sepcal import _core
-from sepcal._core import Combination, HistoryEntry, Parameter
+from sepcal._core import Combination, EffectFinding, HistoryEntry, Parameter
 from sepcal.calibration import Calibration
 from sepcal.comparison import Comparison
-from sepcal.diagnosis import EffectFinding
 from sepcal.markup import Html, html, join
 from sepcal.reporting.words import (
     MEANINGS,
@@ -74,7 +74,7 @@ def list_history(history: Sequence[HistoryEntry], unit: str) -> Html:
             percent(entry.predicted_drop),
             percent(achieved),
             html("{} → {}", number(entry.held_out_before), number(entry.held_out_after))
-            if entry.held_out_after is not None
+            if not math.isnan(entry.held_out_after)
             else "–",
             percent(drop(entry.held_out_before, entry.held_out_after)),
         ])  # fmt: skip
@@ -83,9 +83,9 @@ def list_history(history: Sequence[HistoryEntry], unit: str) -> Html:
     return table(head, rows)
 
 
-def drop(before: float | None, after: float | None) -> float | None:
+def drop(before: float, after: float) -> float:
     """1 - after / before."""
-    return None if before is None or after is None or before == 0 else 1 - after / before
+    return math.nan if before == 0 else 1 - after / before
 
 
 def list_calibrations(
@@ -160,7 +160,7 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> Html:
             seen,
             number(effect.partial_f, 3),
             percent(drop(effect.pse_without, effect.pse)),
-            percent(_share(effect.sse_reduction, effect.sse)),
+            percent(math.nan if effect.sse == 0 else effect.sse_reduction / effect.sse),
             effect.beside_in_words,
             html('<span class="{}">{}</span>', kind, effect.in_words),
         ])  # fmt: skip
@@ -172,10 +172,6 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> Html:
         (html("SSE<br>falls by"), True), (html("beside<br>the first"), False), ("status", False),
     ]  # fmt: skip
     return table(head, rows)
-
-
-def _share(part: float | None, whole: float | None) -> float | None:
-    return None if part is None or whole is None or whole == 0 else part / whole
 
 
 def _coefficients(effect: EffectFinding, most: int = 4) -> Html:

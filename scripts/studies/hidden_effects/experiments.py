@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -129,7 +130,7 @@ def _after_add(base: Calibration, diagnosis: Diagnosis, truth: dict[str, float])
     best = diagnosis.effects[0]
     better = base.add(best.name)
     entry = better.history[-1]
-    if not entry.rmse_before or entry.rmse_after is None:
+    if not entry.rmse_before > 0 or math.isnan(entry.rmse_after):
         return {}
     shared = [name for name, parameter in base.parameters.items() if not parameter.fixed]
     error = {

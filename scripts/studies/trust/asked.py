@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -62,9 +63,9 @@ def ask(probe: str, flown: Flown) -> tuple[Row, Calibration | None]:
         "ranked": [_short(effect) for effect in kept],
         "set": list_indistinguishable(answer, diagnosis),
         "pairs": diagnosis.pairs,
-        "advice": diagnosis.advice["effect"],
-        "withheld": diagnosis.advice["withheld"],
-        "unlogged": [cause["kind"] for cause in diagnosis.unlogged],
+        "advice": diagnosis.advice.effect,
+        "withheld": diagnosis.advice.withheld,
+        "unlogged": [cause.kind for cause in diagnosis.unlogged],
         "hidden": _tell(flown),
     }, base
 
@@ -96,9 +97,8 @@ def _short(effect: dict[str, Any]) -> dict[str, Any]:
 def share_of(base: Calibration, effect: str) -> float | None:
     """What a real fit with the effect takes of the RMSE on rows held out, as `add` has it."""
     entry = base.add(effect).history[-1]
-    if entry.held_out_before is None or entry.held_out_after is None:
-        return None
-    return float(1.0 - entry.held_out_after / entry.held_out_before)
+    share = 1.0 - entry.held_out_after / entry.held_out_before
+    return None if math.isnan(share) else share
 
 
 def is_lag(effect: str) -> bool:

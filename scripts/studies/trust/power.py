@@ -69,8 +69,8 @@ def _try(key: Key) -> Row:
         "found": stands_first or name in [effect.name for effect in diagnosis.found],
         "visible": diagnosis[name].status != "cannot_be_seen"
         and not _is_beyond(base, name, hide[case.effect]),
-        "advice": diagnosis.advice["effect"],
-        "withheld": diagnosis.advice["withheld"],
+        "advice": diagnosis.advice.effect,
+        "withheld": diagnosis.advice.withheld,
     }
     if row["advice"]:
         row["harm"] = _harm(base, base.add(row["advice"]), _truths(flight, quiet, seed))

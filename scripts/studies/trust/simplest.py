@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from sepcal.stepwise import StepwiseStep
+from sepcal import StepwiseStep
 from studies.study import Finding
 from studies.trust.asked import ask, first_of
 from studies.trust.by_key import SIMPLE, TWO, fly_key, make_case, parse_case

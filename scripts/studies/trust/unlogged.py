@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ ASKED = {BURST: 0.8, LINE: 2.0 / 3.0}  # how often it is to be called so in whit
 OUTPUTS = {BURST: 2, LINE: 1}
 LOUD = ("white", "AR(0.9)", "pink", "white + GM 60 s")  # in which causes are hidden
 LINE_HZ = 0.35
-Hidden = dict[str, object]
+Hidden = dict[str, Any]
 
 
 def _burst(rng: np.random.Generator, time: Array) -> tuple[Array, Hidden]:
@@ -77,11 +78,10 @@ def _keys(arguments: argparse.Namespace) -> Iterator[Key]:
 def names(diagnosis: Diagnosis, hidden: Hidden) -> bool:
     """Whether a cause that is told has an output, the frequency and a time of the hidden one."""
     return any(
-        set(cause["outputs"]) & set(hidden["outputs"])  # type: ignore[call-overload]
-        and cause["frequency_hz"] is not None
-        and abs(cause["frequency_hz"] - hidden["hz"]) < 0.05
-        and cause["first_s"] < hidden["last_s"]
-        and cause["last_s"] > hidden["first_s"]
+        set(cause.outputs) & set(hidden["outputs"])
+        and abs(cause.frequency_hz - hidden["hz"]) < 0.05
+        and cause.first_s < hidden["last_s"]
+        and cause.last_s > hidden["first_s"]
         for cause in diagnosis.unlogged
     )
 
@@ -93,7 +93,7 @@ def _try(key: Key) -> Row:
     diagnosis = calibrate(probe, flight).diagnose()
     return {
         "verdict": diagnosis.verdict,
-        "kinds": [told["kind"] for told in diagnosis.unlogged],
+        "kinds": [told.kind for told in diagnosis.unlogged],
         "named": bool(hidden) and names(diagnosis, hidden),
     }
 

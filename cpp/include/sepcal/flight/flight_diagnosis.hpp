@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sepcal/detail/flight/sized_effect.hpp"
@@ -53,6 +54,13 @@ FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& ca
 
 /// The verdict in one sentence: what error is left, the noise's floor, the strongest cause.
 std::string verdict_sentence(const FlightDiagnosis& diagnosis);
+
+/// "found", "slow change", "undecided", "not seen", "can't be seen"; of what is not seen "not held
+/// out" and "too small" where it is sure, yet refused.
+std::string_view status_in_words(const EffectFinding& effect);
+
+/// "as good instead", "fades", "counts too"; empty where it was not tried.
+std::string_view beside_in_words(const EffectFinding& effect);
 
 /// "common cause, not logged: in mx and mz together, strongest from 40 to 52 s, at 0.35 Hz".
 std::string describe(const UnloggedCause& cause);

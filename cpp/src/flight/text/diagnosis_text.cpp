@@ -49,14 +49,6 @@ Page probability(const EffectFinding& effect) {
                                                         : probability(effect.p_adjusted);
 }
 
-std::string_view in_words(const EffectFinding& effect) {
-  if (effect.status == FindingStatus::found) return "FOUND";
-  if (effect.status == FindingStatus::slow_change) return "slow change";
-  if (effect.status == FindingStatus::undecided) return "undecided";
-  if (is_too_small(effect)) return "too small";
-  return is_unpredicted(effect) ? "not held out" : "not seen";
-}
-
 Page estimates(const EffectFinding& effect) {
   constexpr std::size_t most = 3;
   Page text;
@@ -91,7 +83,8 @@ Page change(double from, double to) {
 /// As the verdict has it; then, where all is told, as stepwise regression has it.
 Page effect_row(const EffectFinding& effect, std::size_t width, Detail detail) {
   const Page row = page("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}", effect.name, width,
-                        in_words(effect), probability(effect), percent(effect.predicted_drop),
+                        effect.status == FindingStatus::found ? "FOUND" : status_in_words(effect),
+                        probability(effect), percent(effect.predicted_drop),
                         percent(effect.held_out_gain), effect.visibility);
   if (detail == Detail::brief) return row + "\n";
   const Structure& structure = effect.structure;
@@ -222,6 +215,38 @@ Page unexplained_rows(const Omnibus& omnibus) {
 }
 
 }  // namespace
+
+std::string_view status_in_words(const EffectFinding& effect) {
+  if (is_too_small(effect)) return "too small";
+  if (is_unpredicted(effect)) return "not held out";
+  switch (effect.status) {
+    case FindingStatus::found:
+      return "found";
+    case FindingStatus::slow_change:
+      return "slow change";
+    case FindingStatus::undecided:
+      return "undecided";
+    case FindingStatus::not_seen:
+      return "not seen";
+    case FindingStatus::cannot_be_seen:
+      break;
+  }
+  return "can't be seen";
+}
+
+std::string_view beside_in_words(const EffectFinding& effect) {
+  switch (effect.beside) {
+    case Beside::untried:
+      break;
+    case Beside::equivalent:
+      return "as good instead";
+    case Beside::fades:
+      return "fades";
+    case Beside::counts:
+      return "counts too";
+  }
+  return "";
+}
 
 std::string to_text(const FlightDiagnosis& result, Detail detail) {
   const Diagnosis& diagnosis = result.diagnosis;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a fit fails on a flight, as Python sees it.
+#include "sepcal/flight/comparison.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "results.hpp"
+#include "structs.hpp"
+
+namespace sepcal::bindings {
+
+void define_comparison(py::module_& module) {
+  BoundStruct<Misfit>(module, "Misfit",
+                      "One output over one stretch of a flight; NaN where there are too few rows.")
+      .field("segment", &Misfit::segment,
+             R"(Maneuver, or "120.0:180.5" [s] where there are no labels; empty: the whole.)")
+      .field("output", &Misfit::output, "")
+      .field("unit", &Misfit::unit, "")
+      .field("rows", &Misfit::rows, "")
+      .field("rmse", &Misfit::rmse, "")
+      .field("mean", &Misfit::mean, "Of z - model: what a constant offset would explain.")
+      .field("lag_one", &Misfit::lag_one,
+             "Correlation of neighbouring residuals, never across a segment's edge.")
+      .comparable()
+      .finish()
+      .def_property_readonly("verdict", &verdict_on_noise,
+                             "In words whether the residuals are noise.")
+      .def_property_readonly("is_white", &is_white,
+                             "Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen "
+                             "times in twenty.");
+
+  BoundStruct<ChannelMisfit>(module, "ChannelMisfit",
+                             "One output's residual against one channel of the flight.")
+      .field("driver", &ChannelMisfit::driver,
+             R"("altitude_m"; "time", "alpha", "roll" for what the probe knows by itself.)")
+      .field("output", &ChannelMisfit::output, "")
+      .field("share_line", &ChannelMisfit::share_line,
+             "Of the residual's variance that a straight line would explain.")
+      .field("share_smooth", &ChannelMisfit::share_smooth,
+             "The same of a natural spline of six even knots.")
+      .field("slope", &ChannelMisfit::slope, "Of the line.")
+      .field("slope_error", &ChannelMisfit::slope_error,
+             "Its standard error in the residual's own noise, rather too large.")
+      .field("unit", &ChannelMisfit::unit, "Of the slope.")
+      .comparable()
+      .finish();
+
+  BoundStruct<Window>(module, "Window", "A stretch of about a twentieth of the rows.")
+      .field("first_s", &Window::first_s, "Time of its first row.")
+      .field("last_s", &Window::last_s, "And of its last.")
+      .field("rows", &Window::rows, "")
+      .field("rmse", &Window::rmse, "By output.")
+      .field("mean", &Window::mean, "By output, of z - model.")
+      .comparable()
+      .finish();
+
+  BoundStruct<Disturbance>(module, "Disturbance",
+                           "By filter error: a noise that drives a state, in its own standard "
+                           "deviations along the flight.\n\nStandard normal where the model is "
+                           "right: beyond 3 in 0.27 % of the rows.")
+      .field("noise", &Disturbance::noise, "Its size, of the fit.")
+      .field("share_beyond", &Disturbance::share_beyond,
+             "Of the rows beyond 3; NaN of a noise that is none or at its floor.")
+      .field("rows", &Disturbance::rows, "Of the longest stretch beyond 3; 0: there is none.")
+      .field("first_s", &Disturbance::first_s, "")
+      .field("last_s", &Disturbance::last_s, "")
+      .field("peak", &Disturbance::peak, "The largest in it, with its sign.")
+      .comparable()
+      .finish();
+
+  BoundStruct<Compared>(module, "Comparison", "A calibration against a flight.")
+      .field("model", &Compared::comparison, &Comparison::model, "")
+      .field(
+          "file", [](const Compared& self) { return self.comparison.flight.file; },
+          [](Compared& self, std::string file) { self.comparison.flight.file = std::move(file); },
+          "Of the flight.")
+      .field("status", &Compared::comparison, &Comparison::status, "Of the calibration, repeated.")
+      .field("message", &Compared::comparison, &Comparison::message, "")
+      .field("overall", &Compared::comparison, &Comparison::overall, "One an output.")
+      .field("where", &Compared::comparison, &Comparison::where,
+             "Maneuver by maneuver, outputs within, in the flight's order.")
+      .field("channels", &Compared::comparison, &Comparison::channels,
+             "By share_smooth, largest first.")
+      .field("windows", &Compared::comparison, &Comparison::windows,
+             "The five worst in units of the fit's noise, worst first.")
+      .array("time", &Compared::comparison, &Comparison::time, "(N,) [s], of every row used.")
+      .field("residuals", &Compared::comparison, &Comparison::residuals,
+             "(N, n_z), z - model; of a fit by filter error innovations.")
+      .field("modelled", &Compared::comparison, &Comparison::modelled, "(N, n_z), z less them.")
+      .field("by", &Compared::comparison, &Comparison::by, R"("output-error" or "filter-error".)")
+      .field("sigma", &Compared::comparison, &Comparison::sigma,
+             "By filter error and output: rms of innovations in the filter's standard deviations.")
+      .field("disturbances", &Compared::comparison, &Comparison::disturbances,
+             "By filter error, one a process noise.")
+      .field("notes", &Compared::comparison, &Comparison::notes, "One line each, for people.")
+      .field("json", &Compared::json, "")
+      .field("text", &Compared::page, &Page::text, "What print() shows: the app's page.")
+      .field("explained", &Compared::page, &Page::explained,
+             "The same with the whole message, as by the apps' --explain.")
+      .copied()
+      .finish();
+}
+
+}  // namespace sepcal::bindings
