@@ -89,7 +89,7 @@ def test_python_in_the_documents_defines_all_that_it_uses(block):
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: document.name)
 def test_files_of_the_sources_that_a_document_names_are_there(document):
-    ours = r"(?:apps|benchmarks|cpp|docs|examples|python|scripts|tests)"
+    ours = r"(?:apps|cpp|docs|examples|lab|python|scripts|tests)"
     named = set(re.findall(rf"`({ours}/[\w./-]+\.\w+)`", document.read_text()))
     assert {name for name in named if not (ROOT / name).exists()} == set()
 

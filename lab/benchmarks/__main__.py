@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from benchmarks.race import QUICK
 
     longest = QUICK if chosen.quick else chosen.longest or sys.maxsize
-    target = ROOT / ("build/benchmark-quick" if chosen.quick else "benchmarks/results")
+    target = ROOT / ("build/benchmark-quick" if chosen.quick else "lab/benchmarks/results")
     runs = {name: find_run(name) for name in chosen.race or ([] if chosen.baseline else RACES)}
     if chosen.baseline:
         from benchmarks import baseline

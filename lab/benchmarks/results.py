@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What benchmarks/results/ holds: one JSON of all races, and the same as Markdown tables."""
+"""What lab/benchmarks/results/ holds: one JSON of all races, and the same as Markdown tables."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def commit() -> str:
         asked = subprocess.run(["git", *arguments], capture_output=True, text=True, check=False)
         return asked.stdout.strip()
 
-    changed = ask("status", "--porcelain", "--untracked-files=no", "--", ":!benchmarks/results")
+    changed = ask("status", "--porcelain", "--untracked-files=no", "--", ":!lab/benchmarks/results")
     return ask("describe", "--always") + ("-dirty" if changed else "")
 
 

@@ -23,7 +23,7 @@ COLUMNS = {
     "rho": "rho_kgpm3", "vn": "vn_mps", "ve": "ve_mps", "vd": "vd_mps", "time": "time_s",
     "throttle": "throttle",
 }  # fmt: skip
-HEADER = 26  # doubles, as benchmarks/five_hole_file.hpp has them
+HEADER = 26  # doubles, as lab/benchmarks/engine/five_hole_file.hpp has them
 
 
 @dataclass

@@ -30,7 +30,7 @@ The 27 [Statistical Reference Datasets](https://www.itl.nist.gov/div898/strd/nls
 for nonlinear regression have values certified to 11 digits, and two starts each: the first far
 off, the second nearer. This page is written by
 
-    python scripts/parts/nist.py
+    python lab/pages/nist.py
 
 from `tests/oracle/nist_data.json`, and `tests/oracle/test_nist.py` asserts what it says of
 sepcal.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight with a five-hole probe as scripts/benchmarks/five_hole.py writes it: a header, samples
+// A flight with a five-hole probe as lab/benchmarks/five_hole.py writes it: a header, samples
 // of xi2, then columns. Parameters stand in one order throughout: lambda_va b_va w_n w_e w_d
 // (linear), lambda_alpha b_alpha lambda_beta b_beta eps_phi (nonlinear); then, where two effects
 // join, wind[time].n, wind[time].e and pressure_offset[throttle].s.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Time of a Monte Carlo study against executor and workers, as a Markdown table.
 
-    PYTHONPATH=build/python .venv/bin/python scripts/parts/executor_times.py --workers 1,2
+    PYTHONPATH=build/python .venv/bin/python lab/pages/executor_times.py --workers 1,2
 
 Every study must equal the serial one, to the last bit, and is timed next to it. Workers are started
 before the clock is.

@@ -2,7 +2,7 @@
 """What is lost where workers die, as a Markdown table: executors alone, and under sepcal's retries.
 
     pip install loky joblib
-    PYTHONPATH=build/python:tests .venv/bin/python scripts/parts/executor_promises.py --runs 10
+    PYTHONPATH=build/python:tests .venv/bin/python lab/pages/executor_promises.py --runs 10
 
 Of each run it counts the items that give no result, but for the one that is to blame every time.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The time of a joint fit of many logs against the number of Dask workers.
 
-python scripts/parts/fleet_times.py [--flights 200] [--rows 2000] [--workers 1,2,4]
+python lab/pages/fleet_times.py [--flights 200] [--rows 2000] [--workers 1,2,4]
 
 Each row is the median of three fits; every one must be that of one process to the last bit.
 """

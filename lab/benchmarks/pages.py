@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""docs/performance.md's tables and its picture, from benchmarks/results/latest.json alone.
+"""docs/performance.md's tables and its picture, from lab/benchmarks/results/latest.json alone.
 
 Usage: python -m benchmarks.pages [DOCS]. It needs matplotlib, which scripts/setup installs.
 """

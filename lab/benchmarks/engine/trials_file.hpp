@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trials of one design of scalar example 1, z = (1 + a) cos(eta + b) + c, as
-// scripts/benchmarks/small_fits.py writes them: how many, their rows, eta, then z trial by trial.
+// lab/benchmarks/small_fits.py writes them: how many, their rows, eta, then z trial by trial.
 #pragma once
 
 #include <cstddef>
