@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from benchmarks.results import result_of
 
 ROOT = Path(__file__).parents[2]
-RESULTS = ROOT / "benchmarks" / "results" / "latest.json"
+RESULTS = ROOT / "lab" / "benchmarks" / "results" / "latest.json"
 BEGIN, END = "<!-- results -->\n", "<!-- end of results -->"
 # Each reads on a white page and on a dark one.
 GREY, OURS, THEIRS = "#7d858f", "#2f81f7", "#dd641b"
