@@ -325,7 +325,7 @@ class AircraftApp {
   }
 
   int add() const {
-    Delivery delivery(wishes_, {flight_});
+    Delivery delivery(wishes_, {flight_, base_});
     const AircraftFit base = read_aircraft_fit(base_);
     const AircraftFit next = add_to_aircraft(base, read_flight(), effect_);
     delivery.deliver(next);

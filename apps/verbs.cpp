@@ -175,7 +175,7 @@ int Verbs::diagnose(StepwiseOptions options, bool adds) const {
 }
 
 int Verbs::add() const {
-  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, flight_files());
+  Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   const auto [base, flight] = read_whole_subject();
   ProgressLine line;
   Calibration next = sepcal::add(base, flight, arguments_.effect, {}, shown_on(line));

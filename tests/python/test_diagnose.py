@@ -81,7 +81,7 @@ def test_nothing_is_missing(bench: Bench):
     table = bench.run("diagnose", "flight.csv", "base.json")
     assert (table.code, table.err) == (0, "")
     assert "Nothing is missing that this flight can show" in table.out
-    assert "a slow change over the flight would have shown from:" in table.out
+    assert "smallest change over the flight that would have shown:" in table.out
 
 
 def test_an_effect_is_missing(bent_bench: Bench, missing: Outcome):

@@ -209,6 +209,34 @@ def test_a_number_beyond_a_float_is_refused(magnetometer: Bench) -> None:
     assert_refused(magnetometer, *command, words=("1e+39", "beyond what a float holds"))
 
 
+def test_a_power_beyond_a_float_is_refused(magnetometer: Bench) -> None:
+    """Of revolutions a minute, up to 20,000: their ninth power is 5e38."""
+    log = magnetometer.read_log()
+    turns = 20000.0 * np.linspace(0.0, 1.0, len(log.rows)) ** 2
+    log.replace("current_a", turns)
+    (magnetometer.folder / "rpm.csv").write_text(log.text())
+    effect = ("--effect", "bias[current_a^9]")
+    assert magnetometer.run("fit", "rpm.csv", *effect, "-o", "rpm.json").code in (0, 5)
+    command = ("export", "rpm.json", "--to", "c", "--float", "--force")
+    assert_refused(magnetometer, *command, words=("current_a^9", "beyond what a float holds"))
+
+
+@pytest.mark.parametrize("threshold", ["3.6", "10.2", "1.8"])
+def test_the_self_test_meets_no_round_threshold(magnetometer: Bench, threshold: str) -> None:
+    """Of a driver from 0 to 12: as a float a value at the threshold falls to the other side."""
+    log = magnetometer.read_log()
+    log.replace("current_a", 12.0 * np.linspace(0.0, 1.0, len(log.rows)))
+    (magnetometer.folder / "steps.csv").write_text(log.text())
+    effect = ("--effect", f"bias[levels(current_a,{threshold})]")
+    assert magnetometer.run("fit", "steps.csv", *effect, "-o", "steps.json").code in (0, 5)
+    done = magnetometer.run("export", "steps.json", "--to", "c", "--float", "--force", "-o", "f.h")
+    assert done.code == 0, done.err
+    program = headers.build(magnetometer.folder / "f.h", "c", headers.STANDARDS["c"][0])
+    row = [[*(log.column(f"m{axis}_ut")[0] for axis in "xyz"), 6.0]]
+    status, _ = headers.run_rows(program, np.array(row, dtype=float))  # which asks it first
+    assert status == 0
+
+
 def test_without_ranges_it_is_refused(magnetometer: Bench) -> None:
     """A file from before calibrations kept them, whose flight is gone."""
     done = magnetometer.run("fit", "flight.csv", "--effect", "bias[current_a]", "-o", "e.json")

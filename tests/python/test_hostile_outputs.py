@@ -22,7 +22,7 @@ import pytest
 
 import headers
 import sepcal
-from apps import APPS, run
+from apps import APPS, Bench, run
 from browser import find_browser, show
 from hostile import STRAY, find_unprintable, hostile_words, may_not_be_printed
 from sepcal.markup import as_html, html, in_figure
@@ -485,3 +485,39 @@ def test_a_file_whose_name_is_no_utf_8(tmp_path: Path) -> None:
         for call in (sepcal.read_csv, sepcal.load):
             with pytest.raises(sepcal.Error, match=r"caf\\xe9.csv: the file's name is no UTF-8"):
                 call(file)
+
+
+def test_what_follows_a_nul_is_not_left_unread(
+    calibrations: dict[str, dict[str, Any]], tmp_path: Path
+) -> None:
+    text = json.dumps(calibrations["c"])
+    (tmp_path / "base.json").write_text(text + '\0{"garbage": 1}')
+    refused = run("sepcal-mag", "export", "base.json", "--to", "c", "-o", "h.h", folder=tmp_path)
+    assert refused.code == 2
+    assert f"base.json: byte {len(text)} is NUL" in refused.err
+
+
+@pytest.mark.parametrize("mark", ["\u200f", "\u061c", "\u202a", "\u2028", "\x85"])
+def test_a_label_with_marks_of_direction_is_read_again(mark: str, magnetometer: Bench) -> None:
+    """As a right-to-left script has them: no verb writes what another refuses."""
+    log = (magnetometer.folder / "flight.csv").read_text().splitlines()
+    at = log[0].split(",").index("maneuver")
+    rows = [line.split(",") for line in log[1:]]
+    for row in rows:
+        row[at] += mark
+    marked = "\n".join([log[0], *(",".join(row) for row in rows)]) + "\n"
+    (magnetometer.folder / "marked.csv").write_text(marked, encoding="utf-8", newline="\n")
+    fitted = magnetometer.run("fit", "marked.csv", "--effect", "bias[maneuver]", "-o", "m.json")
+    assert fitted.code in (0, 5), fitted.err
+    applied = magnetometer.run("apply", "marked.csv", "m.json", "-o", "out.csv")
+    assert applied.code == 0, applied.err
+    assert_printable(fitted.out + fitted.err + applied.out + applied.err)
+
+
+def test_add_does_not_write_over_what_it_reads(bench: Bench) -> None:
+    effect = {"sepcal-pitot": "wind[time]", "sepcal-mag": "bias[current_a]"}[bench.app]
+    before = (bench.folder / "base.json").read_bytes()
+    refused = bench.run("add", "flight.csv", "base.json", effect, "-o", "base.json")
+    assert refused.code == 2
+    assert "it is an input" in refused.err
+    assert (bench.folder / "base.json").read_bytes() == before

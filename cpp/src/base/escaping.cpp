@@ -95,4 +95,8 @@ std::string in_shell(std::string_view text) {
   return in_line(word) + "'";
 }
 
+std::string file_in_shell(std::string_view name) {
+  return name.starts_with('-') ? in_shell("./" + std::string(name)) : in_shell(name);
+}
+
 }  // namespace sepcal::base

@@ -52,20 +52,22 @@ std::string disagreement(const EffectFinding& finding, const Fit& fitted) {
   return {};
 }
 
-/// What is wrong with the fit that has the effect; empty where nothing is. One that takes as much
-/// of the error as the step promised is believed before it.
-std::string objection_to_fit(const Fit& before, const EffectFinding& finding, const Fit& fitted,
-                             bool keeps_promise) {
+/// What is wrong with the fit that has the effect, if anything. One that takes as much of the error
+/// as the step promised is believed before it.
+void object_to_fit(const Fit& before, const EffectFinding& finding, const Fit& fitted,
+                   bool keeps_promise, Objection& objection) {
   if (fitted.status != FitStatus::converged) {
-    return fmt::format("a fit with it is {}", fitted.status == FitStatus::not_converged
-                                                  ? "not converged"
-                                                  : "not identifiable");
+    objection.reason = fmt::format("a fit with it is {}", fitted.status == FitStatus::not_converged
+                                                              ? "not converged"
+                                                              : "not identifiable");
+  } else if (const auto held = newly_at_bounds(before, fitted); !held.empty()) {
+    objection.is_of_bounds = true;
+    objection.reason = fmt::format(
+        "fitted, it runs into the bounds of {}; give wider ones to the fit", fmt::join(held, ", "));
+  } else if (!keeps_promise) {
+    objection.reason = disagreement(finding, fitted);
   }
-  const std::vector<std::string> held = newly_at_bounds(before, fitted);
-  if (!held.empty()) {
-    return fmt::format("fitted, it runs into the bounds of {}", fmt::join(held, ", "));
-  }
-  return keeps_promise ? std::string() : disagreement(finding, fitted);
+  objection.is_to_fit = !objection.reason.empty();
 }
 
 /// The coefficient that a fit has further off than physics lets it be.
@@ -112,8 +114,7 @@ Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFindin
                             : finding.held_out_refitted && finding.held_out_passed &&
                                   finding.held_out_gain >=
                                       std::max(objects_from, nearly_all * finding.predicted_drop);
-    objection.reason = objection_to_fit(room.fitted(), finding, fitted, keeps_promise);
-    objection.is_to_fit = !objection.reason.empty();
+    object_to_fit(room.fitted(), finding, fitted, keeps_promise, objection);
     if (objection.is_to_fit) return objection;
     objection.reason = implausible_size(room, candidate, fitted);
     if (!objection.reason.empty()) return objection;

@@ -16,6 +16,7 @@ struct Objection {
   /// Whether no fit takes the effect as it was found, large as it may be: what counts beside it
   /// would then stand in for it.
   bool is_to_fit = false;
+  bool is_of_bounds = false;  // a fit takes the effect as far as its bounds let it
   bool is_of_rival = false;  // the effect stands, but another could be the cause as well
   /// What a fit with the effect takes from the error, drop_of_adding(); NaN where none was made,
   /// and of models without a state.

@@ -82,9 +82,15 @@ double typical_interval(const std::vector<double>& times) {
 double share_after_selection(const EffectFinding& finding, double significance, double number) {
   constexpr double beyond_doubt = 1e-60;
   if (finding.p_value < beyond_doubt) return 1.0;
+  // p asks what noise could do at its worst; the errors are those of the noise that there is.
+  double size = std::sqrt(numerics::chi_squared_point(finding.p_value, 1.0));
+  for (const Coefficient& one : finding.coefficients) {
+    if (one.standard_error > 0.0) {
+      size = std::max(size, std::abs(one.estimate) / one.standard_error);
+    }
+  }
   return numerics::share_after_selection(
-      std::sqrt(numerics::chi_squared_point(finding.p_value, 1.0)),
-      std::sqrt(numerics::chi_squared_point(significance / number, 1.0)));
+      size, std::sqrt(numerics::chi_squared_point(significance / number, 1.0)));
 }
 
 class Recipe {
@@ -140,8 +146,9 @@ class Recipe {
   std::unique_ptr<Bench> undisturbed_;                       // made where it is asked
   std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
   Contest contest_;
-  std::vector<std::string> withdrawn_;  // were found, but no fit bears them out
-  double left_by_first_ = 1.0;          // of the error, by a first that takes much and no fit takes
+  std::vector<std::string> withdrawn_;      // were found, but no fit bears them out
+  std::vector<std::string> beyond_bounds_;  // of these, as a fit would take more than it may
+  double left_by_first_ = 1.0;  // of the error, by a first that takes much and no fit takes
   Diagnosis result_;
 };
 
@@ -447,6 +454,7 @@ void Recipe::advise() {
     std::vector<std::string>& withheld = result_.advice.withheld;
     if (std::ranges::find(withheld, reason) == withheld.end()) withheld.push_back(reason);
     if (!objection.is_of_rival) withdrawn_.push_back(finding.name);
+    if (objection.is_of_bounds) beyond_bounds_.push_back(finding.name);
   }
 }
 
@@ -478,7 +486,10 @@ bool Recipe::withdraw() {
                               (nothing_stands && finding.beside == Beside::fades);
     if (finding.status != FindingStatus::found || !is_withdrawn) continue;
     const auto trial = find_trial(finding.name);
-    if (!takes_much(finding)) {
+    const bool wants_more =
+        std::ranges::find(beyond_bounds_, finding.name) != beyond_bounds_.end() &&
+        !takes_too_little(finding.held_out_gain);
+    if (!takes_much(finding) && !wants_more) {
       finding.status = FindingStatus::not_seen;
     } else {
       finding.status = trial != trials_.end() && trial->slow ? FindingStatus::slow_change

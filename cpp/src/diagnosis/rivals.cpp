@@ -45,7 +45,9 @@ VectorXd estimates_of(const Bench& bench, const Contender& contender) {
   const VectorXd own = values_of(room.fit().parameters, std::identity());
   const VectorXd effect = values_of(contender.candidate.coefficients,
                                     [](const Variable& coefficient) { return coefficient.name; });
-  const Columns share = constant_share(room.columns(contender.candidate, contender.shape));
+  const std::string& of_shape = contender.candidate.shape.parameter;
+  const double shape = of_shape.empty() ? contender.shape : fit[of_shape].value;
+  const Columns share = constant_share(room.columns(contender.candidate, shape));
   const VectorXd shift = explained_by(bench.null().basis, share) * effect;
   return own + shift;
 }

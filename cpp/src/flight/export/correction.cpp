@@ -139,8 +139,8 @@ class Description {
     }
     if (const Interval* const range = range_of(name)) {
       const double span = range->upper - range->lower;
-      driver.trial = {range->lower + 0.3 * span, range->lower + 0.85 * span,
-                      range->lower + 0.15 * span};
+      driver.trial = {range->lower + 0.30902 * span, range->lower + 0.84721 * span,
+                      range->lower + 0.14590 * span};  // where no round threshold lies
     }
     if (const auto origin = origins_.find(canonical(name)); origin != origins_.end()) {
       driver.origin = origin->second;

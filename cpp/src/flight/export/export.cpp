@@ -101,6 +101,7 @@ void fill_ranges(Calibration& calibration, const FlightAtHand& at_hand) {
 
 void export_header(const Calibration& given, const Calibration& held, const std::string& id,
                    const ExportOptions& options, Exported& exported) {
+  if (options.single) refuse_overflow(held);
   const Dialect dialect(options.target == ExportTarget::cpp, options.single,
                         header_name(held, options));
   std::vector<std::string> comment =

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ranges>
 
 #include "flight/export/exporter.hpp"
 #include "flight/export/held.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/flight/joint.hpp"
 #include "sepcal/option_error.hpp"
 
@@ -49,6 +51,25 @@ void check_without(const Calibration& calibration, const std::vector<std::string
         {Option{"without"},
          fmt::format(" {}: the calibration has no such effect; it has {}", name,
                      effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, ", ")))});
+  }
+}
+
+void refuse_overflow(const Calibration& calibration) {
+  constexpr auto most = static_cast<double>(std::numeric_limits<float>::max());
+  for (const EffectSetting& setting : calibration.options.effects) {
+    const EffectName name = parse_effect_name(setting.name);
+    const auto range = calibration.driver_ranges.find(name.base);
+    if (name.shape != EffectName::Shape::power || range == calibration.driver_ranges.end())
+      continue;
+    const double centre = setting.centre.value_or(0.0);
+    const double reach =
+        std::max(std::abs(range->second.lower - centre), std::abs(range->second.upper - centre));
+    const double power = std::pow(reach, name.number);
+    if (power <= most) continue;
+    throw Error(
+        fmt::format("{}: its power reaches {:.2g} on the flight, beyond what a float holds; export "
+                    "it in double",
+                    setting.name, power));
   }
 }
 

@@ -22,6 +22,9 @@ void check_without(const Calibration& calibration, const std::vector<std::string
 /// Throws Error for an autopilot that holds nothing of it, as of a five-hole probe.
 void refuse_homeless(const Calibration& calibration, const ExportOptions& options);
 
+/// Throws Error for a power that a float can't hold over what the driver did on the flight.
+void refuse_overflow(const Calibration& calibration);
+
 /// Throws Error for an option that does nothing here.
 void refuse_idle(const Calibration& calibration, const ExportOptions& options);
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/escaping.hpp"
 #include "base/utf8.hpp"
 
 namespace sepcal::files {
@@ -17,7 +16,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// What no header of a log holds either. Other marks that are not printed are escaped where they
+/// leave.
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+}  // namespace
+
 Json parse_json(std::string_view text, const std::string& source) {
+  if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
+    throw Error(fmt::format("{}: byte {} is NUL, which JSON has nowhere", source, at));
+  }
   constexpr int deepest = 64;
   constexpr std::array<std::string_view, 5> free_texts{"file", "flight", "label", "message",
                                                        "where"};
@@ -33,7 +43,7 @@ Json parse_json(std::string_view text, const std::string& source) {
     const auto& said = value.get_ref<const std::string&>();
     const bool is_free =
         event == Event::value && std::ranges::find(free_texts, key) != free_texts.end();
-    if (!is_free && base::in_line(said) != said) {
+    if (!is_free && std::ranges::any_of(said, is_control)) {
       throw Error(fmt::format("{}: '{}' holds characters that can't be printed", source,
                               said.substr(0, 60)));
     }

@@ -154,8 +154,8 @@ Page name_line(std::string_view what, std::vector<std::string> names) {
 Page beside_rows(const Diagnosis& diagnosis) {
   const bool is_pair = split_effects(diagnosis.effects.front().name).size() > 1;
   return name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent)) +
-         name_line("fades once it is added", list_beside(diagnosis, Beside::fades)) +
-         name_line("counts beside it", list_beside(diagnosis, Beside::counts)) +
+         name_line("not needed once it is in", list_beside(diagnosis, Beside::fades)) +
+         name_line("needed as well", list_beside(diagnosis, Beside::counts)) +
          name_line(is_pair ? "pairs that explain it as well" : "or two causes at once",
                    diagnosis.pairs);
 }
@@ -168,22 +168,18 @@ Page excuse_row(const Diagnosis& diagnosis) {
   for (const WanderBound& bound : diagnosis.wanders) {
     usual += page("{}{} {:.2g} {}", usual.empty() ? "" : ", ", bound.name, bound.size, bound.unit);
   }
-  if (std::isinf(excuse)) return page("  no noise that wanders looks like it ({})\n", usual);
-  return excuse > 1.0 ? page(
-                            "  noise looks like it if it wanders {:.0f} times as far as such "
-                            "sensors let it ({})\n",
-                            excuse, usual)
-                      : page(
-                            "  noise that wanders as far as such sensors let it looks like "
-                            "it ({})\n",
-                            usual);
+  if (std::isinf(excuse)) return page("  no drift of the sensors looks like it ({})\n", usual);
+  return excuse > 1.0
+             ? page("  drift could explain it only at {:.0f} times the sensors' usual limit ({})\n",
+                    excuse, usual)
+             : page("  drift within the sensors' usual limit could look like it ({})\n", usual);
 }
 
 /// A flight's file as the shell takes it, or those of flights that were joined, "a.csv + b.csv".
 std::string file_words(std::string_view files) {
   constexpr std::string_view between = " + ";
   const std::size_t at = files.find(between);
-  std::string word = base::in_shell(files.substr(0, at));
+  std::string word = base::file_in_shell(files.substr(0, at));
   if (at == std::string_view::npos) return word;
   return word + " " + file_words(files.substr(at + between.size()));
 }
@@ -202,7 +198,7 @@ Page best_effect(const FlightDiagnosis& result) {
   if (effect.empty()) return text;
   return text + page("next: {} {} {} {} -o NEXT.json\n", command_of(result.app, "add"),
                      file_words(result.flight.file),
-                     base::in_shell(result.calibration.empty() ? "BASE.json" : result.calibration),
+                     base::file_in_shell(result.calibration.empty() ? "BASE.json" : result.calibration),
                      base::in_shell(effect));
 }
 
@@ -264,8 +260,10 @@ std::string to_text(const FlightDiagnosis& result, Detail detail) {
   text += effect_rows(result, detail);
   if (diagnosis.verdict == Verdict::effect_missing) text += best_effect(result);
   if (diagnosis.verdict == Verdict::slow_change) {
-    text += "\n" + excuse_row(diagnosis) +
-            name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent));
+    text += "\n" + excuse_row(diagnosis);
+  }
+  if (diagnosis.verdict == Verdict::slow_change || diagnosis.verdict == Verdict::unexplained) {
+    text += name_line("would do as well instead", list_beside(diagnosis, Beside::equivalent));
   }
   if (diagnosis.verdict != Verdict::effect_missing) {
     for (const std::string& reason : diagnosis.advice.withheld) {
@@ -278,15 +276,17 @@ std::string to_text(const FlightDiagnosis& result, Detail detail) {
     Page hidden;
     for (const DetectionLimit& limit : diagnosis.limits) {
       if (std::isfinite(limit.size)) {
-        shown += page("  {} {:.2g} {}", limit.port, limit.size, limit.unit);
+        shown += page("  {} {:.2g}{}{}", limit.port, limit.size, limit.unit == "1" ? "" : " ",
+                      limit.unit == "1" ? "" : limit.unit);
       } else {
         hidden += page("  {}", limit.port);
       }
     }
     text += "\n";
-    if (!shown.empty())
-      text += "a slow change over the flight would have shown from:" + shown + "\n";
-    if (!hidden.empty()) text += "a slow change that this flight can't show:" + hidden + "\n";
+    if (!shown.empty()) {
+      text += "smallest change over the flight that would have shown:" + shown + "\n";
+    }
+    if (!hidden.empty()) text += "no change of these would have shown:" + hidden + "\n";
   }
   if (diagnosis.verdict != Verdict::effect_missing && !result.missing_channels.empty()) {
     text += "not logged, and could explain more:";

@@ -360,47 +360,56 @@ AlongChannel scan(const Bins& bins, const PortColumns& port, const Linearised& f
   return along;
 }
 
-/// Which of knots_tried: the fewest with which some port has nearly all that any has. One number
-/// for all ports: where one has more knots than another, the wrong one may follow the curve closer.
-std::size_t choose_knots(const std::vector<AlongChannel>& ports) {
+/// Whether so many functions more than a line take enough at a port: `gain` of all squares.
+bool tells(const AlongChannel& along, double gain, double functions, const Linearised& fit) {
+  const auto components = static_cast<double>(along.port->columns.cols());
+  const auto readings = static_cast<double>(fit.residual.size());
+  return gain >
+         (1.0 - along.line) * std::max(telling, beyond_noise * components * functions / readings);
+}
+
+/// Which of knots_tried: the fewest with which some port has nearly all that any has; none where
+/// no port's curve tells. The same for all ports, also for one whose line takes nearly all: the
+/// wrong port with more knots than the right one may follow the curve closer.
+std::optional<std::size_t> choose_knots(const std::vector<AlongChannel>& ports,
+                                        const Linearised& fit) {
   std::array<double, knots_tried.size()> best{};
   for (const AlongChannel& port : ports) {
     std::ranges::transform(best, port.gains, best.begin(), std::ranges::max);
   }
   const double enough = nearly_all * std::ranges::max(best);
-  return static_cast<std::size_t>(
+  const auto chosen = static_cast<std::size_t>(
       std::ranges::find_if(best, [&](double gain) { return gain >= enough; }) - best.begin());
+  const bool tell = std::ranges::any_of(ports, [&](const AlongChannel& port) {
+    return tells(port, port.gains[chosen], knots_tried[chosen] - 2.0, fit);
+  });
+  return tell ? std::optional(chosen) : std::nullopt;
 }
 
 /// What tells enough along one channel at one port: a spline, levels, or both where it is close.
 std::vector<Curved> find_curves(const std::string& channel, const Bins& bins,
-                                const AlongChannel& along, std::size_t chosen,
+                                const AlongChannel& along, std::optional<std::size_t> knots,
                                 const Linearised& fit) {
-  const PortColumns& port = *along.port;
+  const std::string& port = along.port->port;
   const double whole = fit.residual.squaredNorm();
-  const auto readings = static_cast<double>(fit.residual.size());
-  const auto components = static_cast<double>(port.columns.cols());
   const double line = along.line;
-  const double left = 1.0 - line;
-  const auto tells = [&](double gain, double functions) {
-    return gain > left * std::max(telling, beyond_noise * components * functions / readings);
-  };
   std::vector<Curved> found;
-  if (tells(along.gains[chosen], knots_tried[chosen] - 2.0)) {
-    found.push_back({fmt::format("{}[spline({},{})]", port.port, channel, knots_tried[chosen]),
-                     channel, port.port, line + along.gains[chosen]});
+  if (knots) {
+    found.push_back({fmt::format("{}[spline({},{})]", port, channel, knots_tried[*knots]), channel,
+                     port, line + along.gains[*knots]});
   }
   const std::size_t most_cuts = channel == clock ? 1 : most_thresholds;
-  const Levels levels = LevelFinder(along.sums, bins).find(0.5 * telling * left * whole, most_cuts);
+  const Levels levels =
+      LevelFinder(along.sums, bins).find(0.5 * telling * (1.0 - line) * whole, most_cuts);
   const double gain = levels.explained / whole - line;
   const auto steps = static_cast<double>(levels.cuts.size());
-  if (levels.cuts.empty() || !tells(gain, 2.0 * steps)) return found;
+  if (levels.cuts.empty() || !tells(along, gain, 2.0 * steps, fit)) return found;
   if (channel == clock) {  // whose row is scanned
-    found.push_back({fmt::format("{}[step(time)]", port.port), channel, port.port, line + gain});
+    found.push_back({fmt::format("{}[step(time)]", port), channel, port, line + gain});
     return found;
   }
-  found.push_back({fmt::format("{}[levels({},{})]", port.port, channel, name_levels(levels, bins)),
-                   channel, port.port, line + gain});
+  found.push_back({fmt::format("{}[levels({},{})]", port, channel, name_levels(levels, bins)),
+                   channel, port, line + gain});
   const double best = std::max(found.front().taken, line + gain);
   std::erase_if(found, [&](const Curved& one) { return one.taken < close * best; });
   return found;
@@ -437,7 +446,7 @@ std::vector<std::string> find_curved(const DiagnosedFit& fitted,
     if (!bins) return;
     std::vector<AlongChannel> ports;
     for (const PortColumns& port : fit.ports) ports.push_back(scan(*bins, port, fit));
-    const std::size_t knots = choose_knots(ports);
+    const std::optional<std::size_t> knots = choose_knots(ports, fit);
     for (const AlongChannel& port : ports) {
       std::ranges::move(find_curves(channels[i], *bins, port, knots, fit),
                         std::back_inserter(by_channel[i]));

@@ -328,17 +328,30 @@ bool is_well_above_floor(const Diagnosis& found) {
   return found.rmse >= well_above_floor * found.floor;
 }
 
+/// Enough that "nothing" would be too much to say.
+bool is_above_floor(const Diagnosis& found) {
+  constexpr double above = 1.1;
+  return found.rmse >= above * found.floor;
+}
+
+/// The flight that would tell an effect from noise.
+std::string way_to_tell(const EffectFinding& effect) {
+  if (effect.drivers.empty()) return "what comes again in another flight is no noise";
+  if (effect.drivers.front() == "time") return "fly again with the maneuvers in another order";
+  return fmt::format("fly again with {} changing at other times", effect.drivers.front());
+}
+
 /// Of the mean square error what a noise model foretells from the rows before.
 double correlated_share(const Diagnosis& found) {
   return 1.0 - std::pow(found.floor / found.rmse, 2);
 }
 
-/// Why what stands first is not advised.
+/// Why what stands first is not advised; empty where nobody said.
 std::string reason_against(const Diagnosis& found, const std::string& name) {
   for (const std::string& withheld : found.advice.withheld) {
     if (withheld.starts_with(name + ": ")) return withheld.substr(name.size() + 2);
   }
-  return "no fit with it was made";
+  return {};
 }
 
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
@@ -362,11 +375,16 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   }
   if (found.verdict == Verdict::unexplained) {
     const EffectFinding& first = found.effects.front();
+    if (const std::string against = reason_against(found, first.name); !against.empty()) {
+      return fmt::format("{} ({}) would take {:.0f} % of the error on rows held out, but {}: {}.",
+                         first.name, diagnosis.sentences.front(), 100.0 * first.held_out_gain,
+                         against, left);
+    }
     return fmt::format(
         "{} ({}) would take {:.0f} % of the error on rows held out, and it is not certain: {}. "
-        "Noise of that colour could do the same; fly it again, so that {} does something else.",
+        "Correlated noise could do the same: {}.",
         first.name, diagnosis.sentences.front(), 100.0 * first.held_out_gain, left,
-        first.drivers.empty() ? "the flight" : first.drivers.front());
+        way_to_tell(first));
   }
   if (found.verdict == Verdict::adequate && diagnosis.status == FitStatus::not_identifiable) {
     return fmt::format(
@@ -380,22 +398,20 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   }
   if (found.verdict == Verdict::adequate && is_well_above_floor(found)) {
     return fmt::format(
-        "No effect and no channel of the log explains what is left: {}. {:.0f} % of the error goes "
-        "together over some {:.2g} {}: noise of that colour looks so, and so does a cause that "
-        "nobody logged.",
+        "No effect and no channel of the log explains what is left: {}. {:.0f} % of the error is "
+        "correlated over about {:.2g} {}: noise can look like this, and so can a cause that is not "
+        "in the log.",
         left, 100.0 * correlated_share(found), found.correlation_time,
         found.has_time ? "s" : "rows");
+  }
+  if (found.verdict == Verdict::adequate && is_above_floor(found)) {
+    return fmt::format("No effect and no channel of the log explains the rest: {}.", left);
   }
   if (found.verdict == Verdict::adequate) {
     return fmt::format("Nothing is missing that this flight can show: {}.", left);
   }
   if (found.verdict == Verdict::slow_change) {
     const EffectFinding& slow = found.effects.front();
-    const auto way_out = [&slow]() -> std::string {
-      if (slow.drivers.empty()) return "what comes again in another flight is no noise";
-      if (slow.drivers.front() == "time") return "repeat it with the maneuvers in another order";
-      return fmt::format("repeat it with {} going the other way", slow.drivers.front());
-    };
     return fmt::format(
         "A slow change fits {} ({}){}: {}. Noise that wanders does this too, and one flight can't "
         "tell: {}.",
@@ -404,18 +420,19 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
             ? fmt::format(", which would take {:.0f} % of the error on rows held out",
                           100.0 * slow.held_out_gain)
             : "",
-        left, way_out());
+        left, way_to_tell(slow));
   }
   const EffectFinding& best = found.effects.front();
   const ErrorLeft of_best =
       best.outputs.size() < found.residual.size() ? error_of(found, best.outputs) : all;
   const std::string best_left = injected + of_best.in_words();
   if (found.advice.effect != best.name && !diagnosis.injection) {
+    const std::string against = reason_against(found, best.name);
     return fmt::format(
         "{} ({}): {}; one step promises {:.0f} % less on rows held out, but it is not to be added: "
         "{}.",
         best.name, diagnosis.sentences.front(), best_left, 100.0 * best.held_out_gain,
-        reason_against(found, best.name));
+        against.empty() ? "no fit with it was made" : against);
   }
   return fmt::format(
       "{} ({}): {}; adding it should bring the error to {} ({:.0f} % less on rows held out, "
