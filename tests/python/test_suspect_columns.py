@@ -266,6 +266,26 @@ def test_a_large_hard_iron_is_no_wrong_unit(tmp_path: Path) -> None:
     assert (fitted.code, fitted.err) == (0, "")
 
 
+def test_codes_below_zero_in_a_tube_are_said_to_be_left_out(tmp_path: Path) -> None:
+    """Nothing flows there: the fit takes none of these rows, and the note agrees."""
+    made = run(
+        "sepcal-pitot", "simulate", "-o", "f.csv", "--probe", "pitot-static", folder=tmp_path
+    )
+    assert made.code == 0
+    header, *rows = (tmp_path / "f.csv").read_text().splitlines()
+    at = header.split(",").index("airspeed_mps")
+    for row in range(50, len(rows), 90):
+        cells = rows[row].split(",")
+        cells[at] = "-99"
+        rows[row] = ",".join(cells)
+    (tmp_path / "f.csv").write_text("\n".join([header, *rows]) + "\n")
+    fitted = run("sepcal-pitot", "fit", "f.csv", "--probe", "pitot-static", folder=tmp_path)
+    assert "were dropped: airspeed is not above zero" in fitted.err
+    assert "hold -99, a code and no reading" in fitted.err
+    assert "these rows are left out" in fitted.err
+    assert "takes it for a reading" not in fitted.err
+
+
 @pytest.mark.parametrize(
     ("app", "name", "options"),
     [

@@ -36,11 +36,21 @@ std::string way_out(const LogChoice& choice, const std::vector<std::string>& con
 std::string advise(const SuspectColumn& column, const std::string& condition,
                    std::string_view loss) {
   if (column.role != Role::measured) {
-    return condition.empty() ? "nothing more, or mend the log"
-                             : "nothing more, or leave these rows out: " + condition;
+    return condition.empty() ? "nothing else to do"
+                             : "nothing else to do, or leave these rows out: " + condition;
   }
   const std::string leave = condition.empty() ? "take them out" : "leave them out: " + condition;
   return loss.empty() ? leave : fmt::format("{}, or fit with --loss {}", leave, loss);
+}
+
+/// Whether a probe takes none of these rows anyway, as nothing flows into its tube there.
+bool flows_nowhere(const Log& log, const SuspectColumn& column, const RowList& rows) {
+  if (log.looks_at() != probes::LooksAt::readings) return false;
+  return std::ranges::any_of(std::array{"airspeed", "dp"}, [&](const char* quantity) {
+    const LoggedColumn* const reading = log.find(quantity);
+    return reading != nullptr && reading->used() && reading->header() == column.header &&
+           std::ranges::all_of(rows, [&](std::size_t row) { return reading->values[row] <= 0.0; });
+  });
 }
 
 void note_sentinels(const Log& log, const SuspectColumn& column, const LogChoice& choice,
@@ -51,7 +61,8 @@ void note_sentinels(const Log& log, const SuspectColumn& column, const LogChoice
   note.found = fmt::format("{}: {} hold{} {}, a code and no reading, first at {}", column.header,
                            say_rows(rows), rows.size() == 1 ? "s" : "",
                            fmt::join(column.rows.codes, " or "), name_row(log, rows.front()));
-  const bool left_out = column.role == Role::measured && leaves_codes_out(log);
+  const bool left_out =
+      column.role == Role::measured && (leaves_codes_out(log) || flows_nowhere(log, column, rows));
   note.effect = left_out
                     ? "these rows are left out"
                     : say_effect(column, "a fit takes it for a reading, diagnose and add don't");
