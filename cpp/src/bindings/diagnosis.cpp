@@ -150,7 +150,9 @@ void define_parts(py::module_& module) {
       .field("windows", &Omnibus::windows, "[(window, how far off it is [sigma]), ...].")
       .comparable()
       .finish();
+}
 
+void define_causes(py::module_& module) {
   BoundStruct<UnloggedCause>(
       module, "UnloggedCause",
       "A cause that no logged channel follows. Rows and cycles a row where there is no time.")
@@ -183,7 +185,9 @@ void define_parts(py::module_& module) {
       .field("unit", &WanderBound::unit, "")
       .comparable()
       .finish();
+}
 
+void define_work(py::module_& module) {
   BoundStruct<DiagnosisWork>(module, "DiagnosisWork", "What a diagnosis did.")
       .field("screened", &DiagnosisWork::screened, "Candidates.")
       .field("tested", &DiagnosisWork::tested, "By likelihood ratios, their noise estimated anew.")
@@ -261,6 +265,8 @@ void define_steps(py::module_& module) {
 void define_diagnosis(py::module_& module) {
   define_effect(module);
   define_parts(module);
+  define_causes(module);
+  define_work(module);
   define_steps(module);
   constexpr auto whole = &Diagnosed::diagnosis;
   BoundStruct<Diagnosed> bound(module, "Diagnosis",

@@ -17,7 +17,7 @@ struct Objection {
   /// would then stand in for it.
   bool is_to_fit = false;
   bool is_of_bounds = false;  // a fit takes the effect as far as its bounds let it
-  bool is_of_rival = false;  // the effect stands, but another could be the cause as well
+  bool is_of_rival = false;   // the effect stands, but another could be the cause as well
   /// What a fit with the effect takes from the error, drop_of_adding(); NaN where none was made,
   /// and of models without a state.
   double drop = not_a_number;

@@ -196,10 +196,11 @@ Page best_effect(const FlightDiagnosis& result) {
   }
   const std::string& effect = result.diagnosis.advice.effect;
   if (effect.empty()) return text;
-  return text + page("next: {} {} {} {} -o NEXT.json\n", command_of(result.app, "add"),
-                     file_words(result.flight.file),
-                     base::file_in_shell(result.calibration.empty() ? "BASE.json" : result.calibration),
-                     base::in_shell(effect));
+  return text +
+         page("next: {} {} {} {} -o NEXT.json\n", command_of(result.app, "add"),
+              file_words(result.flight.file),
+              base::file_in_shell(result.calibration.empty() ? "BASE.json" : result.calibration),
+              base::in_shell(effect));
 }
 
 Page unexplained_rows(const Omnibus& omnibus) {
