@@ -271,7 +271,7 @@ def test_what_is_written_takes_the_bridged_rows(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "fault"), zip(["q_radps", "alpha_rad"] * 2, FAULTS, strict=True)
+    ("column", "fault"), list(zip(["q_radps", "alpha_rad"] * 2, FAULTS, strict=True))
 )
 def test_an_aircraft_that_is_integrated_bends_no_answer(
     tmp_path: Path, column: str, fault: str

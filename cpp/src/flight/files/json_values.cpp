@@ -25,7 +25,8 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& source) {
-  if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
+  // What begins with it is no JSON to begin with; behind JSON it would end the text unseen.
+  if (const std::size_t at = text.find('\0', 1); at != std::string_view::npos) {
     throw Error(fmt::format("{}: byte {} is NUL, which JSON has nowhere", source, at));
   }
   constexpr int deepest = 64;
