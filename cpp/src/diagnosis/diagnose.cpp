@@ -480,7 +480,9 @@ void Recipe::advise_pairs_of_lines() {
 /// leaves clearly more than a first that takes much though no fit takes it: alone it would stand
 /// in. Returns whether something else that was found stands first now.
 bool Recipe::withdraw() {
-  const bool nothing_stands = result_.advice.effect.empty() && !withdrawn_.empty();
+  const bool nothing_stands =  // one that a rival alone speaks against does
+      result_.advice.effect.empty() &&
+      std::ranges::find(withdrawn_, result_.effects.front().name) != withdrawn_.end();
   for (EffectFinding& finding : result_.effects) {
     const bool is_withdrawn = std::ranges::find(withdrawn_, finding.name) != withdrawn_.end() ||
                               (nothing_stands && finding.beside == Beside::fades);
