@@ -20,7 +20,7 @@ std::string in_c_comment(std::string_view text);
 /// For a POSIX shell: one word, quoted where it needs quotes.
 std::string in_shell(std::string_view text);
 
-/// The same of a file's name: one that begins with - is none of an option.
+/// The same for the name of a file, so that one that begins with - is not taken for an option.
 std::string file_in_shell(std::string_view name);
 
 }  // namespace sepcal::base
