@@ -120,6 +120,22 @@ TEST_CASE("a resonance of a tenth of its critical damping is no line") {
   CHECK(told <= 3);
 }
 
+TEST_CASE("a line where an input's slope swings is the input's own, elsewhere it is not") {
+  const EvenGrid grid = place_on_grid(even_times(1.0));
+  MatrixXd slopes(2 * rows, 2);  // the second input turns slowly in the second output
+  slopes.col(0).setOnes();
+  slopes.col(1) << VectorXd::Zero(rows), VectorXd::LinSpaced(rows, 0.0, 40.0).array().cos();
+  const double turning = 40.0 / (2.0 * std::numbers::pi * (rows - 1));
+  for (const double away : {0.0, 4.0, 12.0, 60.0}) {
+    const double frequency = turning + away / rows;
+    const bool near = away < 7.0;
+    const SpectralLine of_second{.outputs = {0, 1}, .frequency = frequency};
+    CHECK(swings_as_inputs(of_second, slopes, grid) == near);
+    CHECK_FALSE(swings_as_inputs({.outputs = {0}, .frequency = frequency}, slopes, grid));
+  }
+  CHECK_FALSE(swings_as_inputs({.outputs = {0}, .frequency = 0.1}, MatrixXd(2 * rows, 0), grid));
+}
+
 TEST_CASE("a swing for a quarter of the record is strongest there") {
   Draws draws(5);
   MatrixXd white = draw_outputs("white", 1, draws);

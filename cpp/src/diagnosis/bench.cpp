@@ -72,11 +72,7 @@ Bench::Bench(const Bench& first, Regressors regressors)
 
 void Bench::know_instruments() {
   instruments_ = std::make_unique<InstrumentNoise>(room_, fitted_.kit, null_, options_.wanders);
-  const Eigen::MatrixXd inputs = room_.input_columns();
-  const Eigen::MatrixXd& corrections = room_.fit().wandering;
-  Eigen::MatrixXd slopes(room_.fit().layout.count(), inputs.cols() + corrections.cols());
-  slopes << inputs, corrections;
-  inputs_ = std::make_unique<InputNoise>(null_.white_outputs(), std::move(slopes));
+  inputs_ = std::make_unique<InputNoise>(null_.white_outputs(), room_.input_columns());
 }
 
 DiagnosisWork Bench::work() const {

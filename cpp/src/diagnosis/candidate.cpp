@@ -453,12 +453,15 @@ CandidateRoom::ResidualSlopes CandidateRoom::slopes_by(const BlockModel& model,
 }
 
 MatrixXd CandidateRoom::input_columns() const {
-  if (follows_path() || noise_) return {};
+  const MatrixXd& corrections = linearisation_.wandering;
+  if (follows_path() || noise_) return corrections;
   const auto model = compose(fitted_.model, effects_, regressors_);
   std::vector<std::string> inputs;
   for (const Variable& input : model->tables().inputs) inputs.push_back(input.name);
-  MatrixXd all = slopes_by(*model, inputs, regressors_).columns;
-  if (all.cols() > 0) scale_outputs(all);
+  MatrixXd each = slopes_by(*model, inputs, regressors_).columns;
+  if (each.cols() > 0) scale_outputs(each);
+  MatrixXd all(linearisation_.layout.count(), each.cols() + corrections.cols());
+  all << each, corrections;
   return all;
 }
 

@@ -128,7 +128,8 @@ class CandidateRoom {
   const Eigen::MatrixXd* columns_of(const std::string& port) const;
 
   /// What a change of each of the model's inputs does to every output, stacked as the tangent, by
-  /// differences; none of a model that integrates a state.
+  /// differences, and what each correction of them does that may wander; of a model that
+  /// integrates a state the corrections alone.
   Eigen::MatrixXd input_columns() const;
 
   /// The time of each of the N rows [s].

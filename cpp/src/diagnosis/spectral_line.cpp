@@ -35,6 +35,9 @@ struct Spectrum {
   double frequency(Index at) const {
     return 0.5 * static_cast<double>(at) / static_cast<double>(power.size() - 1);
   }
+  Index place(double frequency) const {
+    return static_cast<Index>(std::lround(2.0 * frequency * static_cast<double>(power.size() - 1)));
+  }
 };
 
 /// `values` are of rows `first`, first + 1, ... of the grid.
@@ -148,6 +151,25 @@ SpectralLine find_line(const MatrixXd& white, const EvenGrid& grid) {
   }
   line.strongest = find_strongest(white, grid, line);
   return line;
+}
+
+bool swings_as_inputs(const SpectralLine& line, const MatrixXd& slopes, const EvenGrid& grid) {
+  constexpr double near = 7.0;         // independent frequencies: as far as neighbours reach
+  constexpr double least_share = 0.2;  // of the slope's power about its mean
+  const auto rows = static_cast<Index>(grid.cells.size());
+  for (const auto slope : slopes.colwise()) {
+    for (const std::size_t j : line.outputs) {
+      const VectorXd of_output = slope.segment(static_cast<Index>(j) * rows, rows);
+      const Spectrum own = find_powers(of_output.array() - of_output.mean(), grid, 0);
+      const Index place = own.place(line.frequency);
+      const auto reach = static_cast<Index>(std::lround(near * own.bin));
+      const Index from = std::max<Index>(0, place - reach);
+      const Index to = std::min(own.power.size() - 1, place + reach);
+      const double share = own.power.segment(from, to - from + 1).sum() / own.power.sum();
+      if (share > least_share) return true;
+    }
+  }
+  return false;
 }
 
 double strongest_frequency(const VectorXd& values, const EvenGrid& grid, Index first) {

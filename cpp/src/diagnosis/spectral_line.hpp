@@ -32,6 +32,11 @@ struct SpectralLine {
 /// `white`: whitened residuals, rows x outputs. Tries each output and the sum of their powers.
 SpectralLine find_line(const Eigen::MatrixXd& white, const EvenGrid& grid);
 
+/// Whether what a unit of some input does to the outputs (`slopes`, output after output, m N x
+/// inputs) swings near the line: a heading that wanders slowly errs at the rate of the turns.
+bool swings_as_inputs(const SpectralLine& line, const Eigen::MatrixXd& slopes,
+                      const EvenGrid& grid);
+
 /// The frequency [cycles a cell] that holds more of a few rows' power than chance would give it
 /// once in a hundred times, by Fisher's g; NaN where none does. `first`: the first of the rows.
 double strongest_frequency(const Eigen::VectorXd& values, const EvenGrid& grid, Eigen::Index first);

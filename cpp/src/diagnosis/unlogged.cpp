@@ -18,6 +18,9 @@ using Eigen::MatrixXd;
 /// sure.
 constexpr double least_share = 0.2;
 
+/// From which probability on a line is asked whether an input swings so.
+constexpr double worth_asking = 0.05;
+
 /// Where and in which outputs a cause shows.
 UnloggedCause place(UnloggedKind kind, double p_value, const std::vector<std::size_t>& outputs,
                     const Window& strongest, const RowLayout& layout,
@@ -53,7 +56,9 @@ std::vector<UnloggedCause> find_unlogged(const CandidateRoom& room, const NullHy
         strongest_frequency(common.together.segment(first, rows), grid, first) / grid.interval;
   }
   const SpectralLine line = find_line(white, grid);
-  if (!line.outputs.empty()) {
+  const bool is_of_inputs =
+      line.p_value < worth_asking && swings_as_inputs(line, room.input_columns(), grid);
+  if (!line.outputs.empty() && !is_of_inputs) {
     causes.push_back(place(UnloggedKind::spectral_line, line.p_value, line.outputs, line.strongest,
                            layout, time));
     causes.back().frequency = line.frequency / grid.interval;
