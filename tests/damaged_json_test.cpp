@@ -39,6 +39,13 @@ TEST_CASE("more than 64 levels are too deep, a million of them too") {
   }
 }
 
+TEST_CASE("a name that one object has twice is refused, in two objects it is none of that") {
+  check_refused([] { parse_calibration(R"({"fit": {"a": 1, "b": {"a": 2}, "a": 3}})", "b.json"); },
+                {"b.json: one object has 'a' twice"});
+  check_refused([] { parse_calibration(R"([{"a": 1}, {"a": {"a": 2}}])", "b.json"); },
+                {"b.json", "not a calibration"});
+}
+
 TEST_CASE("a long value is cut between its characters") {
   std::string name = "x";
   for (int i = 0; i < 1000; ++i) name += "\xC3\xBC";

@@ -153,6 +153,10 @@ def test_field_options(magnetometer: Bench, options: tuple[str, ...], words: tup
         (("compare", "flight.csv"), ("CALIBRATION is required", "compare --help")),
         (("diagnose",), ("FLIGHT is required", "diagnose --help")),
         (("diagnose", "flight.csv"), ("CALIBRATION is required", "diagnose --help")),
+        (
+            ("diagnose", "base.json", "flight.csv"),
+            ("the flight stands before the calibration: diagnose flight.csv base.json",),
+        ),
         (("add", "flight.csv", "base.json"), ("E is required", "add --help")),
         (("apply", "flight.csv", "base.json"), ("--output is required", "apply --help")),
         (("simulate",), ("--output is required", "simulate --help")),

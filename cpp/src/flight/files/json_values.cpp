@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <set>
+#include <vector>
 
 #include "base/utf8.hpp"
 
@@ -33,12 +36,15 @@ Json parse_json(std::string_view text, const std::string& source) {
   constexpr std::array<std::string_view, 5> free_texts{"file", "flight", "label", "message",
                                                        "where"};
   std::string key;
+  std::vector<std::set<std::string, std::less<>>> names;  // of each object that is open
   const auto check = [&](int depth, Json::parse_event_t event, const Json& value) {
     using Event = Json::parse_event_t;
     if (depth >= deepest && (event == Event::object_start || event == Event::array_start)) {
       throw Error(
           fmt::format("{} is nested more than {} deep, as no file of sepcal is", source, deepest));
     }
+    if (event == Event::object_start) names.emplace_back();
+    if (event == Event::object_end) names.pop_back();
     if (event != Event::key && !value.is_string()) return true;
     if (event != Event::key && event != Event::value) return true;
     const auto& said = value.get_ref<const std::string&>();
@@ -48,7 +54,11 @@ Json parse_json(std::string_view text, const std::string& source) {
       throw Error(fmt::format("{}: '{}' holds characters that can't be printed", source,
                               said.substr(0, 60)));
     }
-    if (event == Event::key) key = said;
+    if (event != Event::key) return true;
+    key = said;
+    if (!names.back().insert(key).second) {
+      throw Error(fmt::format("{}: one object has '{}' twice", source, key));
+    }
     return true;
   };
   return Json::parse(text, check, false);
