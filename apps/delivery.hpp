@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/flight/output_file.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/output_file.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {

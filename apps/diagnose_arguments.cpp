@@ -35,7 +35,7 @@ void DiagnoseArguments::add_to(CLI::App& diagnose) {
       ->take_all()
       ->allow_extra_args(false);
   diagnose
-      .add_option("--wanders", wanders_,
+      .add_option("--error-budget", error_budget_,
                   "how far errors wander at most, in their units, where you know it: "
                   "velocity=0.3,heading=0.05; the page names them")
       ->type_name("NAME=SIZE,...")
@@ -57,11 +57,11 @@ StepwiseOptions DiagnoseArguments::resolve() const {
   StepwiseOptions options;
   options.most = most_.value_or(options.most);
   options.diagnosis.only = only_;
-  for (const std::string& given : wanders_) {
-    const auto [name, size] = parse_assignment("--wanders", given, "NAME=SIZE");
-    options.diagnosis.wanders[name] = parse_value("--wanders", size);
-    if (!(options.diagnosis.wanders[name] >= 0.0)) {
-      throw Error("--wanders " + given + ": the size must be 0 or more");
+  for (const std::string& given : error_budget_) {
+    const auto [name, size] = parse_assignment("--error-budget", given, "NAME=SIZE");
+    options.diagnosis.error_budget[name] = parse_value("--error-budget", size);
+    if (!(options.diagnosis.error_budget[name] >= 0.0)) {
+      throw Error("--error-budget " + given + ": the size must be 0 or more");
     }
   }
   if (!within_.empty()) {

@@ -29,7 +29,7 @@ class DiagnoseArguments {
   bool adds_ = false;
   std::optional<std::size_t> most_;
   std::vector<std::string> only_;
-  std::vector<std::string> wanders_;
+  std::vector<std::string> error_budget_;
   std::string within_;
   std::string pse_ = std::string(to_string(PseBound::sidpac));
 };

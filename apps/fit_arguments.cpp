@@ -67,10 +67,10 @@ std::map<std::string, Normal> parse_priors(const std::vector<std::string>& texts
 void FitArguments::add_to(CLI::App& fit) {
   FitOptions& engine = options_.fit;
   add_repeated(fit, "--effect", effects_, "E", "adds a physical effect to the model");
-  fit.add_option("--stage-one", engine.stage_one_segments,
+  fit.add_option("--stage-one-segments", engine.stage_one_segments,
                  "maneuvers or times that stage one uses, e.g. wind_circle_1,510.9:530")
       ->type_name("SEGMENTS");
-  fit.add_option("--stage-two", engine.stage_two_segments, "the same for stage two")
+  fit.add_option("--stage-two-segments", engine.stage_two_segments, "the same for stage two")
       ->type_name("SEGMENTS");
   add_repeated(fit, "--bounds", bounds_, "NAME=LO,HI", "bounds in the parameter's unit");
   add_repeated(fit, "--fix", fixed_, "NAME=VALUE", "holds a parameter at a value");
@@ -114,8 +114,8 @@ CalibrationOptions FitArguments::resolve() const {
   }
   for (const std::string& text : fixed_) {
     const auto [name, value] = parse_assignment("--fix", text, "NAME=VALUE");
-    refuse_repeated("--fix", engine.fixed, name);
-    engine.fixed[name] = parse_value("--fix " + name, value);
+    refuse_repeated("--fix", engine.fix, name);
+    engine.fix[name] = parse_value("--fix " + name, value);
     if (engine.bounds.contains(name)) {
       throw Error(fmt::format("--fix {0} and --bounds {0} contradict each other; keep one", name));
     }

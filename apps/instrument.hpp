@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/simulation/simulate.hpp"
-#include "sepcal/simulation/truth.hpp"
 
 namespace sepcal::app {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/flight/log_choice.hpp"
+#include "sepcal/detail/flight/log_choice.hpp"
 
 namespace sepcal::app {
 

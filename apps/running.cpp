@@ -10,9 +10,9 @@
 #include <new>
 
 #include "interrupt.hpp"
+#include "sepcal/detail/solver_log.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/csv.hpp"
-#include "sepcal/option_error.hpp"
-#include "sepcal/solver_log.hpp"
 #include "sepcal/stop.hpp"
 #include "terminal.hpp"
 

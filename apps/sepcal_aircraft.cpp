@@ -17,11 +17,11 @@
 #include "option_values.hpp"
 #include "progress.hpp"
 #include "running.hpp"
+#include "sepcal/detail/flight/aircraft_file.hpp"
+#include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
-#include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/simulation/aircraft.hpp"
-#include "sepcal/simulation/truth.hpp"
 #include "simulation_arguments.hpp"
 #include "terminal.hpp"
 

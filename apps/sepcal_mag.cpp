@@ -4,8 +4,8 @@
 
 #include "instrument.hpp"
 #include "option_values.hpp"
+#include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/simulation/truth.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {

@@ -17,7 +17,7 @@ int main() {
 
   const AircraftGeometry& geometry = truth.geometry;  // or read_aircraft("AIRCRAFT.json")
   const AeroFit one = fit_equation_error(aero_coefficients(record, geometry));
-  const TwoStep two = two_step(record, geometry, {.path_fit = {.fixed = {{"lambda_v", 0.0}}}});
+  const TwoStep two = two_step(record, geometry, {.path_fit = {.fix = {{"lambda_v", 0.0}}}});
   const AeroFit output = fit_output_error(
       record, geometry, {.axes = AircraftAxes::longitudinal, .free = {"lambda_alpha"}});
   std::printf("%s\n", output.notes.front().c_str());

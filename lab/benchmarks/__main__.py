@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="scripts/benchmark", description=__doc__)
     names = ", ".join(RACES)
     parser.add_argument("race", nargs="*", metavar="RACE", help=f"{names}; all where none is named")
-    parser.add_argument("--rounds", type=int, default=9, help="turns of every contender (9)")
+    parser.add_argument("--rounds", type=int, default=9, help="turns of every competitor (9)")
     parser.add_argument("--quick", action="store_true", help="short records, to see that it runs")
     parser.add_argument("--longest", type=int, metavar="ROWS", help="leaves out longer records")
     parser.add_argument(

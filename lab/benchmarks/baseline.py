@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.race import Contender, Result, judge, lengths_within, race
+from benchmarks.race import Competitor, Result, judge, lengths_within, race
 
 ROOT = Path(__file__).parents[2]
 NOW = ROOT / "build" / "apps"
@@ -100,7 +100,7 @@ def race_task(task: Task, folder: Path, older: dict[str, Path], rounds: int) -> 
             peaks.setdefault(name, []).append(spent.kilobytes)
             return spent.seconds, task.answer(json.loads(out.read_text()))
 
-        racing.append(Contender(name, run))
+        racing.append(Competitor(name, run))
     race(racing, rounds)
 
     def differ(off: np.ndarray) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from benchmarks.output_error import AIRSPEED, INTERVAL, ROWS, elevator
-from benchmarks.race import Contender, Result, judge, program, race, show_time, timed
+from benchmarks.race import Competitor, Result, judge, program, race, show_time, timed
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -126,32 +126,32 @@ def step_by_statsmodels(model: Model) -> np.ndarray:
 def race_score(file: Path, u: np.ndarray, z: np.ndarray, rounds: int) -> Result:
     """The gradient at one theta."""
     model = Model(u, z)
-    contenders = [
-        Contender("sepcal, score and information", program("filter-error", "score", file)),
-        Contender(
+    competitors = [
+        Competitor("sepcal, score and information", program("filter-error", "score", file)),
+        Competitor(
             "sepcal's filter, central differences, score alone",
             program("filter-error", "differences", file),
         ),
-        Contender(
+        Competitor(
             "statsmodels, complex steps, score alone",
             timed(lambda: -model.score(AT)),
         ),
-        Contender(
+        Competitor(
             "statsmodels, complex steps, score and information by NumPy",
             timed(lambda: step_by_statsmodels(model)),
         ),
-        Contender(
+        Competitor(
             "statsmodels, Harvey's score alone",
             timed(lambda: -np.asarray(model.score(AT, method="harvey")).real),
         ),
     ]
-    race(contenders, rounds)
+    race(competitors, rounds)
     sd = np.sqrt(np.diag(information_by_statsmodels(model)[1]))
     title = "Filter error of the short period, 20 s at 50 Hz, fifteen parameters: a step of scoring"
     return judge(
         "filter-error",
         title,
-        contenders,
+        competitors,
         lambda off: float(np.abs(off / sd).max()),
         "the score's standard deviations",
     )
@@ -224,21 +224,21 @@ def by_filterpy(u: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 def race_tracks(file: Path, u: np.ndarray, z: np.ndarray, rounds: int) -> Result:
     """Along all rows, from theta and a deviation of a tenth."""
-    contenders = [
-        Contender(
+    competitors = [
+        Competitor(
             "sepcal, recursive maximum likelihood, noises estimated",
             program("filter-error", "rml", file),
         ),
-        Contender("sepcal, joint extended filter", program("filter-error", "joint", file)),
-        Contender("FilterPy, joint extended filter", timed(lambda: by_filterpy(u, z))),
+        Competitor("sepcal, joint extended filter", program("filter-error", "joint", file)),
+        Competitor("FilterPy, joint extended filter", timed(lambda: by_filterpy(u, z))),
     ]
-    race(contenders, rounds)
+    race(competitors, rounds)
     information = information_by_statsmodels(Model(u, z))[1]
     sd = np.sqrt(np.diag(np.linalg.inv(information)))[[7, 8, 9, 3, 4]]
     result = judge(
         "filter-error",
         f"Tracks of the short period, {ROWS} samples",
-        contenders,
+        competitors,
         lambda off: float(np.abs(off / sd).max()),
         "standard errors",
     )

@@ -12,7 +12,7 @@ import numpy as np
 import sepcal
 from benchmarks.limits import instruction_sets
 from benchmarks.numpy_five_hole import HoistedProbe
-from benchmarks.race import Contender, ask, program
+from benchmarks.race import Competitor, ask, program
 
 K_ALPHA, K_BETA, ARM = 4.5, 4.5, (0.35, 0.0, -0.02)
 NOISE = (0.15, 0.15, 0.15)  # of vn, ve, vd [m/s]
@@ -108,10 +108,10 @@ class FiveHoleFlight:
         return float(np.abs(off[:10] / self.standard_errors).max())
 
 
-def by_sepcal(method: str, flight: FiveHoleFlight, repeats: int) -> list[Contender]:
+def by_sepcal(method: str, flight: FiveHoleFlight, repeats: int) -> list[Competitor]:
     """Sepcal by the widest instruction set that there is, then by each narrower one."""
     return [
-        Contender(
+        Competitor(
             "sepcal" if k == 0 else f"sepcal, {isa}",
             program("five-hole", method, flight.file, repeats, isa),
         )

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.five_hole import FiveHoleFlight
-from benchmarks.race import Contender, Result, ask, judge, lengths_within, program, race
+from benchmarks.race import Competitor, Result, ask, judge, lengths_within, program, race
 
 ROWS = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000)
 ALWAYS_ROWS = 1_000_000  # longer ones only where there is memory for them
@@ -24,10 +24,10 @@ def available_bytes() -> int:
     return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
-def measure(title: str, contenders: list[Contender], rounds: int, counts: list[int]) -> Result:
+def measure(title: str, competitors: list[Competitor], rounds: int, counts: list[int]) -> Result:
     """The times by what is counted, as facts too."""
-    race(contenders, rounds)
-    result = judge("growth", title, contenders, lambda off: 0.0, "")
+    race(competitors, rounds)
+    result = judge("growth", title, competitors, lambda off: 0.0, "")
     result.facts |= {
         str(count): line.median for count, line in zip(counts, result.lines, strict=True)
     }
@@ -36,22 +36,22 @@ def measure(title: str, contenders: list[Contender], rounds: int, counts: list[i
 
 def with_rows(folder: Path, rounds: int, lengths: list[int]) -> Result:
     """500 samples each."""
-    contenders = []
+    competitors = []
     for rows in lengths:
         file = FiveHoleFlight(folder, rows).bare
-        contenders.append(Contender(f"{rows:,} rows", program("five-hole", "fit", file, 1)))
-    return measure("Growth with rows, 500 samples", contenders, rounds, lengths)
+        competitors.append(Competitor(f"{rows:,} rows", program("five-hole", "fit", file, 1)))
+    return measure("Growth with rows, 500 samples", competitors, rounds, lengths)
 
 
 def with_samples(folder: Path, rounds: int, rows: int) -> Result:
     """One flight."""
     flight = FiveHoleFlight(folder, rows)
-    contenders = []
+    competitors = []
     for count in SAMPLES:
         file = flight.write(np.zeros(16), np.zeros(5 * count))
-        contenders.append(Contender(f"{count:,} samples", program("five-hole", "fit", file, 1)))
+        competitors.append(Competitor(f"{count:,} samples", program("five-hole", "fit", file, 1)))
     title = f"Growth with samples, {rows:,} rows"
-    return measure(title, contenders, rounds, list(SAMPLES))
+    return measure(title, competitors, rounds, list(SAMPLES))
 
 
 def with_threads(folder: Path, rounds: int, rows: int) -> Result:
@@ -60,8 +60,8 @@ def with_threads(folder: Path, rounds: int, rows: int) -> Result:
     cores = set(range(os.cpu_count() or 1))
     counts = [count for count in (1, 2, 4, 8, 16) if count <= len(cores)]
     pinned = os.sched_getaffinity(0)
-    contenders = [
-        Contender(
+    competitors = [
+        Competitor(
             f"{count} thread{'s' if count > 1 else ''}",
             lambda count=count: ask("sepcal", "five-hole", f"wall-{count}", file, 1),  # type: ignore[misc]
         )
@@ -69,7 +69,7 @@ def with_threads(folder: Path, rounds: int, rows: int) -> Result:
     ]
     os.sched_setaffinity(0, cores)
     try:
-        result = measure(f"Wall time by threads, {rows:,} rows", contenders, rounds, counts)
+        result = measure(f"Wall time by threads, {rows:,} rows", competitors, rounds, counts)
     finally:
         os.sched_setaffinity(0, pinned)
     return replace(result, notes=["Of the clock on the wall, so that other load counts too."])

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import least_squares
 
-from benchmarks.race import Contender, Result, judge, peer, program, race, timed
+from benchmarks.race import Competitor, Result, judge, peer, program, race, timed
 
 ROWS, INTERVAL, AIRSPEED = 1000, 0.02, 25.0
 NOISE = np.array([0.005, 0.01, 0.15])  # alpha [rad], q [rad/s], az [m/s^2]
@@ -131,28 +131,28 @@ def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     t, u, z = fly(1)
     file = folder / "short_period.bin"
     np.concatenate([t, u, z.ravel()]).tofile(file)
-    contenders = [
-        Contender("sepcal from the same start", program("output-error", "start", file)),
-        Contender("sepcal from no start", program("output-error", "no-start", file, 2)),
-        Contender("the same, with coloured errors", program("output-error", "coloured", file, 2)),
+    competitors = [
+        Competitor("sepcal from the same start", program("output-error", "start", file)),
+        Competitor("sepcal from no start", program("output-error", "no-start", file, 2)),
+        Competitor("the same, with coloured errors", program("output-error", "coloured", file, 2)),
         *(
-            Contender(
+            Competitor(
                 f"Ceres, automatic derivatives, {flags}",
                 peer(flags, "output-error", "ceres", file, 10),
             )
             for flags in ("plain", "native")
         ),
-        Contender("SciPy, Runge-Kutta by rows", timed(lambda: by_scipy(t, u, z))),
+        Competitor("SciPy, Runge-Kutta by rows", timed(lambda: by_scipy(t, u, z))),
     ]
-    race(contenders, rounds)
+    race(competitors, rounds)
     problem = OutputError(t, u, z)
-    J = problem.jacobian(contenders[0].answer)
+    J = problem.jacobian(competitors[0].answer)
     sd = np.sqrt(np.diag(np.linalg.inv(J.T @ J)))
     title = "Output error of the short period, 20 s at 50 Hz, ten parameters"
     yield judge(
         "output-error",
         title,
-        contenders,
+        competitors,
         lambda off: float(np.abs(off / sd).max()),
         "standard errors",
     )

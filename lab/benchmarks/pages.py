@@ -64,7 +64,7 @@ def whole_fits(held: Json) -> dict[str, tuple[list[float], list[float]]]:
         rows = re.match(r"The whole fit, ([\d,]+) rows, white", race["title"])
         if race["race"] not in ("fit", "long-fit") or rows is None:
             continue
-        for line in race["contenders"]:
+        for line in race["competitors"]:
             if not line["name"].startswith("sepcal"):
                 counts, seconds = peers.setdefault(line["name"], ([], []))
                 counts.append(float(rows[1].replace(",", "")))

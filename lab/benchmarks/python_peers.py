@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.five_hole import NOISE, FiveHoleFlight
 from benchmarks.numpy_five_hole import HoistedProbe
-from benchmarks.race import Contender, timed
+from benchmarks.race import Competitor, timed
 
 Array = np.ndarray
 Solve = Callable[[], Array]
@@ -163,12 +163,12 @@ SOLVERS = {
 }
 
 
-def python_peers(flight: FiveHoleFlight) -> list[Contender]:
+def python_peers(flight: FiveHoleFlight) -> list[Competitor]:
     """Those that are installed; of another one a line says that it is left out."""
-    contenders = []
+    competitors = []
     for name, use in SOLVERS.items():
         try:
-            contenders.append(Contender(name, timed(use(flight))))
+            competitors.append(Competitor(name, timed(use(flight))))
         except ImportError as error:
             print(f"{name} is left out: {error}")
-    return contenders
+    return competitors

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contenders that solve one problem in turns, on one core, and the results of a race."""
+"""Competitors that solve one problem in turns, on one core, and the results of a race."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def lengths_within(longest: int, lengths: tuple[int, ...]) -> list[int]:
 
 
 @dataclass
-class Contender:
+class Competitor:
     """A way to solve the problem: `run` returns seconds of CPU and the answer."""
 
     name: str
@@ -40,7 +40,7 @@ class Contender:
 
 
 def timed(solve: Callable[[], np.ndarray], repeats: int = 1) -> Run:
-    """A contender's `run` that measures a Python function: the fastest of repeats.
+    """A competitor's `run` that measures a Python function: the fastest of repeats.
 
     All threads of the process count, since some libraries compute on threads of their own.
     """
@@ -69,34 +69,34 @@ def ask(program: str, *arguments: object, isa: str = "") -> tuple[float, np.ndar
 
 
 def program(problem: str, method: str, file: Path, repeats: int = 10, isa: str = "") -> Run:
-    """A contender's `run` by sepcal_benchmark: the fastest of repeats."""
+    """A competitor's `run` by sepcal_benchmark: the fastest of repeats."""
     return lambda: ask("sepcal", problem, method, file, repeats, isa=isa)
 
 
 def peer(flags: str, problem: str, method: str, file: Path, repeats: int = 3) -> Run:
-    """A contender's `run` by the peers' program for `flags`, plain or native."""
+    """A competitor's `run` by the peers' program for `flags`, plain or native."""
     return lambda: ask(flags, problem, method, file, repeats)
 
 
-def race(contenders: list[Contender], rounds: int, budget: float = 20.0) -> None:
+def race(competitors: list[Competitor], rounds: int, budget: float = 20.0) -> None:
     """Runs all in turns, so that a load of the machine falls on each alike.
 
     Who has used `budget` seconds of CPU rests from then on: one turn of the slowest is enough.
     """
-    spent = dict.fromkeys(range(len(contenders)), 0.0)
+    spent = dict.fromkeys(range(len(competitors)), 0.0)
     for _ in range(rounds):
-        for k, contender in enumerate(contenders):
-            if contender.seconds and spent[k] > budget:
+        for k, competitor in enumerate(competitors):
+            if competitor.seconds and spent[k] > budget:
                 continue
             begin = sum(os.times()[:4])  # children's too
-            seconds, contender.answer = contender.run()
-            contender.seconds.append(seconds)
+            seconds, competitor.answer = competitor.run()
+            competitor.seconds.append(seconds)
             spent[k] += sum(os.times()[:4]) - begin
 
 
 @dataclass
 class Line:
-    """What is kept of a contender. `ratio`: median time over the first contender's."""
+    """What is kept of a competitor. `ratio`: median time over the first competitor's."""
 
     name: str
     fastest: float  # s
@@ -108,7 +108,7 @@ class Line:
 
 @dataclass
 class Result:
-    """A race that was run; the first contender is what ratios are of."""
+    """A race that was run; the first competitor is what ratios are of."""
 
     race: str
     title: str
@@ -137,7 +137,7 @@ class Result:
             "race": self.race,
             "title": self.title,
             "unit": self.unit,
-            "contenders": [vars(one) for one in self.lines],
+            "competitors": [vars(one) for one in self.lines],
             "notes": self.notes,
             "facts": self.facts,
         }
@@ -154,14 +154,14 @@ def show_time(seconds: float) -> str:
 def judge(
     name: str,
     title: str,
-    contenders: list[Contender],
+    competitors: list[Competitor],
     agreement: Callable[[np.ndarray], float],
     unit: str,
 ) -> Result:
-    """The race's result. The first contender is what the others are held against."""
-    first = contenders[0]
+    """The race's result. The first competitor is what the others are held against."""
+    first = competitors[0]
     lines = []
-    for one in contenders:
+    for one in competitors:
         together = zip(one.seconds, first.seconds, strict=False)  # within a turn
         ratio = statistics.median(seconds / ours for seconds, ours in together)
         off = agreement(one.answer - first.answer)

@@ -53,7 +53,7 @@ def merge(old: Json, new: list[Result], of: Json) -> Json:
 
 def result_of(entry: Json) -> Result:
     """The inverse of Result.to_json()."""
-    lines = [Line(**one) for one in entry["contenders"]]
+    lines = [Line(**one) for one in entry["competitors"]]
     return Result(
         entry["race"], entry["title"], entry["unit"], lines, entry["notes"], entry["facts"]
     )

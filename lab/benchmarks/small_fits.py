@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares, leastsq
 
-from benchmarks.race import QUICK, Contender, Result, judge, peer, program, race, timed
+from benchmarks.race import QUICK, Competitor, Result, judge, peer, program, race, timed
 
 ROWS, NOISE = 100, 0.1
 TRUTH = (0.3, 1.0, 0.2)  # a, c, b
@@ -65,17 +65,17 @@ def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     file = folder / "trials.bin"
     np.concatenate([[trials, ROWS], eta, z.ravel()]).tofile(file)
     racing = [
-        Contender("sepcal, default", program("scalar", "default", file, 1)),
-        Contender("sepcal, no samples", program("scalar", "no-samples", file, 1)),
-        Contender(
+        Competitor("sepcal, default", program("scalar", "default", file, 1)),
+        Competitor("sepcal, no samples", program("scalar", "no-samples", file, 1)),
+        Competitor(
             "sepcal, no samples, white noise", program("scalar", "no-samples-white", file, 3)
         ),
-        Contender("sepcal, trials side by side", program("scalar", "together", file, 9)),
-        Contender("SciPy least_squares lm", timed(lambda: fit_each(eta, z, by_least_squares))),
-        Contender("SciPy leastsq", timed(lambda: fit_each(eta, z, by_leastsq))),
+        Competitor("sepcal, trials side by side", program("scalar", "together", file, 9)),
+        Competitor("SciPy least_squares lm", timed(lambda: fit_each(eta, z, by_least_squares))),
+        Competitor("SciPy leastsq", timed(lambda: fit_each(eta, z, by_leastsq))),
     ]
     racing += [
-        Contender(f"Ceres, {name}, {flags}", peer(flags, "scalar", method, file, 3))
+        Competitor(f"Ceres, {name}, {flags}", peer(flags, "scalar", method, file, 3))
         for name, method in {"one block": "ceres", "TinySolver": "tiny-solver"}.items()
         for flags in ("plain", "native")
     ]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.race import Contender, Result, judge, program, race, timed
+from benchmarks.race import Competitor, Result, judge, program, race, timed
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -73,19 +73,19 @@ def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     file = folder / "smoother.bin"
     np.concatenate([X0, P0.ravel(), C.ravel(), R.ravel(), samples.ravel()]).tofile(file)
     model = statsmodels_model(Phi, Q, y)
-    contenders = [
-        Contender("sepcal, square roots", program("smoother", "square-root", file)),
-        Contender("sepcal, Joseph's form", program("smoother", "joseph", file)),
-        Contender("statsmodels", timed(lambda: model.smooth().smoothed_state.T.ravel())),
-        Contender("FilterPy", timed(lambda: by_filterpy(Phi, Q, y))),
+    competitors = [
+        Competitor("sepcal, square roots", program("smoother", "square-root", file)),
+        Competitor("sepcal, Joseph's form", program("smoother", "joseph", file)),
+        Competitor("statsmodels", timed(lambda: model.smooth().smoothed_state.T.ravel())),
+        Competitor("FilterPy", timed(lambda: by_filterpy(Phi, Q, y))),
     ]
-    race(contenders, rounds)
-    size = float(np.abs(contenders[0].answer).max())
+    race(competitors, rounds)
+    size = float(np.abs(competitors[0].answer).max())
     title = "Filter and smoother, four states, two outputs, 2000 samples at irregular times"
     yield judge(
         "smoother",
         title,
-        contenders,
+        competitors,
         lambda off: float(np.abs(off).max()) / size,
         "of the largest",
     )

@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.five_hole import FiveHoleFlight, by_sepcal
 from benchmarks.limits import instruction_sets, measure
 from benchmarks.numpy_five_hole import sample
-from benchmarks.race import Contender, Result, ask, judge, lengths_within, peer, race, timed
+from benchmarks.race import Competitor, Result, ask, judge, lengths_within, peer, race, timed
 
 LENGTHS = (5_000, 100_000)
 
@@ -27,13 +27,13 @@ def race_samples(flight: FiveHoleFlight, rounds: int) -> Result:
     repeats = repeats_of(flight)
     ours = by_sepcal("sampling", flight, 3 * repeats)
     others = [
-        Contender(
+        Competitor(
             f"Eigen ColPivHouseholderQR, {flags}",
             peer(flags, "five-hole", "sampling", flight.file, repeats),
         )
         for flags in ("plain", "native")
     ]
-    numpy = Contender("NumPy lstsq", timed(lambda: sample(flight.hoist(), flight.points)))
+    numpy = Competitor("NumPy lstsq", timed(lambda: sample(flight.hoist(), flight.points)))
     racing = [*ours, *others, numpy]
     race(racing, rounds)
     # Who samples answers with the best point, sepcal with the sum of squares there.
@@ -76,7 +76,7 @@ def race_stage_one(flight: FiveHoleFlight, rounds: int) -> Result:
     """Samples, and as many descents as sepcal makes, from where it makes them."""
     repeats = repeats_of(flight)
     racing = by_sepcal("stage-one", flight, repeats) + [
-        Contender(
+        Competitor(
             f"Eigen + Ceres, {name}, {flags}",
             peer(flags, "five-hole", f"stage-one:{way}", flight.file, repeats),
         )

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.five_hole import NOISE, FiveHoleFlight, by_sepcal
 from benchmarks.numpy_five_hole import alternate, solve
 from benchmarks.python_peers import python_peers
-from benchmarks.race import Contender, Result, judge, lengths_within, peer, race, timed
+from benchmarks.race import Competitor, Result, judge, lengths_within, peer, race, timed
 
 CERES = {
     "a row a block": "1",
@@ -22,7 +22,7 @@ CERES = {
 }
 
 
-def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
+def competitors(flight: FiveHoleFlight, known: bool) -> list[Competitor]:
     """With R known, or alternated with the parameters."""
     method = "known-noise" if known else "stage-two"
     repeats = 3 if flight.rows < 50_000 else 1
@@ -30,7 +30,7 @@ def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
     for name, way in CERES.items():
         for flags in ("plain", "native"):
             run = peer(flags, "five-hole", f"{method}:{way}", flight.file, repeats)
-            all_of_them.append(Contender(f"Ceres, {name}, {flags}", run))
+            all_of_them.append(Competitor(f"Ceres, {name}, {flags}", run))
     for scipy in ("trf", "lm"):
 
         def run_scipy(scipy: str = scipy) -> np.ndarray:
@@ -40,7 +40,7 @@ def contenders(flight: FiveHoleFlight, known: bool) -> list[Contender]:
             probe.set_noise(np.array(NOISE))
             return solve(probe, flight.start, scipy)
 
-        all_of_them.append(Contender(f"SciPy {scipy}, derivatives by hand", timed(run_scipy)))
+        all_of_them.append(Competitor(f"SciPy {scipy}, derivatives by hand", timed(run_scipy)))
     return all_of_them + (python_peers(flight) if known else [])
 
 
@@ -49,7 +49,7 @@ def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     for rows in lengths_within(longest, (5_000, 100_000)):
         flight = FiveHoleFlight(folder, rows)
         for known in (True, False):
-            racing = contenders(flight, known)
+            racing = competitors(flight, known)
             race(racing, rounds)
             title = f"Stage two alone, {rows:,} rows, R {'known' if known else 'alternated'}"
             yield judge("stage-two", title, racing, flight.in_errors, "standard errors")

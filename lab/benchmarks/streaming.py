@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.baseline import NOW, PROBE, spend
-from benchmarks.race import Contender, Result, judge, lengths_within, race
+from benchmarks.race import Competitor, Result, judge, lengths_within, race
 
 ROWS = (100_000, 1_000_000, 10_000_000)
 LONGEST_HELD = 1_000_000  # rows of a log that is also fitted in memory
@@ -22,7 +22,7 @@ def race_length(folder: Path, rounds: int, rows: int, peaks: dict[str, dict[int,
     spend([str(NOW / "sepcal-pitot"), "simulate", "-o", log, "--rows", str(rows), "--seed", "1"])
     errors = np.empty(0)
 
-    def contender(name: str, *options: str) -> Contender:
+    def competitor(name: str, *options: str) -> Competitor:
         def run() -> tuple[float, np.ndarray]:
             nonlocal errors
             command = ["fit", log, *PROBE, "--threads", "1", "-o", str(out), *options]
@@ -32,11 +32,11 @@ def race_length(folder: Path, rounds: int, rows: int, peaks: dict[str, dict[int,
             errors = np.array([one["standard_error"] for one in entries])
             return spent.seconds, np.array([one["value"] for one in entries])
 
-        return Contender(name, run)
+        return Competitor(name, run)
 
-    racing = [contender("with --stream", "--stream")]
+    racing = [competitor("with --stream", "--stream")]
     if rows <= LONGEST_HELD:
-        racing.append(contender("in memory"))
+        racing.append(competitor("in memory"))
     race(racing, rounds if rows <= LONGEST_HELD else 1)
     title = f"sepcal-pitot fit of a log, {rows:,} rows"
     Path(log).unlink()

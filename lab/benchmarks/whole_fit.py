@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.five_hole import FiveHoleFlight, by_sepcal
 from benchmarks.numpy_five_hole import alternate, sample
-from benchmarks.race import Contender, Result, judge, lengths_within, peer, race, timed
+from benchmarks.race import Competitor, Result, judge, lengths_within, peer, race, timed
 
 BRIEF = ("sepcal", "Eigen + Ceres, by hand, native", "NumPy + SciPy")
 
@@ -24,28 +24,28 @@ def by_numpy_and_scipy(flight: FiveHoleFlight) -> np.ndarray:
     return alternate(probe, x, probe.noise_at(x), "trf")
 
 
-def contenders(flight: FiveHoleFlight) -> list[Contender]:
+def competitors(flight: FiveHoleFlight) -> list[Competitor]:
     """The first is sepcal."""
     repeats = 3 if flight.rows < 50_000 else 1
     return [
         *by_sepcal("fit", flight, repeats),
         *(
-            Contender(
+            Competitor(
                 f"Eigen + Ceres, {name}, {flags}",
                 peer(flags, "five-hole", f"fit:{way}", flight.file, repeats),
             )
             for name, way in {"automatic": "50", "by hand": "50-by-hand"}.items()
             for flags in ("plain", "native")
         ),
-        Contender("NumPy + SciPy", timed(lambda: by_numpy_and_scipy(flight))),
+        Competitor("NumPy + SciPy", timed(lambda: by_numpy_and_scipy(flight))),
     ]
 
 
-def contenders_with_effects(flight: FiveHoleFlight) -> list[Contender]:
+def competitors_with_effects(flight: FiveHoleFlight) -> list[Competitor]:
     """Two effects join at run time: wind that drifts, a pressure that follows the throttle."""
     repeats = 3 if flight.rows < 50_000 else 1
     return by_sepcal("fit-with-effects", flight, repeats) + [
-        Contender(
+        Competitor(
             f"Eigen + Ceres, automatic, {flags}",
             peer(flags, "five-hole", "fit-with-effects", flight.file, repeats),
         )
@@ -53,7 +53,7 @@ def contenders_with_effects(flight: FiveHoleFlight) -> list[Contender]:
     ]
 
 
-def race_fit(flight: FiveHoleFlight, racing: list[Contender], rounds: int) -> Result:
+def race_fit(flight: FiveHoleFlight, racing: list[Competitor], rounds: int) -> Result:
     """One table."""
     race(racing, rounds)
     title = f"The whole fit, {flight.rows:,} rows, {flight.noise} noise"
@@ -64,13 +64,13 @@ def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """White and pink noise."""
     for rows, noise in product(lengths_within(longest, (5_000, 100_000)), ("white", "pink")):
         flight = FiveHoleFlight(folder, rows, noise)
-        yield race_fit(flight, contenders(flight), rounds)
+        yield race_fit(flight, competitors(flight), rounds)
 
 
 def run_long(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
     """A million rows of white noise; of each kind of peer the fastest there."""
     flight = FiveHoleFlight(folder, lengths_within(longest, (1_000_000,))[0])
-    brief = [one for one in contenders(flight) if one.name in BRIEF]
+    brief = [one for one in competitors(flight) if one.name in BRIEF]
     result = race_fit(flight, brief, rounds)
     yield replace(result, race="long-fit")
 
@@ -80,7 +80,7 @@ def run_with_effects(folder: Path, rounds: int, longest: int) -> Iterator[Result
     for rows, noise in product(lengths_within(longest, (5_000, 100_000)), ("white", "pink")):
         hidden = {"propwash": 40.0, "wind_drift": 0.01}
         flight = FiveHoleFlight(folder, rows, noise, hidden)
-        racing = contenders_with_effects(flight)
+        racing = competitors_with_effects(flight)
         race(racing, rounds)
         title = f"The whole fit with two effects, {rows:,} rows, {noise} noise"
         yield judge("fit-with-effects", title, racing, flight.in_errors, "standard errors")

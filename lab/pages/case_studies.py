@@ -57,7 +57,7 @@ STUDIES = (
         "airliner_mode_s.csv",
         TUBE,
         "m/s",
-        {"fixed": {"s_va": 1.0, "c_va": 0.0}},
+        {"fix": {"s_va": 1.0, "c_va": 0.0}},
     ),
     Study("wind tunnel, five probes", "aeroprobe_wind_tunnel.csv", TUBE),
     Study("wind tunnel, 5 psf", "airball_wind_tunnel_5psf.csv", TUBE),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Studies in C++: the executable sepcal_studies, built on demand from tests/studies/*.cpp.
+"""Studies in C++: the executable sepcal_studies, built on demand from tests/cpp/studies/*.cpp.
 
 Its test cases tell their figures as messages; a check that fails is outside its limits.
 """

@@ -10,6 +10,7 @@ __all__: list[str] = [
     "Advice",
     "AlonsoShusterFit",
     "Applied",
+    "Approximation",
     "Calibration",
     "CataloguedEffect",
     "Certificate",
@@ -28,7 +29,7 @@ __all__: list[str] = [
     "EffectFinding",
     "EffectSetting",
     "Error",
-    "ExportLoss",
+    "ErrorBound",
     "Exported",
     "FirstStep",
     "Fit",
@@ -69,9 +70,8 @@ __all__: list[str] = [
     "Track",
     "TwoStepProblem",
     "Unexplained",
-    "UnloggedCause",
+    "UnmeasuredCause",
     "VISIBLE_FROM",
-    "WanderBound",
     "Window",
     "accelerometer",
     "attitude_independent_magnetometer",
@@ -139,8 +139,8 @@ class Options:
     sampling: str
     search: str
     second_stage: str
-    stage_one: str
-    stage_two: str
+    stage_one_segments: str
+    stage_two_segments: str
     where: str
     def __init__(self) -> None: ...
     @property
@@ -152,9 +152,9 @@ class Options:
     @drop_repeats.setter
     def drop_repeats(self, arg1: collections.abc.Sequence[str]) -> None: ...
     @property
-    def fixed(self) -> dict[str, float]: ...
-    @fixed.setter
-    def fixed(
+    def fix(self) -> dict[str, float]: ...
+    @fix.setter
+    def fix(
         self, arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]
     ) -> None: ...
     @property
@@ -580,7 +580,7 @@ class Fit:
         "noise",
         "rmse",
         "cost",
-        "by",
+        "method",
         "noise_sizes",
         "log_likelihood",
         "log_likelihood_without",
@@ -588,7 +588,7 @@ class Fit:
         "unobservable",
         "weak",
         "stage_one",
-        "method",
+        "second_stage",
         "iterations",
         "noise_iterations",
         "effects",
@@ -603,11 +603,6 @@ class Fit:
     def _asdict(self) -> dict[str, typing.Any]:
         """
         {field: value}, as of a named tuple.
-        """
-    @property
-    def by(self) -> str:
-        """
-        "output-error" or "filter-error".
         """
     @property
     def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -674,7 +669,7 @@ class Fit:
     @property
     def method(self) -> str:
         """
-        "joint" or "projected": what stage two used in the end.
+        "output-error" or "filter-error".
         """
     @property
     def n_1(self) -> int:
@@ -710,6 +705,11 @@ class Fit:
     def rows(self) -> int:
         """
         That stage two used.
+        """
+    @property
+    def second_stage(self) -> str:
+        """
+        "joint" or "projected": what stage two used in the end.
         """
     @property
     def stage_one(self) -> StageOne: ...
@@ -1662,7 +1662,7 @@ class Comparison:
         "time",
         "residuals",
         "modelled",
-        "by",
+        "method",
         "sigma",
         "disturbances",
         "notes",
@@ -1677,11 +1677,6 @@ class Comparison:
     def _asdict(self) -> dict[str, typing.Any]:
         """
         {field: value}, as of a named tuple.
-        """
-    @property
-    def by(self) -> str:
-        """
-        "output-error" or "filter-error".
         """
     @property
     def channels(self) -> list[ChannelMisfit]:
@@ -1707,6 +1702,11 @@ class Comparison:
     def json(self) -> str: ...
     @property
     def message(self) -> str: ...
+    @property
+    def method(self) -> str:
+        """
+        "output-error" or "filter-error".
+        """
     @property
     def model(self) -> str: ...
     @property
@@ -2065,7 +2065,7 @@ class Unexplained:
     @property
     def p_adjusted(self) -> float:
         """
-        After Holm, with the unlogged causes.
+        After Holm, with the unmeasured causes.
         """
     @property
     def p_value(self) -> float: ...
@@ -2082,7 +2082,7 @@ class Unexplained:
         [(window, how far off it is [sigma]), ...].
         """
 
-class UnloggedCause:
+class UnmeasuredCause:
     """
     A cause that no logged channel follows. Rows and cycles a row where there is no time.
     """
@@ -2175,7 +2175,7 @@ class DetectionLimit:
     @property
     def unit(self) -> str: ...
 
-class WanderBound:
+class ErrorBound:
     """
     How far an error was let wander.
     """
@@ -2193,7 +2193,7 @@ class WanderBound:
     @property
     def name(self) -> str:
         """
-        As `wanders` of diagnose() takes it.
+        As `error_budget` of diagnose() takes it.
         """
     @property
     def size(self) -> float:
@@ -2381,7 +2381,7 @@ class Diagnosis:
         "rmse",
         "noise_floor",
         "correlation_time",
-        "wanders",
+        "error_budget",
         "work",
         "left_undone",
         "pse",
@@ -2389,7 +2389,7 @@ class Diagnosis:
         "residual",
         "where",
         "unexplained",
-        "unlogged",
+        "unmeasured",
         "limits",
         "missing_channels",
         "injected",
@@ -2419,6 +2419,11 @@ class Diagnosis:
     def effects(self) -> list[EffectFinding]:
         """
         Best first.
+        """
+    @property
+    def error_budget(self) -> dict[str, ErrorBound]:
+        """
+        By name: how far errors were let wander.
         """
     @property
     def explained(self) -> str:
@@ -2502,7 +2507,7 @@ class Diagnosis:
         Offsets that no candidate explains.
         """
     @property
-    def unlogged(self) -> list[UnloggedCause]:
+    def unmeasured(self) -> list[UnmeasuredCause]:
         """
         Causes that follow no channel, the surest first.
         """
@@ -2510,11 +2515,6 @@ class Diagnosis:
     def verdict(self) -> str:
         """
         "adequate", "effect_missing", "slow_change", "unexplained".
-        """
-    @property
-    def wanders(self) -> dict[str, WanderBound]:
-        """
-        By name: how far errors were let wander.
         """
     @property
     def where(self) -> list[Misfit]:
@@ -2726,7 +2726,7 @@ class DiagnosisOptions:
         seed: typing.SupportsInt | typing.SupportsIndex,
         pse: str,
         only: collections.abc.Sequence[str],
-        wanders: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        error_budget: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         within: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
 
@@ -3006,7 +3006,7 @@ class FlightCheck:
         What print() shows: the app's page.
         """
 
-class ExportLoss:
+class Approximation:
     """
     What a vehicle's correction lacks of a calibration's, over the fitted rows of a flight; NaN where it isn't known.
     """
@@ -3098,9 +3098,9 @@ class Exported:
         "output",
         "text",
         "parameters",
-        "loss",
+        "approximation",
         "rotation",
-        "other_loss",
+        "other_approximation",
         "left_to_others",
         "notes",
         "json",
@@ -3115,6 +3115,11 @@ class Exported:
         {field: value}, as of a named tuple.
         """
     @property
+    def approximation(self) -> Approximation | None:
+        """
+        None where nothing was changed.
+        """
+    @property
     def json(self) -> str:
         """
         As the app's export prints it.
@@ -3125,17 +3130,12 @@ class Exported:
         Effects that act on the reference or the wind: no part of a correction.
         """
     @property
-    def loss(self) -> ExportLoss | None:
-        """
-        None where nothing was changed.
-        """
-    @property
     def notes(self) -> list[str]:
         """
         What a person must know or do, one line each.
         """
     @property
-    def other_loss(self) -> ExportLoss | None:
+    def other_approximation(self) -> Approximation | None:
         """
         What the other one would lose; None where that is not known.
         """
@@ -3327,7 +3327,7 @@ class ManyFit:
         "noise",
         "rmse",
         "cost",
-        "by",
+        "method",
         "noise_sizes",
         "log_likelihood",
         "unobservable",
@@ -3345,11 +3345,6 @@ class ManyFit:
     def _asdict(self) -> dict[str, typing.Any]:
         """
         {field: value}, as of a named tuple.
-        """
-    @property
-    def by(self) -> str:
-        """
-        "output-error" or "filter-error".
         """
     @property
     def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
@@ -3389,6 +3384,11 @@ class ManyFit:
     def message(self) -> str:
         """
         One line; empty where there is nothing to say.
+        """
+    @property
+    def method(self) -> str:
+        """
+        "output-error" or "filter-error".
         """
     @property
     def noise(self) -> dict[str, float]:
@@ -3841,7 +3841,7 @@ def fit_single_stage(
     start: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     *,
     bounds: collections.abc.Mapping[str, tuple[float, float]],
-    fixed: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    fix: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     segments: str,
     solver: str = "levenberg_marquardt",

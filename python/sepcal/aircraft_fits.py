@@ -115,7 +115,7 @@ class AircraftFit(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
-        wanders: Mapping[str, float] | None = None,
+        error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Diagnosis: ...
 
@@ -130,7 +130,7 @@ class AircraftFit(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
-        wanders: Mapping[str, float] | None = None,
+        error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Stepwise[AircraftFit]: ...
 
@@ -144,7 +144,7 @@ class AircraftFit(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
-        wanders: Mapping[str, float] | None = None,
+        error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Diagnosis | Stepwise[AircraftFit]:
         """Which effect or regressor does it lack on a flight?
@@ -162,8 +162,8 @@ class AircraftFit(Fit):
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
-            wanders: How far errors wander at most, in their units, where you know it, by the names
-                that `Diagnosis.wanders` has.
+            error_budget: How far each error of an instrument wanders at most, in its unit, where
+                you know it, by the names that `Diagnosis.error_budget` has.
             within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
                 there was no time for.
 
@@ -182,7 +182,7 @@ class AircraftFit(Fit):
             simulations=simulations,
             seed=seed,
             pse=pse,
-            wanders=wanders,
+            error_budget=error_budget,
             within=within,
         )
         if not auto:

@@ -135,7 +135,7 @@ class Calibration(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
-        wanders: Mapping[str, float] | None = None,
+        error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Diagnosis: ...
 
@@ -151,7 +151,7 @@ class Calibration(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
-        wanders: Mapping[str, float] | None = None,
+        error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Stepwise[Calibration]: ...
 
@@ -167,7 +167,7 @@ class Calibration(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
-        wanders: Mapping[str, float] | None = None,
+        error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Diagnosis | Stepwise[Calibration]:
         """Which physical effect is missing on a flight, by default the fitted one?
@@ -184,8 +184,8 @@ class Calibration(Fit):
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
-            wanders: How far errors wander at most, in their units, where you know it, by the names
-                that `Diagnosis.wanders` has.
+            error_budget: How far each error of an instrument wanders at most, in its unit, where
+                you know it, by the names that `Diagnosis.error_budget` has.
             within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
                 there was no time for.
 
@@ -209,7 +209,7 @@ class Calibration(Fit):
             simulations=simulations,
             seed=seed,
             pse=pse,
-            wanders=wanders,
+            error_budget=error_budget,
             within=within,
         )
         own = to_core_effects(effects)

@@ -17,8 +17,8 @@ SHAPES = {
     "prior": "{name: (mean, standard deviation)}",
     "sampling_distribution": "{name: (mean, standard deviation)}",
 }
-# Of the apps' --fix, ...
-APP_NAMES = {"fix": "fixed", "effect": "effects", "from": "from_time", "to": "to_time"}
+# Of the apps' --effect, ...
+APP_NAMES = {"effect": "effects", "from": "from_time", "to": "to_time"}
 # Options that choose of a flight's columns and rows.
 LOG_CHOICE = (
     "map",
@@ -41,7 +41,7 @@ class FitOptions(TypedDict, total=False):
             "k[temp_degc]" adds the parameter k[temp_degc].s.
         bounds: (lower, upper) of parameters by name, in their units, None for an open side, instead
             of the model's [the model's].
-        fixed: Parameters held at a value and not estimated [none].
+        fix: Parameters held at a value and not estimated [none].
         noise: Noise standard deviation of every output; without it R is estimated, Eqs. 24-26.
         prior: (mean, standard deviation) of parameters, linear or nonlinear: a normal prior, which
             counts as one more measurement of each [none].
@@ -52,9 +52,9 @@ class FitOptions(TypedDict, total=False):
         screens: Evaluates Eqs. 17 and 18 at every sample, and uses only those with ratios of at
             most t_1 and t_2 within l_2, and, with convex, positive second derivatives: any of
             {"t_1", "t_2", "l_2", "convex"} [not evaluated].
-        stage_one: Segments that stage one uses, "wind_circle_1,510.9:530": labels, or spans of time
+        stage_one_segments: What stage one uses, "wind_circle_1,510.9:530": labels, or spans of time
             in s [all].
-        stage_two: The same of stage two [all].
+        stage_two_segments: The same of stage two [all].
         samples: Samples of xi2 in stage one [500]; 0: none.
         sampling: Independent draws or a shifted Halton sequence ["uniform"].
         start: Where stage two starts, by nonlinear parameter; then nothing is sampled. Those not
@@ -102,14 +102,14 @@ class FitOptions(TypedDict, total=False):
 
     effects: Sequence[str | Effect] | None
     bounds: Mapping[str, tuple[float | None, float | None]] | None
-    fixed: Mapping[str, float] | None
+    fix: Mapping[str, float] | None
     noise: Mapping[str, float] | None
     prior: Mapping[str, tuple[float, float]] | None
     search: Literal["sampling", "global"] | str | None
     screens: Mapping[str, float | bool] | None
     sampling_distribution: Mapping[str, tuple[float, float]] | None
-    stage_one: str | None
-    stage_two: str | None
+    stage_one_segments: str | None
+    stage_two_segments: str | None
     samples: int | None
     sampling: Literal["uniform", "low_discrepancy"] | None
     start: Mapping[str, float] | None

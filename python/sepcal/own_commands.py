@@ -121,8 +121,8 @@ def _add_options(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--where", metavar="CONDITION", help="only rows in which it holds")
     verb.add_argument("--from", dest="from_time", type=float, metavar="S", help="only from then on")
     verb.add_argument("--to", dest="to_time", type=float, metavar="S", help="only up to then")
-    verb.add_argument("--stage-one", metavar="SEGMENTS", help="labels or times, 10:60")
-    verb.add_argument("--stage-two", metavar="SEGMENTS", help="the same")
+    verb.add_argument("--stage-one-segments", metavar="SEGMENTS", help="labels or times, 10:60")
+    verb.add_argument("--stage-two-segments", metavar="SEGMENTS", help="the same")
     verb.add_argument("--loss", help="squares, huber or cauchy")
     verb.add_argument("--samples", type=int, metavar="N", help="of stage one")
     verb.add_argument("--seed", type=int, metavar="N")
@@ -182,7 +182,7 @@ def _options(given: argparse.Namespace) -> dict[str, Any]:
     options = {
         "effects": given.effect,
         "bounds": _bounds(given.bounds),
-        "fixed": _numbers("--fix", given.fix),
+        "fix": _numbers("--fix", given.fix),
         "start": _numbers("--start", given.start),
         "noise": _numbers("--noise", given.noise),
         "map": _split("--map", given.map),
@@ -192,8 +192,8 @@ def _options(given: argparse.Namespace) -> dict[str, Any]:
         "where": given.where,
         "from_time": given.from_time,
         "to_time": given.to_time,
-        "stage_one": given.stage_one,
-        "stage_two": given.stage_two,
+        "stage_one_segments": given.stage_one_segments,
+        "stage_two_segments": given.stage_two_segments,
         "loss": given.loss,
         "samples": given.samples,
         "seed": given.seed,

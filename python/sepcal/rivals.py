@@ -138,7 +138,7 @@ def fit_single_stage(
     start: Mapping[str, float] | None = None,
     *,
     bounds: Bounds | None = None,
-    fixed: Mapping[str, float] | None = None,
+    fix: Mapping[str, float] | None = None,
     noise: Mapping[str, float] | None = None,
     segments: str = "",
     solver: Solver = "levenberg_marquardt",
@@ -155,7 +155,7 @@ def fit_single_stage(
         data: Its inputs and outputs by name, each of shape (N,).
         start: Values of linear and nonlinear parameters by name; those not named begin at zero.
         bounds: (lower, upper) by name, None for an open side [the model's].
-        fixed: Parameters held at a value.
+        fix: Parameters held at a value.
         noise: Standard deviation of every output; without it R is estimated (Eqs. 24-26).
         segments: Labels or spans of time [all].
         solver: Ceres' Levenberg-Marquardt, after which SLSQP goes on where steps that are clipped
@@ -182,7 +182,7 @@ def fit_single_stage(
             labels,
             dict(start or {}),
             bounds=open_ends(bounds),
-            fixed=dict(fixed or {}),
+            fix=dict(fix or {}),
             noise=dict(noise or {}),
             segments=segments,
             solver=solver,

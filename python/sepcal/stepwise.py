@@ -81,7 +81,7 @@ def diagnosis_options(
     simulations: int,
     seed: int,
     pse: str,
-    wanders: Mapping[str, float] | None,
+    error_budget: Mapping[str, float] | None,
     within: float | None,
 ) -> _core.DiagnosisOptions:
     """Raises Error for choices of diagnose() that can't be, or not together."""
@@ -93,15 +93,15 @@ def diagnosis_options(
         raise _core.Error(f"most {most} is negative; give at least 1, or leave it out for no limit")
     if within is not None and not within > 0:
         raise _core.Error(f"within {within} is no number of seconds above 0")
-    sizes = {str(name): float(size) for name, size in (wanders or {}).items()}
+    sizes = {str(name): float(size) for name, size in (error_budget or {}).items()}
     for name, size in sizes.items():
         if not 0.0 <= size < math.inf:
-            raise _core.Error(f"wanders: the size of '{name}' is {size}; it must be 0 or more")
+            raise _core.Error(f"error_budget: the size of '{name}' is {size}; it must be 0 or more")
     return _core.DiagnosisOptions(
         simulations=simulations,
         seed=seed,
         pse=pse,
         only=to_names("only", only),
-        wanders=sizes,
+        error_budget=sizes,
         within=math.inf if within is None else within,
     )

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "fuzzing.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/effect_name.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 #include "small_flights.hpp"
 
 namespace sepcal::fuzz {

@@ -4,8 +4,8 @@
 // `compare` do first.
 #include "flight/verbs/prepared_flight.hpp"
 #include "fuzzing.hpp"
+#include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/flight/apply.hpp"
-#include "sepcal/simulation/truth.hpp"
 #include "small_flights.hpp"
 
 namespace sepcal::fuzz {

@@ -124,7 +124,7 @@ void spoil(FlightDiagnosis& diagnosis, Words& words) {
   found.pairs.push_back(words.next());
   found.advice.withheld.push_back(words.next());
   found.left_undone.push_back(words.next());
-  found.unlogged.push_back({.outputs = {words.next(), words.next()}});
+  found.unmeasured.push_back({.outputs = {words.next(), words.next()}});
   found.omnibus.significant = true;
   found.omnibus.windows.emplace_back(words.next(), 3.0);
   for (DetectionLimit& limit : found.limits) words.join(limit.port);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Filters of states and parameters, over a model with a state and over one of samples, as flight
 // software compiles them.
+#include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/detail/states/joseph_form.hpp"
-#include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/recursive_likelihood.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A fault for check_symbols.cmake to see: a vector on the heap.
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 double sum_of(int count);
 

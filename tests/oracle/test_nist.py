@@ -132,7 +132,7 @@ def test_auto_falls_back_to_joint_where_projected_fails(iterations: int) -> None
     """MGH09's far start takes projected more steps than these; joint with a prior gets there."""
     given = nist.state_set("MGH09")
     fit = nist.fit(given, 0, iterations=iterations)
-    assert fit.method == "joint"
+    assert fit.second_stage == "joint"
     assert fit.message.startswith("projected fell back to joint, because it did not converge")
     assert_certified(given, fit)
 

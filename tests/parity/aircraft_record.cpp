@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "sepcal/aircraft/rigid_aircraft.hpp"
+#include "sepcal/detail/flight/aircraft_file.hpp"
 #include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/flight/aircraft_file.hpp"
 #include "sepcal/models/flight_path.hpp"
 
 namespace {
@@ -74,8 +74,8 @@ void print_path(double gravity, const Record& record) {
   sepcal::FitOptions options;
   options.start = model.initial_states(record);
   for (const char* angle : {"phi", "theta", "psi"}) {
-    options.fixed["lambda_" + std::string(angle)] = 0.0;
-    options.fixed["b_" + std::string(angle)] = 0.0;
+    options.fix["lambda_" + std::string(angle)] = 0.0;
+    options.fix["b_" + std::string(angle)] = 0.0;
   }
   const sepcal::Fit fit = sepcal::fit(model, record, options);
   for (const sepcal::Parameter& p : fit.parameters) {

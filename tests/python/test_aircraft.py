@@ -203,7 +203,7 @@ def test_smoothed_states_of_a_path_are_as_sure_as_they_say(aircraft: sepcal.Airc
 
 
 def test_two_steps(aircraft: sepcal.Aircraft, flights: list[sepcal.Flight]) -> None:
-    found = sepcal.two_step(flights[0], aircraft, fixed={"lambda_v": 0.0})
+    found = sepcal.two_step(flights[0], aircraft, fix={"lambda_v": 0.0})
     assert found.path["lambda_v"].fixed
     assert found.aero["Cm_q"].value == pytest.approx(-14.0, rel=0.06)
     assert "errors of the regressors" in found.aero.warning
@@ -389,7 +389,7 @@ def test_filter_error_of_an_aircraft(
     fit.save(tmp_path / "fit.json")
     again = sepcal.load(tmp_path / "fit.json")
     assert again.noise_sizes["r_q"].value == pytest.approx(sizes["r_q"].value)
-    assert again.by == "filter-error"
+    assert again.method == "filter-error"
     assert "by filter-error" in str(fit)
     assert "2 ln L by -" not in str(fit)
     smoothed = fit.smooth()

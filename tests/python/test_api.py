@@ -131,19 +131,19 @@ def test_options_arrive(record: dict[str, np.ndarray]) -> None:
     assert fit(noise={"z": 0.25}).noise == {"z": 0.25}
     assert fit(seed=1).stage_one.samples[0, 0] != fit(seed=2).stage_one.samples[0, 0]
     assert_array_equal(fit(seed=1).stage_one.samples, fit(seed=1, threads=1).stage_one.samples)
-    assert fit(second_stage="joint").method == "joint"
-    assert fit(second_stage="projected").method == "projected"
+    assert fit(second_stage="joint").second_stage == "joint"
+    assert fit(second_stage="projected").second_stage == "projected"
     assert fit(samples=0).stage_one.samples.shape[0] == 0
     assert fit(noise_iterations=1).noise_iterations == 1
     narrow = fit(sampling_distribution={"b": (0.2, 1e-3)}).stage_one.samples
     assert np.all(np.abs(narrow - 0.2) < 0.01)
     even = np.sort(fit(sampling="low_discrepancy").stage_one.samples[:, 0])
     assert np.all(np.diff(even) < 2.5 / 32)  # a Halton sequence leaves no wide gap in a width of 1
-    assert fit(bounds=None, fixed=None).values.tolist() == fit().values.tolist()
+    assert fit(bounds=None, fix=None).values.tolist() == fit().values.tolist()
 
 
 def test_a_fixed_parameter_is_held(record: dict[str, np.ndarray]) -> None:
-    fit = sepcal.fit(sepcal.ScalarExample2(), record_of_example_2(), fixed={"b": 0.05})
+    fit = sepcal.fit(sepcal.ScalarExample2(), record_of_example_2(), fix={"b": 0.05})
     assert fit["b"].fixed
     assert fit["b"].value == 0.05
     assert np.isnan(fit["b"].standard_error)
@@ -185,9 +185,14 @@ def test_time_and_labels_cut_a_record(record: dict[str, np.ndarray]) -> None:
     expected = sepcal.fit(model, half)
     time = 0.1 * np.arange(100)
     labels = ["first"] * 50 + ["second"] * 50
-    by_time = sepcal.fit(model, {**record, "time": time}, stage_one="0:4.95", stage_two="0:4.95")
+    by_time = sepcal.fit(
+        model, {**record, "time": time}, stage_one_segments="0:4.95", stage_two_segments="0:4.95"
+    )
     by_label = sepcal.fit(
-        model, {**record, "maneuver": labels}, stage_one="first", stage_two="first"
+        model,
+        {**record, "maneuver": labels},
+        stage_one_segments="first",
+        stage_two_segments="first",
     )
     for fit in (by_time, by_label):
         assert fit.rows == 50

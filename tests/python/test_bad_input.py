@@ -171,10 +171,10 @@ def test_options_out_of_place_for_records() -> None:
     [
         ({"bounds": {"x": (0, 1)}}, ["'x'", "a, c, b"]),
         ({"bounds": {"b": (1, 0)}}, ["'b'"]),
-        ({"fixed": {"x": 0.0}}, ["'x'"]),
+        ({"fix": {"x": 0.0}}, ["'x'"]),
         ({"noise": {"z": -1.0}}, ["'z'"]),
         ({"sampling_distribution": {"x": (0.0, 1.0)}}, ["'x'"]),
-        ({"stage_two": "popu"}, ["'popu'"]),
+        ({"stage_two_segments": "popu"}, ["'popu'"]),
         ({"samples": -1}, ["samples"]),
         ({"sampling": "even"}, ["sampling 'even'", "'low_discrepancy'"]),
         ({"second_stage": "third"}, ["second_stage 'third'", "'projected'"]),
@@ -192,7 +192,7 @@ def test_options_out_of_place(options: dict[str, object], words: list[str]) -> N
         {"seed": -1},
         {"bounds": {"b": 1.0}},
         {"bounds": [("b", 0, 1)]},
-        {"stage_one": 3},
+        {"stage_one_segments": 3},
         {"free": "w_d"},
     ],
 )
@@ -209,8 +209,8 @@ def test_an_unknown_option_is_named() -> None:
 
 
 def test_an_option_of_the_apps_is_translated() -> None:
-    with pytest.raises(TypeError, match=r"no option 'fix'; --fix of the apps is fixed; it"):
-        sepcal.fit(SCALAR, RECORD, fix={"b": 0.1})
+    with pytest.raises(TypeError, match=r"no option 'effect'; --effect of the apps is effects; it"):
+        sepcal.fit(SCALAR, RECORD, effect="wind_drift")
 
 
 @pytest.mark.parametrize("option", ["prior", "sampling_distribution"])

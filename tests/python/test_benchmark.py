@@ -9,35 +9,35 @@ import pytest
 
 from benchmarks import baseline, filter_error, pages, races, results
 from benchmarks.numpy_five_hole import HoistedProbe
-from benchmarks.race import Contender, Line, Result, judge, lengths_within, race, show_time
+from benchmarks.race import Competitor, Line, Result, judge, lengths_within, race, show_time
 from benchmarks.small_fits import by_least_squares, by_leastsq, draw, fit_each
 
 
 def scripted(*seconds, answer=(1.0,)):
-    """A contender's run that takes these times, turn by turn."""
+    """A competitor's run that takes these times, turn by turn."""
     left = iter(seconds)
     return lambda: (next(left), np.array(answer))
 
 
-def test_contenders_run_in_turns():
+def test_competitors_run_in_turns():
     order = []
-    contenders = [
-        Contender(name, lambda name=name: (order.append(name) or 1.0, np.zeros(1)))
+    competitors = [
+        Competitor(name, lambda name=name: (order.append(name) or 1.0, np.zeros(1)))
         for name in ("a", "b")
     ]
-    race(contenders, 2)
+    race(competitors, 2)
     assert order == ["a", "b", "a", "b"]
 
 
 def test_who_has_used_the_budget_rests():
-    contender = Contender("slow", scripted(1.0, 1.0, 1.0))
-    race([contender], 3, budget=-1.0)
-    assert contender.seconds == [1.0]
+    competitor = Competitor("slow", scripted(1.0, 1.0, 1.0))
+    race([competitor], 3, budget=-1.0)
+    assert competitor.seconds == [1.0]
 
 
 def test_a_ratio_is_the_median_of_those_within_a_turn():
-    ours = Contender("ours", scripted(1.0, 2.0, 10.0))
-    theirs = Contender("theirs", scripted(3.0, 2.0, 20.0, answer=(1.5,)))
+    ours = Competitor("ours", scripted(1.0, 2.0, 10.0))
+    theirs = Competitor("theirs", scripted(3.0, 2.0, 20.0, answer=(1.5,)))
     race([ours, theirs], 3)
     result = judge("r", "title", [ours, theirs], lambda off: float(abs(off[0])), "m")
     assert result.lines[0] == Line("ours", 1.0, 2.0, 3, 1.0, 0.0)

@@ -18,7 +18,7 @@ def results() -> dict[str, object]:
     """One of every kind, some with undefined numbers and with effects."""
     flight = sepcal.simulate(TUBE, rows=ROWS, seed=3, hide={"wind[time]": (0.01, 0.0)})
     other = sepcal.simulate(TUBE, rows=ROWS, seed=4)
-    base = sepcal.fit(TUBE, flight, samples=20, fixed={"w_n": 0.0})
+    base = sepcal.fit(TUBE, flight, samples=20, fix={"w_n": 0.0})
     added = base.add("wind[maneuver]")
     many = sepcal.fit_many(TUBE, {"a": flight, "b": other}, own=["w_n", "w_e"], samples=20)
     rows = {"u": np.linspace(0.0, 1.0, 50), "z": np.linspace(0.0, 1.0, 50) ** 2}

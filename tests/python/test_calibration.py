@@ -31,7 +31,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     options = {
         "effects": ["airspeed_scale[beta^2]", "heading_bias"],
         "bounds": {"b_va": (-5.0, 5.0)},
-        "fixed": {"w_d": 0.3},
+        "fix": {"w_d": 0.3},
         "noise": {"vn": 0.1, "ve": 0.2, "vd": 0.3},
         "prior": {"eps_phi": (0.01, 0.02), "b_va": (0.0, 3.0)},
         "start": {"eps_phi": 0.01},
@@ -41,8 +41,8 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "loss": "huber",
         "loss_width": 1.5,
         "sampling_distribution": {"b_beta": (0.01, 0.02)},
-        "stage_one": "popu,wind_circle_1",
-        "stage_two": "0:100",
+        "stage_one_segments": "popu,wind_circle_1",
+        "stage_two_segments": "0:100",
         "samples": 20,
         "sampling": "low_discrepancy",
         "seed": 2**64 - 1,
@@ -65,7 +65,6 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
     of_states = {"process_noise", "method", "hessian"}  # tests/python/test_aircraft.py
     assert set(options) == set(sepcal.FitOptions.__annotations__) - of_states
     stored = sepcal.fit(PROBE, flight, **options).to_dict()["options"]
-    stored["fixed"] = stored.pop("fix")
     stored["effects"] = [effect["name"] for effect in stored["effects"]]
     options["samples"] = 0  # with a start nothing is sampled
     for name, value in options.items():
@@ -99,7 +98,7 @@ def test_the_table_says_it_all(base: sepcal.Calibration) -> None:
         assert float(value) == pytest.approx(parameter.value, rel=1e-5)
         assert float(error) == pytest.approx(parameter.standard_error, rel=0.06)
         assert float(white) == pytest.approx(parameter.standard_error_white, rel=0.06)
-    assert any(f"; stage two: {base.method}, " in line for line in lines)
+    assert any(f"; stage two: {base.second_stage}, " in line for line in lines)
     assert lines[-1] == f"wind: {base.restated['wind']['sentence']}"
 
 

@@ -53,7 +53,7 @@ def test_the_second_example_is_certified() -> None:
 
 def test_a_minimum_that_is_not_the_lowest_is_refuted() -> None:
     data, model = waves(), sepcal.ScalarExample2()
-    options = {"fixed": {"b": -0.3}}
+    options = {"fix": {"b": -0.3}}
     held = sepcal.fit(model, data, **options)
     assert sepcal.certify(model, data, held, **options).is_global  # of what is free
     freed = sepcal.fit(model, data, bounds={"b": (0.3, 0.5)})
@@ -90,7 +90,7 @@ def test_what_can_not_be_proven_is_refused() -> None:
         sepcal.certify(model, data, fit, loss="huber")
     with pytest.raises(sepcal.Error, match="bounds of 'b' are not those of the fit"):
         sepcal.certify(model, data, fit, bounds={"b": (0.0, 0.1)})
-    part = sepcal.fit(model, data | {"maneuver": ["x"] * 60 + ["y"] * 40}, stage_two="x")
+    part = sepcal.fit(model, data | {"maneuver": ["x"] * 60 + ["y"] * 40}, stage_two_segments="x")
     with pytest.raises(sepcal.Error, match="the fit is of 60 rows, its options select 100"):
         sepcal.certify(model, data, part)
     with pytest.raises(sepcal.Error, match="'c' has no value"):
@@ -113,7 +113,7 @@ def test_a_probe_whose_other_angles_are_known_is_certified() -> None:
     flown = sepcal.simulate(probe, rows=60, seed=1)
     flight = sepcal.Flight({name: flown[name] for name in flown.columns})
     held = {name: flown.truth[name] for name in probe.nonlinear if name != "eps_phi"}
-    calibration = sepcal.fit(probe, flight, fixed=held)
+    calibration = sepcal.fit(probe, flight, fix=held)
     proof = calibration.certify()
     assert proof.is_global
     lower, upper = proof.region["eps_phi"]

@@ -28,7 +28,7 @@ def test_paths_are_there() -> None:
 def test_one_test_runs_as_shown() -> None:
     """The files of the two commands that run one."""
     for shown in re.findall(r"-R (\w+)", TEXT):
-        assert (ROOT / "tests" / f"{shown}.cpp").exists()
+        assert list((ROOT / "tests" / "cpp").rglob(f"{shown}.cpp"))
     for shown in re.findall(r"pytest (\S+\.py)", TEXT):
         assert (ROOT / shown).exists()
 
@@ -46,14 +46,12 @@ def test_every_room_is_on_its_map() -> None:
 @pytest.mark.parametrize("option", FitOptions.__annotations__)
 def test_an_option_stands_where_it_says(option: str) -> None:
     """In each file of the list; of a log beside that of a fit."""
-    fields = {"stage_one": "stage_one_segments", "stage_two": "stage_two_segments"}
     of_log = option in (*LOG_CHOICE, "effects", "free")  # of a calibration
-    home = "log_choice" if option in LOG_CHOICE else "calibration"
-    header = f"cpp/include/sepcal/{f'flight/{home}' if of_log else 'options'}.hpp"
-    field = fields.get(option, option)
-    spelled = {"effects": "effect", "fixed": "fix", "from_time": "from", "to_time": "to"}
+    home = "detail/flight/log_choice" if option in LOG_CHOICE else "flight/calibration"
+    header = f"cpp/include/sepcal/{home if of_log else 'options'}.hpp"
+    spelled = {"effects": "effect", "from_time": "from", "to_time": "to"}
     for file, word in (
-        (header, field),
+        (header, option),
         ("cpp/src/bindings/options.cpp", option),
         ("python/sepcal/options.py", option),
     ):

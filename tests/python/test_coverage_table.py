@@ -14,7 +14,7 @@ import room_coverage as counts  # noqa: E402
 
 # Two instances of one template in a header of core, an app, and a file of someone else's.
 LINES = f"""\
-SF:{ROOT}/cpp/include/sepcal/rotation.hpp
+SF:{ROOT}/cpp/include/sepcal/detail/rotation.hpp
 DA:3,1
 DA:4,0
 DA:5,0
@@ -28,7 +28,7 @@ end_of_record
 SF:/usr/include/string
 DA:1,0
 end_of_record
-SF:{ROOT}/cpp/include/sepcal/rotation.hpp
+SF:{ROOT}/cpp/include/sepcal/detail/rotation.hpp
 DA:4,5
 end_of_record
 """
@@ -37,7 +37,7 @@ BRANCHES = {
         {
             "files": [
                 {
-                    "filename": f"{ROOT}/cpp/include/sepcal/rotation.hpp",
+                    "filename": f"{ROOT}/cpp/include/sepcal/detail/rotation.hpp",
                     "branches": [
                         [3, 1, 3, 9, 4, 0, 0, 0, 4],
                         [3, 1, 3, 9, 0, 2, 0, 0, 4],
@@ -76,6 +76,6 @@ def test_lines_that_nothing_ran_are_listed(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert counts.main(["lines", str(folder), "core"]) == 0
-    assert capsys.readouterr().out == "cpp/include/sepcal/rotation.hpp: 5-6, 9\n"
+    assert capsys.readouterr().out == "cpp/include/sepcal/detail/rotation.hpp: 5-6, 9\n"
     with pytest.raises(SystemExit, match="no room cellar; there are core, apps"):
         counts.main(["lines", str(folder), "cellar"])

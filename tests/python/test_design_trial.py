@@ -40,8 +40,8 @@ def alone(trial: sepcal.DesignTrial):
 
 @pytest.mark.parametrize(
     "options",
-    [{}, {"fixed": {"c": 1.0}}, {"noise": {"z": 0.1}}, {"samples": 50, "descents": 1}],
-    ids=["middle", "fixed", "noise", "sampled"],
+    [{}, {"fix": {"c": 1.0}}, {"noise": {"z": 0.1}}, {"samples": 50, "descents": 1}],
+    ids=["middle", "fix", "noise", "sampled"],
 )
 def test_a_study_is_the_same_side_by_side(options):
     trial = scalar_trial(**options)

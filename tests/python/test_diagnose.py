@@ -23,9 +23,9 @@ KEYS = {
         "rmse",
         "advice",
     ),
-    *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "unlogged"),
+    *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "unmeasured"),
     *("limits", "missing_channels", "pse"),
-    *("correlation_time", "wanders", "work", "left_undone"),
+    *("correlation_time", "error_budget", "work", "left_undone"),
 }
 EFFECT_KEYS = {
     *("name", "sentence", "drivers", "estimate", "standard_error", "unit", "shapes", "p_value"),

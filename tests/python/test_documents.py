@@ -14,7 +14,7 @@ import pytest
 
 import sepcal
 from documents import BLOCKS, DOCUMENTS, EXAMPLES, ROOT, TYPED, run
-from studies.trust.unlogged import LINE, fly_with
+from studies.trust.unmeasured import LINE, fly_with
 
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
 WHOLE = [b for b in BLOCKS if b["language"] == "python" and "import sepcal" in b["text"]]
@@ -217,7 +217,7 @@ def test_every_key_of_the_results_is_explained():
     objects += [found["effects"][0], found["residual"]["vn"], found["injected"]]
     objects += [found["unexplained"], intervals["parameters"]["b_va"]]
     swinging, _ = fly_with(LINE, "pitot-static", "white", 3, rows=300, sigmas=30.0)
-    objects += [sepcal.fit(sepcal.PitotStatic(), swinging).diagnose().to_dict()["unlogged"][0]]
+    objects += [sepcal.fit(sepcal.PitotStatic(), swinging).diagnose().to_dict()["unmeasured"][0]]
     words = set(re.findall(r"\w+", read("results.md")))
     assert {key for one in objects for key in one} - words == set()
 

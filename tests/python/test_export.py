@@ -111,7 +111,7 @@ def test_what_was_held_stays(magnetometer: Bench) -> None:
     eta = [word for axis in "xyz" for word in ("--fix", f"eta_{axis}=0")]
     assert magnetometer.run("fit", "flight.csv", *held, *eta, "-o", "held.json").code in (0, 4)
     done = export(magnetometer, "px4", "--force", calibration="held.json")
-    loss = done.result["loss"]
+    loss = done.result["approximation"]
     assert loss["dropped"] == ["nothing, as the calibration does not turn the sensor"]
     text = (magnetometer.folder / "vehicle").read_text()
     assert "# heading: the calibration's\n# field's strength: the calibration's\n" in text
@@ -199,7 +199,7 @@ def test_a_motor_beside_the_strength(magnetometer: Bench) -> None:
     applied = Log(magnetometer.folder / "applied.csv")
     expected = np.column_stack([applied.column(f"m{axis}_cal_ut") for axis in "xyz"])
     for target in READERS:
-        loss = export(magnetometer, target, calibration="norm.json").result["loss"]
+        loss = export(magnetometer, target, calibration="norm.json").result["approximation"]
         found = corrected_by(
             target, magnetometer.folder / "vehicle", read_raw(log), motor=log.column("current_a")
         )
@@ -215,7 +215,7 @@ def test_a_motor_beside_the_strength(magnetometer: Bench) -> None:
 def test_the_loss_is_true(magnetometer: Bench, target: str) -> None:
     """Heading, strength, rotation and residuals again, by the exported numbers and by apply."""
     log = fit_motor(magnetometer, "current_a", 0.4)
-    loss = export(magnetometer, target, *REFIT, calibration="motor.json").result["loss"]
+    loss = export(magnetometer, target, *REFIT, calibration="motor.json").result["approximation"]
     driver, raw = log.column("current_a"), read_raw(log)
     held = corrected_by(target, magnetometer.folder / "vehicle", raw, motor=driver)
     done = magnetometer.run("apply", "flight.csv", "motor.json", "-o", "applied.csv")
@@ -296,7 +296,7 @@ def test_an_airspeed(tmp_path: Path, target: str) -> None:
     expected = np.sqrt((read / s) ** 2 + 2 * offset / log.column("rho_kgpm3"))
     apply_to = {"ardupilot": autopilots.ardupilot_airspeed, "px4": autopilots.px4_airspeed}[target]
     for sensor in (1, 2):
-        loss = export(bench, target, "--sensor", str(sensor)).result["loss"]
+        loss = export(bench, target, "--sensor", str(sensor)).result["approximation"]
         parameters = READERS[target](bench.folder / "vehicle")
         found = apply_to(parameters, log.column("dp_pa"), log.column("rho_kgpm3"), sensor=sensor)
         assert_allclose(found, expected, rtol=2e-6)
@@ -349,8 +349,8 @@ def test_without_an_effect(magnetometer: Bench) -> None:
     ).result
     for name, value in plain["parameters"].items():
         assert found["parameters"][name] == pytest.approx(value, rel=1e-6, abs=1e-6)
-    assert "the effect scale[temp_degc]" in found["loss"]["dropped"]
-    assert found["loss"]["residual_before"] < plain["loss"]["residual_before"]
+    assert "the effect scale[temp_degc]" in found["approximation"]["dropped"]
+    assert found["approximation"]["residual_before"] < plain["approximation"]["residual_before"]
 
 
 REFUSALS = {
@@ -516,7 +516,7 @@ def test_recorded_magnetometer(tmp_path: Path, target: str) -> None:
     C, n, kappa = autopilots.fit_symmetric(field, raw, log.column("current_a"))
     expected = (raw - n - np.outer(log.column("current_a"), kappa)) @ np.linalg.inv(C).T
     assert_allclose(found, expected, atol=1e-4)
-    loss = done.result["loss"]
+    loss = done.result["approximation"]
     assert loss["residual_after"] < 1.05 * loss["residual_before"]
 
 
@@ -536,7 +536,7 @@ def test_recorded_tube(tmp_path: Path, target: str) -> None:
     apply_to = {"ardupilot": autopilots.ardupilot_airspeed, "px4": autopilots.px4_airspeed}[target]
     found = apply_to(READERS[target](tmp_path / "vehicle"), pressure, rho)
     full = sepcal.load(tmp_path / "p.json").apply(sepcal.read_csv(flight))["airspeed_cal_mps"]
-    loss = export(bench, target, calibration="p.json").result["loss"]
+    loss = export(bench, target, calibration="p.json").result["approximation"]
     assert loss["airspeed_rms_mps"] == pytest.approx(
         np.sqrt(np.mean((found - full) ** 2)), rel=1e-4
     )
@@ -551,7 +551,7 @@ def test_the_winds_effects_stay_in_the_fit(tmp_path: Path) -> None:
     found = export(bench, "px4", calibration="shear.json").result
     assert found["left_to_others"] == ["wind[altitude_m]"]
     assert set(found["parameters"]) == set(plain["parameters"])
-    assert found["loss"]["residual_after"] < 0.9 * plain["loss"]["residual_after"]
+    assert found["approximation"]["residual_after"] < 0.9 * plain["approximation"]["residual_after"]
 
 
 def test_a_tube_without_an_effect(tmp_path: Path) -> None:
@@ -567,7 +567,7 @@ def test_a_tube_without_an_effect(tmp_path: Path) -> None:
     ).result
     for name, value in plain["parameters"].items():
         assert found["parameters"][name] == pytest.approx(value, rel=1e-6)
-    assert found["loss"]["residual_before"] < plain["loss"]["residual_before"]
+    assert found["approximation"]["residual_before"] < plain["approximation"]["residual_before"]
 
 
 def test_a_header_without_an_effect(magnetometer: Bench) -> None:
@@ -587,8 +587,8 @@ def test_a_header_without_an_effect(magnetometer: Bench) -> None:
     ]
     count = min(map(len, numbers))
     assert_allclose(numbers[0][-count:], numbers[1][-count:], rtol=1e-5, atol=1e-8)
-    assert found["loss"]["dropped"] == ["the effect bias[time]"]
-    assert found["loss"]["heading_rms_deg"] > 0
+    assert found["approximation"]["dropped"] == ["the effect bias[time]"]
+    assert found["approximation"]["heading_rms_deg"] > 0
 
 
 def test_an_effect_of_ones_own_is_refused(magnetometer: Bench) -> None:
@@ -613,11 +613,14 @@ def test_python_does_the_same(magnetometer: Bench) -> None:
     )
     app = export(magnetometer, "px4", "--sensor", "1", "--device-id", "7")
     assert written.rotation == app.result["rotation"]
-    assert written.other_loss is not None
-    assert written.other_loss.heading_rms_deg == app.result["other_loss"]["heading_rms_deg"]
+    assert written.other_approximation is not None
+    assert (
+        written.other_approximation.heading_rms_deg
+        == app.result["other_approximation"]["heading_rms_deg"]
+    )
     assert written.parameters == app.result["parameters"]
-    assert written.loss is not None
-    assert written.loss.heading_rms_deg == app.result["loss"]["heading_rms_deg"]
+    assert written.approximation is not None
+    assert written.approximation.heading_rms_deg == app.result["approximation"]["heading_rms_deg"]
     assert (magnetometer.folder / "python").read_text() == written.text
     assert written.page in str(written)
     with pytest.raises(sepcal.Error, match="three angles"):

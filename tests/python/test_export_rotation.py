@@ -124,7 +124,7 @@ def test_keep_is_the_calibration_less_its_rotation(magnetometer: Bench, target: 
     expected = (raw - n - np.outer(driver, kappa)) @ S
     assert_allclose(found, expected, atol=200 * SINGLE)
     assert_allclose(found @ Q.T, full, atol=200 * SINGLE)
-    loss = done.result["loss"]
+    loss = done.result["approximation"]
     assert done.result["rotation"] == "keep"
     assert loss["rotation_deg"] == pytest.approx(degrees_of(Q), rel=1e-6)
     for name, value in losses(expected, full, log).items():
@@ -151,8 +151,8 @@ def test_a_refit_that_is_worse_at_its_worst(magnetometer: Bench, target: str) ->
         words = ("--rotation", *more) if more == ("refit",) else more
         result = export(magnetometer, target, *words).result
         assert result["rotation"] == taken
-        both = {taken: result["loss"], {"keep": "refit", "refit": "keep"}[taken]: None}
-        both = {name: loss or result["other_loss"] for name, loss in both.items()}
+        both = {taken: result["approximation"], {"keep": "refit", "refit": "keep"}[taken]: None}
+        both = {name: loss or result["other_approximation"] for name, loss in both.items()}
         for name, value in kept.items():
             assert both["keep"][name] == pytest.approx(value, rel=1e-6, abs=1e-9), name
         for name, value in refitted.items():
@@ -163,7 +163,7 @@ def test_both_losses_are_shown(magnetometer: Bench) -> None:
     """On the page and at the head of the file."""
     result = export(magnetometer, "px4").result
     page = magnetometer.run("export", "base.json", "--to", "px4", "-o", "vehicle")
-    other = result["other_loss"]
+    other = result["other_approximation"]
     shown = (
         f"by refit instead: heading rms {other['heading_rms_deg']:.3g} deg, "
         f"at most {other['heading_largest_deg']:.3g} deg; "
@@ -224,9 +224,11 @@ def test_the_better_at_its_worst_is_taken(
     assert min(worst, key=lambda name: worst[name]) == taken
     result = export(bench, "px4").result
     assert result["rotation"] == taken
-    assert result["loss"]["heading_largest_deg"] == pytest.approx(worst[taken], rel=1e-4)
+    assert result["approximation"]["heading_largest_deg"] == pytest.approx(worst[taken], rel=1e-4)
     other = next(name for name in worst if name != taken)
-    assert result["other_loss"]["heading_largest_deg"] == pytest.approx(worst[other], rel=1e-4)
+    assert result["other_approximation"]["heading_largest_deg"] == pytest.approx(
+        worst[other], rel=1e-4
+    )
 
 
 @TARGETS
@@ -237,9 +239,11 @@ def test_keep_needs_no_flight(magnetometer: Bench, target: str) -> None:
         done = export(magnetometer, target, *more)
         assert done.result["parameters"] == with_flight["parameters"]
         assert done.result["rotation"] == "keep"
-        assert done.result["other_loss"] is None
-        loss = done.result["loss"]
-        assert loss["rotation_deg"] == pytest.approx(with_flight["loss"]["rotation_deg"], rel=1e-9)
+        assert done.result["other_approximation"] is None
+        loss = done.result["approximation"]
+        assert loss["rotation_deg"] == pytest.approx(
+            with_flight["approximation"]["rotation_deg"], rel=1e-9
+        )
         assert loss["heading_rms_deg"] is None
         assert "the flight is not at hand as it was fitted" in done.err
         assert "roll and pitch are not logged" not in done.out
@@ -279,8 +283,10 @@ def test_without_an_effect(magnetometer: Bench, how: str) -> None:
     found = export(magnetometer, "ardupilot", *command, *without, calibration="warm.json").result
     for name, value in plain["parameters"].items():
         assert found["parameters"][name] == pytest.approx(value, rel=1e-6, abs=1e-6)
-    assert "the effect scale[temp_degc]" in found["loss"]["dropped"]
-    assert found["other_loss"]["residual_before"] == found["loss"]["residual_before"]
+    assert "the effect scale[temp_degc]" in found["approximation"]["dropped"]
+    assert (
+        found["other_approximation"]["residual_before"] == found["approximation"]["residual_before"]
+    )
 
 
 def test_of_several_flights_the_rotation_is_kept_out(magnetometer: Bench) -> None:
@@ -289,7 +295,7 @@ def test_of_several_flights_the_rotation_is_kept_out(magnetometer: Bench) -> Non
     assert fitted.code == 0, fitted.err
     done = export(magnetometer, "px4", "second.csv", calibration="joint.json")
     assert done.result["rotation"] == "keep"
-    assert done.result["other_loss"] is None
+    assert done.result["other_approximation"] is None
     assert "the calibration is of several flights" in done.err
     base = parse_json((magnetometer.folder / "joint.json").read_text())["parameters"]
     own = base["n_x@second"]["value"] / 100
@@ -380,7 +386,7 @@ def test_a_mounting_that_is_found_nearly_at_a_multiple(magnetometer: Bench, targ
         found = corrected_by(target, file, raw, motor=driver, mounting=R)
         turned = raw @ R.T - offset - np.outer(driver, per_ampere)
         assert_allclose(found, turned @ W, atol=300 * SINGLE)
-        loss = done.result["loss"]
+        loss = done.result["approximation"]
         assert loss["rotation_deg"] == pytest.approx(left_over, rel=1e-5)
         full = applied(magnetometer, "turned.json")
         for name, value in losses(turned @ W, full, log).items():
@@ -413,8 +419,8 @@ def test_a_mounting_that_is_found_far_from_a_multiple(magnetometer: Bench, targe
         R = turn_by(*map(float, angles.groups()))
     found = corrected_by(target, magnetometer.folder / "vehicle", raw, motor=driver, mounting=R)
     assert_allclose(found, full, atol=1e-3 if target == "ardupilot" else 1e-4)
-    assert done.result["loss"]["heading_largest_deg"] == pytest.approx(0, abs=1e-9)
-    assert done.result["loss"]["rotation_deg"] == pytest.approx(0, abs=1e-5)
+    assert done.result["approximation"]["heading_largest_deg"] == pytest.approx(0, abs=1e-9)
+    assert done.result["approximation"]["rotation_deg"] == pytest.approx(0, abs=1e-5)
 
 
 def test_a_mounting_that_is_given_wins(magnetometer: Bench) -> None:
@@ -430,7 +436,9 @@ def test_a_mounting_that_is_given_wins(magnetometer: Bench) -> None:
     assert autopilots.read_px4(file)["CAL_MAG0_ROT"] == 1
     found = corrected_by("px4", file, raw, motor=driver, mounting=R)
     assert_allclose(found, (raw - n - np.outer(driver, kappa)) @ (R @ S).T, atol=300 * SINGLE)
-    assert done.result["loss"]["rotation_deg"] == pytest.approx(degrees_of(R.T @ Q), rel=1e-5)
+    assert done.result["approximation"]["rotation_deg"] == pytest.approx(
+        degrees_of(R.T @ Q), rel=1e-5
+    )
 
 
 def test_the_rotation_has_a_home_in_a_newer_px4(magnetometer: Bench) -> None:

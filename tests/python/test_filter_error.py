@@ -23,7 +23,7 @@ def fit() -> sepcal.Fit:
 
 def test_it_finds_what_was_flown(fit: sepcal.Fit) -> None:
     assert fit.status == "converged", fit.message
-    assert fit.by == "filter-error"
+    assert fit.method == "filter-error"
     for name, true in TRUTH.items():
         assert abs(fit[name].value - true) < 4 * fit[name].standard_error
     assert list(fit.noise_sizes) == list(SIZES)
@@ -83,7 +83,7 @@ def test_manoeuvres_merged_are_one_record_of_segments() -> None:
     options = {"own": ["alpha_0", "q_0"], "method": "filter-error"}
     many = sepcal.fit_many(sepcal.ShortPeriod(), flights, **options)
     assert many.status == "converged", many.message
-    assert many.by == "filter-error"
+    assert many.method == "filter-error"
     log = {
         name: np.concatenate([flight[name] for flight in flights.values()])
         for name in flights["climb"]
@@ -128,7 +128,7 @@ def test_what_is_given_is_held() -> None:
         LOG,
         method="filter-error",
         process_noise={"q": 0.09},
-        fixed={"Za": -4.0},
+        fix={"Za": -4.0},
     )
     size = held.noise_sizes["q_q"]
     assert size.value == pytest.approx(0.09)
@@ -196,7 +196,7 @@ def test_profiles_are_near_the_gaussian(fit: sepcal.Fit) -> None:
         sepcal.ShortPeriod(),
         LOG,
         method="filter-error",
-        fixed={"Mq": float(found.parameters["Mq"].profile[1])},
+        fix={"Mq": float(found.parameters["Mq"].profile[1])},
     )
     stretch = fit["Mq"].standard_error / fit["Mq"].standard_error_white
     rise = 2 * (fit.log_likelihood - held.log_likelihood)
@@ -324,7 +324,7 @@ def test_a_prediction_has_the_gathered_process_noise() -> None:
     held = TRUTH | {"b_alpha": 0.02, "b_q": -0.01, "b_az": 0.5, "alpha_0": 0.0}
     options = {
         "method": "filter-error",
-        "fixed": held,
+        "fix": held,
         "process_noise": {"alpha": SIZES["q_alpha"], "q": SIZES["q_q"]},
         "noise": READS,
     }
@@ -384,7 +384,7 @@ def test_smoothed_disturbances_over_their_deviation_are_standard_normal() -> Non
         sepcal.ShortPeriod(),
         LOG,
         method="filter-error",
-        fixed=TRUTH | {"b_alpha": 0.02, "b_q": -0.01, "b_az": 0.5},
+        fix=TRUTH | {"b_alpha": 0.02, "b_q": -0.01, "b_az": 0.5},
         process_noise=STIRRED,
         noise=READS,
     )

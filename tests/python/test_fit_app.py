@@ -28,7 +28,7 @@ def test_every_key(bench: Bench):
     result = bench.base
     model = bench.model
     assert list(result) == KEYS
-    assert result["schema_version"] == 2
+    assert result["schema_version"] == 3
     assert result["model"] == {"sepcal-pitot": "five-hole", "sepcal-mag": "magnetometer"}[bench.app]
     rows = len(bench.read_log().rows)
     assert result["inputs"] == {
@@ -100,8 +100,8 @@ def test_stages(bench: Bench):
     assert 0 < minimum["trace_r"] <= one["trace_r"]  # the sample from which it was reached
     assert one["unique_minimum"] is True
     assert one["flat_directions"] == []
-    assert list(two) == ["method", "r_iterations"]
-    assert two["method"] == "projected"  # the paper's Step 5, where the minimum is unique
+    assert list(two) == ["second_stage", "r_iterations"]
+    assert two["second_stage"] == "projected"  # the paper's Step 5, where the minimum is unique
     assert isinstance(two["r_iterations"], int)
 
 
@@ -118,7 +118,8 @@ def test_defaults_are_carried(bench: Bench):
     options = bench.base["options"]
     probe = {"k_alpha": 4.5, "k_beta": 4.5, "lever_arm": [0.35, 0, -0.02]}
     assert options == (probe if bench.app == "sepcal-pitot" else {}) | {
-        "effects": [], "stage_one": "", "stage_two": "", "bounds": {}, "start": {}, "fix": {},
+        "effects": [], "stage_one_segments": "", "stage_two_segments": "", "bounds": {},
+        "start": {}, "fix": {},
         "free": [], "noise": {}, "samples": 500, "sampling": "uniform",
         "sampling_distribution": {}, "seed": 0, "descents": 8, "second_stage": "auto",
         "noise_tolerance": 1e-10, "noise_iterations": 100, "prior": {}, "search": "sampling",
@@ -130,7 +131,12 @@ def test_defaults_are_carried(bench: Bench):
 def test_options_are_carried(pitot: Bench):
     """Each option ends up in the JSON, and later verbs need no more than that."""
     fitted = pitot.fit(
-        *("--stage-one", "popu,multisine_1", "--stage-two", "wind_circle_1,40:110"),
+        *(
+            "--stage-one-segments",
+            "popu,multisine_1",
+            "--stage-two-segments",
+            "wind_circle_1,40:110",
+        ),
         *("--bounds", "eps_phi=-0.2,0.15", "--bounds", "w_n=-9,9", "--fix", "w_d=0.3"),
         *("--free", "w_e", "--samples", "60", "--sampling", "low_discrepancy", "--seed", "7"),
         *("--second-stage", "joint", "--noise", "vn=0.15", "--noise", "ve=0.15"),
@@ -140,7 +146,7 @@ def test_options_are_carried(pitot: Bench):
     )
     assert fitted.code == 0, fitted.err
     assert fitted.result["options"] | {
-        "stage_one": "popu,multisine_1", "stage_two": "wind_circle_1,40:110",
+        "stage_one_segments": "popu,multisine_1", "stage_two_segments": "wind_circle_1,40:110",
         "bounds": {"eps_phi": [-0.2, 0.15], "w_n": [-9, 9]}, "fix": {"w_d": 0.3}, "free": ["w_e"],
         "samples": 60, "sampling": "low_discrepancy", "seed": 7, "second_stage": "joint",
         "noise": {"vd": 0.2, "ve": 0.15, "vn": 0.15}, "noise_tolerance": 0.05, "threads": 1,
@@ -148,7 +154,7 @@ def test_options_are_carried(pitot: Bench):
         "jacobian": "golub_pereyra",
     } == fitted.result["options"]  # fmt: skip
     assert fitted.result["noise"] == {"vn": 0.15, "ve": 0.15, "vd": 0.2}
-    assert fitted.result["stage_two"]["method"] == "joint"
+    assert fitted.result["stage_two"]["second_stage"] == "joint"
     assert pitot.run("compare", "flight.csv", "next.json").code == 0
 
 
@@ -186,7 +192,7 @@ def test_stage_two_uses_the_segments_named(pitot: Bench):
     """By maneuver and by time: the same as a log of these rows."""
     log = pitot.read_log()
     time, labels = log.column("time_s"), [row[log.index("maneuver")] for row in log.rows]
-    fitted = pitot.fit("--stage-two", "wind_circle_1, 40:90")
+    fitted = pitot.fit("--stage-two-segments", "wind_circle_1, 40:90")
     kept = [
         label == "wind_circle_1" or 40 <= t <= 90 for label, t in zip(labels, time, strict=True)
     ]
@@ -202,7 +208,7 @@ def test_stage_two_uses_the_segments_named(pitot: Bench):
 
 def test_stage_one_uses_the_segments_named(pitot: Bench):
     """Stage two still takes every row, so only stage one's numbers change."""
-    fitted = pitot.fit("--stage-one", "popu,multisine_1").result
+    fitted = pitot.fit("--stage-one-segments", "popu,multisine_1").result
     assert fitted["inputs"] == pitot.base["inputs"]
     assert fitted["stage_one"]["trace_r"] != pitot.base["stage_one"]["trace_r"]
     assert_allclose(values_of(fitted), values_of(pitot.base), rtol=1e-6, atol=1e-9)

@@ -195,7 +195,7 @@ def test_an_exception_of_a_model_in_python_passes_as_it_is():
         ({"own": "c"}, r"own is 'c'; give a list of names, \['c'\]"),
         ({"own": ["c", "c"]}, "own: 'c' stands there twice"),
         ({"own": ["a", "b", "c"]}, "nothing joins the flights"),
-        ({"own": ["c"], "fixed": {"c": 1.0}}, "own 'c' is fixed"),
+        ({"own": ["c"], "fix": {"c": 1.0}}, "own 'c' is fixed"),
         ({"flights": []}, "there are no flights to fit"),
         ({"flights": "a.csv"}, "flights is one flight"),
         ({"flights": 3}, "flights is a int"),

@@ -62,7 +62,7 @@ def test_both_searches_end_in_the_same_fit() -> None:
     sampled = sepcal.fit(model, case.record, bounds=case.bounds)
     searched = sepcal.fit(model, case.record, bounds=case.bounds, search="global", samples=100)
     assert searched.stage_one.samples.shape == (100, 1)
-    assert searched.method == sampled.method
+    assert searched.second_stage == sampled.second_stage
     assert_allclose(searched.values, sampled.values, rtol=1e-8)
 
 

@@ -46,7 +46,7 @@ def test_a_small_study_runs_and_is_written_up(small, tmp_path):
     assert told[-1] == 1.0
     assert [row["found"] for row in rows["power"]] == [True, True]
     assert [row["verdict"] for row in rows["null"]] == ["adequate", "adequate"]
-    assert len(rows["pairs"]) == len(rows["unlogged"]) == 1
+    assert len(rows["pairs"]) == len(rows["unmeasured"]) == 1
     for experiment in ("power", "null"):  # by seed, not by who was first
         tasks = [task for task in experiments._tasks(small) if task[0] == experiment]
         assert [experiments._run(*task)[1] for task in tasks] == rows[experiment]

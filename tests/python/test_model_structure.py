@@ -110,7 +110,7 @@ def test_effects_on_several_outputs():
     flight = sepcal.simulate(model, rows=300, seed=4, hide={"bias[current_a]": 0.03})
     held = {f"eta_{axis}": 0.0 for axis in "xyz"}
     held |= dict.fromkeys(("alpha_xy", "alpha_xz", "alpha_yz"), 0.0)
-    fit = sepcal.fit(model, flight, fixed=held)
+    fit = sepcal.fit(model, flight, fix=held)
     found = fit.diagnose()["bias[current_a]"]
     roll, pitch, yaw = (flight[f"{name}_rad"] for name in ("roll", "pitch", "yaw"))
     north, east, down = FIELD

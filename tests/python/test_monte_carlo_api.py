@@ -141,7 +141,7 @@ def test_a_truth_that_differs_from_trial_to_trial():
 def test_a_fixed_parameter_has_no_standard_error():
     def trial(rng):
         model, record = sepcal.ScalarExample1(), draw_record(rng)
-        return sepcal.fit(model, record, fixed={"b": 0.1}, samples=20, threads=1)
+        return sepcal.fit(model, record, fix={"b": 0.1}, samples=20, threads=1)
 
     study = sepcal.monte_carlo(trial, 4, truth=TRUTH)
     one = study.summary()["b"]

@@ -106,14 +106,14 @@ def _given(parameter: str, output: str, effect: str, fit: sepcal.Fit) -> dict[st
     return {
         "effects": [effect],
         "bounds": {parameter: (value + near, value + 2.0 * near)},
-        "fixed": {parameter: value + near},
+        "fix": {parameter: value + near},
         "noise": noises,
         "prior": {parameter: (value + near, 0.1 * near)},
         "search": "global",
         "sampling_distribution": {parameter: (value, near)},
         "screens": {"t_1": 1e-9},
-        "stage_one": "2:6",
-        "stage_two": "2:6",
+        "stage_one_segments": "2:6",
+        "stage_two_segments": "2:6",
         "samples": 24,
         "sampling": "low_discrepancy",
         "start": {parameter: value + near},
@@ -169,8 +169,8 @@ def test_an_option_is_used_or_refused(subject: str, option: str) -> None:
     try:
         fit = run(**given)
     except sepcal.Error as error:
-        spelled = {"fixed": "fix", "effects": "effect", "method": "filter error"}
-        spelled |= {"stage_one": "segment", "stage_two": "segment"}
+        spelled = {"fix": "fix", "effects": "effect", "method": "filter error"}
+        spelled |= {"stage_one_segments": "segment", "stage_two_segments": "segment"}
         words = spelled.get(option, option)
         said = str(error)
         assert words in said or any(str(name) in said for name in _names_in(given[option])), said

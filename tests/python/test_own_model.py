@@ -29,7 +29,9 @@ def test_a_twin_in_python_is_the_model_in_cpp(name: str, second_stage: str) -> N
     twin = sepcal.fit(Twin(case), case.record, **options)
     assert type(twin) is sepcal.Fit
     assert (
-        (twin.status, twin.method) == (compiled.status, second_stage) == ("converged", second_stage)
+        (twin.status, twin.second_stage)
+        == (compiled.status, second_stage)
+        == ("converged", second_stage)
     )
     assert twin.names == compiled.names
     errors = np.sqrt(np.diag(compiled.covariance))
@@ -72,9 +74,14 @@ def test_threads_do_not_change_a_bit() -> None:
 def test_options_and_segments_are_those_of_every_model() -> None:
     labels = ["first"] * 300 + ["second"] * 300
     half = {name: values[:300] for name, values in BOX.items()}
-    whole = sepcal.fit(WindBox(), {**BOX, "maneuver": labels}, stage_one="first", stage_two="first")
+    whole = sepcal.fit(
+        WindBox(),
+        {**BOX, "maneuver": labels},
+        stage_one_segments="first",
+        stage_two_segments="first",
+    )
     assert_array_equal(whole.values, sepcal.fit(WindBox(), half).values)
-    held = sepcal.fit(WindBox(), BOX, fixed={"delta": 0.06, "w_n": -3.8}, samples=0)
+    held = sepcal.fit(WindBox(), BOX, fix={"delta": 0.06, "w_n": -3.8}, samples=0)
     assert held["delta"].fixed
     assert (held["delta"].value, held["w_n"].value) == (0.06, -3.8)
     assert abs(held["k"].value - 1.05) < 5 * held["k"].standard_error
@@ -223,7 +230,7 @@ def test_columns_nearly_alike_are_told_apart(part: float) -> None:
     model = NearlyAlike(part)
     A = model.at(type("Inputs", (), {"x": x}), [0.8])[0][:, 0]
     z = A @ [1.0, 2.0, 3.0] + np.sin(0.8 * x)
-    fit = sepcal.fit(model, {"x": x, "z": z}, fixed={"k": 0.8}, noise={"z": 1e-10})
+    fit = sepcal.fit(model, {"x": x, "z": z}, fix={"k": 0.8}, noise={"z": 1e-10})
     assert fit.status == "converged"
     expected = np.linalg.lstsq(A, z - np.sin(0.8 * x), rcond=None)[0]
     found = [fit[name].value for name in "abc"]

@@ -78,7 +78,7 @@ def test_stage_one_samples_as_in_cpp() -> None:
     own = sepcal.fit(ShortPeriod(), FLIGHT, **options)
     assert_array_equal(own.stage_one.samples, compiled.stage_one.samples)
     assert_allclose(own.stage_one.trace_r, compiled.stage_one.trace_r, rtol=1e-8)
-    held = {"fixed": {"b_q": -0.01, "Mq": -5.0}, **options}
+    held = {"fix": {"b_q": -0.01, "Mq": -5.0}, **options}
     trace = [sepcal.fit(m, FLIGHT, **held).stage_one.trace_r
              for m in (ShortPeriod(), sepcal.ShortPeriod())]  # fmt: skip
     assert_allclose(trace[0], trace[1], rtol=1e-8)
@@ -147,8 +147,8 @@ def test_a_measured_state_is_read() -> None:
     data = {**FLIGHT, "q": FLIGHT["q_m"] + 0.01}
     options = {"measured": ["q"], "outputs": ["alpha_m", "az_m"]}
     kept = {"Ma": -40.0, "Mq": -5.0, "Md": -45.0}
-    compiled = sepcal.fit(sepcal.ShortPeriod(**options), data, fixed=kept)
-    own = sepcal.fit(sepcal.Trajectory(ShortPeriod(), **options), data, fixed=kept)
+    compiled = sepcal.fit(sepcal.ShortPeriod(**options), data, fix=kept)
+    own = sepcal.fit(sepcal.Trajectory(ShortPeriod(), **options), data, fix=kept)
     assert [name for name in own.names if name.endswith("_0")] == ["alpha_0"]
     free = [name for name in own.names if name not in kept]
     for name in free:

@@ -57,7 +57,7 @@ def test_a_poor_fit(magnetometer: Bench, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(magnetometer.folder)
     poor = ("simulate", "-o", "poor.csv", "--rows", "20", "--excitation", "poor")
     assert magnetometer.run(*poor).code == 0
-    fitted = sepcal.fit(sepcal.Magnetometer(), sepcal.read_csv("poor.csv"), fixed={"eta_x": 0.0})
+    fitted = sepcal.fit(sepcal.Magnetometer(), sepcal.read_csv("poor.csv"), fix={"eta_x": 0.0})
     assert_same(magnetometer, fitted, "fit", "poor.csv", "--fix", "eta_x=0")
 
 

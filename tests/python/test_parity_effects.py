@@ -72,7 +72,7 @@ def fit_hidden(probe: str, hidden: Hidden, second_stage: str) -> sepcal.Fit:
         hidden.record,
         effects=[name for name in case.name.split("+") if name],
         bounds=bounds,
-        fixed=hidden.held,
+        fix=hidden.held,
         noise=dict(zip(hidden.base.outputs, map(float, hidden.noise), strict=True)),
         second_stage=second_stage,
         samples=None if probe == "norm" else 100,  # a strength begins at the ellipsoid

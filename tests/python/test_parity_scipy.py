@@ -52,7 +52,7 @@ def fit_case(case: Case, second_stage: str, noise: dict[str, float] | None) -> s
         seed=0,
     )
     assert fit.status == "converged", fit.message
-    assert fit.method == second_stage
+    assert fit.second_stage == second_stage
     assert not any(parameter.at_bound for parameter in fit.parameters.values())
     return fit
 
@@ -135,7 +135,7 @@ def test_losses(case: Case, loss: str, width: float) -> None:
         coloured_errors=False,
     )
     assert fit.status == "converged", fit.message
-    assert fit.method == "joint"
+    assert fit.second_stage == "joint"
     standard_errors = np.sqrt(np.diag(expected.covariance))
     assert_values_agree(fit.values, expected.values, standard_errors)
     scale = np.outer(standard_errors, standard_errors)

@@ -40,7 +40,7 @@ def flight() -> sepcal.Flight:
 
 
 def fit(flight: sepcal.Flight, inputs: str = "linear", **options: object) -> sepcal.Fit:
-    asked = {"fixed": FIXED, "process_noise": UNIT} | options
+    asked = {"fix": FIXED, "process_noise": UNIT} | options
     found = sepcal.fit(path(inputs), flight, method="filter-error", **asked)
     assert found.status == "converged", found.message
     return found
@@ -97,7 +97,7 @@ def test_halves_agree_and_predict_each_other(flight: sepcal.Flight) -> None:
         told = fit(
             flight,
             effects=["imu_late"],
-            fixed=FIXED | known,
+            fix=FIXED | known,
             process_noise=noise["q"],
             noise=noise["r"],
             **half,

@@ -118,7 +118,7 @@ def test_a_single_stage_refuses_what_it_does_not_know() -> None:
     with pytest.raises(sepcal.Error, match="solver: 'sqp' is unknown; known: levenberg_marquardt"):
         rivals.fit_single_stage(sepcal.ScalarExample1(), data, solver="sqp")  # type: ignore[arg-type]
     with pytest.raises(sepcal.Error, match="start: 'c' is fixed"):
-        rivals.fit_single_stage(sepcal.ScalarExample1(), data, {"c": 1.0}, fixed={"c": 0.5})
+        rivals.fit_single_stage(sepcal.ScalarExample1(), data, {"c": 1.0}, fix={"c": 0.5})
 
 
 # --- Haupt and Kasdin

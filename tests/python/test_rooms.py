@@ -40,7 +40,11 @@ def test_every_include_goes_the_right_way():
             "numerics may not include estimation",
         ),
         ("src/simulation/wander.cpp", "sepcal/fit.hpp", "simulation may not include estimation"),
-        ("include/sepcal/record.hpp", "sepcal/block_model.hpp", "base may not include model"),
+        (
+            "include/sepcal/record.hpp",
+            "sepcal/detail/block_model.hpp",
+            "base may not include model",
+        ),
         ("src/diagnosis/trial.cpp", "many/split.hpp", "diagnosis may not include many"),
         ("src/noise/whitener.cpp", "somewhere/else.hpp", "is in no room"),
     ],

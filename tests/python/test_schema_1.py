@@ -133,7 +133,7 @@ def test_options_go_on_in_their_new_words(name: str, before: dict[str, Any], fol
         CASES[name].app, "add", "flight.csv", "base.json", CASES[name].effect, "-o", "next.json"
     )
     now = parse_json((folder / "next.json").read_text())
-    assert now["schema_version"] == 2
+    assert now["schema_version"] == 3
     assert now["options"]["prior"] == before["options"]["knowledge"]
     assert now["options"]["sampling_distribution"] == before["options"]["priors"]
     assert not {"knowledge", "priors"} & now["options"].keys()

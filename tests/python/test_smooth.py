@@ -226,7 +226,7 @@ def test_errors_of_parameters_widen_the_bands(fit: sepcal.Fit) -> None:
 
     def smooth_at(moved: dict[str, float]) -> sepcal.Smoothed:
         fixed = {name: value for name, value in {**at, **moved}.items() if name != "alpha_0"}
-        held = sepcal.fit(model, flight, fixed=fixed)  # alpha_0 is where next to nothing begins
+        held = sepcal.fit(model, flight, fix=fixed)  # alpha_0 is where next to nothing begins
         return sepcal.smooth(model, flight, held, DENSITY, noise=fit.noise)
 
     names = [name for name in fit.names if name not in starts]
@@ -273,7 +273,7 @@ def test_measured_states_are_known(fit: sepcal.Fit) -> None:
     options = {"measured": ["q"], "outputs": ["alpha_m", "az_m"]}
     data = {**FLIGHT, "q": FLIGHT["q_m"] + 0.01}
     found = [
-        sepcal.smooth(model, data, sepcal.fit(model, data, fixed={"Ma": -40, "Mq": -5, "Md": -45}),
+        sepcal.smooth(model, data, sepcal.fit(model, data, fix={"Ma": -40, "Mq": -5, "Md": -45}),
                       {"alpha": 0.003}, start={"alpha": 0.02})
         for model in (sepcal.ShortPeriod(**options), sepcal.Trajectory(ShortPeriod(), **options))
     ]  # fmt: skip

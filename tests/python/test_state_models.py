@@ -82,7 +82,7 @@ def test_what_is_held_can_be_freed() -> None:
     assert fit.status == "not_identifiable"
     assert set(fit.unobservable[0].parameters) == {"b_psi", "psi_0"}
     refuse(lambda: sepcal.fit(model, FLIGHT, free=["b_x"]), "b_x", "no such parameter")
-    given = sepcal.fit(model, FLIGHT, samples=10, fixed={"b_v": 0.1})
+    given = sepcal.fit(model, FLIGHT, samples=10, fix={"b_v": 0.1})
     assert given["b_v"].value == 0.1
     assert "b_v" not in given.message.replace("b_alpha, b_psi", "")
 

@@ -164,4 +164,4 @@ def test_rough_air_is_no_effect(
     """Nothing is found in turbulence that is louder than a sensor wanders."""
     diagnosis = diagnosed(fly(seed, gusts))
     assert diagnosis.result["verdict"] != "effect_missing"
-    assert diagnosis.result["wanders"]["gusts"]["size"] >= 0.35
+    assert diagnosis.result["error_budget"]["gusts"]["size"] >= 0.35

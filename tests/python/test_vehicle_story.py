@@ -130,7 +130,7 @@ def test_the_strength_is_flatter_than_with_the_parameters_flown(copter: tuple[Pa
 
     motors = ("--effect", "bias[throttle]")
     plain, whole = export(), export(*motors)
-    unseen = export(*motors, "--stage-two", ",".join(seen))
+    unseen = export(*motors, "--stage-two-segments", ",".join(seen))
     table = {
         "as flown": (flown, flown),
         "`base.json`": (plain, plain),

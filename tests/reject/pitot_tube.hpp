@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "sepcal/model.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal {
 

@@ -3,7 +3,7 @@
 // expect: a parameter or an output of one name belongs to both sensors: say Labelled
 // expect: sepcal::PitotTube
 #include "pitot_tube.hpp"
-#include "sepcal/static_concatenation.hpp"
+#include "sepcal/detail/static_concatenation.hpp"
 
 namespace sepcal {
 

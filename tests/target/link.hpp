@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace target {
 

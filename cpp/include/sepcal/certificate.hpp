@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/model.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

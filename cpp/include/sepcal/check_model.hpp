@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/effect.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/effect.hpp"
+#include "sepcal/detail/tables.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/tables.hpp"
 
 namespace sepcal {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 namespace sepcal {
 

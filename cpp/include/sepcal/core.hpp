@@ -4,19 +4,19 @@
 #pragma once
 
 // clang-format off: reading order
-#include "sepcal/quantity.hpp"              // a name, a unit
-#include "sepcal/model.hpp"                 // four tables and one function
-#include "sepcal/dual.hpp"                  // its derivatives
-#include "sepcal/static_effect.hpp"         // an effect written as a struct
+#include "sepcal/detail/quantity.hpp"              // a name, a unit
+#include "sepcal/detail/model.hpp"                 // four tables and one function
+#include "sepcal/detail/dual.hpp"                  // its derivatives
+#include "sepcal/detail/static_effect.hpp"         // an effect written as a struct
 #include "sepcal/static_composition.hpp"    // model + effects
-#include "sepcal/static_concatenation.hpp"  // several sensors side by side
+#include "sepcal/detail/static_concatenation.hpp"  // several sensors side by side
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/pitot_static.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/triad.hpp"
-#include "sepcal/effects/air_data.hpp"
-#include "sepcal/effects/magnetic.hpp"
+#include "sepcal/detail/effects/air_data.hpp"
+#include "sepcal/detail/effects/magnetic.hpp"
 #include "sepcal/detail/correction.hpp"            // a calibration at work
 #include "sepcal/detail/states/information_root.hpp"         // least squares, row by row
 #include "sepcal/states/recursive_least_squares.hpp"

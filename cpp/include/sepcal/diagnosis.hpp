@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/choices.hpp"
+#include "sepcal/detail/choices.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/detail/path_model.hpp"
-#include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/named_effects.hpp"
 #include "sepcal/noise_model.hpp"
 
 namespace sepcal {
@@ -147,25 +147,25 @@ struct DetectionLimit {
 /// Offsets of every output and every port by window of the record, all at once.
 struct Omnibus {
   double p_value = 1.0;
-  double p_adjusted = 1.0;   // after Holm, with the unlogged causes: for the verdict
+  double p_adjusted = 1.0;   // after Holm, with the unmeasured causes: for the verdict
   bool significant = false;  // p_adjusted is below what the options ask
   std::string where = {};    // the port or output whose offsets explain most
   std::vector<std::pair<std::string, double>> windows =
       {};  // and how far off each window is [sigma]
 };
 
-enum class UnloggedKind {
+enum class UnmeasuredKind {
   common_cause,  // outputs whose noise should be independent move together
   spectral_line  // a swing at one frequency, narrower than a resonance
 };
 
 /// "common_cause", "spectral_line".
-std::string_view to_string(UnloggedKind kind);
+std::string_view to_string(UnmeasuredKind kind);
 
 /// A cause that no logged channel follows. Times are rows, frequencies cycles a row, where the
 /// record has no time.
-struct UnloggedCause {
-  UnloggedKind kind = UnloggedKind::common_cause;
+struct UnmeasuredCause {
+  UnmeasuredKind kind = UnmeasuredKind::common_cause;
   std::vector<std::string> outputs = {};  // that show it
   double p_value = 1.0;                   // for itself, corrected for all that it was chosen among
   double p_adjusted = 1.0;                // after Holm: for the verdict
@@ -203,7 +203,7 @@ struct Diagnosis {
   std::vector<std::string> pairs = {};
   std::vector<ResidualNoise> residual = {};
   Omnibus omnibus;
-  std::vector<UnloggedCause> unlogged = {};  // that are significant, the surest first
+  std::vector<UnmeasuredCause> unmeasured = {};  // that are significant, the surest first
   std::vector<DetectionLimit> limits = {};
   double rmse = 0.0;   // over all outputs
   double floor = 0.0;  // innovations alone, over all outputs
@@ -213,7 +213,7 @@ struct Diagnosis {
   bool has_time = false;
   std::string unit = {};  // of both; empty where the outputs have different ones: shares of each
                           // output's own
-  std::vector<WanderBound> wanders = {};  // how far errors were let wander
+  std::vector<ErrorBound> error_budget = {};  // how far errors were let wander
   DiagnosisWork work = {};
   std::vector<std::string> left_undone = {};  // steps for which there was no time
 };
@@ -241,7 +241,7 @@ inline constexpr double visible_along_path = 0.01;
 
 struct DiagnosisOptions {
   double significance = significant_below;  // of the verdict
-  double unexplained_below = 0.01;          // p of offsets and of unlogged causes, after Holm
+  double unexplained_below = 0.01;          // p of offsets and of unmeasured causes, after Holm
   double least_visibility = visible_from;
   int simulations = 40;                     // of the noise, that calibrate a test
   std::vector<std::string> preferred = {};  // come first among those as likely
@@ -250,8 +250,8 @@ struct DiagnosisOptions {
   /// can't make is an error and not left out.
   std::vector<std::string> only = {};
   std::size_t others = 0;  // candidates that are asked elsewhere at once: Holm counts them
-  /// How far errors wander at most, by their names (EffectKit::wanders), where it is known.
-  std::map<std::string, double> wanders = {};
+  /// How far errors wander at most, by their names (EffectKit::error_budget), where it is known.
+  std::map<std::string, double> error_budget = {};
   double within = infinity;  // [s]: what is not done by then is left undone, and said
   std::uint64_t seed = 0;
   int threads = 0;

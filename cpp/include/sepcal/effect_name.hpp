@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/channel_product.hpp"
+#include "sepcal/detail/channel_product.hpp"
 
 namespace sepcal {
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/identifiability.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/passes.hpp"
-#include "sepcal/eigen.hpp"
-#include "sepcal/identifiability.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/stage_one.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/stage_one.hpp"
 
 namespace sepcal {
 
@@ -85,7 +85,7 @@ struct Fit {
       rmse;           // unwhitened, in the output's unit; by filter error of innovations
   double cost = 0.0;  // J of Eq. 6; by filter error V_m (S 5.7)
 
-  FitMethod by = FitMethod::output_error;
+  FitMethod method = FitMethod::output_error;
   std::vector<NoiseSize> noise_sizes = {};       // by filter error: process noises, then outputs
   double log_likelihood = not_a_number;          // by filter error
   double log_likelihood_without = not_a_number;  // output error's from which it began: without the
@@ -93,12 +93,13 @@ struct Fit {
   Identifiability identifiability;
 
   StageOne stage_one;
-  SecondStage method = SecondStage::joint;  // joint or projected, what stage two used in the end
-  int iterations = 0;                       // of stage two's minimisations
-  int noise_iterations = 0;                 // of R against the parameters
-  std::size_t rows = 0;                     // that stage two used
-  Passes stage_two_passes;                  // StageOne::passes has stage one's
-  Passes last_passes;                       // for covariance, noise of the residuals and status
+  SecondStage second_stage =
+      SecondStage::joint;    // joint or projected, what stage two used in the end
+  int iterations = 0;        // of stage two's minimisations
+  int noise_iterations = 0;  // of R against the parameters
+  std::size_t rows = 0;      // that stage two used
+  Passes stage_two_passes;   // StageOne::passes has stage one's
+  Passes last_passes;        // for covariance, noise of the residuals and status
 
   /// Throws Error for a name that is not a parameter.
   const Parameter& operator[](std::string_view name) const;

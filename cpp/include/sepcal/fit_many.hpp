@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/model.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/model.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal {
 
@@ -82,7 +82,7 @@ struct ManyFit {
   std::vector<OutputValue> noise;  // common to all flights: given, or from R-hat = SSE / N
   std::vector<OutputValue> rmse;   // over all flights; by filter error of innovations
   double cost = 0.0;               // J of Eq. 6 over all rows; by filter error V_m (S 5.7)
-  FitMethod by = FitMethod::output_error;
+  FitMethod method = FitMethod::output_error;
   std::vector<NoiseSize> noise_sizes = {};  // by filter error: process noises, then outputs
   double log_likelihood = not_a_number;     // by filter error
   Identifiability identifiability;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal {
 

@@ -18,7 +18,7 @@
 #include "sepcal/detail/lane_dual.hpp"
 #include "sepcal/detail/lane_kernel.hpp"
 #include "sepcal/detail/lanewise.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "sepcal/choices.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/choices.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal {
 
@@ -41,7 +41,7 @@ struct FitOptions {
   /// model's.
   std::map<std::string, Interval> bounds = {};
   /// Parameters held at a value and not estimated.
-  std::map<std::string, double> fixed = {};
+  std::map<std::string, double> fix = {};
   /// Noise standard deviation of every output; empty: R is estimated (Eqs. 24-26).
   std::map<std::string, double> noise = {};
   /// Normal priors of parameters, linear or nonlinear: each adds the square of (x - mean) /

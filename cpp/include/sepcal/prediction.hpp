@@ -3,10 +3,10 @@
 // sqrt(g' Cov g) with g a row of [A D], and that of a new measurement, with the output's noise.
 #pragma once
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal {
 

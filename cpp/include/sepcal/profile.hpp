@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal {
 

@@ -13,7 +13,7 @@
 
 #include "sepcal/detail/hoisted_model.hpp"
 #include "sepcal/detail/joined_tables.hpp"
-#include "sepcal/static_effect.hpp"
+#include "sepcal/detail/static_effect.hpp"
 
 namespace sepcal {
 

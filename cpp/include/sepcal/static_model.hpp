@@ -10,10 +10,10 @@
 #include <memory>
 #include <utility>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/enclosed_dual.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/nested_dual.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal {
 

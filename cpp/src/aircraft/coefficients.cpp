@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/aircraft/coefficients.hpp"
+#include "sepcal/detail/aircraft/coefficients.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "base/columns.hpp"
 #include "base/name_list.hpp"
 #include "base/short_number.hpp"
-#include "sepcal/aircraft/equations.hpp"
+#include "sepcal/detail/aircraft/equations.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {

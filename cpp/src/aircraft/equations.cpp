@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/aircraft/equations.hpp"
+#include "sepcal/detail/aircraft/equations.hpp"
 
 #include <algorithm>
 #include <set>

@@ -9,7 +9,7 @@ namespace sepcal {
 void aircraft::hold_at_zero(const std::vector<std::string>& held,
                             const std::vector<std::string>& free, FitOptions& fit) {
   for (const std::string& name : held) {
-    if (!base::is_among(free, name)) fit.fixed.emplace(name, 0.0);
+    if (!base::is_among(free, name)) fit.fix.emplace(name, 0.0);
   }
   for (const std::string& name : free) {
     if (base::is_among(held, name)) continue;

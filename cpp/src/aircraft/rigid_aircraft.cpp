@@ -49,7 +49,7 @@ void append(const AeroTerms& more, AeroTerms& aero) {
   };
   for (AeroTerms::Term term : more.terms) {
     for (AeroTerms::Factor& factor : term.factors) move(factor.variable);
-    if (term.bend) move(term.bend->variable);
+    if (term.spline) move(term.spline->variable);
     aero.terms.push_back(std::move(term));
   }
   aero.parameters.insert(aero.parameters.end(), more.parameters.begin(), more.parameters.end());
@@ -118,7 +118,7 @@ std::shared_ptr<const BlockModel> with_terms(const BlockModel& model, const Reco
 
 bool has_line(const AeroTerms& aero, const AeroTerms::Term& line) {
   return std::ranges::any_of(aero.terms, [&](const AeroTerms::Term& term) {
-    return term.coefficient == line.coefficient && term.factors.size() == 1 && !term.bend &&
+    return term.coefficient == line.coefficient && term.factors.size() == 1 && !term.spline &&
            term.factors.front().variable == line.factors.front().variable &&
            term.factors.front().power == 1 && !term.factors.front().absolute;
   });
@@ -148,10 +148,10 @@ std::shared_ptr<const BlockModel> with_spline(const BlockModel& model,
     const AeroTerms::Term line = terms.terms.front();
     AeroTerms known = aero;  // in whose columns the line is told
     append(terms, known);
-    const bool bends_alone = has_line(aero, known.terms.back());
+    const bool spline_has_line = has_line(aero, known.terms.back());
     terms.terms.clear();
     terms.parameters.clear();
-    for (int j = 0; j < basis->functions() - (bends_alone ? 1 : 0); ++j) {
+    for (int j = 0; j < basis->functions() - (spline_has_line ? 1 : 0); ++j) {
       terms.terms.push_back({line.coefficient, {}, {{line.factors.front().variable, basis, j}}});
       terms.parameters.emplace_back(owner + std::to_string(j + 2), "1");
     }

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <utility>
 
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::base {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 #include <utility>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/tables.hpp"
+#include "sepcal/detail/tables.hpp"
 
 namespace sepcal::base {
 

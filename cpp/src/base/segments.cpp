@@ -11,8 +11,8 @@
 #include "base/excerpt.hpp"
 #include "base/gaps.hpp"
 #include "base/segments.hpp"
+#include "sepcal/detail/quantity.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/quantity.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

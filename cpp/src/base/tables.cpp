@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/tables.hpp"
+#include "sepcal/detail/tables.hpp"
 
 #include <set>
 

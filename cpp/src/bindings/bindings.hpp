@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "named_casters.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/own_model.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/flight/probe_effects.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal::bindings {
 

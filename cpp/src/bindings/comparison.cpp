@@ -89,7 +89,8 @@ void define_comparison(py::module_& module) {
       .field("residuals", &Compared::comparison, &Comparison::residuals,
              "(N, n_z), z - model; of a fit by filter error innovations.")
       .field("modelled", &Compared::comparison, &Comparison::modelled, "(N, n_z), z less them.")
-      .field("by", &Compared::comparison, &Comparison::by, R"("output-error" or "filter-error".)")
+      .field("method", &Compared::comparison, &Comparison::method,
+             R"("output-error" or "filter-error".)")
       .field("sigma", &Compared::comparison, &Comparison::sigma,
              "By filter error and output: rms of innovations in the filter's standard deviations.")
       .field("disturbances", &Compared::comparison, &Comparison::disturbances,

@@ -144,7 +144,7 @@ void define_parts(py::module_& module) {
   BoundStruct<Omnibus>(module, "Unexplained",
                        "Offsets of every output and every port by window of the flight, at once.")
       .field("p_value", &Omnibus::p_value, "")
-      .field("p_adjusted", &Omnibus::p_adjusted, "After Holm, with the unlogged causes.")
+      .field("p_adjusted", &Omnibus::p_adjusted, "After Holm, with the unmeasured causes.")
       .field("significant", &Omnibus::significant, "")
       .field("where", &Omnibus::where, "The port or output whose offsets explain most.")
       .field("windows", &Omnibus::windows, "[(window, how far off it is [sigma]), ...].")
@@ -153,20 +153,20 @@ void define_parts(py::module_& module) {
 }
 
 void define_causes(py::module_& module) {
-  BoundStruct<UnloggedCause>(
-      module, "UnloggedCause",
+  BoundStruct<UnmeasuredCause>(
+      module, "UnmeasuredCause",
       "A cause that no logged channel follows. Rows and cycles a row where there is no time.")
-      .field("kind", &UnloggedCause::kind, R"("common_cause" or "spectral_line".)")
+      .field("kind", &UnmeasuredCause::kind, R"("common_cause" or "spectral_line".)")
       .field(
-          "sentence", [](const UnloggedCause& self) { return describe(self); },
-          [](UnloggedCause&, const std::string&) {}, "In plain words.")
-      .field("outputs", &UnloggedCause::outputs, "That show it.")
-      .field("p_value", &UnloggedCause::p_value, "For itself.")
-      .field("p_adjusted", &UnloggedCause::p_adjusted, "After Holm: for the verdict.")
-      .field("all_along", &UnloggedCause::all_along, "Strongest over the whole flight.")
-      .field("first_s", &UnloggedCause::first_s, "Of the rows where it is strongest [s].")
-      .field("last_s", &UnloggedCause::last_s, "")
-      .field("frequency_hz", &UnloggedCause::frequency, "NaN where none stands out.")
+          "sentence", [](const UnmeasuredCause& self) { return describe(self); },
+          [](UnmeasuredCause&, const std::string&) {}, "In plain words.")
+      .field("outputs", &UnmeasuredCause::outputs, "That show it.")
+      .field("p_value", &UnmeasuredCause::p_value, "For itself.")
+      .field("p_adjusted", &UnmeasuredCause::p_adjusted, "After Holm: for the verdict.")
+      .field("all_along", &UnmeasuredCause::all_along, "Strongest over the whole flight.")
+      .field("first_s", &UnmeasuredCause::first_s, "Of the rows where it is strongest [s].")
+      .field("last_s", &UnmeasuredCause::last_s, "")
+      .field("frequency_hz", &UnmeasuredCause::frequency, "NaN where none stands out.")
       .comparable()
       .finish();
 
@@ -179,10 +179,10 @@ void define_causes(py::module_& module) {
       .comparable()
       .finish();
 
-  BoundStruct<WanderBound>(module, "WanderBound", "How far an error was let wander.")
-      .field("name", &WanderBound::name, "As `wanders` of diagnose() takes it.")
-      .field("size", &WanderBound::size, "Standard deviation of each component, at most.")
-      .field("unit", &WanderBound::unit, "")
+  BoundStruct<ErrorBound>(module, "ErrorBound", "How far an error was let wander.")
+      .field("name", &ErrorBound::name, "As `error_budget` of diagnose() takes it.")
+      .field("size", &ErrorBound::size, "Standard deviation of each component, at most.")
+      .field("unit", &ErrorBound::unit, "")
       .comparable()
       .finish();
 }
@@ -291,7 +291,7 @@ void define_diagnosis(py::module_& module) {
   of("noise_floor", &Diagnosis::floor, "Innovations alone.");
   of("correlation_time", &Diagnosis::correlation_time,
      "Over which the residual goes together [s].");
-  of("wanders", &Diagnosis::wanders, "By name: how far errors were let wander.");
+  of("error_budget", &Diagnosis::error_budget, "By name: how far errors were let wander.");
   of("work", &Diagnosis::work, "What was done.");
   of("left_undone", &Diagnosis::left_undone, "Steps for which there was no time.");
   of("pse", &Diagnosis::pse,
@@ -301,7 +301,7 @@ void define_diagnosis(py::module_& module) {
   bound.field("where", whole, &FlightDiagnosis::where,
               "By segment and output, as compare() has it.");
   of("unexplained", &Diagnosis::omnibus, "Offsets that no candidate explains.");
-  of("unlogged", &Diagnosis::unlogged, "Causes that follow no channel, the surest first.");
+  of("unmeasured", &Diagnosis::unmeasured, "Causes that follow no channel, the surest first.");
   of("limits", &Diagnosis::limits, "By port: the smallest slow effect that would have shown.");
   bound
       .field("missing_channels", whole, &FlightDiagnosis::missing_channels,

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 #include "sepcal/effect_name.hpp"
-#include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "structs.hpp"
 

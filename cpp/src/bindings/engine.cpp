@@ -21,13 +21,13 @@
 #include "results.hpp"
 #include "sepcal/concatenation.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 #include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_with_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/effect_catalogue.hpp"
 #include "sepcal/flight/own_model.hpp"
-#include "sepcal/models/scalar_examples.hpp"
 
 namespace sepcal::bindings {
 namespace {
@@ -142,7 +142,7 @@ std::string note_held(const Model& model, const CalibrationOptions& given, const
   std::vector<std::string> names;
   for (const Parameter& parameter : fit.parameters) {
     const bool by_default =
-        model.held.contains(parameter.name) && !given.fit.fixed.contains(parameter.name);
+        model.held.contains(parameter.name) && !given.fit.fix.contains(parameter.name);
     if (by_default && parameter.fixed) names.push_back(parameter.name);
   }
   if (names.empty()) return "";

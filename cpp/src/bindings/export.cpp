@@ -21,9 +21,9 @@ struct ExportedFile {
   std::string output;
   std::string text;
   std::map<std::string, double> parameters;
-  std::optional<ExportLoss> loss;
+  std::optional<Approximation> approximation;
   std::optional<std::string> rotation;
-  std::optional<ExportLoss> other_loss;
+  std::optional<Approximation> other_approximation;
   std::vector<std::string> left_to_others;
   std::vector<std::string> notes;
   std::string json;
@@ -64,9 +64,9 @@ ExportedFile write_export(const Calibration& calibration, const std::string& out
   ExportedFile result{.output = output,
                       .text = std::move(exported.text),
                       .parameters = {},
-                      .loss = exported.loss,
+                      .approximation = exported.approximation,
                       .rotation = {},
-                      .other_loss = exported.other_loss,
+                      .other_approximation = exported.other_approximation,
                       .left_to_others = exported.left_to_others,
                       .notes = exported.notes,
                       .json = to_json(exported, output),
@@ -86,34 +86,35 @@ std::optional<std::pair<std::string, bool>> pressure_sensor(std::uint32_t device
 }  // namespace
 
 void define_export(py::module_& module) {
-  BoundStruct<ExportLoss>(module, "ExportLoss",
-                          "What a vehicle's correction lacks of a calibration's, over the fitted "
-                          "rows of a flight; NaN where it isn't known.")
-      .field("dropped", &ExportLoss::dropped, "In words.")
-      .field("flight", &ExportLoss::flight, "")
-      .field("rows", &ExportLoss::rows, "That both correct.")
-      .field("rotation_deg", &ExportLoss::rotation_deg,
+  BoundStruct<Approximation>(
+      module, "Approximation",
+      "What a vehicle's correction lacks of a calibration's, over the fitted "
+      "rows of a flight; NaN where it isn't known.")
+      .field("dropped", &Approximation::dropped, "In words.")
+      .field("flight", &Approximation::flight, "")
+      .field("rows", &Approximation::rows, "That both correct.")
+      .field("rotation_deg", &Approximation::rotation_deg,
              "Between sensor and body, which has no home on the vehicle.")
-      .field("heading_rms_deg", &ExportLoss::heading_rms_deg,
+      .field("heading_rms_deg", &Approximation::heading_rms_deg,
              "The vehicle's magnetic heading less the calibration's.")
-      .field("heading_largest_deg", &ExportLoss::heading_largest_deg, "By size.")
-      .field("strength_rms_ut", &ExportLoss::strength_rms_ut, "The field's strength, likewise.")
-      .field("airspeed_rms_mps", &ExportLoss::airspeed_rms_mps, "The true airspeed, likewise.")
-      .field("airspeed_largest_mps", &ExportLoss::airspeed_largest_mps, "By size.")
-      .field("residual_before", &ExportLoss::residual_before,
+      .field("heading_largest_deg", &Approximation::heading_largest_deg, "By size.")
+      .field("strength_rms_ut", &Approximation::strength_rms_ut, "The field's strength, likewise.")
+      .field("airspeed_rms_mps", &Approximation::airspeed_rms_mps, "The true airspeed, likewise.")
+      .field("airspeed_largest_mps", &Approximation::airspeed_largest_mps, "By size.")
+      .field("residual_before", &Approximation::residual_before,
              "RMS of measured less modelled, of the calibration.")
-      .field("residual_after", &ExportLoss::residual_after, "Of what the vehicle holds.")
-      .field("residual_unit", &ExportLoss::residual_unit, "")
+      .field("residual_after", &Approximation::residual_after, "Of what the vehicle holds.")
+      .field("residual_unit", &Approximation::residual_unit, "")
       .comparable()
       .finish();
   BoundStruct<ExportedFile>(module, "Exported", "What export() wrote.")
       .field("output", &ExportedFile::output, "The file.")
       .field("text", &ExportedFile::text, "All that is in it.")
       .field("parameters", &ExportedFile::parameters, "Of an autopilot, by name.")
-      .field("loss", &ExportedFile::loss, "None where nothing was changed.")
+      .field("approximation", &ExportedFile::approximation, "None where nothing was changed.")
       .field("rotation", &ExportedFile::rotation,
              "Of a magnetometer that the calibration turns: keep or refit, else None.")
-      .field("other_loss", &ExportedFile::other_loss,
+      .field("other_approximation", &ExportedFile::other_approximation,
              "What the other one would lose; None where that is not known.")
       .field("left_to_others", &ExportedFile::left_to_others,
              "Effects that act on the reference or the wind: no part of a correction.")

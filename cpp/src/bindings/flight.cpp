@@ -12,17 +12,17 @@
 #include "python_effect.hpp"
 #include "released.hpp"
 #include "results.hpp"
+#include "sepcal/detail/flight/certified.hpp"
+#include "sepcal/detail/flight/joint.hpp"
+#include "sepcal/detail/flight/output_file.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/certified.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
-#include "sepcal/flight/joint.hpp"
-#include "sepcal/flight/output_file.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "structs.hpp"
 
@@ -325,18 +325,19 @@ void define_calibration(py::module_& module) {
       .field("standard_error", &FlightDeparture::standard_error, "");
   py::class_<DiagnosisOptions>(module, "DiagnosisOptions")
       .def(py::init([](int simulations, std::uint64_t seed, const std::string& pse,
-                       std::vector<std::string> only, std::map<std::string, double> wanders,
+                       std::vector<std::string> only, std::map<std::string, double> error_budget,
                        double within) {
              DiagnosisOptions options;
              options.simulations = simulations;
              options.seed = seed;
              options.pse = choice_of<PseBound>("pse", pse);
              options.only = std::move(only);
-             options.wanders = std::move(wanders);
+             options.error_budget = std::move(error_budget);
              options.within = within;
              return options;
            }),
-           py::kw_only(), "simulations"_a, "seed"_a, "pse"_a, "only"_a, "wanders"_a, "within"_a);
+           py::kw_only(), "simulations"_a, "seed"_a, "pse"_a, "only"_a, "error_budget"_a,
+           "within"_a);
   py::class_<Calibration> calibration(module, "Calibration");
   define_stepped<Calibration>(module, "SteppedCalibration");
   calibration.def_property_readonly("fit", &fit_of)

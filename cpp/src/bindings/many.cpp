@@ -14,10 +14,10 @@
 #include "model/measurements.hpp"
 #include "released.hpp"
 #include "results.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/read_as.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -333,7 +333,7 @@ void define_results_of_many(py::module_& module) {
              "By output, common to all flights: given, or from R-hat = SSE / N.")
       .field("rmse", &ManyFit::rmse, "Over all flights.")
       .field("cost", &ManyFit::cost, "J of Eq. 6 over all rows; by filter error V_m.")
-      .field("by", &ManyFit::by, R"("output-error" or "filter-error".)")
+      .field("method", &ManyFit::method, R"("output-error" or "filter-error".)")
       .field("noise_sizes", &ManyFit::noise_sizes,
              "By filter error: process noises, then outputs, common to all flights.")
       .field("log_likelihood", &ManyFit::log_likelihood, "By filter error.")

@@ -2,10 +2,10 @@
 // sepcal._core: the engine and its flights for the Python front, which documents it.
 #include "base/escaping.hpp"
 #include "bindings.hpp"
+#include "sepcal/detail/solver_log.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/solver_log.hpp"
 
 namespace sepcal::bindings {
 namespace {

@@ -135,9 +135,9 @@ struct type_caster<sepcal::StepwiseEnd>
                  sepcal::StepwiseEnd::fit_failed> {};
 
 template <>
-struct type_caster<sepcal::UnloggedKind>
-    : WordCaster<sepcal::UnloggedKind, sepcal::UnloggedKind::common_cause,
-                 sepcal::UnloggedKind::spectral_line> {};
+struct type_caster<sepcal::UnmeasuredKind>
+    : WordCaster<sepcal::UnmeasuredKind, sepcal::UnmeasuredKind::common_cause,
+                 sepcal::UnmeasuredKind::spectral_line> {};
 
 template <>
 struct type_caster<std::vector<sepcal::OutputValue>>
@@ -158,7 +158,7 @@ struct type_caster<std::vector<sepcal::FlightFit>> : NamedCaster<sepcal::FlightF
 template <>
 struct type_caster<std::vector<sepcal::ProfileInterval>> : NamedCaster<sepcal::ProfileInterval> {};
 template <>
-struct type_caster<std::vector<sepcal::WanderBound>> : NamedCaster<sepcal::WanderBound> {};
+struct type_caster<std::vector<sepcal::ErrorBound>> : NamedCaster<sepcal::ErrorBound> {};
 template <>
 struct type_caster<std::vector<sepcal::ResidualNoise>>
     : NamedCaster<sepcal::ResidualNoise, &sepcal::ResidualNoise::output> {};

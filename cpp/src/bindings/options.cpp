@@ -111,10 +111,10 @@ void define_options(py::module_& module) {
   define_named<&FitOptions::method>(options, "method");
   define_named<&FitOptions::hessian>(options, "hessian");
   define_choice<&FitOptions::loss_width>(options, "loss_width");
-  define_choice<&FitOptions::fixed>(options, "fixed");
+  define_choice<&FitOptions::fix>(options, "fix");
   define_choice<&FitOptions::noise>(options, "noise");
-  define_choice<&FitOptions::stage_one_segments>(options, "stage_one");
-  define_choice<&FitOptions::stage_two_segments>(options, "stage_two");
+  define_choice<&FitOptions::stage_one_segments>(options, "stage_one_segments");
+  define_choice<&FitOptions::stage_two_segments>(options, "stage_two_segments");
   define_choice<&FitOptions::samples>(options, "samples");
   define_choice<&FitOptions::start>(options, "start");
   define_choice<&FitOptions::seed>(options, "seed");

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::bindings {
 namespace {

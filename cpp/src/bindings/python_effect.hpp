@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal::bindings {
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 namespace sepcal::bindings {
 

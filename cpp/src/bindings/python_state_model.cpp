@@ -289,12 +289,13 @@ class PythonStateModel::Steps final : public StateSteps {
     return {arrays[0].cast<VectorXd>()(plan_.outputs()), std::move(H)};
   }
 
-  BentStep advance_bent(std::size_t row, const VectorXd& x) const override {
-    BentStep step;
-    BentNoise noise;
+  SecondOrderStep advance_bent(std::size_t row, const VectorXd& x) const override {
+    SecondOrderStep step;
+    SecondOrderNoise noise;
     {
       const py::gil_scoped_acquire gil;
-      const py::tuple arrays = model_.walk_->attr("bend_step")(known_at(row, 2), x, p_, seeds_);
+      const py::tuple arrays =
+          model_.walk_->attr("second_order_step")(known_at(row, 2), x, p_, seeds_);
       const MatrixXd slopes = in_columns(arrays[1].cast<MatrixXd>());
       step.x = arrays[0].cast<VectorXd>();
       step.Phi = slopes.leftCols(n_x());
@@ -308,30 +309,31 @@ class PythonStateModel::Steps final : public StateSteps {
     return step;
   }
 
-  BentReading read_bent(std::size_t row, const VectorXd& x) const override {
+  SecondOrderReading read_bent(std::size_t row, const VectorXd& x) const override {
     const py::gil_scoped_acquire gil;
     const py::tuple arrays =
-        model_.walk_->attr("bend_reading")(known_at(row, 1), x, p_, xi1_, seeds_);
+        model_.walk_->attr("second_order_reading")(known_at(row, 1), x, p_, xi1_, seeds_);
     const std::vector<int>& outputs = plan_.outputs();
     const auto n_z = static_cast<Index>(outputs.size());
     const auto A = arrays[2].cast<MatrixXd>();
     const auto A_slopes = arrays[4].cast<Numbers>();
     MatrixXd slopes = in_columns(arrays[1].cast<MatrixXd>()(outputs, Eigen::all));
-    MatrixXd bends = in_columns(flatten(arrays[3].cast<Numbers>(), outputs));
+    MatrixXd curvatures = in_columns(flatten(arrays[3].cast<Numbers>(), outputs));
     for (std::size_t j = 0; j < outputs.size(); ++j) {
       for (const int k : plan_.acting(j)) {
         const int linear = plan_.linear()[static_cast<std::size_t>(k)];
         slopes(static_cast<Index>(j), n_x() + k) += A(outputs[j], linear);
         for (Index i = 0; i < n_x(); ++i) {
-          bends(i * n_z + static_cast<Index>(j), n_x() + k) += A_slopes.at(outputs[j], linear, i);
+          curvatures(i * n_z + static_cast<Index>(j), n_x() + k) +=
+              A_slopes.at(outputs[j], linear, i);
         }
       }
     }
-    BentReading reading;
+    SecondOrderReading reading;
     reading.z = arrays[0].cast<VectorXd>()(outputs);
     reading.H = slopes.leftCols(n_x());
     reading.J = acting(slopes).rightCols(acting_count());
-    reading.H_slopes = acting(bends);
+    reading.H_slopes = acting(curvatures);
     return reading;
   }
 

@@ -148,7 +148,7 @@ void define_results(py::module_& module) {
              "By output: standard deviation, given or from R-hat = SSE / N.")
       .field("rmse", &FittedModel::fit, &Fit::rmse, "By output, unwhitened, in its unit.")
       .field("cost", &FittedModel::fit, &Fit::cost, "J of Eq. 6; by filter error V_m, S 5.7.")
-      .field("by", &FittedModel::fit, &Fit::by, R"("output-error" or "filter-error".)")
+      .field("method", &FittedModel::fit, &Fit::method, R"("output-error" or "filter-error".)")
       .field("noise_sizes", &FittedModel::fit, &Fit::noise_sizes,
              "By filter error, by name: process noises, then outputs; else empty.")
       .field("log_likelihood", &FittedModel::fit, &Fit::log_likelihood,
@@ -170,7 +170,7 @@ void define_results(py::module_& module) {
           },
           "Singular value below a fiftieth of the largest.")
       .field("stage_one", &FittedModel::stage_one, "")
-      .field("method", &FittedModel::fit, &Fit::method,
+      .field("second_stage", &FittedModel::fit, &Fit::second_stage,
              R"("joint" or "projected": what stage two used in the end.)")
       .field("iterations", &FittedModel::fit, &Fit::iterations, "Of stage two's minimisations.")
       .field("noise_iterations", &FittedModel::fit, &Fit::noise_iterations,

@@ -16,11 +16,11 @@
 #include "bindings.hpp"
 #include "model/differences.hpp"
 #include "released.hpp"
+#include "sepcal/detail/rivals/alonso_shuster.hpp"
+#include "sepcal/detail/rivals/haupt_kasdin.hpp"
+#include "sepcal/detail/rivals/single_stage.hpp"
+#include "sepcal/detail/rivals/two_step_problems.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/rivals/alonso_shuster.hpp"
-#include "sepcal/rivals/haupt_kasdin.hpp"
-#include "sepcal/rivals/single_stage.hpp"
-#include "sepcal/rivals/two_step_problems.hpp"
 #include "structs.hpp"
 
 namespace pybind11::detail {
@@ -109,13 +109,13 @@ Problem problem_of(P problem) {
 
 SingleStageFit fit_all_at_once(const Model& model, const py::dict& columns,
                                const std::vector<std::string>& labels, const Values& start,
-                               Ends bounds, Values fixed, Values noise, std::string segments,
+                               Ends bounds, Values fix, Values noise, std::string segments,
                                Solver solver, CostScale cost, double noise_tolerance,
                                int noise_iterations, int evaluations, int threads) {
   const Record record = record_of(columns, labels);
   SingleStageOptions options;
   options.bounds = std::move(bounds);
-  options.fixed = std::move(fixed);
+  options.fix = std::move(fix);
   options.noise = std::move(noise);
   options.segments = std::move(segments);
   options.solver = solver;
@@ -225,7 +225,7 @@ void define_rivals(py::module_& module) {
   });
   const SingleStageOptions single;
   module.def("fit_single_stage", &fit_all_at_once, "model"_a, "columns"_a, "labels"_a, "start"_a,
-             py::kw_only(), "bounds"_a, "fixed"_a, "noise"_a, "segments"_a,
+             py::kw_only(), "bounds"_a, "fix"_a, "noise"_a, "segments"_a,
              "solver"_a = single.solver, "cost"_a = single.cost,
              "noise_tolerance"_a = single.noise_tolerance,
              "noise_iterations"_a = single.noise_iterations, "evaluations"_a = single.evaluations,

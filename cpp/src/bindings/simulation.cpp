@@ -9,8 +9,8 @@
 
 #include "bindings.hpp"
 #include "released.hpp"
+#include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/simulation/truth.hpp"
 #include "simulated.hpp"
 
 namespace sepcal::bindings {

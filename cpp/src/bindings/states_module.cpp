@@ -3,7 +3,7 @@
 // documents them. A module of its own, because it is long to compile and who calibrates a sensor
 // needs none of it; its functions take and give the classes of sepcal._core.
 #include "bindings.hpp"
-#include "sepcal/solver_log.hpp"
+#include "sepcal/detail/solver_log.hpp"
 
 PYBIND11_MODULE(_states, module) {
   using namespace sepcal::bindings;

@@ -259,7 +259,7 @@ class Relaxer {
     });
     Enclosure sum(0.0);
     for (const Enclosure& one :
-         weighted([&](Index i) { return bend(i, half, result.reach, result.xi1); })) {
+         weighted([&](Index i) { return curvature(i, half, result.reach, result.xi1); })) {
       sum += square(one);
     }
     relaxed.remainder = sqrt(sum).upper();
@@ -276,19 +276,20 @@ class Relaxer {
   }
 
   /// Half of the second derivatives over the box times what they are multiplied by.
-  Enclosure bend(Index i, const VectorXd& half, const VectorXd& reach, const VectorXd& xi1) const {
+  Enclosure curvature(Index i, const VectorXd& half, const VectorXd& reach,
+                      const VectorXd& xi1) const {
     const Index n_1 = problem_.n_1();
     Enclosure sum(0.0);
     Index part = 1 + problem_.n_2();
     for (Index j = 0; j < problem_.n_2(); ++j) {
       for (Index k = 0; k <= j; ++k, ++part) {
         if (half[j] == 0.0 || half[k] == 0.0) continue;
-        Enclosure bend(over_.at(i, n_1)[part].magnitude());
+        Enclosure curvature(over_.at(i, n_1)[part].magnitude());
         for (Index l = 0; l < n_1; ++l) {
-          bend += Enclosure(over_.at(i, l)[part].magnitude()) *
-                  (Enclosure(std::abs(xi1[l])) + Enclosure(reach[l]));
+          curvature += Enclosure(over_.at(i, l)[part].magnitude()) *
+                       (Enclosure(std::abs(xi1[l])) + Enclosure(reach[l]));
         }
-        sum += bend * half[j] * half[k] * (j == k ? 0.5 : 1.0);
+        sum += curvature * half[j] * half[k] * (j == k ? 0.5 : 1.0);
       }
     }
     return sum;

@@ -67,7 +67,7 @@ void check_fit(const BlockModel& model, const Fit& fit, const FitOptions& option
                           &Variable::name)) {
     throw Error("the fit is one of another model: its parameters are not the model's");
   }
-  if (fit.by == FitMethod::filter_error) {
+  if (fit.method == FitMethod::filter_error) {
     throw Error("a fit by filter error has no cost that a box of parameters bounds");
   }
   constexpr std::ptrdiff_t most = 3;
@@ -138,7 +138,7 @@ void BranchAndBound::try_point(const BoxBound& at) {
   for (std::size_t k = 0; k < fit_.parameters.size(); ++k) {
     const Parameter& parameter = fit_.parameters[k];
     if (parameter.fixed) {
-      options.fixed[parameter.name] = parameter.value;
+      options.fix[parameter.name] = parameter.value;
       continue;
     }
     options.bounds[parameter.name] = {parameter.lower, parameter.upper};

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/measurements.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/enclosure.hpp"
 
 namespace sepcal::certificate {

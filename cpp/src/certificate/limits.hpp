@@ -6,7 +6,7 @@
 #include <string>
 
 #include "certificate/enclosed_problem.hpp"
-#include "sepcal/tables.hpp"
+#include "sepcal/detail/tables.hpp"
 
 namespace sepcal::certificate {
 

@@ -184,9 +184,9 @@ CandidateRoom::CandidateRoom(const DiagnosedFit& fitted, const Candidate& releas
   linearise(released, pool, regressors);
 }
 
-void CandidateRoom::add_wandering() {
-  linearisation_.wandering = wandering_columns();
-  if (linearisation_.wandering.cols() > 0) linearisation_.times = times();
+void CandidateRoom::add_input_drift() {
+  linearisation_.input_drift = input_drift_columns();
+  if (linearisation_.input_drift.cols() > 0) linearisation_.times = times();
 }
 
 void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool,
@@ -354,9 +354,9 @@ void CandidateRoom::release(const Candidate& released, const MatrixXd& columns) 
 }
 
 /// Those of a correction that the fit has already are the tangent's.
-MatrixXd CandidateRoom::wandering_columns() {
+MatrixXd CandidateRoom::input_drift_columns() {
   Columns all;
-  for (const EffectKit::Maker& maker : fitted_.kit.wandering) {
+  for (const EffectKit::Maker& maker : fitted_.kit.attitude_errors) {
     EffectSetting setting;
     const Effect effect = maker(*fitted_.model, setting, record_);
     std::vector<std::string> names;
@@ -453,7 +453,7 @@ CandidateRoom::ResidualSlopes CandidateRoom::slopes_by(const BlockModel& model,
 }
 
 MatrixXd CandidateRoom::input_columns() const {
-  const MatrixXd& corrections = linearisation_.wandering;
+  const MatrixXd& corrections = linearisation_.input_drift;
   if (follows_path() || noise_) return corrections;
   const auto model = compose(fitted_.model, effects_, regressors_);
   std::vector<std::string> inputs;

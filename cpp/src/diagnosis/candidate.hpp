@@ -86,9 +86,9 @@ class CandidateRoom {
                 Regressors regressors = Regressors::read);
 
   /// Adds to fit() what corrections of inputs that may wander do to the outputs.
-  void add_wandering();
+  void add_input_drift();
 
-  /// Keeps an orthonormal basis in the tangent's place, after add_wandering() that needs it.
+  /// Keeps an orthonormal basis in the tangent's place, after add_input_drift() that needs it.
   void orthonormalise() { diagnosis::orthonormalise(linearisation_); }
 
   const LinearisedFit& fit() const { return linearisation_; }
@@ -175,7 +175,7 @@ class CandidateRoom {
   void smooth_regressors(std::vector<Eigen::Index> columns, base::ThreadPool& pool);
   void undisturb_regressors(std::vector<Eigen::Index> columns, base::ThreadPool& pool);
   void release(const Candidate& released, const Eigen::MatrixXd& columns);
-  Eigen::MatrixXd wandering_columns();
+  Eigen::MatrixXd input_drift_columns();
 
   const DiagnosedFit& fitted_;
   Record record_;  // with what effects derive from other columns

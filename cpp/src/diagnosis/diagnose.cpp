@@ -13,16 +13,16 @@
 #include <utility>
 
 #include "base/stop.hpp"
-#include "diagnosis/bench.hpp"
-#include "diagnosis/bent_effects.hpp"
-#include "diagnosis/contenders.hpp"
+#include "diagnosis/alternatives.hpp"
+#include "diagnosis/candidate_testing.hpp"
 #include "diagnosis/finding.hpp"
+#include "diagnosis/nonlinear_effects.hpp"
 #include "diagnosis/omnibus.hpp"
 #include "diagnosis/own_fit.hpp"
 #include "diagnosis/pair_set.hpp"
 #include "diagnosis/residual_noise.hpp"
 #include "diagnosis/rivals.hpp"
-#include "diagnosis/unlogged.hpp"
+#include "diagnosis/unmeasured.hpp"
 #include "diagnosis/weighing.hpp"
 #include "numerics/order_statistics.hpp"
 #include "numerics/selection.hpp"
@@ -50,13 +50,13 @@ void rank(std::vector<EffectFinding>& findings) {
 }
 
 /// The tail of a trial by its fit: one step may see little in what bends the model.
-void bound_by_fit(const Bench& bench, Trial& trial) {
-  if (!bench.instruments()) return;
+void bound_by_fit(const CandidateTesting& testing, Trial& trial) {
+  if (!testing.instruments()) return;
   try {
-    const LinearisedFit with = bench.refits().linearise(trial.candidate, trial.shape);
+    const LinearisedFit with = testing.refits().linearise(trial.candidate, trial.shape);
     const auto coefficients = static_cast<Index>(trial.candidate.coefficients.size());
-    const InstrumentTail tail = bench.instruments()->tail_of_fit(with, coefficients);
-    if (!trial.tested) trial.slow = is_slow(bench.room(), trial.candidate, trial.shape);
+    const InstrumentTail tail = testing.instruments()->tail_of_fit(with, coefficients);
+    if (!trial.tested) trial.slow = is_slow(testing.room(), trial.candidate, trial.shape);
     bound(tail, trial);
   } catch (const Error&) {
     return;  // no fit takes it
@@ -99,7 +99,7 @@ class Recipe {
       : fitted_(fitted),
         options_(options),
         pool_(options.threads),
-        bench_(fitted, options, pool_) {}
+        testing_(fitted, options, pool_) {}
 
   Diagnosis run(const std::vector<std::string>& names);
 
@@ -110,7 +110,7 @@ class Recipe {
   /// `tests`: how many could have been chosen; `slow_too`: whether slow changes are told.
   std::vector<EffectFinding> judge(Trials& trials, double tests, bool slow_too);
   /// Where a trial was made.
-  const Bench& bench_of(const Trial& trial) const;
+  const CandidateTesting& bench_of(const Trial& trial) const;
   bool takes_too_little(double held_out_gain) const;
   void doubt_readings(Trial& trial);
   double threshold_of(const Trials& trials, double tests) const;
@@ -120,10 +120,10 @@ class Recipe {
   void look_from_own_fits();
   bool is_of_one(const EffectFinding& pair);
   void try_pairs();
-  void confirm(const Contender& contender);
+  void confirm(const Alternative& alternative);
   bool try_pairs_of_lines();
   void order_found();
-  void judge_beside(const Contender* first);
+  void judge_beside(const Alternative* first);
   void settle();
   Objection object_to(const EffectFinding& finding);
   void tell_fitted(EffectFinding& finding);
@@ -141,11 +141,11 @@ class Recipe {
   const DiagnosisOptions& options_;
   Clock::time_point begun_ = Clock::now();
   base::ThreadPool pool_;
-  Bench bench_;
+  CandidateTesting testing_;
   Trials trials_;
-  std::unique_ptr<Bench> undisturbed_;                       // made where it is asked
+  std::unique_ptr<CandidateTesting> undisturbed_;            // made where it is asked
   std::map<std::string, std::unique_ptr<OwnFit>> own_fits_;  // of what a step did not find
-  Contest contest_;
+  ModelSelection selection_;
   std::vector<std::string> withdrawn_;      // were found, but no fit bears them out
   std::vector<std::string> beyond_bounds_;  // of these, as a fit would take more than it may
   double left_by_first_ = 1.0;  // of the error, by a first that takes much and no fit takes
@@ -172,9 +172,9 @@ void Recipe::in_time(const std::string& step, const std::function<void()>& work)
   }
 }
 
-const Bench& Recipe::bench_of(const Trial& trial) const {
+const CandidateTesting& Recipe::bench_of(const Trial& trial) const {
   const auto own = own_fits_.find(trial.candidate.name);
-  return own == own_fits_.end() ? bench_ : own->second->bench();
+  return own == own_fits_.end() ? testing_ : own->second->testing();
 }
 
 bool Recipe::has(FindingStatus status) const {
@@ -208,9 +208,9 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
   std::vector<EffectFinding> findings;
   std::size_t v = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    const Bench& bench = bench_of(trials[i]);
-    EffectFinding finding = describe(bench.room(), trials[i]);
-    finding.structure = structure_of(bench.null(), trials[i], options_.pse);
+    const CandidateTesting& testing = bench_of(trials[i]);
+    EffectFinding finding = describe(testing.room(), trials[i]);
+    finding.structure = structure_of(testing.null(), trials[i], options_.pse);
     if (v < visible.size() && visible[v] == i) {
       finding.p_adjusted = holm[v];
       finding.p_listed = listed[v];
@@ -232,7 +232,7 @@ std::vector<EffectFinding> Recipe::collect(const Trials& trials, double tests) c
 }
 
 bool Recipe::takes_too_little(double held_out_gain) const {
-  return !fitted_.kit.wanders.empty() && held_out_gain < least_gain;
+  return !fitted_.kit.error_budget.empty() && held_out_gain < least_gain;
 }
 
 /// log10 of about what Holm's correction asks for, where `tests` could have been chosen.
@@ -246,17 +246,18 @@ double Recipe::threshold_of(const Trials& trials, double tests) const {
 /// it goes with them, and imitates whatever changes their errors. Noise of free size would take a
 /// cause for its own there, so noise as instruments have it is asked.
 void Recipe::doubt_readings(Trial& trial) {
-  if (fitted_.kit.disturbed.empty() || bench_.room().follows_path()) return;
-  if (!undisturbed_) undisturbed_ = std::make_unique<Bench>(bench_, Regressors::undisturbed);
+  if (fitted_.kit.disturbed.empty() || testing_.room().follows_path()) return;
+  if (!undisturbed_)
+    undisturbed_ = std::make_unique<CandidateTesting>(testing_, Regressors::undisturbed);
   const std::optional<double> log10_p = undisturbed_->bounded_tail(trial.candidate.name);
   if (log10_p) trial.log10_p = std::max(trial.log10_p, *log10_p);
 }
 
 std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow_too) {
-  bench_.hold_out_significant(trials, slow_too);
+  testing_.hold_out_significant(trials, slow_too);
   const double threshold = threshold_of(trials, tests);
-  bench_.calibrate_significant(trials, threshold, slow_too);
-  bench_.confirm_best(trials, threshold);
+  testing_.calibrate_significant(trials, threshold, slow_too);
+  testing_.confirm_best(trials, threshold);
   for (Trial& trial : trials) {
     const bool would_be_found = trial.held_out.passed && trial.log10_p < threshold;
     if (would_be_found && !takes_too_little(trial.held_out.gain)) doubt_readings(trial);
@@ -268,9 +269,9 @@ std::vector<EffectFinding> Recipe::judge(Trials& trials, double tests, bool slow
 
 /// What the fit has bent its own parameters to is found where a fit that has it ends.
 void Recipe::look_from_own_fits() {
-  bench_.report_progress("fitting what may be hidden", 0.0);
+  testing_.report_progress("fitting what may be hidden", 0.0);
   const double number = std::max(1.0, tests());
-  for (std::unique_ptr<OwnFit>& own : find_hidden(bench_, trials_)) {
+  for (std::unique_ptr<OwnFit>& own : find_hidden(testing_, trials_)) {
     Trial found = own->test(threshold_of(trials_, number));
     Trial& trial = *std::ranges::find_if(
         trials_, [&](const Trial& other) { return other.candidate.name == found.candidate.name; });
@@ -285,11 +286,11 @@ void Recipe::look_from_own_fits() {
 /// Whether one of a pair leaves as little of the error on rows held out as both.
 bool Recipe::is_of_one(const EffectFinding& pair) {
   constexpr double about = 1.05;
-  const Candidate& both = bench_.room().make(pair.name);
+  const Candidate& both = testing_.room().make(pair.name);
   return std::ranges::any_of(both.settings, [&](const EffectSetting& member) {
     const auto alone = find_trial(member.name);
     if (alone == trials_.end() || !alone->visible) return false;
-    if (alone->folds.count == 0) hold_out(bench_.room(), bench_.null(), *alone);
+    if (alone->folds.count == 0) hold_out(testing_.room(), testing_.null(), *alone);
     return alone->held_out.judged && 1.0 - alone->held_out.gain <= about * left_out(pair);
   });
 }
@@ -302,17 +303,17 @@ void Recipe::try_pairs() {
     if (finding.status == FindingStatus::cannot_be_seen) continue;
     ++visible;
     if (best.size() == most_paired || !finding.shapes.empty()) continue;
-    if (is_simple(bench_.room().make(finding.name))) best.push_back(finding.name);
+    if (is_simple(testing_.room().make(finding.name))) best.push_back(finding.name);
   }
   std::vector<std::string> names;
   for (std::size_t a = 0; a < best.size(); ++a) {
     for (std::size_t b = a + 1; b < best.size(); ++b) names.push_back(best[a] + "+" + best[b]);
   }
-  Trials pairs = bench_.make(names);
-  bench_.screen_all(pairs);
+  Trials pairs = testing_.make(names);
+  testing_.screen_all(pairs);
   // The ten were chosen by what they explain: every pair of all candidates could have been.
   const double tests = 0.5 * (visible + static_cast<double>(options_.others)) * (visible - 1.0);
-  bench_.test_best(pairs, most_pairs_tested, threshold_of(pairs, tests), false);
+  testing_.test_best(pairs, most_pairs_tested, threshold_of(pairs, tests), false);
   std::vector<EffectFinding> findings = judge(pairs, tests, false);
   std::erase_if(findings, [&](const EffectFinding& pair) {
     return pair.status != FindingStatus::found || is_of_one(pair);
@@ -320,70 +321,70 @@ void Recipe::try_pairs() {
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
 }
 
-/// What rows held out say of a contender, by fits in place of one step.
-void Recipe::confirm(const Contender& contender) {
-  const auto trial = find_trial(contender.candidate.name);
-  if (trial == trials_.end() || !std::isfinite(contender.criterion)) return;
-  if (trial->folds.count == 0) hold_out(bench_.room(), bench_.null(), *trial);
-  diagnosis::confirm(bench_.refits(), *trial);
-  tell_held_out(
-      *trial, *std::ranges::find(result_.effects, contender.candidate.name, &EffectFinding::name));
+/// What rows held out say of a alternative, by fits in place of one step.
+void Recipe::confirm(const Alternative& alternative) {
+  const auto trial = find_trial(alternative.candidate.name);
+  if (trial == trials_.end() || !std::isfinite(alternative.criterion)) return;
+  if (trial->folds.count == 0) hold_out(testing_.room(), testing_.null(), *trial);
+  diagnosis::confirm(testing_.refits(), *trial);
+  tell_held_out(*trial, *std::ranges::find(result_.effects, alternative.candidate.name,
+                                           &EffectFinding::name));
 }
 
 /// What is no line may stand for two of them, and no fit bears out one of two alone: the best pairs
-/// of lines are contenders too. Returns whether any is.
+/// of lines are alternatives too. Returns whether any is.
 bool Recipe::try_pairs_of_lines() {
   constexpr std::size_t most_fitted = 3;
-  std::vector<std::string> names = find_pair_set(bench_, trials_, contest_.noise, true);
+  std::vector<std::string> names = find_pair_set(testing_, trials_, selection_.noise, true);
   if (names.size() > most_fitted) names.resize(most_fitted);
   std::erase_if(names, [&](const std::string& name) { return find_trial(name) != trials_.end(); });
-  Trials pairs = bench_.make(names);
+  Trials pairs = testing_.make(names);
   const auto lines = static_cast<double>(std::ranges::count_if(trials_, [](const Trial& trial) {
     return trial.visible && is_of_lines(trial.candidate, 1);
   }));
   const double tests = 0.5 * lines * (lines - 1.0);
-  bench_.screen_all(pairs);
-  bench_.test_best(pairs, most_fitted, threshold_of(pairs, tests), false);
-  std::vector<Contender> asked;
+  testing_.screen_all(pairs);
+  testing_.test_best(pairs, most_fitted, threshold_of(pairs, tests), false);
+  std::vector<Alternative> asked;
   for (EffectFinding& finding : judge(pairs, tests, false)) {
     if (finding.status != FindingStatus::found) continue;
-    asked.push_back({bench_.room().make(finding.name), shape_of(finding)});
+    asked.push_back({testing_.room().make(finding.name), shape_of(finding)});
     trials_.push_back(*std::ranges::find_if(
         pairs, [&](const Trial& pair) { return pair.candidate.name == finding.name; }));
     result_.effects.push_back(std::move(finding));
   }
   std::ranges::stable_sort(result_.effects, {}, &EffectFinding::status);
-  fit_all(bench_, contest_.noise, asked);
-  for (Contender& contender : asked) {
-    confirm(contender);
-    contest_.contenders.push_back(std::move(contender));
+  fit_all(testing_, selection_.noise, asked);
+  for (Alternative& alternative : asked) {
+    confirm(alternative);
+    selection_.alternatives.push_back(std::move(alternative));
   }
   return !asked.empty();
 }
 
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
-  bench_.report_progress("fitting what was found", 0.0);
-  contest_ = fit_contenders(bench_, result_.effects);
-  for (const Contender& contender : contest_.contenders) confirm(contender);
-  admit_bent(bench_, contest_, result_.effects);
-  const Contender* first = put_first(contest_, options_.preferred, result_.effects);
-  if (first && !is_of_lines(first->candidate, 1) && !bench_.room().follows_path() &&
+  testing_.report_progress("fitting what was found", 0.0);
+  selection_ = fit_contenders(testing_, result_.effects);
+  for (const Alternative& alternative : selection_.alternatives) confirm(alternative);
+  admit_nonlinear(testing_, selection_, result_.effects);
+  const Alternative* first = put_first(selection_, options_.preferred, result_.effects);
+  if (first && !is_of_lines(first->candidate, 1) && !testing_.room().follows_path() &&
       try_pairs_of_lines()) {
-    first = put_first(contest_, options_.preferred, result_.effects);
+    first = put_first(selection_, options_.preferred, result_.effects);
   }
   judge_beside(first);
 }
 
 void Recipe::order_found() {
-  judge_beside(put_first(contest_, options_.preferred, result_.effects));
+  judge_beside(put_first(selection_, options_.preferred, result_.effects));
 }
 
 /// What becomes of the others beside the one that stands first.
-void Recipe::judge_beside(const Contender* first) {
-  promise_by_fits(bench_, contest_, result_.effects);
-  if (first) test_beside(bench_, *first, result_.effects);
-  result_.pairs = find_pair_set(bench_, trials_, contest_.noise);
+void Recipe::judge_beside(const Alternative* first) {
+  promise_by_fits(testing_, selection_, result_.effects);
+  if (first) test_beside(testing_, *first, result_.effects);
+  result_.pairs = find_pair_set(testing_, trials_, selection_.noise);
   for (const Trial& trial : trials_) {
     if (trial.candidate.name == result_.effects.front().name) {
       result_.floor = std::min(result_.floor, trial.floor);
@@ -392,9 +393,9 @@ void Recipe::judge_beside(const Contender* first) {
 }
 
 Objection Recipe::object_to(const EffectFinding& finding) {
-  Objection objection = object(bench_, contest_, finding);
+  Objection objection = object(testing_, selection_, finding);
   if (objection.reason.empty()) {
-    objection.reason = find_rival(bench_, contest_, finding, result_.effects);
+    objection.reason = find_rival(testing_, selection_, finding, result_.effects);
     objection.is_of_rival = !objection.reason.empty();
   }
   return objection;
@@ -402,13 +403,13 @@ Objection Recipe::object_to(const EffectFinding& finding) {
 
 /// Its size by a fit with it: one step's errors are none where the model is bent.
 void Recipe::tell_fitted(EffectFinding& finding) {
-  const Candidate& candidate = bench_.room().make(finding.name);
+  const Candidate& candidate = testing_.room().make(finding.name);
   const double shape = shape_of(finding);
   try {
-    const Fit fitted = bench_.room().follows_path()
-                           ? bench_.refits().with(candidate, shape)
-                           : refit_nearly(bench_.room(), candidate, shape, enough_rows, true);
-    bench_.count({.refitted = bench_.room().follows_path() ? 0U : 1U});
+    const Fit fitted = testing_.room().follows_path()
+                           ? testing_.refits().with(candidate, shape)
+                           : refit_nearly(testing_.room(), candidate, shape, enough_rows, true);
+    testing_.count({.refitted = testing_.room().follows_path() ? 0U : 1U});
     for (Coefficient& coefficient : finding.coefficients) {
       const Parameter& parameter = fitted[coefficient.name];
       coefficient.estimate = parameter.value;
@@ -462,8 +463,8 @@ void Recipe::advise() {
 void Recipe::advise_pairs_of_lines() {
   Diagnosis alone = result_;
   const auto trials = static_cast<std::ptrdiff_t>(trials_.size());
-  std::vector<Contender>& contenders = contest_.contenders;
-  const auto entered = static_cast<std::ptrdiff_t>(contenders.size());
+  std::vector<Alternative>& alternatives = selection_.alternatives;
+  const auto entered = static_cast<std::ptrdiff_t>(alternatives.size());
   if (!try_pairs_of_lines()) return;
   order_found();
   const std::vector<std::string> withdrawn = std::exchange(withdrawn_, {});
@@ -473,7 +474,7 @@ void Recipe::advise_pairs_of_lines() {
   result_ = std::move(alone);
   withdrawn_ = withdrawn;
   trials_.erase(trials_.begin() + trials, trials_.end());
-  contenders.erase(contenders.begin() + entered, contenders.end());
+  alternatives.erase(alternatives.begin() + entered, alternatives.end());
 }
 
 /// What was found and no fit bears out is no finding, nor is then what fades beside it, nor what
@@ -520,24 +521,24 @@ bool Recipe::withdraw() {
 /// rows that lie further apart than noise remembers do not care about its model.
 void Recipe::weigh_held_out() {
   const double significant = std::log10(options_.significance / std::max(1.0, tests()));
-  std::vector<EffectFinding*> chosen = choose_to_weigh(bench_, result_.effects);
-  if (is_far_off(bench_, result_.floor)) {  // one step may see little in what explains everything
-    for (const Contender& bent : try_on_some_rows(bench_, result_.effects, {})) {
+  std::vector<EffectFinding*> chosen = choose_to_weigh(testing_, result_.effects);
+  if (is_far_off(testing_, result_.floor)) {  // one step may see little in what explains everything
+    for (const Alternative& bent : try_on_some_rows(testing_, result_.effects, {})) {
       EffectFinding& finding =
           *std::ranges::find(result_.effects, bent.candidate.name, &EffectFinding::name);
       if (std::ranges::find(chosen, &finding) == chosen.end()) chosen.push_back(&finding);
     }
   }
   for (EffectFinding* finding : chosen) {
-    bench_.report_progress("fitting what takes much of the error", 0.0);
+    testing_.report_progress("fitting what takes much of the error", 0.0);
     const auto at = find_trial(finding->name);
     if (at == trials_.end()) continue;  // a pair, whose members are asked
     Trial& trial = *at;
-    if (trial.folds.count == 0) hold_out(bench_.room(), bench_.null(), trial);
-    diagnosis::confirm(bench_.refits(), trial);
+    if (trial.folds.count == 0) hold_out(testing_.room(), testing_.null(), trial);
+    diagnosis::confirm(testing_.refits(), trial);
     tell_held_out(trial, *finding);
     if (!trial.held_out.passed || !(finding->held_out_gain >= objects_from)) continue;
-    bound_by_fit(bench_, trial);
+    bound_by_fit(testing_, trial);
     if (trial.log10_p < significant) doubt_readings(trial);
     if (trial.log10_p < significant) {
       finding->status = FindingStatus::found;
@@ -552,7 +553,7 @@ void Recipe::weigh_held_out() {
   if (has(FindingStatus::found)) {
     rank(result_.effects);
   } else {
-    put_simplest_first(bench_, result_.effects);
+    put_simplest_first(testing_, result_.effects);
     put_line_first();
   }
 }
@@ -568,12 +569,12 @@ void Recipe::put_line_first() {
   auto best = trials_.end();
   for (auto trial = trials_.begin(); trial != trials_.end(); ++trial) {
     if (!trial->visible || !is_line_of(trial->candidate, curve->candidate, false)) continue;
-    if (trial->folds.count == 0) hold_out(bench_.room(), bench_.null(), *trial);
+    if (trial->folds.count == 0) hold_out(testing_.room(), testing_.null(), *trial);
     if (!trial->held_out.passed) continue;
     if (best == trials_.end() || trial->held_out.gain > best->held_out.gain) best = trial;
   }
   if (best == trials_.end()) return;
-  diagnosis::confirm(bench_.refits(), *best);
+  diagnosis::confirm(testing_.refits(), *best);
   if (!does_nearly_as_well(1.0 - best->held_out.gain, left_out(first))) return;
   const auto line = std::ranges::find(result_.effects, best->candidate.name, &EffectFinding::name);
   tell_held_out(*best, *line);
@@ -587,11 +588,11 @@ void Recipe::put_line_first() {
 void Recipe::explain_away() {
   EffectFinding& first = result_.effects.front();
   const auto trial = find_trial(first.name);
-  if (!bench_.instruments() || trial == trials_.end() || !trial->slow) return;
+  if (!testing_.instruments() || trial == trials_.end() || !trial->slow) return;
   const double wanted =
       std::log10(options_.significance / std::max(1.0, tests())) - log10_scan(*trial);
-  first.excuse = bench_.instruments()->excuse(
-      project_trial(bench_.room(), bench_.null(), *trial, trial->shape).basis, wanted,
+  first.excuse = testing_.instruments()->excuse(
+      project_trial(testing_.room(), testing_.null(), *trial, trial->shape).basis, wanted,
       first.status == FindingStatus::found ? 2.0 : 1.0);
 }
 
@@ -603,16 +604,18 @@ void Recipe::conclude() {
     return;
   }
   in_time("looking for structure", [&] {
-    bench_.report_progress("looking for structure", 0.0);
-    result_.omnibus = test_for_structure(bench_.room(), fitted_.kit, bench_.null(),
-                                         bench_.instruments(), bench_.inputs(), options_, pool_);
-    result_.unlogged = find_unlogged(bench_.room(), bench_.null(), bench_.inputs(), options_.seed);
+    testing_.report_progress("looking for structure", 0.0);
+    result_.omnibus =
+        test_for_structure(testing_.room(), fitted_.kit, testing_.null(), testing_.instruments(),
+                           testing_.inputs(), options_, pool_);
+    result_.unmeasured =
+        find_unmeasured(testing_.room(), testing_.null(), testing_.inputs(), options_.seed);
   });
-  correct_together(options_.unexplained_below, result_.omnibus, result_.unlogged);
+  correct_together(options_.unexplained_below, result_.omnibus, result_.unmeasured);
   if (has(FindingStatus::slow_change)) {
     result_.verdict = Verdict::slow_change;
     in_time("excuses", [&] { explain_away(); });
-  } else if (result_.omnibus.significant || !result_.unlogged.empty() ||
+  } else if (result_.omnibus.significant || !result_.unmeasured.empty() ||
              has(FindingStatus::undecided)) {
     result_.verdict = Verdict::unexplained;
   }
@@ -620,23 +623,23 @@ void Recipe::conclude() {
 
 Diagnosis Recipe::run(const std::vector<std::string>& names) {
   result_.pse = options_.pse;
-  if (bench_.is_exact()) return result_;  // nothing is left to explain
-  const CandidateRoom& room = bench_.room();
+  if (testing_.is_exact()) return result_;  // nothing is left to explain
+  const CandidateRoom& room = testing_.room();
   const RowLayout& layout = room.fit().layout;
-  result_.residual = describe_residual(bench_.null());
+  result_.residual = describe_residual(testing_.null());
   result_.rmse = total_rmse(layout, room.fit().residual);
   result_.unit = common_unit(layout);
-  result_.floor = noise_floor(layout, bench_.null().best.noise);
+  result_.floor = noise_floor(layout, testing_.null().best.noise);
   result_.correlation_time =
       correlation_rows(layout, room.fit().residual) * typical_interval(room.times());
   result_.has_time = room.record().has("time");
   if (!options_.only.empty()) {
-    for (const std::string& name : names) bench_.room().make(name);  // or the reason is thrown
+    for (const std::string& name : names) testing_.room().make(name);  // or the reason is thrown
   }
-  trials_ = bench_.make(names);
-  in_time("screening effects", [&] { bench_.screen_all(trials_); });
+  trials_ = testing_.make(names);
+  in_time("screening effects", [&] { testing_.screen_all(trials_); });
   in_time("testing effects",
-          [&] { bench_.test_best(trials_, most_tested, threshold_of(trials_, tests()), true); });
+          [&] { testing_.test_best(trials_, most_tested, threshold_of(trials_, tests()), true); });
   in_time("holding rows out", [&] { result_.effects = judge(trials_, tests(), true); });
   if (result_.effects.empty()) result_.effects = collect(trials_, tests());
   if (!has(FindingStatus::found) && room.follows_path()) {
@@ -659,14 +662,14 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
       in_time("fitting what is advised", [&] { advise(); });
     }
   }
-  if (bench_.instruments()) result_.wanders = bench_.instruments()->bounds();
+  if (testing_.instruments()) result_.error_budget = testing_.instruments()->bounds();
   conclude();
   in_time("limits", [&] {
-    result_.limits = find_limits(bench_.room(), fitted_.kit, bench_.null(), bench_.instruments(),
-                                 options_.significance, trials_.size());
+    result_.limits = find_limits(testing_.room(), fitted_.kit, testing_.null(),
+                                 testing_.instruments(), options_.significance, trials_.size());
   });
-  if (undisturbed_) bench_.count(undisturbed_->work());
-  result_.work = bench_.work();
+  if (undisturbed_) testing_.count(undisturbed_->work());
+  result_.work = testing_.work();
   return result_;
 }
 

@@ -155,15 +155,15 @@ MatrixXd family_products(const NoiseFamilies& families, const RowLayout& layout,
 
 /// What the columns are in one output.
 struct FamilyRegression::Output {
-  /// X' R^-1 X of a wandering member with sigma 1.
+  /// X' R^-1 X of a Gauss-Markov member with sigma 1.
   struct Square {
     std::once_flag made;
     MatrixXd value;
   };
 
   MatrixXd columns;
-  std::vector<MatrixXd> differences;      // of each of the fractional family's
-  mutable std::vector<Square> wandering;  // of each member of that family
+  std::vector<MatrixXd> differences;         // of each of the fractional family's
+  mutable std::vector<Square> gauss_markov;  // of each member of that family
 };
 
 FamilyRegression::FamilyRegression(const NoiseFamilies& families, const RowLayout& layout,
@@ -182,8 +182,8 @@ FamilyRegression::FamilyRegression(const NoiseFamilies& families, const RowLayou
         differences[static_cast<std::size_t>(d)].col(k) = column.col(d);
       }
     }
-    outputs_.push_back(std::make_unique<Output>(
-        Output{own, std::move(differences), std::vector<Output::Square>(families.wanders())}));
+    outputs_.push_back(std::make_unique<Output>(Output{
+        own, std::move(differences), std::vector<Output::Square>(families.gauss_markovs())}));
   }
 }
 
@@ -234,7 +234,7 @@ struct FamilyRegression::Residual::InFamily {
       if (members[j].family == NoiseFamily::fractional) {
         add_fractional(members[j], j, sum);
       } else {
-        add_wandering(members[j], j, sum);
+        add_gauss_markov(members[j], j, sum);
       }
     }
     return sum;
@@ -249,9 +249,9 @@ struct FamilyRegression::Residual::InFamily {
     sum.noalias() += white.transpose() * white;
   }
 
-  void add_wandering(const NoiseMember& member, std::size_t j, MatrixXd& sum) const {
+  void add_gauss_markov(const NoiseMember& member, std::size_t j, MatrixXd& sum) const {
     const Output& output = *all.outputs_[j];
-    Output::Square& square = output.wandering[member.at];
+    Output::Square& square = output.gauss_markov[member.at];
     std::call_once(square.made, [&] {
       MatrixXd white = output.columns;
       NoiseMember unit = member;

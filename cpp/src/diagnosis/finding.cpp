@@ -40,8 +40,8 @@ std::string_view to_string(FindingStatus status) {
   }
 }
 
-std::string_view to_string(UnloggedKind kind) {
-  return kind == UnloggedKind::common_cause ? "common_cause" : "spectral_line";
+std::string_view to_string(UnmeasuredKind kind) {
+  return kind == UnmeasuredKind::common_cause ? "common_cause" : "spectral_line";
 }
 
 std::string_view to_string(Beside beside) {

@@ -6,7 +6,7 @@
 
 #include "numerics/tall_products.hpp"
 #include "numerics/toeplitz.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
 namespace {

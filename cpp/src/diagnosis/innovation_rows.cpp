@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::optional<PathNoise> noise_of(const Fit& fit, const BlockModel& model) {
-  if (fit.by != FitMethod::filter_error) return {};
+  if (fit.method != FitMethod::filter_error) return {};
   const std::map<std::string, double> process = fit.process_noise();
   const std::span<const Variable> noises = model.process_noises();
   PathNoise noise{VectorXd(static_cast<Index>(noises.size())),

@@ -82,7 +82,7 @@ std::vector<double> reduce_times(const RowLayout& full, const ReducedRows& rows,
 
 /// -2 ln L of the residual, the last of the columns, beyond the others, but for a constant,
 /// whatever its size: by products alone, for what is asked often.
-double minus_two_log_likelihood(const WanderingFilter& filter, const MatrixXd& columns) {
+double minus_two_log_likelihood(const GaussMarkovFilter& filter, const MatrixXd& columns) {
   const MatrixXd white = filter.whiten(columns);
   const Index others = white.cols() - 1;
   const MatrixXd products = white.transpose() * white;
@@ -149,7 +149,7 @@ struct InstrumentNoise::Source {
 /// Noise from row to row beside wandering of known sizes, and what it makes of the null hypothesis.
 /// What is whitened stands by time, the outputs of each row side by side.
 struct InstrumentNoise::Noise {
-  WanderingFilter filter;
+  GaussMarkovFilter filter;
   MatrixXd basis = {};         // orthonormal, of the whitened tangent
   VectorXd residual = {};      // whitened and orthogonal to it
   double left = not_a_number;  // the variance beside all candidates, once that is known
@@ -201,7 +201,7 @@ struct InstrumentNoise::Noise {
 InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
                                  const NullHypothesis& null,
                                  const std::map<std::string, double>& sizes)
-    : null_(null), rows_(null.fit().layout, most_filtered_rows, true), bounds_(kit.wanders) {
+    : null_(null), rows_(null.fit().layout, most_filtered_rows, true), bounds_(kit.error_budget) {
   const RowLayout& layout = null.fit().layout;
   times_ = reduce_times(layout, rows_, room.times());
   known_ = MatrixXd(rows_.layout.count(), null.basis.rank() + 1);
@@ -218,16 +218,16 @@ InstrumentNoise::InstrumentNoise(CandidateRoom& room, const EffectKit& kit,
     }
   }
   for (const auto& [name, size] : sizes) {
-    const auto known = std::ranges::find(bounds_, name, &WanderBound::name);
+    const auto known = std::ranges::find(bounds_, name, &ErrorBound::name);
     if (known == bounds_.end()) {
       std::vector<std::string> names;
-      for (const WanderBound& bound : bounds_) names.push_back(bound.name);
+      for (const ErrorBound& bound : bounds_) names.push_back(bound.name);
       throw Error(
           fmt::format("nothing called '{}' wanders; there is: {}", name, fmt::join(names, ", ")));
     }
     known->size = size;
   }
-  for (const WanderBound& bound : bounds_) {
+  for (const ErrorBound& bound : bounds_) {
     const bool may_be_louder = bound.time_s > 0.0 && !sizes.contains(bound.name);
     gusts_at_least_.push_back(may_be_louder ? bound.size : not_a_number);
   }
@@ -244,7 +244,7 @@ void InstrumentNoise::find_short_noise(const VectorXd& residual) {
   }
   // What is loud over seconds is as loud over half a minute: turbulence has no bound of its own.
   for (std::size_t b = 0; b < bounds_.size(); ++b) {
-    WanderBound& bound = bounds_[b];
+    ErrorBound& bound = bounds_[b];
     if (std::isnan(gusts_at_least_[b])) continue;
     bound.size = gusts_at_least_[b];
     for (std::size_t j = 0; j < short_.size(); ++j) {
@@ -267,7 +267,7 @@ void InstrumentNoise::add_sources(CandidateRoom& room, const EffectKit& kit) {
     for (const auto column : columns.colwise()) sources_.push_back({bound, column});
   };
   for (std::size_t b = 0; b < bounds_.size(); ++b) {
-    const WanderBound& bound = bounds_[b];
+    const ErrorBound& bound = bounds_[b];
     for (std::size_t j = 0; j < fit.layout.outputs.size(); ++j) {
       const UsedOutput& output = fit.layout.outputs[j];
       if (std::ranges::find(bound.outputs, output.name) == bound.outputs.end()) continue;
@@ -276,7 +276,7 @@ void InstrumentNoise::add_sources(CandidateRoom& room, const EffectKit& kit) {
       add(b, column);
     }
     for (const int place : bound.corrections) {
-      if (place < fit.wandering.cols()) add(b, reduce(view(fit.wandering.col(place))));
+      if (place < fit.input_drift.cols()) add(b, reduce(view(fit.input_drift.col(place))));
     }
     const auto port = std::ranges::find(kit.ports, bound.port, &Port::name);
     if (port == kit.ports.end()) continue;
@@ -298,7 +298,7 @@ std::vector<InstrumentNoise::Noise> InstrumentNoise::make_noises(const std::vect
     return sizes;
   };
   const bool has_timed =
-      std::ranges::any_of(bounds_, [](const WanderBound& bound) { return bound.time_s > 0.0; });
+      std::ranges::any_of(bounds_, [](const ErrorBound& bound) { return bound.time_s > 0.0; });
   const VectorXd whole = VectorXd::Ones(static_cast<Index>(bounds_.size()));
   std::vector<Noise> noises;
   noises.push_back(make_noise(sized(whole, 0.0, 0.0), 0.0));
@@ -366,10 +366,10 @@ InstrumentNoise::Shares InstrumentNoise::find_shares() const {
   return shares;
 }
 
-WanderingFilter InstrumentNoise::filter(const VectorXd& shares, double time_s) const {
-  std::vector<WanderingState> states;
+GaussMarkovFilter InstrumentNoise::filter(const VectorXd& shares, double time_s) const {
+  std::vector<GaussMarkovState> states;
   for (const Source& source : sources_) {
-    const WanderBound& bound = bounds_[source.bound];
+    const ErrorBound& bound = bounds_[source.bound];
     const double size = shares[static_cast<Index>(source.bound)] * bound.size;
     if (!(size > 0.0)) continue;
     states.push_back({.variance = size * size,

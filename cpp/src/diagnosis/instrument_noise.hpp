@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/gauss_markov_filter.hpp"
 #include "diagnosis/null_hypothesis.hpp"
 #include "diagnosis/reduced_rows.hpp"
-#include "diagnosis/wandering_filter.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -60,7 +60,7 @@ class InstrumentNoise {
   InstrumentNoise& operator=(InstrumentNoise&&) = delete;
 
   /// What wanders, and how far at most.
-  const std::vector<WanderBound>& bounds() const { return bounds_; }
+  const std::vector<ErrorBound>& bounds() const { return bounds_; }
 
   /// Takes what is left beside columns, those of all that may well be missing, for noise: how loud
   /// it is from row to row, and as a whole.
@@ -101,7 +101,7 @@ class InstrumentNoise {
   Eigen::VectorXd find_share(const Eigen::VectorXd& whole, double time_s) const;
   Shares find_shares() const;
   std::vector<Noise> make_noises(const std::vector<double>& times, const Shares& shares) const;
-  WanderingFilter filter(const Eigen::VectorXd& shares, double time_s) const;
+  GaussMarkovFilter filter(const Eigen::VectorXd& shares, double time_s) const;
   Noise make_noise(const Eigen::VectorXd& shares, double time_s) const;
   Eigen::MatrixXd reduce(const Columns& columns) const;
   /// [tangent, residual] of another fit, in this one's units; none where it leaves nothing of an
@@ -113,7 +113,7 @@ class InstrumentNoise {
   std::vector<double> times_;      // of these rows [s]
   std::vector<ShortNoise> short_;  // of each output in them
   Eigen::MatrixXd known_;          // [basis, residual] of the null hypothesis
-  std::vector<WanderBound> bounds_;
+  std::vector<ErrorBound> bounds_;
   std::vector<double> gusts_at_least_;  // of each bound; NaN: as stated, not as loud as the log
   std::vector<Source> sources_;
   std::vector<Noise> noises_;

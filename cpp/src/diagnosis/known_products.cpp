@@ -25,17 +25,18 @@ struct KnownProducts::Output {
     Value value = {};
   };
 
-  Output(std::size_t fractions, std::size_t wanders) : fractional(fractions), wandering(wanders) {}
+  Output(std::size_t fractions, std::size_t gauss_markovs)
+      : fractional(fractions), gauss_markov(gauss_markovs) {}
 
   std::vector<Once<std::unique_ptr<const LaggedSquares>>> fractional;  // of each d
-  std::vector<Once<MatrixXd>> wandering;  // of each member with sigma 1
+  std::vector<Once<MatrixXd>> gauss_markov;  // of each member with sigma 1
 };
 
 KnownProducts::KnownProducts(const NoiseFamilies& families, const RowLayout& layout,
                              const Columns& B, const VectorXd& e, std::vector<int> orders)
     : families_(families), layout_(layout), known_(join(B, view(e))), orders_(std::move(orders)) {
   for (std::size_t j = 0; j < orders_.size(); ++j) {
-    outputs_.push_back(std::make_unique<Output>(families.fractions(), families.wanders()));
+    outputs_.push_back(std::make_unique<Output>(families.fractions(), families.gauss_markovs()));
   }
 }
 
@@ -55,8 +56,8 @@ MatrixXd KnownProducts::whitened_square(const NoiseMember& member, std::size_t j
 
 MatrixXd KnownProducts::known_square(const NoiseMember& member, std::size_t j) const {
   const double variance = member.sigma * member.sigma;
-  if (member.family == NoiseFamily::wandering) {
-    auto& known = outputs_[j]->wandering[member.at];
+  if (member.family == NoiseFamily::gauss_markov) {
+    auto& known = outputs_[j]->gauss_markov[member.at];
     std::call_once(known.made, [&] {
       NoiseMember unit = member;
       unit.sigma = 1.0;

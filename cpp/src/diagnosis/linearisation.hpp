@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::diagnosis {
@@ -50,7 +50,7 @@ struct LinearisedFit {
   std::vector<std::string> parameters;  // estimated and not at a bound: the columns of `tangent`
   Eigen::MatrixXd tangent;              // count() x parameters, or a basis in its place
   Eigen::VectorXd residual;             // count(), z - model
-  Eigen::MatrixXd wandering = {};       // count() x corrections that may wander, of unit size
+  Eigen::MatrixXd input_drift = {};     // count() x corrections that may wander, of unit size
   std::vector<double> times = {};       // of the N rows [s]; none where nothing wanders
   bool follows_path = false;            // rows follow from those before them
   // Of an orthonormal basis in the tangent's place, else empty:

@@ -105,9 +105,9 @@ NoiseTest::Ratios NoiseTest::compare(const Columns& added) const {
   double null = likeliest(nulls_).minus_two_log_likelihood;
   double least_with = ratios.with.minus_two_log_likelihood;
   if (!inputs_.is_empty()) {
-    const WanderingInputs::Likelihoods of_inputs = inputs_.compare(added);
+    const InputDrift::Likelihoods of_inputs = inputs_.compare(added);
     ratios.of_inputs = of_inputs.ratio();
-    ratios.inputs_wander = of_inputs.with < least_with;
+    ratios.inputs_drift = of_inputs.with < least_with;
     null = std::min(null, of_inputs.null);
     least_with = std::min(least_with, of_inputs.with);
   }
@@ -180,16 +180,16 @@ NoiseTails NoiseTest::calibrate(const Ratios& ratios, const Columns& added, cons
     return enlargement(std::move(drawn), static_cast<int>(reduced_added.cols()));
   };
   const auto freedom = static_cast<int>(added.cols());
-  const auto enlarge_by_inputs = [&](WanderingInputs::Noise noise) {
+  const auto enlarge_by_inputs = [&](InputDrift::Noise noise) {
     return enlargement(inputs_.draw_ratios(added, noise, drawing.draws, drawing.seed), freedom);
   };
-  const double of_joint = ratios.inputs_wander ? enlarge_by_inputs(WanderingInputs::Noise::beside)
-                                               : enlarge(ratios.with, beside_sizes, 2);
+  const double of_joint = ratios.inputs_drift ? enlarge_by_inputs(InputDrift::Noise::beside)
+                                              : enlarge(ratios.with, beside_sizes, 2);
   Ratios enlarged = ratios;
   enlarged.joint /= of_joint;
   if (!inputs_.is_empty()) {
     enlarged.of_inputs /=
-        drawing.beside_alone ? of_joint : enlarge_by_inputs(WanderingInputs::Noise::without);
+        drawing.beside_alone ? of_joint : enlarge_by_inputs(InputDrift::Noise::without);
   }
   for (std::size_t k = 0; k < nulls_.size(); ++k) {
     if (drawing.beside_alone) {

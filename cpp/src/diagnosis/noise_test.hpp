@@ -15,9 +15,9 @@
 
 #include "base/thread_pool.hpp"
 #include "diagnosis/family_fit.hpp"
+#include "diagnosis/input_drift.hpp"
 #include "diagnosis/known_products.hpp"
 #include "diagnosis/projection.hpp"
-#include "diagnosis/wandering_inputs.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -43,7 +43,7 @@ class NoiseTest {
     double of_inputs = infinity;     // beside inputs that wander; infinite where none do
     double joint = 0.0;              // of the union of all
     FamilyFit with = {};             // of the columns [basis, added], in the union of those two
-    bool inputs_wander = false;      // beside the columns noise of inputs is the likeliest
+    bool inputs_drift = false;       // beside the columns noise of inputs is the likeliest
   };
   Ratios compare(const Columns& added) const;
 
@@ -76,7 +76,7 @@ class NoiseTest {
   noise::NoiseFamilies families_;
   std::unique_ptr<const KnownProducts> known_;  // of the basis and the fit's residual
   std::array<FamilyFit, 2> nulls_;
-  WanderingInputs inputs_;
+  InputDrift inputs_;
 };
 
 }  // namespace sepcal::diagnosis

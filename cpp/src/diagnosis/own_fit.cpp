@@ -27,26 +27,27 @@ bool is_at_one_shape(const Trial& trial) {
 
 }  // namespace
 
-OwnFit::OwnFit(const Bench& bench, const Candidate& candidate, double shape, Fit fit)
+OwnFit::OwnFit(const CandidateTesting& testing, const Candidate& candidate, double shape, Fit fit)
     : candidate_(candidate),
       shape_(shape),
-      options_(silently(bench.options())),
-      fitted_(with_candidate(bench.fitted(), candidate, std::move(fit))),
-      bench_(fitted_, candidate_, options_, bench.pool()) {}
+      options_(silently(testing.options())),
+      fitted_(with_candidate(testing.fitted(), candidate, std::move(fit))),
+      testing_(fitted_, candidate_, options_, testing.pool()) {}
 
 Trial OwnFit::test(double threshold) {
   Trials alone(1);
   alone.front().candidate = candidate_;
   if (!candidate_.shape.parameter.empty()) alone.front().candidate.shape.values = {shape_};
-  bench_.screen_all(alone);
+  testing_.screen_all(alone);
   if (!alone.front().visible) return std::move(alone.front());
-  bench_.test_best(alone, 1, threshold, true);
-  bench_.hold_out_significant(alone, true);
-  bench_.calibrate_significant(alone, threshold, true);
+  testing_.test_best(alone, 1, threshold, true);
+  testing_.hold_out_significant(alone, true);
+  testing_.calibrate_significant(alone, threshold, true);
   return std::move(alone.front());
 }
 
-std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trials& trials) {
+std::vector<std::unique_ptr<OwnFit>> find_hidden(const CandidateTesting& testing,
+                                                 const Trials& trials) {
   struct Fitted {
     const Trial* trial;
     Fit fit = {};
@@ -55,21 +56,21 @@ std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trial
   std::vector<Fitted> fits;
   const auto can_hide = [](const Trial& trial) { return trial.visible && is_at_one_shape(trial); };
   for (const std::size_t i : best_of(trials, most_refitted, can_hide)) fits.push_back({&trials[i]});
-  bench.pool().for_each(fits.size(), [&](std::size_t i) {
+  testing.pool().for_each(fits.size(), [&](std::size_t i) {
     auto& [trial, fit, drop] = fits[i];
     try {
-      fit = bench.refits().with(trial->candidate, trial->shape);
+      fit = testing.refits().with(trial->candidate, trial->shape);
     } catch (const Error&) {
       return;
     }
-    if (fit.status == FitStatus::converged) drop = error_drop(bench.room().fitted(), fit);
+    if (fit.status == FitStatus::converged) drop = error_drop(testing.room().fitted(), fit);
   });
   std::erase_if(fits, [](const Fitted& fitted) { return !(fitted.drop > worth_it); });
   std::ranges::stable_sort(fits, std::ranges::greater(), &Fitted::drop);
   if (fits.size() > most_judged) fits.resize(most_judged);
   std::vector<std::unique_ptr<OwnFit>> hidden;
   for (Fitted& fitted : fits) {
-    hidden.push_back(std::make_unique<OwnFit>(bench, fitted.trial->candidate, fitted.trial->shape,
+    hidden.push_back(std::make_unique<OwnFit>(testing, fitted.trial->candidate, fitted.trial->shape,
                                               std::move(fitted.fit)));
   }
   return hidden;

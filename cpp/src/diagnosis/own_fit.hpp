@@ -7,23 +7,23 @@
 #include <memory>
 #include <vector>
 
-#include "diagnosis/bench.hpp"
+#include "diagnosis/candidate_testing.hpp"
 
 namespace sepcal::diagnosis {
 
 /// The candidate of a trial at its own fit.
 class OwnFit {
  public:
-  /// `fit`: of Refits, at that shape. `bench`: of the fit without it.
-  OwnFit(const Bench& bench, const Candidate& candidate, double shape, Fit fit);
-  OwnFit(const OwnFit&) = delete;  // the bench refers to the fit
+  /// `fit`: of Refits, at that shape. `testing`: of the fit without it.
+  OwnFit(const CandidateTesting& testing, const Candidate& candidate, double shape, Fit fit);
+  OwnFit(const OwnFit&) = delete;  // the testing refers to the fit
   OwnFit& operator=(const OwnFit&) = delete;
   ~OwnFit() = default;
 
-  const Bench& bench() const { return bench_; }
+  const CandidateTesting& testing() const { return testing_; }
 
   /// The candidate tested there, held out and calibrated. `threshold`: as of
-  /// Bench::calibrate_significant().
+  /// CandidateTesting::calibrate_significant().
   Trial test(double threshold);
 
  private:
@@ -31,11 +31,12 @@ class OwnFit {
   double shape_;
   DiagnosisOptions options_;
   DiagnosedFit fitted_;
-  Bench bench_;
+  CandidateTesting testing_;
 };
 
 /// Of a model with a state those of the best of `trials` that take most of the error in a fit, the
 /// best first; none that takes less than a hundredth.
-std::vector<std::unique_ptr<OwnFit>> find_hidden(const Bench& bench, const Trials& trials);
+std::vector<std::unique_ptr<OwnFit>> find_hidden(const CandidateTesting& testing,
+                                                 const Trials& trials);
 
 }  // namespace sepcal::diagnosis

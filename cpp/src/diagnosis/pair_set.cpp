@@ -30,7 +30,7 @@ struct Causes {
   std::vector<Columns> bases;  // orthonormal, of each
 };
 
-Causes choose_causes(const Bench& bench, const Trials& trials, bool of_lines) {
+Causes choose_causes(const CandidateTesting& testing, const Trials& trials, bool of_lines) {
   const auto counts = [&](const Trial& trial) {
     const bool fits =
         of_lines ? is_of_lines(trial.candidate, 1) : trial.candidate.settings.size() == 1;
@@ -42,7 +42,8 @@ Causes choose_causes(const Bench& bench, const Trials& trials, bool of_lines) {
   Causes causes;
   for (const std::size_t i : chosen) causes.trials.push_back(&trials[i]);
   for (const Trial* trial : causes.trials) {
-    causes.bases.push_back(project_trial(bench.room(), bench.null(), *trial, trial->shape).basis);
+    causes.bases.push_back(
+        project_trial(testing.room(), testing.null(), *trial, trial->shape).basis);
   }
   return causes;
 }
@@ -50,8 +51,8 @@ Causes choose_causes(const Bench& bench, const Trials& trials, bool of_lines) {
 /// What the causes explain of the residual in one noise, by the products of their columns there.
 class Explained {
  public:
-  Explained(const Bench& bench, const Causes& causes, const NoiseMembers& noise) {
-    const NullHypothesis& null = bench.null();
+  Explained(const CandidateTesting& testing, const Causes& causes, const NoiseMembers& noise) {
+    const NullHypothesis& null = testing.null();
     Columns columns = null.basis.columns();
     for (const Columns& basis : causes.bases) {
       first_.push_back(columns.cols() - null.basis.rank());
@@ -103,10 +104,10 @@ std::vector<Combination> rank_pairs(const Explained& explained, const Causes& ca
 
 }  // namespace
 
-std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials,
+std::vector<std::string> find_pair_set(const CandidateTesting& testing, const Trials& trials,
                                        const NoiseMembers& noise, bool of_lines) {
-  const Causes causes = choose_causes(bench, trials, of_lines);
-  const Explained explained(bench, causes, noise);
+  const Causes causes = choose_causes(testing, trials, of_lines);
+  const Explained explained(testing, causes, noise);
   const auto ranked = rank_pairs(explained, causes);
   if (ranked.empty()) return {};
   std::vector<double> alone;

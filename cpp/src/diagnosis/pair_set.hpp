@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/bench.hpp"
+#include "diagnosis/candidate_testing.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -14,7 +14,7 @@ namespace sepcal::diagnosis {
 /// Schwarz criterion is within 9.2 of the least that a single trial or a pair has in this noise,
 /// and below those of its members; by one step from the fit. `of_lines`: of the best of either
 /// screen that are lines along a channel or have no driver.
-std::vector<std::string> find_pair_set(const Bench& bench, const Trials& trials,
+std::vector<std::string> find_pair_set(const CandidateTesting& testing, const Trials& trials,
                                        const NoiseMembers& noise, bool of_lines = false);
 
 }  // namespace sepcal::diagnosis

@@ -5,7 +5,7 @@
 
 #include "numerics/decompositions.hpp"
 #include "numerics/tall_products.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
 

@@ -33,8 +33,8 @@ std::vector<Segment> spread(const std::vector<Segment>& segments, std::size_t mo
 /// What a fit to some of the rows takes from the fit to all of them.
 FitOptions options_from(const Fit& fit) {
   FitOptions options;
-  options.method = fit.by;
-  if (fit.by ==
+  options.method = fit.method;
+  if (fit.method ==
       FitMethod::filter_error) {  // in the noise of the fit, as its innovations are judged
     options.process_noise = fit.process_noise();
     for (const OutputValue& noise : fit.noise) options.noise[noise.name] = noise.value;
@@ -46,7 +46,7 @@ FitOptions options_from(const Fit& fit) {
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const Parameter& parameter = fit.parameters[k];
     if (parameter.fixed) {
-      options.fixed[parameter.name] = parameter.value;
+      options.fix[parameter.name] = parameter.value;
       continue;
     }
     options.bounds[parameter.name] = {parameter.lower, parameter.upper};
@@ -58,7 +58,7 @@ FitOptions options_from(const Fit& fit) {
 /// The same for the model with the candidate, which begins at zero; its shape is held.
 FitOptions options_with(FitOptions options, const Tables& tables, const Candidate& candidate,
                         double shape) {
-  if (!candidate.shape.parameter.empty()) options.fixed[candidate.shape.parameter] = shape;
+  if (!candidate.shape.parameter.empty()) options.fix[candidate.shape.parameter] = shape;
   for (const Variable& coefficient : candidate.coefficients) {
     if (std::ranges::find(tables.nonlinear, coefficient.name, &Variable::name) !=
         tables.nonlinear.end()) {
@@ -96,7 +96,7 @@ Fit refit_nearly(const CandidateRoom& room, const Candidate& candidate, double s
   options.coloured_errors = coloured_errors;
   const std::string& of_shape = candidate.shape.parameter;
   if (!of_shape.empty() && candidate.stepping_port.empty()) {  // a step's row is exact
-    options.fixed.erase(of_shape);
+    options.fix.erase(of_shape);
     options.start[of_shape] = shape;
   }
   return fit(*with, rows, options);
@@ -111,7 +111,7 @@ double error_drop(const Fit& before, const Fit& after) {
 }
 
 double drop_of_adding(const CandidateRoom& room, const Candidate& candidate, const Fit& fitted) {
-  if (fitted.by != FitMethod::filter_error) return error_drop(room.fitted(), fitted);
+  if (fitted.method != FitMethod::filter_error) return error_drop(room.fitted(), fitted);
   Record rows = room.record();
   rows.cut(room.rows());
   const FitOptions options = with_noise_as_asked(options_from(fitted), room.fitted());

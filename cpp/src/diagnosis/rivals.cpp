@@ -32,9 +32,9 @@ Columns constant_share(const CandidateColumns& columns) {
 
 /// The model's own parameters by a fit with an effect, where this is at its mean over the record:
 /// where it is zero is a matter of its driver.
-VectorXd estimates_of(const Bench& bench, const Contender& contender) {
-  const CandidateRoom& room = bench.room();
-  const Fit& fit = contender.fit;
+VectorXd estimates_of(const CandidateTesting& testing, const Alternative& alternative) {
+  const CandidateRoom& room = testing.room();
+  const Fit& fit = alternative.fit;
   const auto values_of = [&fit](const auto& entries, const auto& name_of) {
     VectorXd values(static_cast<Index>(entries.size()));
     for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -43,20 +43,21 @@ VectorXd estimates_of(const Bench& bench, const Contender& contender) {
     return values;
   };
   const VectorXd own = values_of(room.fit().parameters, std::identity());
-  const VectorXd effect = values_of(contender.candidate.coefficients,
+  const VectorXd effect = values_of(alternative.candidate.coefficients,
                                     [](const Variable& coefficient) { return coefficient.name; });
-  const std::string& of_shape = contender.candidate.shape.parameter;
-  const double shape = of_shape.empty() ? contender.shape : fit[of_shape].value;
-  const Columns share = constant_share(room.columns(contender.candidate, shape));
-  const VectorXd shift = explained_by(bench.null().basis, share) * effect;
+  const std::string& of_shape = alternative.candidate.shape.parameter;
+  const double shape = of_shape.empty() ? alternative.shape : fit[of_shape].value;
+  const Columns share = constant_share(room.columns(alternative.candidate, shape));
+  const VectorXd shift = explained_by(testing.null().basis, share) * effect;
   return own + shift;
 }
 
-const Contender* contender_of(const Contest& contest, const std::string& name) {
-  const auto found = std::ranges::find_if(contest.contenders, [&](const Contender& contender) {
-    return contender.candidate.name == name && std::isfinite(contender.criterion);
-  });
-  return found == contest.contenders.end() ? nullptr : &*found;
+const Alternative* contender_of(const ModelSelection& selection, const std::string& name) {
+  const auto found =
+      std::ranges::find_if(selection.alternatives, [&](const Alternative& alternative) {
+        return alternative.candidate.name == name && std::isfinite(alternative.criterion);
+      });
+  return found == selection.alternatives.end() ? nullptr : &*found;
 }
 
 /// What another fit has elsewhere.
@@ -68,14 +69,14 @@ struct Clash {
 
 /// The parameter that comes furthest away, were the rival the cause, by the larger of the two
 /// standard errors. `errors`: with what is advised.
-Clash compare(const Bench& bench, const VectorXd& now, const VectorXd& errors,
-              const Contender& rival) {
-  const std::vector<std::string>& names = bench.room().fit().parameters;
-  const VectorXd truth = estimates_of(bench, rival);
+Clash compare(const CandidateTesting& testing, const VectorXd& now, const VectorXd& errors,
+              const Alternative& rival) {
+  const std::vector<std::string>& names = testing.room().fit().parameters;
+  const VectorXd truth = estimates_of(testing, rival);
   Clash worst;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto at = static_cast<Index>(k);
-    const double before = bench.fitted().fit[names[k]].value;
+    const double before = testing.fitted().fit[names[k]].value;
     const double error = std::max(errors[at], rival.fit[names[k]].standard_error);
     const double away = (std::abs(now[at] - truth[at]) - std::abs(before - truth[at])) / error;
     if (!(away > worst.errors)) continue;
@@ -86,8 +87,8 @@ Clash compare(const Bench& bench, const VectorXd& now, const VectorXd& errors,
   return worst;
 }
 
-VectorXd errors_of(const Bench& bench, const Fit& fit) {
-  const std::vector<std::string>& names = bench.room().fit().parameters;
+VectorXd errors_of(const CandidateTesting& testing, const Fit& fit) {
+  const std::vector<std::string>& names = testing.room().fit().parameters;
   VectorXd errors(static_cast<Index>(names.size()));
   for (std::size_t k = 0; k < names.size(); ++k) {
     errors[static_cast<Index>(k)] = fit[names[k]].standard_error;
@@ -97,24 +98,24 @@ VectorXd errors_of(const Bench& bench, const Fit& fit) {
 
 }  // namespace
 
-std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advised,
-                       const Findings& findings) {
+std::string find_rival(CandidateTesting& testing, ModelSelection& selection,
+                       const EffectFinding& advised, const Findings& findings) {
   constexpr double most_errors = 1.5;
-  const Contender* chosen = contender_of(contest, advised.name);
+  const Alternative* chosen = contender_of(selection, advised.name);
   if (!chosen) return {};
-  const VectorXd with_chosen = estimates_of(bench, *chosen);
+  const VectorXd with_chosen = estimates_of(testing, *chosen);
   const auto find_clashes = [&](const VectorXd& errors) {
     std::vector<Clash> clashes;
     for (const EffectFinding& finding : findings) {
       const bool is_as_good = finding.beside == Beside::equivalent || &finding == &findings.front();
-      const Contender* rival = contender_of(contest, finding.name);
+      const Alternative* rival = contender_of(selection, finding.name);
       if (!is_as_good || !rival || rival == chosen) continue;
       // What explains no more with many more coefficients is no cause to doubt the plain one.
       if (rival->criterion > chosen->criterion + as_likely ||
           is_far_simpler(chosen->candidate, rival->candidate)) {
         continue;
       }
-      Clash clash = compare(bench, with_chosen, errors, *rival);
+      Clash clash = compare(testing, with_chosen, errors, *rival);
       if (clash.errors > most_errors) {
         clash.rival = &finding;
         clashes.push_back(std::move(clash));
@@ -123,12 +124,12 @@ std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advi
     std::ranges::sort(clashes, std::ranges::greater(), &Clash::errors);
     return clashes;
   };
-  if (find_clashes(errors_of(bench, chosen->fit)).empty()) return {};
+  if (find_clashes(errors_of(testing, chosen->fit)).empty()) return {};
   const Fit coloured =  // whose errors are larger, if any
-      refit_nearly(bench.room(), chosen->candidate, chosen->shape, enough_rows, true);
-  for (const Clash& clash : find_clashes(errors_of(bench, coloured))) {
+      refit_nearly(testing.room(), chosen->candidate, chosen->shape, enough_rows, true);
+  for (const Clash& clash : find_clashes(errors_of(testing, coloured))) {
     // What would be withheld itself is no reason to withhold another.
-    if (object(bench, contest, *clash.rival).reason.empty()) return clash.sentence;
+    if (object(testing, selection, *clash.rival).reason.empty()) return clash.sentence;
   }
   return {};
 }

@@ -5,13 +5,13 @@
 
 #include <string>
 
-#include "diagnosis/contenders.hpp"
+#include "diagnosis/alternatives.hpp"
 
 namespace sepcal::diagnosis {
 
 /// Why an effect should not be added before one that would do as well is ruled out: the end of a
 /// sentence, empty where none of `findings` would take a parameter elsewhere.
-std::string find_rival(Bench& bench, Contest& contest, const EffectFinding& advised,
-                       const std::vector<EffectFinding>& findings);
+std::string find_rival(CandidateTesting& testing, ModelSelection& selection,
+                       const EffectFinding& advised, const std::vector<EffectFinding>& findings);
 
 }  // namespace sepcal::diagnosis

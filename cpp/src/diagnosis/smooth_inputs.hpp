@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::diagnosis {

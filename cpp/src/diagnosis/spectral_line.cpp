@@ -9,7 +9,7 @@
 
 #include "numerics/order_statistics.hpp"
 #include "numerics/tails.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::diagnosis {
 namespace {

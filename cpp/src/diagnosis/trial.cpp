@@ -8,7 +8,7 @@
 #include "diagnosis/block_jackknife.hpp"
 #include "numerics/tails.hpp"
 #include "numerics/tall_products.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::diagnosis {
 namespace {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "diagnosis/contenders.hpp"
+#include "diagnosis/alternatives.hpp"
 #include "diagnosis/finding.hpp"
 
 namespace sepcal::diagnosis {
@@ -29,8 +29,8 @@ struct Standing {
   }
 };
 
-Standing place(Bench& bench, const EffectFinding& finding) {
-  const Candidate& candidate = bench.room().make(finding.name);
+Standing place(CandidateTesting& testing, const EffectFinding& finding) {
+  const Candidate& candidate = testing.room().make(finding.name);
   return {.finding = finding,
           .left = std::max(left_out(finding), 1.0 - finding.predicted_drop),
           .is_line = is_of_lines(candidate, 1),
@@ -77,7 +77,8 @@ void find_as_sure(std::vector<Standing>& all) {
 
 }  // namespace
 
-std::vector<EffectFinding*> choose_to_weigh(Bench& bench, std::vector<EffectFinding>& findings) {
+std::vector<EffectFinding*> choose_to_weigh(CandidateTesting& testing,
+                                            std::vector<EffectFinding>& findings) {
   constexpr double worth_a_fit = 0.6 * objects_from;
   constexpr std::size_t most_of_any = 2;
   constexpr std::size_t most_of_simple = 4;
@@ -92,16 +93,16 @@ std::vector<EffectFinding*> choose_to_weigh(Bench& bench, std::vector<EffectFind
   const std::size_t of_any = std::min(most_of_any, chosen.size());
   std::copy_if(chosen.begin() + static_cast<std::ptrdiff_t>(of_any), chosen.end(),
                std::back_inserter(simple), [&](const EffectFinding* finding) {
-                 return is_simple(bench.room().make(finding->name));
+                 return is_simple(testing.room().make(finding->name));
                });
   chosen.resize(of_any);
-  if (bench.instruments()) std::ranges::stable_sort(simple, {}, &EffectFinding::log10_p);
+  if (testing.instruments()) std::ranges::stable_sort(simple, {}, &EffectFinding::log10_p);
   if (simple.size() > most_of_simple) simple.resize(most_of_simple);
   chosen.insert(chosen.end(), simple.begin(), simple.end());
   return chosen;
 }
 
-void put_simplest_first(Bench& bench, std::vector<EffectFinding>& findings) {
+void put_simplest_first(CandidateTesting& testing, std::vector<EffectFinding>& findings) {
   const auto of_status = [](const EffectFinding& finding) {
     return finding.status == FindingStatus::slow_change ? 0
            : finding.status == FindingStatus::undecided ? 1
@@ -113,9 +114,9 @@ void put_simplest_first(Bench& bench, std::vector<EffectFinding>& findings) {
   const auto end = std::ranges::find_if_not(
       findings, [&](const EffectFinding& finding) { return finding.status == asked; });
   std::vector<Standing> all;
-  for (auto at = findings.begin(); at != end; ++at) all.push_back(place(bench, *at));
+  for (auto at = findings.begin(); at != end; ++at) all.push_back(place(testing, *at));
   find_as_good(all);
-  if (bench.instruments()) find_as_sure(all);  // else p says nothing of slow changes
+  if (testing.instruments()) find_as_sure(all);  // else p says nothing of slow changes
   const auto is_both = [](const Standing& one) { return one.is_as_good && one.is_as_sure; };
   if (std::ranges::any_of(all, is_both)) {
     for (Standing& one : all) one.is_as_good = one.is_as_sure = is_both(one);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/channel_product.hpp"
+#include "sepcal/detail/channel_product.hpp"
 
 #include <algorithm>
 #include <cctype>

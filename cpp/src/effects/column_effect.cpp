@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An effect whose columns the caller computed, row by row.
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/aligned_doubles.hpp"
 #include "effects/composed_parts.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 namespace sepcal::effects {
 

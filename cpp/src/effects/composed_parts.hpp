@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/effect.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/effect.hpp"
 
 namespace sepcal::effects {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/effect.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/effect.hpp"
 
 namespace sepcal::effects {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "sepcal/effect.hpp"
+#include "sepcal/detail/effect.hpp"
 
 namespace sepcal {
 namespace {

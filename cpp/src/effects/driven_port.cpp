@@ -6,8 +6,8 @@
 
 #include "base/parameter_values.hpp"
 #include "effects/driven_rows.hpp"
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal {
 

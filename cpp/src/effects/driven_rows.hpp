@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "sepcal/driver.hpp"
+#include "sepcal/detail/driver.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::effects {

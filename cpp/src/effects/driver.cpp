@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/driver.hpp"
+#include "sepcal/detail/driver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,8 +57,8 @@ std::vector<std::string> numbered(int functions) {
 class SplineDriver final : public Driver {
  public:
   SplineDriver(Variable input, SplineBasis basis, const std::vector<double>& means,
-               bool bends_alone)
-      : Driver(std::move(input), numbered(basis.functions() - (bends_alone ? 1 : 0))),
+               bool without_line)
+      : Driver(std::move(input), numbered(basis.functions() - (without_line ? 1 : 0))),
         basis_(std::move(basis)) {
     const int all = basis_.functions();
     means_ = Eigen::RowVectorXd::Zero(all);
@@ -192,9 +192,9 @@ DriverPointer exponent_driver(Variable input) {
 }
 
 DriverPointer spline_driver(Variable input, std::vector<double> knots,
-                            const std::vector<double>& means, bool bends_alone) {
+                            const std::vector<double>& means, bool without_line) {
   return std::make_shared<const SplineDriver>(std::move(input), SplineBasis(std::move(knots)),
-                                              means, bends_alone);
+                                              means, without_line);
 }
 
 DriverPointer levels_driver(Variable input, std::vector<double> thresholds) {

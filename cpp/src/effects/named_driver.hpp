@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/driver.hpp"
-#include "sepcal/named_effects.hpp"
+#include "sepcal/detail/driver.hpp"
+#include "sepcal/detail/named_effects.hpp"
 
 namespace sepcal::effects {
 

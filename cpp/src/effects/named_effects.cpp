@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/named_effects.hpp"
+#include "sepcal/detail/named_effects.hpp"
 
 #include <algorithm>
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "numerics/decompositions.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 

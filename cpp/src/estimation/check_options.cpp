@@ -7,7 +7,6 @@
 #include "base/name_list.hpp"
 #include "base/thread_pool.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -68,7 +67,7 @@ void check_priors(const FitOptions& options, const std::vector<Variable>& parame
       throw Error("the prior of '" + name +
                   "' must have a finite mean and a positive standard deviation");
     }
-    if (options.fixed.contains(name)) {
+    if (options.fix.contains(name)) {
       throw Error("'" + name + "' is fixed, so that its prior has no part; drop one");
     }
   }
@@ -76,15 +75,14 @@ void check_priors(const FitOptions& options, const std::vector<Variable>& parame
 
 /// `parameters` with the bounds that hold.
 void check_fixed(const FitOptions& options, const std::vector<Variable>& parameters) {
-  for (const auto& [name, value] : options.fixed) {
+  for (const auto& [name, value] : options.fix) {
     const Variable& parameter = find(parameters, name, "parameter");
     if (!std::isfinite(value) || value < parameter.lower || value > parameter.upper) {
       throw Error("the fixed value of '" + name + "' is outside its bounds; widen them or mend it");
     }
   }
-  const bool some_free = std::ranges::any_of(parameters, [&](const Variable& parameter) {
-    return !options.fixed.contains(parameter.name);
-  });
+  const bool some_free = std::ranges::any_of(
+      parameters, [&](const Variable& parameter) { return !options.fix.contains(parameter.name); });
   if (!some_free) {
     throw Error("every parameter is fixed, so that nothing is left to estimate; free one");
   }

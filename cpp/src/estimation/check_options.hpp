@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/tables.hpp"
 #include "sepcal/options.hpp"
-#include "sepcal/tables.hpp"
 
 namespace sepcal::estimation {
 

@@ -9,7 +9,7 @@
 
 #include "estimation/covariance.hpp"
 #include "model/sweep.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::estimation {
 

@@ -158,7 +158,7 @@ class FilterError {
 
   Fit describe(const Scoring& scoring, const Scored& at, const FilterErrorStart& start) const {
     Fit result;
-    result.by = FitMethod::filter_error;
+    result.method = FitMethod::filter_error;
     if (start.output_error) {
       result.stage_one = start.output_error->stage_one;
       result.stage_two_passes = start.output_error->stage_two_passes;

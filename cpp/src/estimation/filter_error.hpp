@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/options.hpp"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "estimation/sampling.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -262,7 +262,7 @@ class Start {
         theta[k] = at->second;
         return true;
       };
-      if (known(options_.fixed) || k < n_1) continue;
+      if (known(options_.fix) || k < n_1) continue;
       if (known(options_.start) || known(options_.unsampled)) continue;
       const bool sampled = options_.sampling_distribution.contains(parameter.name) ||
                            (std::isfinite(box.lower) && std::isfinite(box.upper));
@@ -306,7 +306,7 @@ class Start {
     Index column = 0;
     for (Index k = 0; k < theta.size(); ++k) {
       if (moves[k]) continue;
-      if (!options_.fixed.contains(all[static_cast<std::size_t>(k)].name)) {
+      if (!options_.fix.contains(all[static_cast<std::size_t>(k)].name)) {
         columns.push_back(column);
         places.push_back(k);
       }

@@ -8,8 +8,8 @@
 
 #include "base/excerpt.hpp"
 #include "base/sentences.hpp"
-#include "estimation/bend.hpp"
 #include "estimation/covariance.hpp"
+#include "estimation/curvature.hpp"
 #include "estimation/filter_error.hpp"
 #include "estimation/fitted_parameters.hpp"
 #include "estimation/likelihood.hpp"
@@ -93,7 +93,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   result.rmse = by_output(model.tables(), rmse);
   result.noise = by_output(model.tables(), two.noise);
   result.cost = two.cost;
-  result.method = two.method;
+  result.second_stage = two.method;
   result.iterations = two.iterations;
   result.noise_iterations = two.noise_iterations;
   result.rows = measurements.rows();
@@ -106,7 +106,7 @@ void describe(Fit& result, const BlockModel& model, const Problem& problem,
   sentences.push_back(describe_other_minima(problem, result.stage_one.minima));
   const bool are_asked_for = problem.options().coloured_errors;  // standard errors
   if (are_asked_for && result.identifiability.unobservable.empty()) {
-    sentences.push_back(describe_bend(problem, sweep, two));
+    sentences.push_back(describe_curvature(problem, sweep, two));
   }
   std::ranges::copy(errors.sentences, std::back_inserter(sentences));
   std::ranges::move(judge_priors(result.parameters, problem.options()),

@@ -21,8 +21,8 @@ void fill_parameters(Fit& result, const BlockModel& model, const Problem& proble
   std::vector<Index> place;  // of each free parameter among all
   for (const Variable& variable : all) {
     Parameter parameter{.name = variable.name, .unit = variable.unit};
-    const auto fixed = problem.options().fixed.find(variable.name);
-    if (fixed != problem.options().fixed.end()) {
+    const auto fixed = problem.options().fix.find(variable.name);
+    if (fixed != problem.options().fix.end()) {
       parameter.fixed = true;
       parameter.value = parameter.lower = parameter.upper = fixed->second;
     } else {

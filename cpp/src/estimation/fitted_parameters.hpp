@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "estimation/problem.hpp"
+#include "sepcal/detail/identifiability.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/identifiability.hpp"
 
 namespace sepcal::estimation {
 

@@ -12,7 +12,7 @@
 
 #include "estimation/minimise.hpp"
 #include "estimation/objective.hpp"
-#include "sepcal/tables.hpp"
+#include "sepcal/detail/tables.hpp"
 
 namespace sepcal::estimation {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/identifiability.hpp"
+#include "sepcal/detail/identifiability.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "base/sentences.hpp"
 #include "base/short_number.hpp"
 #include "numerics/decompositions.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal {
 namespace {

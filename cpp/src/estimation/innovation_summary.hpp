@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/innovation_model.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 

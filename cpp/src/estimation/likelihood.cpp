@@ -9,7 +9,7 @@
 #include "estimation/objective.hpp"
 #include "estimation/plausibility.hpp"
 #include "estimation/sqp.hpp"
-#include "sepcal/identifiability.hpp"
+#include "sepcal/detail/identifiability.hpp"
 
 namespace sepcal::estimation {
 

@@ -11,7 +11,7 @@
 #include "numerics/basins.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/nearest_points.hpp"
-#include "sepcal/identifiability.hpp"
+#include "sepcal/detail/identifiability.hpp"
 
 namespace sepcal::estimation {
 namespace {

@@ -11,7 +11,7 @@
 #include "estimation/minimise.hpp"
 #include "estimation/objective.hpp"
 #include "estimation/problem.hpp"
-#include "sepcal/stage_one.hpp"
+#include "sepcal/detail/stage_one.hpp"
 
 namespace sepcal::estimation {
 

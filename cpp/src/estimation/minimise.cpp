@@ -10,7 +10,7 @@
 #include <cmath>
 #include <exception>
 
-#include "sepcal/solver_log.hpp"
+#include "sepcal/detail/solver_log.hpp"
 
 namespace sepcal {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "model/measurements.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 namespace sepcal::estimation {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/measurements.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 

@@ -26,12 +26,12 @@ numerics::Box box_of(const std::vector<Variable>& parameters, std::size_t first)
 Problem::Problem(const BlockModel& model, const FitOptions& options)
     : options_(options), free_(&model) {
   check_options(options, model.tables());
-  if (!options.fixed.empty()) {
-    held_ = std::make_unique<const model::FixedModel>(model, options.fixed);
+  if (!options.fix.empty()) {
+    held_ = std::make_unique<const model::FixedModel>(model, options.fix);
     free_ = held_.get();
   }
   for (const Variable& parameter : with_bounds(model.tables(), options.bounds)) {
-    if (!options.fixed.contains(parameter.name)) parameters_.push_back(parameter);
+    if (!options.fix.contains(parameter.name)) parameters_.push_back(parameter);
   }
   if (options.noise.empty()) return;
   noise_.resize(model.tables().n_z());

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimation/minimise.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

@@ -3,7 +3,7 @@
 // it: the sandwich's middle has then the noise's share too (BlockModel::score_noise()).
 #pragma once
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"

@@ -9,7 +9,7 @@
 #include "noise/noise_order.hpp"
 #include "noise/noise_room.hpp"
 #include "numerics/decompositions.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::estimation {
 namespace {
@@ -85,7 +85,7 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
 namespace {
 
 OutputNoise white_noise(double sigma) {
-  return {noise::WanderingNoise{.rows = 1.0, .white = 1.0, .sigma = sigma}};
+  return {noise::GaussMarkovNoise{.rows = 1.0, .white = 1.0, .sigma = sigma}};
 }
 
 /// Whether white sums vary as the rows that were summed do: then these are white as well.
@@ -107,7 +107,7 @@ bool is_plainly_white(const VectorXd& e, const MatrixXd& columns, double of_whit
   for (Index order = 0; order < gains.size(); ++order) {
     if (!(gains[order] < (static_cast<double>(order) + little) * cost)) return false;
   }
-  return of_white - noise::scan_wandering(columns, runs) < little * cost;
+  return of_white - noise::scan_gauss_markov(columns, runs) < little * cost;
 }
 
 /// Whether e follows the columns further than a noise allows: ordinary least squares have left of
@@ -132,7 +132,7 @@ std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd&
     const MatrixXd basis = orthonormal(X, MatrixXd(e.size(), 0));
     MatrixXd columns(e.size(), basis.cols() + 1);
     columns << basis, e;
-    const noise::WanderingFit white = noise::fit_white_rows(columns);
+    const noise::GaussMarkovFit white = noise::fit_white_rows(columns);
     if (is_plainly_white(e, columns, white.restricted.minus_two_log_likelihood, runs)) {
       return OutputNoise{white.noise};
     }
@@ -152,23 +152,23 @@ std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd&
   }
   MatrixXd columns(e.size(), spent + 1);
   columns << levels, basis, e;
-  const noise::WanderingFit white = noise::fit_white_rows(columns);
-  const noise::WanderingFit wandering = noise::fit_wandering(columns, runs);
+  const noise::GaussMarkovFit white = noise::fit_white_rows(columns);
+  const noise::GaussMarkovFit gauss_markov = noise::fit_gauss_markov(columns, runs);
   const noise::Restricted of_fraction =
       noise::restricted_likelihood(columns.rightCols(basis.cols() + 1), runs, fractional);
   const Index left = e.size() - spent;
   const double of_white = criterion(white.restricted.minus_two_log_likelihood, 1.0, left);
   constexpr double none = 1e-3;  // of the variance: an AR(1) has no white share to estimate
-  const double parameters = wandering.noise.white < none ? 2.0 : 3.0;
-  const double of_wandering =
-      criterion(wandering.restricted.minus_two_log_likelihood, parameters, left);
+  const double parameters = gauss_markov.noise.white < none ? 2.0 : 3.0;
+  const double of_gauss_markov =
+      criterion(gauss_markov.restricted.minus_two_log_likelihood, parameters, left);
   const double of_fractional =
       criterion(of_fraction.minus_two_log_likelihood, fractional.order() + 2.0, left);
-  if (!(std::min(of_wandering, of_fractional) < of_white)) return OutputNoise{white.noise};
-  const bool is_fractional = of_fractional < of_wandering;
-  OutputNoise found = is_fractional ? OutputNoise{fractional} : OutputNoise{wandering.noise};
+  if (!(std::min(of_gauss_markov, of_fractional) < of_white)) return OutputNoise{white.noise};
+  const bool is_fractional = of_fractional < of_gauss_markov;
+  OutputNoise found = is_fractional ? OutputNoise{fractional} : OutputNoise{gauss_markov.noise};
   if (free ||
-      !follows_columns(found, is_fractional ? of_fraction : wandering.restricted, basis, runs)) {
+      !follows_columns(found, is_fractional ? of_fraction : gauss_markov.restricted, basis, runs)) {
     return found;
   }
   std::optional<OutputNoise> alone = find_noise_of_rows(e, MatrixXd(e.size(), 0), runs);
@@ -181,14 +181,14 @@ std::optional<OutputNoise> find_noise_of_rows(const VectorXd& e, const MatrixXd&
 bool is_white(const OutputNoise& noise) {
   if (noise.stride > 1) return false;
   if (const auto* model = std::get_if<NoiseModel>(&noise.model)) return is_white(*model);
-  return std::get<noise::WanderingNoise>(noise.model).white == 1.0;
+  return std::get<noise::GaussMarkovNoise>(noise.model).white == 1.0;
 }
 
 double correlation_rows(const OutputNoise& noise) {
   const auto stride = static_cast<double>(noise.stride);
   if (is_white(noise)) return 1.0;
-  if (const auto* wandering = std::get_if<noise::WanderingNoise>(&noise.model)) {
-    return stride * (wandering->white == 1.0 ? 1.0 : wandering->rows);
+  if (const auto* gauss_markov = std::get_if<noise::GaussMarkovNoise>(&noise.model)) {
+    return stride * (gauss_markov->white == 1.0 ? 1.0 : gauss_markov->rows);
   }
   const auto& model = std::get<NoiseModel>(noise.model);
   if (model.level_is_free()) return infinity;

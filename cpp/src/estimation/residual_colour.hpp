@@ -11,7 +11,7 @@
 
 #include "base/thread_pool.hpp"
 #include "estimation/summed_rows.hpp"
-#include "noise/wandering_noise.hpp"
+#include "noise/gauss_markov_noise.hpp"
 #include "sepcal/noise_model.hpp"
 
 namespace sepcal::estimation {
@@ -30,7 +30,7 @@ std::optional<NoiseModel> find_residual_noise(std::span<const double> e,
 /// columns that were fitted move with the noise, as those made of a noisy input do, restricted
 /// likelihood takes that for very slow noise, and it is the noise of the residual by itself.
 struct OutputNoise {
-  std::variant<NoiseModel, noise::WanderingNoise> model;
+  std::variant<NoiseModel, noise::GaussMarkovNoise> model;
   Eigen::Index stride = 1;
   Eigen::Index held = 1;
   bool moves_with_columns = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/record.hpp"
 

@@ -141,7 +141,7 @@ void hold_idle(const BlockModel& model, const std::string& name, FitOptions& opt
     if (parameter.name == name) value = std::clamp(value, parameter.lower, parameter.upper);
   }
   options.bounds.erase(name);
-  options.fixed.emplace(name, value);
+  options.fix.emplace(name, value);
 }
 
 }  // namespace
@@ -150,7 +150,7 @@ FitOptions with_starting_values(const BlockModel& model, const Record& record,
                                 const std::string& segments, FitOptions options) {
   auto& known = options.start.empty() ? options.unsampled : options.start;
   for (const auto& [name, value] : model.starting_values(record)) {
-    const bool said = options.fixed.contains(name) || options.sampling_distribution.contains(name);
+    const bool said = options.fix.contains(name) || options.sampling_distribution.contains(name);
     if (!said) known.emplace(name, value);
   }
   if (!segments.empty()) {
@@ -160,7 +160,7 @@ FitOptions with_starting_values(const BlockModel& model, const Record& record,
   }
   const std::vector<Variable> all = model.tables().parameters();
   const bool nothing_to_sample = std::ranges::all_of(all, [&](const Variable& parameter) {
-    return options.fixed.contains(parameter.name) || options.unsampled.contains(parameter.name);
+    return options.fix.contains(parameter.name) || options.unsampled.contains(parameter.name);
   });
   if (nothing_to_sample) options.start.merge(options.unsampled);
   return options;

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

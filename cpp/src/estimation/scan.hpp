@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

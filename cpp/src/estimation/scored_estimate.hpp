@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "estimation/scoring.hpp"
+#include "sepcal/detail/identifiability.hpp"
+#include "sepcal/detail/tables.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/identifiability.hpp"
 #include "sepcal/options.hpp"
-#include "sepcal/tables.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 

@@ -10,7 +10,7 @@
 #include "estimation/objective.hpp"
 #include "numerics/box.hpp"
 #include "sepcal/detail/innovation_model.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 

@@ -13,7 +13,7 @@
 #include "base/thread_pool.hpp"
 #include "estimation/problem.hpp"
 #include "model/measurements.hpp"
-#include "sepcal/stage_one.hpp"
+#include "sepcal/detail/stage_one.hpp"
 
 namespace sepcal::estimation {
 

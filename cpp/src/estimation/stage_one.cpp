@@ -33,7 +33,7 @@ std::function<void(double)> progress_of(const FitOptions& options) {
 /// The problem's own question with the unsampled parameters held.
 FitOptions hold_unsampled(const Problem& problem) {
   FitOptions options = problem.options();
-  options.fixed.clear();
+  options.fix.clear();
   options.bounds.clear();
   std::map<std::string, double> held;
   std::map<std::string, Normal> distributions;
@@ -41,7 +41,7 @@ FitOptions hold_unsampled(const Problem& problem) {
     options.bounds[parameter.name] = {parameter.lower, parameter.upper};
     const auto value = options.unsampled.find(parameter.name);
     if (value != options.unsampled.end()) {
-      options.fixed[parameter.name] = std::clamp(value->second, parameter.lower, parameter.upper);
+      options.fix[parameter.name] = std::clamp(value->second, parameter.lower, parameter.upper);
     } else if (const auto drawn = options.sampling_distribution.find(parameter.name);
                drawn != options.sampling_distribution.end()) {
       distributions.insert(*drawn);
@@ -73,9 +73,7 @@ StageOne run_without_unsampled(const Problem& problem, const model::Measurements
                                base::ThreadPool& pool) {
   const FitOptions reduced = hold_unsampled(problem);
   StageOne result = run_stage_one(Problem(problem.model(), reduced), measurements, pool);
-  const auto insert = [&](const auto& points) {
-    return insert_held(problem, reduced.fixed, points);
-  };
+  const auto insert = [&](const auto& points) { return insert_held(problem, reduced.fix, points); };
   if (result.samples.cols() > 0) result.samples = insert(result.samples);
   result.best = insert(result.best);
   result.xi2 = insert(result.xi2);

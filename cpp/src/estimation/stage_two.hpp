@@ -11,8 +11,8 @@
 #include "base/thread_pool.hpp"
 #include "estimation/problem.hpp"
 #include "model/measurements.hpp"
-#include "sepcal/stage_one.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/stage_one.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::estimation {
 

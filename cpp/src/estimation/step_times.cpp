@@ -22,7 +22,7 @@ FitOptions without_sought(FitOptions options, const Times& sought) {
         sought, [&](const auto& time) { return entry.first.starts_with(time.second->name + "."); });
   };
   std::erase_if(options.bounds, is_of_one);
-  std::erase_if(options.fixed, is_of_one);
+  std::erase_if(options.fix, is_of_one);
   std::erase_if(options.sampling_distribution, is_of_one);
   std::erase_if(options.start, is_of_one);
   std::erase_if(options.unsampled, is_of_one);
@@ -31,7 +31,7 @@ FitOptions without_sought(FitOptions options, const Times& sought) {
 
 /// A fit's estimates, with what is held; steps not found yet are in the middle of the record.
 ScanPoint point_of(const Fit& fit, const FitOptions& options, const Times& sought) {
-  ScanPoint point{fit.by_name(), options.fixed, options.threads};
+  ScanPoint point{fit.by_name(), options.fix, options.threads};
   for (const auto& [name, setting] : sought) {
     if (!setting->span) continue;
     point.held.emplace(name, 0.5 * (setting->span->first + setting->span->second));
@@ -56,10 +56,10 @@ Fit fit_with_steps(const BlockModel& model, const BlockModel& plain,
   constexpr int most_rounds = 5;
   Times sought;
   for (const auto& [name, setting] : step_times(settings, effects)) {
-    const auto held = options.fixed.find(name);
-    if (held != options.fixed.end()) setting->t0 = held->second;
+    const auto held = options.fix.find(name);
+    if (held != options.fix.end()) setting->t0 = held->second;
     if (setting->t0) {
-      options.fixed[name] = *setting->t0;
+      options.fix[name] = *setting->t0;
     } else {
       sought[name] = setting;
     }
@@ -80,7 +80,7 @@ Fit fit_with_steps(const BlockModel& model, const BlockModel& plain,
                                   bounds == options.bounds.end() ? Interval{} : bounds->second);
       moved = moved || setting->t0 != t0;
       setting->t0 = t0;
-      options.fixed[name] = t0;
+      options.fix[name] = t0;
     }
     if (!moved) break;
     fitted = fit(model, record, options);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal::estimation {
 

@@ -42,7 +42,7 @@ ThetaLayout::ThetaLayout(const BlockModel& model, const Problem& problem,
       innovations_(innovations),
       all_(model.tables().parameters()),
       n_(static_cast<Index>(all_.size())) {
-  const auto& fixed = problem.options().fixed;
+  const auto& fixed = problem.options().fix;
   for (Index k = 0; k < size(); ++k) {
     const bool held =
         k < n_ ? fixed.contains(all_[static_cast<std::size_t>(k)].name) : is_given(k - n_);
@@ -119,8 +119,8 @@ VectorXd ThetaLayout::given() const {
   const FitOptions& options = problem_.options();
   VectorXd theta = VectorXd::Zero(size());
   for (Index k = 0; k < n_; ++k) {
-    const auto at = options.fixed.find(all_[static_cast<std::size_t>(k)].name);
-    if (at != options.fixed.end()) theta[k] = at->second;
+    const auto at = options.fix.find(all_[static_cast<std::size_t>(k)].name);
+    if (at != options.fix.end()) theta[k] = at->second;
   }
   for (Index k = 0; k < size() - n_; ++k) {
     if (!is_given(k)) continue;

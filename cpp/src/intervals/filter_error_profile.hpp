@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/profile.hpp"
 

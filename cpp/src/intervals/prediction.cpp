@@ -129,7 +129,7 @@ Prediction predict(const BlockModel& model, const Record& record, const Fit& fit
     }
   });
   MatrixXd noise = result.standard_error.cwiseAbs2();
-  if (fit.by == FitMethod::filter_error) noise += stirred_variance(model, inputs, fit);
+  if (fit.method == FitMethod::filter_error) noise += stirred_variance(model, inputs, fit);
   for (Index j = 0; j < n_z; ++j) {
     result.measurement_error.col(j) = (noise.col(j).array() + variance_of(fit, options, j)).sqrt();
   }

@@ -29,12 +29,12 @@ using Eigen::VectorXd;
 /// The fit's question once more: what the fit held stays held.
 FitOptions as_fitted(FitOptions options, const Fit& fit) {
   for (const Parameter& parameter : fit.parameters) {
-    if (parameter.fixed) options.fixed[parameter.name] = parameter.value;
+    if (parameter.fixed) options.fix[parameter.name] = parameter.value;
   }
   // Jhat and J_p are of an R that has settled, however soon the fit stopped.
   options.noise_tolerance = std::min(options.noise_tolerance, FitOptions{}.noise_tolerance);
   options.noise_iterations = std::max(options.noise_iterations, FitOptions{}.noise_iterations);
-  options.second_stage = fit.method;
+  options.second_stage = fit.second_stage;
   // A loss has no likelihood: its scale stays that of the fit, and heights are those of its
   // sandwich.
   if (options.loss != Loss::squares && options.noise.empty()) {
@@ -133,7 +133,7 @@ class Profiles {
     reach_ =
         noise_given_ ? numerics::normal_reach(level) : numerics::student_reach(level, freedom_);
     const estimation::Attempt attempt =
-        estimation::from_neighbour(problem.options(), fit.method, true);
+        estimation::from_neighbour(problem.options(), fit.second_stage, true);
     const auto found = find_minimum(problem, measurements, start, attempt, pool);
     if (!found) return;
     minimum_ = *found;
@@ -260,7 +260,7 @@ std::string_view to_string(IntervalEnd end) {
 std::vector<ProfileInterval> profile_intervals(const BlockModel& model, const Record& record,
                                                const Fit& fit, const FitOptions& options,
                                                const ProfileOptions& asked) {
-  if (fit.by == FitMethod::filter_error) {
+  if (fit.method == FitMethod::filter_error) {
     const Record fitted = record.select(options.stage_two_segments);
     return profile_filter_error(model, fitted, fit, as_fitted(options, fit), asked);
   }

@@ -154,7 +154,7 @@ std::optional<ProfilePoint> ProfilePath::refit(double distance, const ProfilePoi
   // roundings apart do it.
   const bool held = problem_.parameters().size() > 1;
   if (held) {
-    options.fixed[name] = value;
+    options.fix[name] = value;
     options.prior.erase(name);
   } else {
     options.bounds[name] = {value, value + 1e-15 * (std::abs(value) + distance)};

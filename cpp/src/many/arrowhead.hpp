@@ -9,7 +9,7 @@
 
 #include "many/split.hpp"
 #include "numerics/bounded_least_squares.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::many {
 

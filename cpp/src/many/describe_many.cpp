@@ -11,7 +11,7 @@
 #include "estimation/prior_checks.hpp"
 #include "many/departure.hpp"
 #include "many/named_results.hpp"
-#include "sepcal/identifiability.hpp"
+#include "sepcal/detail/identifiability.hpp"
 
 namespace sepcal::many {
 namespace {

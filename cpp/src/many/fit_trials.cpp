@@ -115,8 +115,8 @@ class DesignFits {
     options_.threads = 1;  // of each fit
     options_.progress = {};
     for (const Variable& parameter : model.tables().parameters()) {
-      const auto fixed = options.fixed.find(parameter.name);
-      if (fixed == options.fixed.end()) free_.push_back(static_cast<Index>(result_.names.size()));
+      const auto fixed = options.fix.find(parameter.name);
+      if (fixed == options.fix.end()) free_.push_back(static_cast<Index>(result_.names.size()));
       result_.names.push_back(parameter.name);
     }
     result_.estimated = free_.size();
@@ -177,7 +177,7 @@ class DesignFits {
       const auto message = errors.judge(end);
       if (!message) return open.push_back(end.trial);
       const auto row = static_cast<Index>(end.trial);
-      for (const auto& [name, value] : options_.fixed) {
+      for (const auto& [name, value] : options_.fix) {
         const auto at = std::ranges::find(result_.names, name) - result_.names.begin();
         result_.estimates(row, at) = value;
       }

@@ -220,7 +220,7 @@ class JointFilterError {
     fill_parameters(scoring, at, held, errors, result);
     fill_outputs(at, innovations, result);
     if (finite) fill_departures(at, held, errors, result);
-    result.by = FitMethod::filter_error;
+    result.method = FitMethod::filter_error;
     result.cost = at.cost;
     result.log_likelihood = -at.cost - estimation::likelihood_constant(at.readings);
     result.iterations = at.iterations;

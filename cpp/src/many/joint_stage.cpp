@@ -9,7 +9,7 @@
 #include "estimation/alternation.hpp"
 #include "many/joint_start.hpp"
 #include "many/minimise_many.hpp"
-#include "sepcal/identifiability.hpp"
+#include "sepcal/detail/identifiability.hpp"
 
 namespace sepcal::many {
 namespace {

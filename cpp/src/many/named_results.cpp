@@ -36,8 +36,8 @@ SharedParameters list_shared(const BlockModel& model, const estimation::Problem&
                              const std::vector<bool>& at_bound) {
   SharedParameters shared;
   for (const Variable& variable : model.tables().parameters()) {
-    const auto fixed = problem.options().fixed.find(variable.name);
-    if (fixed != problem.options().fixed.end()) {
+    const auto fixed = problem.options().fix.find(variable.name);
+    if (fixed != problem.options().fix.end()) {
       Parameter parameter = to_parameter(variable, fixed->second, false);
       parameter.fixed = true;
       parameter.lower = parameter.upper = fixed->second;

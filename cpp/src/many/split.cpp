@@ -15,7 +15,7 @@ void check_own(const estimation::Problem& problem, const std::vector<std::string
   for (auto name = own.begin(); name != own.end(); ++name) {
     if (std::ranges::find(problem.parameters(), *name, &Variable::name) ==
         problem.parameters().end()) {
-      const bool fixed = problem.options().fixed.contains(*name);
+      const bool fixed = problem.options().fix.contains(*name);
       throw Error(fixed ? "own '" + *name + "' is fixed, and so the same in every flight; free it" +
                               " or leave it out of own"
                         : "own: there is no parameter '" + *name +

@@ -8,7 +8,7 @@
 
 #include "base/aligned_doubles.hpp"
 #include "model/measurements.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/fit_trials.hpp"
 
 namespace sepcal::many {

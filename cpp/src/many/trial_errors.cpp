@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "sepcal/identifiability.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/identifiability.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::many {
 

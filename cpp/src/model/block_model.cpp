@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 #include <utility>
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 namespace sepcal::model {
 

@@ -5,12 +5,12 @@
 #include "model/lane_factor.hpp"
 #include "model/lane_kit.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/lanes.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
-#include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/vane_boom.hpp"
 
 #define SEPCAL_TEXT_OF(name) #name

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
-#include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/vane_boom.hpp"
 
 namespace sepcal {

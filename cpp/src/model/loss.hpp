@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "sepcal/choices.hpp"
+#include "sepcal/detail/choices.hpp"
 
 namespace sepcal::model {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/aligned_doubles.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::model {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::model {
 

@@ -13,8 +13,8 @@
 #include "base/aligned_doubles.hpp"
 #include "model/lane_kit.hpp"
 #include "model/measurements.hpp"
-#include "sepcal/block_model.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::model {
 

@@ -10,7 +10,7 @@
 
 #include "base/aligned_doubles.hpp"
 #include "model/lane_kit.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::model {
 

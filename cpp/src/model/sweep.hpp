@@ -14,9 +14,9 @@
 #include "model/loss.hpp"
 #include "model/measurements.hpp"
 #include "model/pass_memory.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/passes.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::model {
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "numerics/lanes.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::noise {
 

@@ -13,8 +13,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// S X of rows that follow each other, S the covariance of a wandering noise.
-MatrixXd multiply(const WanderingNoise& noise, const MatrixXd& X) {
+/// S X of rows that follow each other, S the covariance of a Gauss-Markov noise.
+MatrixXd multiply(const GaussMarkovNoise& noise, const MatrixXd& X) {
   const double a = std::exp(-1.0 / noise.rows);
   MatrixXd around = MatrixXd::Zero(X.rows(), X.cols());  // sum_{s != t} a^|t-s| x_s
   Eigen::RowVectorXd before = Eigen::RowVectorXd::Zero(X.cols());
@@ -71,7 +71,7 @@ Carried carry(const NoiseModel& model, const std::vector<Segment>& runs,
   });
 }
 
-Carried carry(const WanderingNoise& noise, const std::vector<Segment>& runs,
+Carried carry(const GaussMarkovNoise& noise, const std::vector<Segment>& runs,
               const std::vector<Index>& cuts, const MatrixXd& X) {
   return carry_pieces(runs, cuts, X, [&](const Piece&, const MatrixXd& rows) -> MatrixXd {
     return multiply(noise, rows);

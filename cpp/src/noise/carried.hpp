@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "noise/wandering_noise.hpp"
+#include "noise/gauss_markov_noise.hpp"
 #include "sepcal/noise_model.hpp"
 #include "sepcal/record.hpp"
 
@@ -33,7 +33,7 @@ std::vector<Piece> cut_runs(const std::vector<Segment>& runs,
 /// X (rows x q) in gather_rows' layout; S is that of covariance_product().
 Carried carry(const NoiseModel& model, const std::vector<Segment>& runs,
               const std::vector<Eigen::Index>& cuts, const Eigen::MatrixXd& X);
-Carried carry(const WanderingNoise& noise, const std::vector<Segment>& runs,
+Carried carry(const GaussMarkovNoise& noise, const std::vector<Segment>& runs,
               const std::vector<Eigen::Index>& cuts, const Eigen::MatrixXd& X);
 
 }  // namespace sepcal::noise

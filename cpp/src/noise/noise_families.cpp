@@ -10,7 +10,7 @@
 #include "noise/noise_autocovariance.hpp"
 #include "noise/noise_room.hpp"
 #include "numerics/lanes.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::noise {
 namespace {
@@ -74,7 +74,7 @@ SEPCAL_EVERY_WIDTH void add_squares(const FilterBank& bank, const double* e, Ind
 }
 
 /// One member's filter.
-struct WanderFilter {
+struct MarkovFilter {
   double decay;
   const double* gain;       // of each row until they settle
   const double* precision;  // the root of it, of the innovations
@@ -82,7 +82,7 @@ struct WanderFilter {
 };
 
 /// Up to lane_count columns of a run become innovations, each of unit variance.
-SEPCAL_EVERY_WIDTH void whiten_side_by_side(const WanderFilter& filter, double* columns,
+SEPCAL_EVERY_WIDTH void whiten_side_by_side(const MarkovFilter& filter, double* columns,
                                             Index stride, Index count, Index rows) {
   Lanes state = {};
   double values[lane_count] = {};
@@ -121,32 +121,32 @@ NoiseFamilies::NoiseFamilies(const std::vector<Segment>& runs) : lengths_(find_l
   const Index longest = *std::ranges::max_element(lengths_);
   const double shortest_time = 2.0;
   const double longest_time = 2.0 * static_cast<double>(std::max<Index>(longest, 4));
-  wanders_.push_back(make_wander(1.0, 1.0));
+  gauss_markov_.push_back(make_gauss_markov(1.0, 1.0));
   for (int i = 0; i < correlation_times; ++i) {
     const double time =
         shortest_time * std::pow(longest_time / shortest_time, i / (correlation_times - 1.0));
-    for (const double white : white_shares) wanders_.push_back(make_wander(time, white));
+    for (const double white : white_shares) gauss_markov_.push_back(make_gauss_markov(time, white));
   }
   Index settled = 0;
-  for (const Wander& wander : wanders_) settled = std::max(settled, wander.gain.size());
-  const auto members = static_cast<Index>(wanders_.size());
+  for (const GaussMarkov& process : gauss_markov_) settled = std::max(settled, process.gain.size());
+  const auto members = static_cast<Index>(gauss_markov_.size());
   const Index lanes = (members + lanes_at_once - 1) / lanes_at_once * lanes_at_once;
   decays_ = VectorXd::Zero(lanes);
   gains_ = precisions_ = MatrixXd::Zero(lanes, settled);
   log_variances_ = VectorXd::Zero(members);
   for (Index m = 0; m < members; ++m) {
-    const Wander& wander = wanders_[static_cast<std::size_t>(m)];
-    const Index own = wander.gain.size();
-    decays_[m] = wander.a;
-    gains_.row(m).setConstant(wander.gain[own - 1]);
-    precisions_.row(m).setConstant(std::pow(wander.deviation[own - 1], -2));
-    gains_.row(m).head(own) = wander.gain;
-    precisions_.row(m).head(own) = wander.deviation.cwiseAbs2().cwiseInverse();
+    const GaussMarkov& process = gauss_markov_[static_cast<std::size_t>(m)];
+    const Index own = process.gain.size();
+    decays_[m] = process.a;
+    gains_.row(m).setConstant(process.gain[own - 1]);
+    precisions_.row(m).setConstant(std::pow(process.deviation[own - 1], -2));
+    gains_.row(m).head(own) = process.gain;
+    precisions_.row(m).head(own) = process.deviation.cwiseAbs2().cwiseInverse();
     for (const Index length : lengths_) {
       const Index first = std::min(length, own);
       log_variances_[m] +=
-          2.0 * wander.deviation.head(first).array().log().sum() +
-          2.0 * static_cast<double>(length - first) * std::log(wander.deviation[own - 1]);
+          2.0 * process.deviation.head(first).array().log().sum() +
+          2.0 * static_cast<double>(length - first) * std::log(process.deviation[own - 1]);
     }
   }
 }
@@ -169,26 +169,26 @@ NoiseFamilies::Fraction NoiseFamilies::make_fraction(double d) const {
           log_determinant};
 }
 
-NoiseFamilies::Wander NoiseFamilies::make_wander(double rows, double white) const {
+NoiseFamilies::GaussMarkov NoiseFamilies::make_gauss_markov(double rows, double white) const {
   constexpr double settled = 1e-12;
   const Index longest = std::min(longest_settling, *std::ranges::max_element(lengths_));
-  Wander wander{std::exp(-1.0 / rows), VectorXd(longest), VectorXd(longest)};
-  const double wandering = 1.0 - white;
-  double P = wandering;  // variance of g as predicted
+  GaussMarkov process{std::exp(-1.0 / rows), VectorXd(longest), VectorXd(longest)};
+  const double gauss_markov = 1.0 - white;
+  double P = gauss_markov;  // variance of g as predicted
   for (Index t = 0; t < longest; ++t) {
     const double F = P + white;
-    wander.gain[t] = P / F;
-    wander.deviation[t] = std::sqrt(F);
+    process.gain[t] = P / F;
+    process.deviation[t] = std::sqrt(F);
     const double next =
-        wander.a * wander.a * P * white / F + wandering * (1.0 - wander.a * wander.a);
+        process.a * process.a * P * white / F + gauss_markov * (1.0 - process.a * process.a);
     if (std::abs(next - P) <= settled * P) {
-      wander.gain.conservativeResize(t + 1);
-      wander.deviation.conservativeResize(t + 1);
+      process.gain.conservativeResize(t + 1);
+      process.deviation.conservativeResize(t + 1);
       break;
     }
     P = next;
   }
-  return wander;
+  return process;
 }
 
 void NoiseFamilies::difference(const Fraction& fraction, Ref<VectorXd> x) const {
@@ -267,7 +267,7 @@ NoiseMember NoiseFamilies::find_fractional(const Ref<const MatrixXd>& difference
   return best;
 }
 
-NoiseMember NoiseFamilies::find_wandering(const VectorXd& e) const {
+NoiseMember NoiseFamilies::find_gauss_markov(const VectorXd& e) const {
   const FilterBank bank{decays_.data(), gains_.data(), precisions_.data(), gains_.rows(),
                         gains_.cols() - 1};
   VectorXd squares = VectorXd::Zero(gains_.rows());
@@ -276,9 +276,9 @@ NoiseMember NoiseFamilies::find_wandering(const VectorXd& e) const {
     add_squares(bank, e.data() + first, length, squares.data());
     first += length;
   }
-  const ArrayXd square = squares.head(static_cast<Index>(wanders_.size()));
+  const ArrayXd square = squares.head(static_cast<Index>(gauss_markov_.size()));
   const auto n = static_cast<double>(rows_);
-  NoiseMember best{.family = NoiseFamily::wandering};
+  NoiseMember best{.family = NoiseFamily::gauss_markov};
   Index least = 0;
   best.minus_two_log_likelihood =
       (n * (square / n).log() + log_variances_.array()).minCoeff(&least);
@@ -289,7 +289,7 @@ NoiseMember NoiseFamilies::find_wandering(const VectorXd& e) const {
 
 NoiseMember NoiseFamilies::find(NoiseFamily family, const VectorXd& e, int order) const {
   return family == NoiseFamily::fractional ? find_fractional(differences(e), order)
-                                           : find_wandering(e);
+                                           : find_gauss_markov(e);
 }
 
 void NoiseFamilies::whiten_differenced(const NoiseMember& member, Ref<MatrixXd> columns) const {
@@ -324,15 +324,15 @@ void NoiseFamilies::whiten_backwards(const NoiseMember& member, Ref<VectorXd> co
     column /= member.sigma;
     return;
   }
-  const Wander& wander = wanders_[member.at];
-  const Index settled = wander.gain.size() - 1;
+  const GaussMarkov& process = gauss_markov_[member.at];
+  const Index settled = process.gain.size() - 1;
   Index first = 0;
   for (const Index length : lengths_) {
     double state = 0.0;  // what a row's state does to all later rows
     for (Index t = length - 1; t >= 0; --t) {
       const Index at = std::min(t, settled);
-      const double fed = wander.a * state;
-      const double innovation = column[first + t] / wander.deviation[at] + wander.gain[at] * fed;
+      const double fed = process.a * state;
+      const double innovation = column[first + t] / process.deviation[at] + process.gain[at] * fed;
       column[first + t] = innovation;
       state = fed - innovation;
     }
@@ -347,14 +347,15 @@ void NoiseFamilies::whiten(const NoiseMember& member, Ref<MatrixXd> columns) con
     whiten_differenced(member, columns);
     return;
   }
-  const Wander& wander = wanders_[member.at];
-  const VectorXd precision = (member.sigma * wander.deviation).cwiseInverse();
+  const GaussMarkov& process = gauss_markov_[member.at];
+  const VectorXd precision = (member.sigma * process.deviation).cwiseInverse();
   for (Index first = 0; first < columns.cols(); first += lane_count) {
     const Index count = std::min(lane_count, columns.cols() - first);
     Index row = 0;
     for (const Index length : lengths_) {
-      whiten_side_by_side({wander.a, wander.gain.data(), precision.data(), wander.gain.size() - 1},
-                          &columns(row, first), columns.outerStride(), count, length);
+      whiten_side_by_side(
+          {process.a, process.gain.data(), precision.data(), process.gain.size() - 1},
+          &columns(row, first), columns.outerStride(), count, length);
       row += length;
     }
   }
@@ -377,14 +378,14 @@ void NoiseFamilies::colour(const NoiseMember& member, Ref<VectorXd> innovations)
       }
       continue;
     }
-    const Wander& wander = wanders_[member.at];
-    const Index settled = wander.gain.size() - 1;
+    const GaussMarkov& process = gauss_markov_[member.at];
+    const Index settled = process.gain.size() - 1;
     double state = 0.0;
     for (Index t = 0; t < run.size(); ++t) {
       const Index at = std::min(t, settled);
-      const double innovation = run[t] * wander.deviation[at];
+      const double innovation = run[t] * process.deviation[at];
       run[t] = state + innovation;
-      state = wander.a * (state + wander.gain[at] * innovation);
+      state = process.a * (state + process.gain[at] * innovation);
     }
   }
   innovations *= member.sigma;

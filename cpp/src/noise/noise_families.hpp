@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two families of noise on a grid, for tests that ask both. Fractional: an AR(p) behind (1 - B)^d.
-// Wandering: white noise plus Gauss & Markov's, g_{t+1} = a g_t + q_t, what the velocity of a
+// Gauss-Markov: white noise plus Gauss & Markov's, g_{t+1} = a g_t + q_t, what the velocity of a
 // satellite receiver has, which no fractional noise imitates. Every member is a proper distribution
 // of the rows themselves, so that likelihoods of the two can be held against each other.
 #pragma once
@@ -15,8 +15,8 @@
 
 namespace sepcal::noise {
 
-enum class NoiseFamily { fractional, wandering };
-inline constexpr std::array noise_families{NoiseFamily::fractional, NoiseFamily::wandering};
+enum class NoiseFamily { fractional, gauss_markov };
+inline constexpr std::array noise_families{NoiseFamily::fractional, NoiseFamily::gauss_markov};
 
 /// A member of a family with its scale.
 struct NoiseMember {
@@ -41,8 +41,8 @@ class NoiseFamilies {
   /// How many d the fractional family has; `at` is one of them.
   std::size_t fractions() const { return fractions_.size(); }
 
-  /// How many members the wandering family has; `at` is one of them.
-  std::size_t wanders() const { return wanders_.size(); }
+  /// How many members the Gauss-Markov family has; `at` is one of them.
+  std::size_t gauss_markovs() const { return gauss_markov_.size(); }
 
   /// What the fractional family's differences make of e, a column each, which is linear in e.
   Eigen::MatrixXd differences(const Eigen::VectorXd& e) const;
@@ -63,7 +63,7 @@ class NoiseFamilies {
   /// The standard deviation of what the past does not predict.
   double innovation(const NoiseMember& member) const {
     if (member.family == NoiseFamily::fractional) return member.sigma;
-    const Eigen::VectorXd& deviation = wanders_[member.at].deviation;
+    const Eigen::VectorXd& deviation = gauss_markov_[member.at].deviation;
     return member.sigma * deviation[deviation.size() - 1];
   }
 
@@ -79,23 +79,23 @@ class NoiseFamilies {
   };
 
   /// One correlation time and share of white noise; gains of the Kalman filter settle.
-  struct Wander {
+  struct GaussMarkov {
     double a;
     Eigen::VectorXd gain;
     Eigen::VectorXd deviation;  // of the innovations
   };
 
   Fraction make_fraction(double d) const;
-  Wander make_wander(double rows, double white) const;
+  GaussMarkov make_gauss_markov(double rows, double white) const;
   void difference(const Fraction& fraction, Eigen::Ref<Eigen::VectorXd> x) const;
   void difference_backwards(const Fraction& fraction, Eigen::Ref<Eigen::VectorXd> x) const;
   Eigen::VectorXd gather_blocks(const Fraction& fraction, const Eigen::VectorXd& x) const;
-  NoiseMember find_wandering(const Eigen::VectorXd& e) const;
+  NoiseMember find_gauss_markov(const Eigen::VectorXd& e) const;
 
   std::vector<Eigen::Index> lengths_;
   Eigen::Index rows_ = 0;
   std::vector<Fraction> fractions_;
-  std::vector<Wander> wanders_;
+  std::vector<GaussMarkov> gauss_markov_;
   Eigen::VectorXd decays_;         // a of each member and of those that fill the last lanes
   Eigen::MatrixXd gains_;          // such members x rows of a run until all have settled
   Eigen::MatrixXd precisions_;     // of the innovations

@@ -13,8 +13,8 @@
 #include "noise/noise_order.hpp"
 #include "noise/noise_room.hpp"
 #include "numerics/decompositions.hpp"
+#include "sepcal/detail/quantity.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/quantity.hpp"
 
 namespace sepcal {
 

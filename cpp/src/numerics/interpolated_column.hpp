@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/natural_spline.hpp"
+#include "sepcal/detail/natural_spline.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::numerics {

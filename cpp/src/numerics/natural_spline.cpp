@@ -4,7 +4,7 @@
 //   h_{i-1} c_{i-1} + 2 (h_{i-1} + h_i) c_i + h_i c_{i+1}
 //     = 6 [(y_{i+1} - y_i)/h_i - (y_i - y_{i-1})/h_{i-1}],
 // which is tridiagonal and diagonally dominant.
-#include "sepcal/natural_spline.hpp"
+#include "sepcal/detail/natural_spline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "numerics/order_statistics.hpp"
 #include "numerics/quantiles.hpp"
 #include "numerics/toeplitz.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::numerics {
 namespace {

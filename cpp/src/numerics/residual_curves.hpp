@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "sepcal/eigen.hpp"
-#include "sepcal/natural_spline.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/natural_spline.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::numerics {

@@ -2,7 +2,7 @@
 // Covariances that depend on the lag alone, by the fast Fourier transform.
 #pragma once
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace sepcal::numerics {
 

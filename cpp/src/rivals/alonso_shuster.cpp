@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/rivals/alonso_shuster.hpp"
+#include "sepcal/detail/rivals/alonso_shuster.hpp"
 
 #include <ceres/jet.h>
 
@@ -16,10 +16,10 @@
 #include "model/soft_iron_and_scale.hpp"
 #include "numerics/symmetric.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/rivals/two_step_problems.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
-#include "sepcal/rivals/two_step_problems.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::rivals {
 namespace {

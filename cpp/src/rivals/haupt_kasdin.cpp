@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/rivals/haupt_kasdin.hpp"
+#include "sepcal/detail/rivals/haupt_kasdin.hpp"
 
 #include "base/thread_pool.hpp"
 #include "estimation/alternation.hpp"
@@ -9,8 +9,8 @@
 #include "model/sweep.hpp"
 #include "rivals/noise_of.hpp"
 #include "rivals/second_step.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal::rivals {
 namespace {

@@ -3,8 +3,8 @@
 // first step's information, and their prediction S f(xi) (Eqs. 31, 32).
 #pragma once
 
+#include "sepcal/detail/rivals/haupt_kasdin.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/rivals/haupt_kasdin.hpp"
 
 namespace sepcal::rivals {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/rivals/single_stage.hpp"
+#include "sepcal/detail/rivals/single_stage.hpp"
 
 #include <cmath>
 
@@ -34,7 +34,7 @@ namespace {
 FitOptions fit_options(const SingleStageOptions& options) {
   FitOptions asked;
   asked.bounds = options.bounds;
-  asked.fixed = options.fixed;
+  asked.fix = options.fix;
   asked.noise = options.noise;
   asked.stage_one_segments = asked.stage_two_segments = options.segments;
   asked.iterations = options.evaluations;
@@ -150,7 +150,7 @@ void check_start(const Tables& tables, const std::map<std::string, double>& star
 SingleStageFit fit_single_stage(const BlockModel& model, const Record& record,
                                 const std::map<std::string, double>& start,
                                 const SingleStageOptions& options) {
-  check_start(model.tables(), start, options.fixed);
+  check_start(model.tables(), start, options.fix);
   if (options.evaluations < 1) throw Error("evaluations must be at least 1");
   const FitOptions asked = fit_options(options);
   const estimation::Problem problem(model, asked);
@@ -177,9 +177,9 @@ SingleStageFit fit_single_stage(const BlockModel& model, const Record& record,
   fit.estimates.resize(static_cast<Index>(model.tables().parameters().size()));
   Index next = 0;
   for (const Variable& parameter : model.tables().parameters()) {
-    const auto held = options.fixed.find(parameter.name);
+    const auto held = options.fix.find(parameter.name);
     const auto place = static_cast<Index>(fit.names.size());
-    fit.estimates[place] = held != options.fixed.end() ? held->second : end.x[next++];
+    fit.estimates[place] = held != options.fix.end() ? held->second : end.x[next++];
     fit.names.push_back(parameter.name);
   }
   for (std::size_t j = 0; j < model.tables().outputs.size(); ++j) {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <ranges>
 
+#include "sepcal/error.hpp"
 #include "sepcal/flight/csv.hpp"
-#include "sepcal/option_error.hpp"
 #include "simulation/simulated_flight.hpp"
 
 namespace sepcal::simulation {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/simulation/truth.hpp"
+#include "sepcal/detail/simulation/truth.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "flight/files/json_values.hpp"
-#include "sepcal/flight/aircraft_file.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/detail/flight/aircraft_file.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 namespace {

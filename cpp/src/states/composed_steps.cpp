@@ -278,8 +278,8 @@ StateSteps::Reading ComposedSteps::read_jointly(std::size_t row, const VectorXd&
   return reading;
 }
 
-StateSteps::BentStep ComposedSteps::advance_bent(std::size_t row, const VectorXd& x) const {
-  const BentStep own = own_->advance_bent(row, x);
+StateSteps::SecondOrderStep ComposedSteps::advance_bent(std::size_t row, const VectorXd& x) const {
+  const SecondOrderStep own = own_->advance_bent(row, x);
   const std::vector<Index> places = own_acting();
   const auto acting = static_cast<Index>(model_.plan().acting_columns().size());
   const auto widen = [&](const MatrixXd& slopes) {
@@ -288,12 +288,12 @@ StateSteps::BentStep ComposedSteps::advance_bent(std::size_t row, const VectorXd
     wide.rightCols(acting)(Eigen::all, places) = slopes.rightCols(slopes.cols() - n_x());
     return wide;
   };
-  BentStep step{.x = own.x,
-                .Phi = own.Phi,
-                .Pi = MatrixXd::Zero(n_x(), acting),
-                .Gamma = own.Gamma,
-                .Phi_slopes = widen(own.Phi_slopes),
-                .Gamma_slopes = widen(own.Gamma_slopes)};
+  SecondOrderStep step{.x = own.x,
+                       .Phi = own.Phi,
+                       .Pi = MatrixXd::Zero(n_x(), acting),
+                       .Gamma = own.Gamma,
+                       .Phi_slopes = widen(own.Phi_slopes),
+                       .Gamma_slopes = widen(own.Gamma_slopes)};
   step.Pi(Eigen::all, places) = own.Pi;
   for (std::size_t k = 0; k < beside_.size(); ++k) {
     const Index place = acting_place(model_.tables().n_1() + model_.moving()[k].place);
@@ -310,20 +310,20 @@ StateSteps::BentStep ComposedSteps::advance_bent(std::size_t row, const VectorXd
   return step;
 }
 
-StateSteps::BentReading ComposedSteps::read_bent(std::size_t row, const VectorXd& x) const {
+StateSteps::SecondOrderReading ComposedSteps::read_bent(std::size_t row, const VectorXd& x) const {
   const std::vector<Column> columns = columns_at(row);
   const VectorXd added = read_effects(row, columns);
-  const BentReading own = own_->read_bent(row, x);
+  const SecondOrderReading own = own_->read_bent(row, x);
   const std::vector<Index> places = own_acting();
   const auto acting = static_cast<Index>(model_.plan().acting_columns().size());
-  BentReading reading{.z = own.z + added,
-                      .H = own.H,
-                      .J = MatrixXd::Zero(n_z(), acting),
-                      .H_slopes = MatrixXd::Zero(own.H.size(), n_x() + acting)};
+  SecondOrderReading reading{.z = own.z + added,
+                             .H = own.H,
+                             .J = MatrixXd::Zero(n_z(), acting),
+                             .H_slopes = MatrixXd::Zero(own.H.size(), n_x() + acting)};
   reading.J(Eigen::all, places) = own.J;
   reading.H_slopes.leftCols(n_x()) = own.H_slopes.leftCols(n_x());
-  auto bends = reading.H_slopes.rightCols(acting);
-  bends(Eigen::all, places) = own.H_slopes.rightCols(own.J.cols());
+  auto curvatures = reading.H_slopes.rightCols(acting);
+  curvatures(Eigen::all, places) = own.H_slopes.rightCols(own.J.cols());
   for (const Column& column : columns) {
     const Index place = acting_place(column.parameter);
     if (column.target < 0) {
@@ -332,7 +332,7 @@ StateSteps::BentReading ComposedSteps::read_bent(std::size_t row, const VectorXd
     }
     const Index target = acting_place(column.target);
     reading.J.col(place) += column.share * reading.J.col(target);
-    bends.col(place) += column.share * bends.col(target);
+    curvatures.col(place) += column.share * curvatures.col(target);
   }
   for (std::size_t k = 0; k < beside_.size(); ++k) {
     const Index place = acting_place(model_.tables().n_1() + model_.moving()[k].place);
@@ -343,7 +343,7 @@ StateSteps::BentReading ComposedSteps::read_bent(std::size_t row, const VectorXd
       return all;
     });
     reading.J.col(place) = slopes.head(n_z());
-    bends.col(place) = slopes.tail(own.H.size());
+    curvatures.col(place) = slopes.tail(own.H.size());
   }
   return reading;
 }

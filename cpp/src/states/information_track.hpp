@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::states {
 

@@ -116,7 +116,7 @@ class StateInnovations final : public InnovationModel {
         },
         [&](Scores& filter, std::size_t row) {
           const StateSteps::Reading joint = steps->read_jointly(row, filter.x());
-          StateSteps::BentReading reading;
+          StateSteps::SecondOrderReading reading;
           reading.z = joint.z;
           reading.H = joint.H.leftCols(n_x_);
           reading.J = acting(joint.H);
@@ -130,7 +130,7 @@ class StateInnovations final : public InnovationModel {
         },
         [&](Scores& filter, std::size_t row) {
           StateSteps::Step plain = steps->advance(row, filter.x());
-          StateSteps::BentStep step;
+          StateSteps::SecondOrderStep step;
           step.Pi = acting(steps->advance_jointly(row, filter.x(), none).Phi);
           step.x = std::move(plain.x);
           step.Phi = std::move(plain.Phi);

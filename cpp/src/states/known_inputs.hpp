@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "sepcal/detail/tables.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/tables.hpp"
 
 namespace sepcal::states {
 

@@ -9,8 +9,8 @@
 #include "base/thread_pool.hpp"
 #include "estimation/problem.hpp"
 #include "model/sweep.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace sepcal {
 namespace {
@@ -31,7 +31,7 @@ std::vector<int> places_of(const Fit& fit, const auto& keep) {
 /// What a fit says of its parameters and outputs, without R.
 StreamStart begin(const Fit& fit) {
   StreamStart start;
-  if (fit.by == FitMethod::filter_error) {
+  if (fit.method == FitMethod::filter_error) {
     std::vector<double> sizes;
     for (const NoiseSize& size : fit.noise_sizes) sizes.push_back(size.value);
     const auto n_w = static_cast<Index>(sizes.size() - fit.noise.size());  // outputs are behind

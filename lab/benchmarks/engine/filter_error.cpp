@@ -9,10 +9,10 @@
 #include "benchmark.hpp"
 #include "sepcal/detail/innovation_model.hpp"
 #include "sepcal/detail/states/compiled_trajectories.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/models/short_period.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/recursive_likelihood.hpp"
-#include "sepcal/triangular_factor.hpp"
 
 namespace benchmark {
 namespace {

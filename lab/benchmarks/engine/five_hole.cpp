@@ -14,9 +14,9 @@
 #include "model/sweep.hpp"
 #include "numerics/basins.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_with_effects.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 #include "sepcal/lanes.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 

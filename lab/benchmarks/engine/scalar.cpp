@@ -2,9 +2,9 @@
 // sepcal on many small problems: trials of scalar example 1, a fit each.
 #include "benchmark.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/fit_trials.hpp"
-#include "sepcal/models/scalar_examples.hpp"
 #include "trials_file.hpp"
 
 namespace benchmark {

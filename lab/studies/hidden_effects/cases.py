@@ -123,8 +123,8 @@ def calibrate(
     return fit(
         PROBES[probe],
         flight,
-        stage_one=segments,
-        stage_two=segments,
+        stage_one_segments=segments,
+        stage_two_segments=segments,
         drop_repeats=drop_repeats,
         threads=1,
     )

@@ -88,7 +88,7 @@ def _tasks(options: StudyOptions) -> Iterable[tuple[str, tuple[Any, ...]]]:
     yield from (("proxy", (PROXIED, factor, seed)) for seed in seeds)
     for case in UNLOGGED:
         factor = factor_for(case, 20.0)
-        yield from (("unlogged", (case, factor, seed)) for seed in seeds)
+        yield from (("unmeasured", (case, factor, seed)) for seed in seeds)
     yield from (("slow", (seed,)) for seed in seeds)
 
 
@@ -229,7 +229,7 @@ def _proxy(case: Case, factor: float, seed: int) -> Row:
     }
 
 
-def _unlogged(case: Case, factor: float, seed: int) -> Row:
+def _unmeasured(case: Case, factor: float, seed: int) -> Row:
     """The driver is not in the log."""
     flight = fly(case.probe, {case.effect: case.sizes(factor)}, seed, case.rows)
     gone = {"flap", "throttle", "current_a", "panel_current_a"}
@@ -269,6 +269,6 @@ EXPERIMENTS: dict[str, Callable[..., Row]] = {
     "pairs": _pairs,
     "invisible": _invisible,
     "proxy": _proxy,
-    "unlogged": _unlogged,
+    "unmeasured": _unmeasured,
     "slow": _slow,
 }

@@ -140,7 +140,7 @@ def _others(rows: dict[str, list[Row]]) -> str:
     said = _rate(proxy, lambda row: row["true_stands_first"])
     body.append([what, "the current comes first or would do as well", said])
     body.append([what, "the voltage is found", _rate(proxy, lambda row: row["proxy_found"])])
-    for effect, chosen in by("unlogged", "effect"):
+    for effect, chosen in by("unmeasured", "effect"):
         what = f"`{effect}` at 20 sigmas, its channel not logged"
         for verdict in ("unexplained", "effect_missing", "adequate"):
             count = sum(row["verdict"] == verdict for row in chosen)

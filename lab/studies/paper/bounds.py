@@ -308,7 +308,8 @@ def counterexample_table(bound: sepcal.CostBound) -> Table:
                 "0.5000",
             ]
         ],
-        "Of a PitotStatic whose norm is straight; tests/certificate_test.cpp has b(xi2) = xi2.",
+        "Of a PitotStatic whose norm is straight; tests/cpp/certificate/certificate_test.cpp has "
+        "b(xi2) = xi2.",
     )
 
 

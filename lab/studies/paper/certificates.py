@@ -87,7 +87,7 @@ def tube_within(half_width: float, vertical: bool, offset: bool) -> FitWith:
     return {
         "bounds": {name: (w - half_width, w + half_width) for name, w in bounded.items()},
         "free": ["w_d"] if vertical else [],
-        "fixed": {**({} if vertical else {"w_d": 0.5}), **({} if offset else {"c_va": -0.6})},
+        "fix": {**({} if vertical else {"w_d": 0.5}), **({} if offset else {"c_va": -0.6})},
     }
 
 

@@ -28,7 +28,7 @@ from studies.trust.screens import REFITS
 from studies.trust.simplest import SIMPLEST, TWO_CAUSES
 from studies.trust.simulator.disturbances import DISTURBANCES
 from studies.trust.something_hidden import SHARES_HIDDEN, WANDERS_HIDDEN
-from studies.trust.unlogged import UNLOGGED
+from studies.trust.unmeasured import UNLOGGED
 from studies.trust.verdicts import ALARMS, DECOY_CHANNELS
 
 PARTS: dict[str, Part] = {
@@ -42,7 +42,7 @@ PARTS: dict[str, Part] = {
     "decoys": DECOY_CHANNELS,
     "power": POWER,
     "pairs": PAIR_SETS,
-    "unlogged": UNLOGGED,
+    "unmeasured": UNLOGGED,
     "errors": ERRORS,
     "positions": POSITIONS,
     "minima": MINIMA,

@@ -65,7 +65,7 @@ def ask(probe: str, flown: Flown) -> tuple[Row, Calibration | None]:
         "pairs": diagnosis.pairs,
         "advice": diagnosis.advice.effect,
         "withheld": diagnosis.advice.withheld,
-        "unlogged": [cause.kind for cause in diagnosis.unlogged],
+        "unmeasured": [cause.kind for cause in diagnosis.unmeasured],
         "hidden": _tell(flown),
     }, base
 

@@ -179,7 +179,7 @@ def show_candidates(material: Material) -> Section:
     for effect in material.diagnosis.found[:1]:
         extra.append(tables.list_absorbed(effect, material.last))
     unexplained = material.diagnosis.unexplained
-    for cause in material.diagnosis.unlogged:
+    for cause in material.diagnosis.unmeasured:
         extra.append(html("<p>In this flight, {}.</p>", cause.sentence))
     if unexplained.significant:
         extra.append(

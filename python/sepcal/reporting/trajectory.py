@@ -171,7 +171,7 @@ def show_verdict(flown: Flown, title: str, parameters: int) -> Html:
     ]
     facts.append((tables.flag_status(last.status), "status of the fit"))
     lagging = [m.output for m in flown.comparison.overall if not m.is_white]
-    what = "innovations" if flown.comparison.by == "filter-error" else "residuals"
+    what = "innovations" if flown.comparison.method == "filter-error" else "residuals"
     verdict = (
         f"{what.capitalize()} of {', '.join(lagging)} follow one another: something is missing "
         "from the model, or from the noise. Look where, and what they go with, below."
@@ -235,7 +235,7 @@ def show_overlay(flown: Flown) -> Section:
     blocks: list[str | Figure | Grid] = [draw_overlay(comparison.time, channels, flown.runs, gaps)]
     if note := say_thinned(comparison.time.size):
         blocks.append(html('<p class="note">{}</p>', note))
-    by_filter = comparison.by == "filter-error"
+    by_filter = comparison.method == "filter-error"
     says = "the filter foretold from the rows before" if by_filter else "the integrated model says"
     lead = (
         f"Grey is what was measured, blue what {says}, pale blue its 2-sigma "

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/aircraft/coefficients.hpp"
-#include "sepcal/aircraft/equations.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/aircraft/coefficients.hpp"
+#include "sepcal/detail/aircraft/equations.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/fit.hpp"
 
 namespace sepcal {

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <string_view>
 
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal {
 

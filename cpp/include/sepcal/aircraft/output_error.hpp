@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "sepcal/aircraft/aero_model.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal {
 
@@ -34,7 +34,7 @@ struct OutputErrorOptions {
   /// pitch ax ay az p q r those that belong to the axes and are columns. Others: yaw vn ve vd.
   TrajectoryOptions trajectory = {};
   /// Of scales and biases of airspeed, flow angles and attitude, those that are estimated; the
-  /// others are held at zero. Biases of the inertial unit and the wind are free: `fit.fixed` holds
+  /// others are held at zero. Biases of the inertial unit and the wind are free: `fit.fix` holds
   /// them.
   std::vector<std::string> free = {};
   double gravity = 9.80665;  // m/s^2, at the place of the flight

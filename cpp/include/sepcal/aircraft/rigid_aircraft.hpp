@@ -16,13 +16,13 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/aircraft/equations.hpp"
 #include "sepcal/aircraft/geometry.hpp"
+#include "sepcal/detail/aircraft/equations.hpp"
+#include "sepcal/detail/natural_spline.hpp"
+#include "sepcal/detail/rotation.hpp"
 #include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/natural_spline.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/rotation.hpp"
 #include "sepcal/states/trajectory_model.hpp"
 
 namespace sepcal {
@@ -40,7 +40,7 @@ struct AeroTerms {
     bool absolute;
   };
   /// One function of a natural spline.
-  struct Bend {
+  struct SplineFunction {
     std::size_t variable;
     std::shared_ptr<const SplineBasis> basis;
     int function;
@@ -48,7 +48,7 @@ struct AeroTerms {
   struct Term {
     std::size_t coefficient;  // of coefficient_names
     std::vector<Factor> factors;
-    std::optional<Bend> bend = {};
+    std::optional<SplineFunction> spline = {};
   };
 
   std::vector<Term> terms;           // one a parameter
@@ -263,8 +263,8 @@ struct RigidAircraft {
         const X& value = values[factor.variable];
         for (int i = 0; i < factor.power; ++i) product *= factor.absolute ? X(abs(value)) : value;
       }
-      if (const auto& bend = aero.terms[k].bend) {
-        product *= bend->basis->value(bend->function, values[bend->variable]);
+      if (const auto& spline = aero.terms[k].spline) {
+        product *= spline->basis->value(spline->function, values[spline->variable]);
       }
       C[static_cast<Eigen::Index>(aero.terms[k].coefficient)] += product;
     }

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sepcal/aircraft/aero_model.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal {
 

@@ -3,11 +3,11 @@
 // it once more.
 #pragma once
 
+#include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"
 #include "sepcal/models/pitot_static.hpp"
-#include "sepcal/models/scalar_examples.hpp"
 #include "sepcal/models/triad.hpp"
 #include "sepcal/models/vane_boom.hpp"
 #include "sepcal/static_model.hpp"

@@ -10,8 +10,8 @@
 #include <limits>
 #include <string_view>
 
+#include "sepcal/detail/dual.hpp"
 #include "sepcal/detail/states/triangle.hpp"
-#include "sepcal/dual.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
 #include "sepcal/models/magnetometer.hpp"

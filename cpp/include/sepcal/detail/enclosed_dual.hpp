@@ -6,8 +6,8 @@
 #include <array>
 #include <cstddef>
 
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/enclosure.hpp"
-#include "sepcal/eigen.hpp"
 
 namespace sepcal {
 
@@ -20,7 +20,7 @@ struct EnclosedCondition {
 template <int N>
 class EnclosedDual {
  public:
-  static constexpr int bends = N * (N + 1) / 2;
+  static constexpr int curvatures = N * (N + 1) / 2;
 
   EnclosedDual() = default;
   EnclosedDual(double value) : value_(value) {}  // NOLINT(*-explicit-*): beside plain numbers
@@ -34,25 +34,25 @@ class EnclosedDual {
   const Enclosure& value() const { return value_; }
   const Enclosure& slope(int j) const { return slopes_[static_cast<std::size_t>(j)]; }
   /// By the variables j >= k.
-  const Enclosure& bend(int j, int k) const { return bends_[place(j, k)]; }
+  const Enclosure& curvature(int j, int k) const { return curvatures_[place(j, k)]; }
 
-  /// Value, slopes, bends, as EnclosedRows has them.
+  /// Value, slopes, curvatures, as EnclosedRows has them.
   void copy_to(Enclosure* parts) const {
     *parts++ = value_;
     for (const Enclosure& slope : slopes_) *parts++ = slope;
-    for (const Enclosure& bend : bends_) *parts++ = bend;
+    for (const Enclosure& curvature : curvatures_) *parts++ = curvature;
   }
 
   /// f(x) where f, f' and f'' are known over x's range.
   static EnclosedDual chain(const EnclosedDual& x, const Enclosure& f, const Enclosure& slope,
-                            const Enclosure& bend) {
+                            const Enclosure& curvature) {
     EnclosedDual y;
     y.value_ = f;
     for (int j = 0; j < N; ++j) {
       y.slopes_[static_cast<std::size_t>(j)] = slope * x.slope(j);
       for (int k = 0; k <= j; ++k) {
         const Enclosure product = j == k ? square(x.slope(j)) : x.slope(j) * x.slope(k);
-        y.bends_[place(j, k)] = bend * product + slope * x.bend(j, k);
+        y.curvatures_[place(j, k)] = curvature * product + slope * x.curvature(j, k);
       }
     }
     return y;
@@ -66,7 +66,7 @@ class EnclosedDual {
     EnclosedDual sum = x;
     sum.value_ += y.value_;
     for (std::size_t j = 0; j < N; ++j) sum.slopes_[j] += y.slopes_[j];
-    for (std::size_t i = 0; i < bends; ++i) sum.bends_[i] += y.bends_[i];
+    for (std::size_t i = 0; i < curvatures; ++i) sum.curvatures_[i] += y.curvatures_[i];
     return sum;
   }
   friend EnclosedDual operator-(const EnclosedDual& x, const EnclosedDual& y) { return x + (-y); }
@@ -76,8 +76,8 @@ class EnclosedDual {
     for (int j = 0; j < N; ++j) {
       product.slopes_[static_cast<std::size_t>(j)] = x.slope(j) * y.value_ + x.value_ * y.slope(j);
       for (int k = 0; k <= j; ++k) {
-        product.bends_[place(j, k)] = x.bend(j, k) * y.value_ + x.slope(j) * y.slope(k) +
-                                      x.slope(k) * y.slope(j) + x.value_ * y.bend(j, k);
+        product.curvatures_[place(j, k)] = x.curvature(j, k) * y.value_ + x.slope(j) * y.slope(k) +
+                                           x.slope(k) * y.slope(j) + x.value_ * y.curvature(j, k);
       }
     }
     return product;
@@ -154,13 +154,13 @@ class EnclosedDual {
     EnclosedDual y;
     y.value_ = map(x.value_);
     for (std::size_t j = 0; j < N; ++j) y.slopes_[j] = map(x.slopes_[j]);
-    for (std::size_t i = 0; i < bends; ++i) y.bends_[i] = map(x.bends_[i]);
+    for (std::size_t i = 0; i < curvatures; ++i) y.curvatures_[i] = map(x.curvatures_[i]);
     return y;
   }
 
   Enclosure value_ = Enclosure(0.0);
   std::array<Enclosure, N> slopes_ = {};
-  std::array<Enclosure, bends> bends_ = {};
+  std::array<Enclosure, curvatures> curvatures_ = {};
 };
 
 }  // namespace sepcal

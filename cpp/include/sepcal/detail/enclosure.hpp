@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "sepcal/eigen.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal {
 
@@ -150,7 +150,8 @@ inline Enclosure sin(const Enclosure& x) {
 struct EnclosedRows {
   int columns = 0;  // n_1 + 1
   int n_2 = 0;
-  std::vector<Enclosure> parts = {};  // row after row, column after column: value, slopes, bends
+  std::vector<Enclosure> parts =
+      {};  // row after row, column after column: value, slopes, curvatures
 
   static int parts_of(int n_2) { return 1 + n_2 + n_2 * (n_2 + 1) / 2; }
   void resize(Eigen::Index rows) {

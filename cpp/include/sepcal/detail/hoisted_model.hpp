@@ -4,8 +4,8 @@
 // point.
 #pragma once
 
-#include "sepcal/eigen.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal {
 

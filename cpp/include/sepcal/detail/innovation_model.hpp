@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace sepcal {
 

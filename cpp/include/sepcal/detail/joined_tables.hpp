@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "sepcal/model.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal::composing {
 

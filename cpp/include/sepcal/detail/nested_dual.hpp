@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "sepcal/dual.hpp"
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/dual.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace sepcal {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
-#include "sepcal/effect.hpp"
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/effect.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

@@ -9,17 +9,17 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/aircraft/equations.hpp"
 #include "sepcal/aircraft/geometry.hpp"
+#include "sepcal/detail/aircraft/equations.hpp"
+#include "sepcal/detail/flight/output_file.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
-#include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "sepcal/states/track.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal {
 

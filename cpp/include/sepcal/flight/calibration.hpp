@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal {
 
@@ -93,7 +93,7 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
 Eigen::VectorXd own_values(const Calibration& calibration);
 
 /// Of every JSON object that is written, whatever it is of.
-inline constexpr int schema_version = 2;
+inline constexpr int schema_version = 3;
 
 /// The JSON of interface.md's "Results": one object, two-space indented, numbers that read back as
 /// the same doubles, null where a number is undefined.

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/choices.hpp"
+#include "sepcal/detail/choices.hpp"
+#include "sepcal/detail/quantity.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/quantity.hpp"
 
 namespace sepcal {
 

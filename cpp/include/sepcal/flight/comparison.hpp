@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/flight/calibration.hpp"
 
 namespace sepcal {
@@ -72,7 +72,7 @@ struct Comparison {
   std::vector<double> time;             // [s] of every row used
   Eigen::MatrixXd residuals;      // rows x n_z, z - model; of a fit by filter error innovations
   Eigen::MatrixXd modelled = {};  // rows x n_z, z less them
-  FitMethod by = FitMethod::output_error;
+  FitMethod method = FitMethod::output_error;
   std::vector<OutputValue> sigma = {};  // by filter error: rms of the innovations over the filter's
                                         // own standard deviations, 1 where it is right
   std::vector<Disturbance> disturbances = {};  // by filter error, one a process noise

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/choices.hpp"
+#include "sepcal/detail/choices.hpp"
 #include "sepcal/flight/calibration.hpp"
 
 namespace sepcal {
@@ -113,7 +113,7 @@ struct VehicleParameter {
 
 /// What the vehicle's correction lacks of the calibration's, over the rows of a flight that were
 /// fitted. NaN: not known, or not of this probe.
-struct ExportLoss {
+struct Approximation {
   std::vector<std::string> dropped = {};  // in words
   std::string flight = {};
   std::size_t rows = 0;                        // that both correct
@@ -132,12 +132,13 @@ struct Exported {
   ExportTarget target = ExportTarget::c;
   Calibration calibration;  // that the file holds: the one given, or fitted anew
   std::string text = {};    // of the file
-  std::vector<VehicleParameter> parameters = {};  // of an autopilot, in the file's order
-  std::vector<std::string> left_to_others = {};   // effects that act on the reference or the wind
-  std::optional<ExportLoss> loss = {};            // none where nothing was changed
-  std::optional<ExportRotation> rotation = {};    // that was taken, where there was a choice
-  std::optional<ExportLoss> other_loss = {};      // of the other one; none where it has none
-  std::vector<std::string> notes = {};            // one line each, for people
+  std::vector<VehicleParameter> parameters = {};    // of an autopilot, in the file's order
+  std::vector<std::string> left_to_others = {};     // effects that act on the reference or the wind
+  std::optional<Approximation> approximation = {};  // none where nothing was changed
+  std::optional<ExportRotation> rotation = {};      // that was taken, where there was a choice
+  std::optional<Approximation> other_approximation =
+      {};                               // of the other one; none where it has none
+  std::vector<std::string> notes = {};  // one line each, for people
 };
 
 /// The calibration for a vehicle. `flight`: to refit to and to compare on; without, the file that

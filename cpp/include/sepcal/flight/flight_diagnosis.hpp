@@ -63,7 +63,7 @@ std::string_view status_in_words(const EffectFinding& effect);
 std::string_view beside_in_words(const EffectFinding& effect);
 
 /// "common cause, not logged: in mx and mz together, strongest from 40 to 52 s, at 0.35 Hz".
-std::string describe(const UnloggedCause& cause);
+std::string describe(const UnmeasuredCause& cause);
 
 /// The JSON object of interface.md's `diagnose`.
 std::string to_json(const FlightDiagnosis& diagnosis);

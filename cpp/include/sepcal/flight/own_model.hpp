@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "sepcal/detail/states/state_steps.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/flight/own_model.hpp"
 #include "sepcal/states/state_model.hpp"
 #include "sepcal/states/trajectory_model.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal {
 

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/flight/probe_columns.hpp"
-#include "sepcal/eigen.hpp"
 #include "sepcal/flight/flight.hpp"
 #include "sepcal/options.hpp"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/choices.hpp"
+#include "sepcal/detail/choices.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 

@@ -9,9 +9,9 @@
 #include <array>
 #include <cmath>
 
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/lanewise.hpp"
-#include "sepcal/eigen.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal {
 

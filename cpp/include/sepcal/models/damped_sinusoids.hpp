@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "sepcal/detail/lanewise.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal {
 

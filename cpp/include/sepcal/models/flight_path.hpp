@@ -16,7 +16,7 @@
 #include <string_view>
 
 #include "sepcal/detail/lanewise.hpp"
-#include "sepcal/rotation.hpp"
+#include "sepcal/detail/rotation.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {

@@ -7,8 +7,8 @@
 
 #include <array>
 
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/models/scale.hpp"
-#include "sepcal/model.hpp"
 #include "sepcal/models/triad.hpp"
 
 namespace sepcal {

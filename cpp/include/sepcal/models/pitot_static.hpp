@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "sepcal/detail/lanewise.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/models/scale.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal {
 

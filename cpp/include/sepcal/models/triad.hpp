@@ -9,8 +9,8 @@
 
 #include "sepcal/detail/joined_tables.hpp"
 #include "sepcal/detail/lanewise.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/models/scale.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal {
 

@@ -6,11 +6,11 @@
 
 #include <utility>
 
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/states/autodiff.hpp"
+#include "sepcal/detail/states/integration.hpp"
 #include "sepcal/detail/states/step_noise.hpp"
-#include "sepcal/model.hpp"
 #include "sepcal/states/filter.hpp"
-#include "sepcal/states/integration.hpp"
 #include "sepcal/states/iterated_update.hpp"
 #include "sepcal/states/state_model.hpp"
 

@@ -53,8 +53,9 @@ class ScoreRecursion {
 
   /// The score rows of a sample join; `forgetting` is mu, 1 for none. `free` (n_theta): of theta,
   /// what is estimated.
-  Innovation<NZ> update(const Eigen::Vector<double, NZ>& y, const BentReading<NX, NZ, N>& expected,
-                        const Filter::Moves& free, double forgetting = 1.0) {
+  Innovation<NZ> update(const Eigen::Vector<double, NZ>& y,
+                        const SecondOrderReading<NX, NZ, N>& expected, const Filter::Moves& free,
+                        double forgetting = 1.0) {
     const Eigen::Index n = theta_.size();
     const Eigen::Vector<double, NZ> r = theta_.tail(filter_.outputs()).array().exp();
     typename Filter::Rows rows;
@@ -70,7 +71,7 @@ class ScoreRecursion {
   }
 
   /// As ScoreFilter's, at theta's noises.
-  FilterStatus predict(const BentStep<NX, NV, N>& step, double held) {
+  FilterStatus predict(const SecondOrderStep<NX, NV, N>& step, double held) {
     const Eigen::Vector<double, NW> q =
         theta_.segment(first_noise(), filter_.noises()).array().exp();
     return filter_.predict(step, q, held);
@@ -159,7 +160,7 @@ class RecursiveLikelihood {
   Innovation<n_z> update(const Vec<double, n_u>& u, const Vec<double, n_z>& z,
                          double forgetting = 1.0) {
     return recursion_.update(
-        z, bend_reading<M>(model_, x(), u, xi1(), p(), all_states(), directions()), free_,
+        z, second_order_reading<M>(model_, x(), u, xi1(), p(), all_states(), directions()), free_,
         forgetting);
   }
 
@@ -168,8 +169,9 @@ class RecursiveLikelihood {
                        InputsBetweenRows inputs = InputsBetweenRows::linear, int substeps = 1) {
     const Between<M> between(from, to, inputs, {});
     const double held = is_discrete<M>() ? 1.0 : between.duration();
-    auto step = bend_step<M>(model_, x(), p(), between, substeps, all_states(), directions());
-    add_noise(step, bend_noise<M>(model_, x(), p(), between, step), between.duration(),
+    auto step =
+        second_order_step<M>(model_, x(), p(), between, substeps, all_states(), directions());
+    add_noise(step, second_order_noise<M>(model_, x(), p(), between, step), between.duration(),
               is_discrete<M>());
     return recursion_.predict(step, held);
   }

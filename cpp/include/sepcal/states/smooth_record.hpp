@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/states/state_steps.hpp"
-#include "sepcal/eigen.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/record.hpp"
 

@@ -10,10 +10,10 @@
 #include <limits>
 #include <string_view>
 
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/lanewise.hpp"
-#include "sepcal/eigen.hpp"
-#include "sepcal/model.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/model.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal {
 

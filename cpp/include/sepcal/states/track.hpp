@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/choices.hpp"
+#include "sepcal/detail/choices.hpp"
 #include "sepcal/states/iterated_update.hpp"
 #include "sepcal/states/stream_start.hpp"
 #include "sepcal/states/trajectory_model.hpp"

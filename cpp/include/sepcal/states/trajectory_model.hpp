@@ -16,11 +16,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/states/integration.hpp"
 #include "sepcal/detail/states/model_steps.hpp"
 #include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/detail/states/trajectory_plan.hpp"
-#include "sepcal/states/integration.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {

@@ -20,7 +20,6 @@
 #include "sepcal/aircraft/two_step.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -43,7 +42,7 @@ std::vector<OutputValue> rmse_on(const Flight& flight, const AircraftFit& fitted
 /// With what the fit held among the options, so that they say all.
 AircraftFit describe(const Flight& flight, AircraftOptions options, Fit fit) {
   for (const Parameter& parameter : fit.parameters) {
-    if (parameter.fixed) options.calibration.fit.fixed[parameter.name] = parameter.value;
+    if (parameter.fixed) options.calibration.fit.fix[parameter.name] = parameter.value;
   }
   if (options.model != AircraftModel::aero) options.calibration.fit.samples = 0;
   return {.options = std::move(options),
@@ -178,7 +177,7 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   base::ThreadPool pool(fitted.options.calibration.fit.threads);
   const Fit at = fit_on(flight, fitted, laid);
-  const bool by_filter = at.by == FitMethod::filter_error;
+  const bool by_filter = at.method == FitMethod::filter_error;
   const FlightInnovations innovations =
       by_filter ? innovations_on(laid, at)
                 : FlightInnovations{verbs::residuals_of(*laid.model, laid.record, at, pool), {}};
@@ -200,7 +199,7 @@ AircraftOptions aircraft_log::options_on(const AircraftFit& fitted, const Flight
   if (is_same_flight(fitted, flight)) return options;
   for (const std::string& name : fitted.initial_states) {
     options.calibration.fit.start.erase(name);
-    options.calibration.fit.fixed.erase(name);
+    options.calibration.fit.fix.erase(name);
   }
   if (options.model != AircraftModel::aero && options.trajectory.outputs.empty()) {
     for (const OutputValue& output : fitted.fit.noise) {
@@ -219,12 +218,12 @@ Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAi
   for (const Parameter& parameter : fitted.fit.parameters) {
     const auto& own = fitted.initial_states;
     if (std::ranges::find(own, parameter.name) == own.end()) {
-      options.fixed[parameter.name] = parameter.value;
+      options.fix[parameter.name] = parameter.value;
     }
   }
   std::erase_if(options.start,
-                [&](const auto& entry) { return options.fixed.contains(entry.first); });
-  if (fitted.fit.by == FitMethod::filter_error) {
+                [&](const auto& entry) { return options.fix.contains(entry.first); });
+  if (fitted.fit.method == FitMethod::filter_error) {
     options.process_noise = fitted.fit.process_noise();
     for (const OutputValue& noise : fitted.fit.noise) options.noise[noise.name] = noise.value;
   }

@@ -13,8 +13,8 @@
 #include "flight/aircraft/believed_rows.hpp"
 #include "flight/probes/air_columns.hpp"
 #include "numerics/interpolated_column.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::aircraft_log {
 namespace {

@@ -5,12 +5,13 @@
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/files/text_file.hpp"
+#include "flight/json/earlier_versions.hpp"
 #include "flight/json/fit_json.hpp"
 #include "flight/json/options_json.hpp"
 #include "flight/json/stepwise_json.hpp"
+#include "sepcal/detail/flight/aircraft_file.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
-#include "sepcal/flight/aircraft_file.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -138,7 +139,7 @@ std::string to_json(const Applied& applied, const AircraftFit& fitted) {
 }
 
 AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source) {
-  const Json root = files::parse_json(json, source);
+  Json root = files::parse_json(json, source);
   if (root.is_discarded() || !root.is_object() || !root.contains("schema_version")) {
     throw Error(fmt::format("{} is no fit of an aircraft; give the JSON that fit wrote with -o{}",
                             source, json.empty() ? " (it is empty)" : ""));
@@ -153,13 +154,9 @@ AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source)
     throw Error(fmt::format(
         "{} is a calibration of a sensor; use sepcal-pitot or sepcal-mag for it", source));
   }
-  if (root["schema_version"] != schema_version) {
-    throw Error(
-        fmt::format("{} has schema version {}, this sepcal reads version {}; fit the flight "
-                    "again",
-                    source, describe(root["schema_version"]), schema_version));
-  }
+  check_version(root["schema_version"], 2, source);
   try {
+    convert_earlier(root);
     return read_fitted(root);
   } catch (const Json::exception&) {
     throw Error(source +

@@ -7,8 +7,8 @@
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/text/fit_text.hpp"
 #include "flight/text/pages.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 #include "sepcal/flight/aircraft.hpp"
-#include "sepcal/flight/effect_catalogue.hpp"
 
 namespace sepcal {
 

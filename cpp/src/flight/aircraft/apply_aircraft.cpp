@@ -7,7 +7,7 @@
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/residual_comparison.hpp"
-#include "sepcal/aircraft/coefficients.hpp"
+#include "sepcal/detail/aircraft/coefficients.hpp"
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/states/reconstruct.hpp"
 

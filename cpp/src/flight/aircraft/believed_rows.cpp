@@ -9,8 +9,8 @@
 #include "flight/checks/taken_rows.hpp"
 #include "flight/verbs/mended_flight.hpp"
 #include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::aircraft_log {
 
@@ -47,7 +47,7 @@ AircraftFit without_suspects(const AircraftFit& fitted, const Flight& flight,
   if (is_same_flight(fitted, flight)) {
     for (const std::string& name : fitted.initial_states) {  // segments end elsewhere
       options.calibration.fit.start.erase(name);
-      options.calibration.fit.fixed.erase(name);
+      options.calibration.fit.fix.erase(name);
     }
     try {
       left = fit_aircraft(flight, options);

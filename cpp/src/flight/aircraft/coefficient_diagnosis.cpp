@@ -125,9 +125,9 @@ Diagnosis join(std::vector<Diagnosis> parts) {
       all.effects.push_back(std::move(effect));
     }
     append(all.residual, part.residual);
-    append(all.unlogged, part.unlogged);
+    append(all.unmeasured, part.unmeasured);
     append(all.limits, part.limits);
-    append(all.wanders, part.wanders);
+    append(all.error_budget, part.error_budget);
     append(all.advice.withheld, part.advice.withheld);
     all.correlation_time = std::max(all.correlation_time, part.correlation_time);
     all.work += part.work;

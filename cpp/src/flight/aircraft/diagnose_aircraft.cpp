@@ -44,7 +44,7 @@ Diagnosed diagnose_trajectory(const AircraftFit& fitted, const Flight& flight, L
   DiagnosedFit along = diagnosed_trajectory(fitted, fit, laid, flight, options.only);
   Diagnosis found = diagnose(
       along, options.only.empty() ? list_along(fitted, laid, flight) : options.only, options);
-  if (along.noise && fit.by == FitMethod::output_error) {  // it is the residual that will fall
+  if (along.noise && fit.method == FitMethod::output_error) {  // it is the residual that will fall
     along.noise.reset();
     const std::vector<double> drops = predicted_drops(along, found.effects, options.threads);
     for (std::size_t i = 0; i < drops.size(); ++i) found.effects[i].predicted_drop = drops[i];

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/states/compiled_trajectories.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/models/flight_path.hpp"
-#include "sepcal/option_error.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::aircraft_log {

@@ -11,9 +11,9 @@
 #include "flight/catalogue/effect_candidates.hpp"
 #include "sepcal/aircraft/rigid_aircraft.hpp"
 #include "sepcal/detail/aircraft/path.hpp"
+#include "sepcal/detail/natural_spline.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/natural_spline.hpp"
 
 namespace sepcal::aircraft_log {
 namespace {
@@ -82,7 +82,7 @@ EffectKit::Maker regressor_maker(const std::string& name) {
 /// left.
 std::optional<PathNoise> noise_along(AircraftModel model, const Fit& fit,
                                      const LaidAircraft& laid) {
-  if (fit.by == FitMethod::filter_error) return diagnosis::noise_of(fit, *laid.model);
+  if (fit.method == FitMethod::filter_error) return diagnosis::noise_of(fit, *laid.model);
   if (model != AircraftModel::path) return {};
   constexpr double least = 0.1;
   const auto noises = laid.model->process_noises();

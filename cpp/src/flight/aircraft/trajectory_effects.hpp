@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "flight/aircraft/laid_aircraft.hpp"
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/aircraft.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal::aircraft_log {
 

@@ -103,11 +103,11 @@ std::vector<Channel> air_data_channels() {
           {"r_", "r_radps"}};
 }
 
-WanderBound velocity_bound() { return {.name = "velocity", .unit = "m/s", .size = 0.15}; }
+ErrorBound velocity_bound() { return {.name = "velocity", .unit = "m/s", .size = 0.15}; }
 
-WanderBound gust_bound() { return {.name = "gusts", .unit = "m/s", .size = 0.35, .time_s = 15.0}; }
+ErrorBound gust_bound() { return {.name = "gusts", .unit = "m/s", .size = 0.35, .time_s = 15.0}; }
 
-WanderBound airspeed_bound() { return {.name = "airspeed", .unit = "m/s", .size = 0.2}; }
+ErrorBound airspeed_bound() { return {.name = "airspeed", .unit = "m/s", .size = 0.2}; }
 
 DriverPointer derive_half_coldness(Record& record) {
   const std::string name = "1 / 2T";

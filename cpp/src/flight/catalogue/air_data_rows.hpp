@@ -40,10 +40,10 @@ DriverPointer derive_half_coldness(Record& record);
 
 /// How far errors of satellite and inertial velocities wander, in each component, and gusts of
 /// light air over fifteen seconds; where they come in is left to the caller.
-WanderBound velocity_bound();
-WanderBound gust_bound();
+ErrorBound velocity_bound();
+ErrorBound gust_bound();
 
 /// The same of the airspeed, by its transducer.
-WanderBound airspeed_bound();
+ErrorBound airspeed_bound();
 
 }  // namespace sepcal::catalogue

@@ -21,7 +21,7 @@ EffectTable attitude_independent_effects() {
   table.effects = {bias_step_row(bias), warm_up_row(bias)};
   table.aliases = magnetic_aliases();
   table.channels = magnetic_channels();
-  table.wanders = {field_bound({"field"})};
+  table.error_budget = {field_bound({"field"})};
   return table;
 }
 

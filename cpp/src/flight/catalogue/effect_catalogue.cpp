@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of effects as people read them: every port's forms, then the effects with a physics of
 // their own, then the aliases.
-#include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 
 #include <map>
 #include <vector>

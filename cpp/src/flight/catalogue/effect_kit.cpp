@@ -4,8 +4,8 @@
 
 #include "flight/catalogue/effect_channels.hpp"
 #include "flight/catalogue/effect_table.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal {
 
@@ -62,8 +62,8 @@ EffectKit catalogue::kit_of(const EffectTable& table) {
   for (const AliasRow& row : table.aliases) {
     kit.aliases[row.name] = [&row](const Record& record) { return resolve(row, record); };
   }
-  kit.wandering = table.wandering;
-  kit.wanders = table.wanders;
+  kit.attitude_errors = table.attitude_errors;
+  kit.error_budget = table.error_budget;
   kit.disturbed = table.disturbed;
   return kit;
 }

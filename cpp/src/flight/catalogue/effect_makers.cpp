@@ -51,7 +51,7 @@ EffectKit::Maker drifting_clock(Delay::Kind kind, double bound,
   };
 }
 
-EffectKit::Maker wandering_angle(const std::string& input) {
+EffectKit::Maker attitude_error(const std::string& input) {
   return [=](const BlockModel& model, EffectSetting& /*setting*/, Record& record) {
     const Port port{.name = input, .unit = "rad", .components = {{.name = "s", .input = input}}};
     return make_driven(input + " error", port, constant_driver(), port.unit, model, record);
@@ -62,11 +62,11 @@ std::vector<std::string> time_and_place() {
   return {"time", "maneuver", "alt", "height", "lat", "lon", "north", "east", "distance"};
 }
 
-WanderBound tilt_bound() {
+ErrorBound tilt_bound() {
   return {.name = "tilt", .unit = "rad", .size = 0.005, .corrections = {0, 1}};
 }
 
-WanderBound heading_bound() {
+ErrorBound heading_bound() {
   return {.name = "heading", .unit = "rad", .size = 0.0175, .corrections = {2}};
 }
 

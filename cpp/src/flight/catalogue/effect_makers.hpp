@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/named_effects.hpp"
+#include "sepcal/detail/named_effects.hpp"
 
 namespace sepcal::catalogue {
 
@@ -33,14 +33,14 @@ EffectKit::Maker drifting_clock(Delay::Kind kind, double bound,
                                 const std::vector<std::string>& inputs = {});
 
 /// The error of an angle among the model's inputs.
-EffectKit::Maker wandering_angle(const std::string& input);
+EffectKit::Maker attitude_error(const std::string& input);
 
 /// A port's `causes` where what happens there is the air's: time, place and labels.
 std::vector<std::string> time_and_place();
 
 /// How far an attitude's filter lets roll and pitch wander, and the heading: a third of a degree, a
-/// degree. A table's `wandering` has the three in this order.
-WanderBound tilt_bound();
-WanderBound heading_bound();
+/// degree. A table's `attitude_errors` has the three in this order.
+ErrorBound tilt_bound();
+ErrorBound heading_bound();
 
 }  // namespace sepcal::catalogue

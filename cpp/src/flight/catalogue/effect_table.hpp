@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/flight/effect_catalogue.hpp"
-#include "sepcal/named_effects.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
+#include "sepcal/detail/named_effects.hpp"
 
 namespace sepcal::catalogue {
 
@@ -75,9 +75,9 @@ struct EffectTable {
   std::vector<EffectRow> effects;
   std::vector<AliasRow> aliases;
   std::vector<Channel> channels;
-  std::vector<EffectKit::Maker> wandering = {};  // errors of the attitude: roll, pitch, yaw
-  std::vector<WanderBound> wanders = {};         // as sensors of the kind let them
-  std::vector<std::string> disturbed = {};       // readings that meet gusts
+  std::vector<EffectKit::Maker> attitude_errors = {};  // errors of the attitude: roll, pitch, yaw
+  std::vector<ErrorBound> error_budget = {};           // as sensors of the kind let them
+  std::vector<std::string> disturbed = {};             // readings that meet gusts
   /// What drives effects under the name that a record gives it, where it is there.
   std::vector<std::string> state_drivers = {"alpha", "beta", "q", "r"};
   /// Outputs that a log may have under the name that a record gives them: no effect follows them.

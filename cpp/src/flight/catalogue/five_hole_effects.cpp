@@ -6,7 +6,7 @@
 
 #include "flight/catalogue/effect_makers.hpp"
 #include "flight/catalogue/flow_angle_rows.hpp"
-#include "sepcal/run_time_effect.hpp"
+#include "sepcal/detail/run_time_effect.hpp"
 
 namespace sepcal::catalogue {
 namespace {

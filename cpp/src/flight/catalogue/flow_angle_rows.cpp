@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "flight/catalogue/effect_makers.hpp"
-#include "sepcal/effects/air_data.hpp"
-#include "sepcal/run_time_effect.hpp"
+#include "sepcal/detail/effects/air_data.hpp"
+#include "sepcal/detail/run_time_effect.hpp"
 
 namespace sepcal::catalogue {
 namespace {
@@ -173,10 +173,11 @@ EffectRow angle_loss_row(const FlowPorts& ports, const std::string& equation,
 void add_flow_surroundings(EffectTable& table) {
   table.aliases = air_data_aliases("throttle");
   table.channels = air_data_channels();
-  table.wandering = {wandering_angle("roll"), wandering_angle("pitch"), wandering_angle("yaw")};
-  table.wanders = {velocity_bound(), gust_bound(), airspeed_bound(), tilt_bound(), heading_bound()};
-  table.wanders[0].outputs = table.wanders[1].outputs = {"vn", "ve", "vd"};
-  table.wanders[2].port = "airspeed_bias";
+  table.attitude_errors = {attitude_error("roll"), attitude_error("pitch"), attitude_error("yaw")};
+  table.error_budget = {velocity_bound(), gust_bound(), airspeed_bound(), tilt_bound(),
+                        heading_bound()};
+  table.error_budget[0].outputs = table.error_budget[1].outputs = {"vn", "ve", "vd"};
+  table.error_budget[2].port = "airspeed_bias";
 }
 
 }  // namespace sepcal::catalogue

@@ -55,7 +55,7 @@ std::vector<Channel> magnetic_channels() {
           {"temp", "temp_degc"}};
 }
 
-WanderBound field_bound(std::vector<std::string> outputs) {
+ErrorBound field_bound(std::vector<std::string> outputs) {
   return {.name = "field", .unit = "uT", .size = 0.3, .outputs = std::move(outputs)};
 }
 

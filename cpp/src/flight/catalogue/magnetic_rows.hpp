@@ -26,6 +26,6 @@ std::vector<AliasRow> magnetic_aliases();
 std::vector<Channel> magnetic_channels();
 
 /// How far a fluxgate or a magnetoresistive sensor wanders, in each of the outputs.
-WanderBound field_bound(std::vector<std::string> outputs);
+ErrorBound field_bound(std::vector<std::string> outputs);
 
 }  // namespace sepcal::catalogue

@@ -8,8 +8,8 @@
 #include "flight/catalogue/effect_makers.hpp"
 #include "flight/catalogue/magnetic_rows.hpp"
 #include "numerics/interpolated_column.hpp"
-#include "sepcal/effects/magnetic.hpp"
-#include "sepcal/run_time_effect.hpp"
+#include "sepcal/detail/effects/magnetic.hpp"
+#include "sepcal/detail/run_time_effect.hpp"
 
 namespace sepcal::catalogue {
 namespace {
@@ -159,8 +159,8 @@ EffectTable magnetometer_effects() {
        .maker = maker_of(effects::AttitudeBias{})}};
   table.aliases = magnetic_aliases();
   table.channels = magnetic_channels();
-  table.wandering = {maker_of(AngleErrors{})};
-  table.wanders = {field_bound({"mx", "my", "mz"}), tilt_bound(), heading_bound()};
+  table.attitude_errors = {maker_of(AngleErrors{})};
+  table.error_budget = {field_bound({"mx", "my", "mz"}), tilt_bound(), heading_bound()};
   return table;
 }
 

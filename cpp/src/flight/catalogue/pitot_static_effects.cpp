@@ -38,9 +38,9 @@ EffectTable pitot_static_effects() {
       water_blockage_row("V = V_met + s V_met from t0 on, t0 by a scan", airspeed_scale)};
   table.aliases = air_data_aliases("throttle, density");
   table.channels = air_data_channels();
-  table.wanders = {velocity_bound(), gust_bound(), airspeed_bound()};
-  table.wanders[0].port = table.wanders[1].port = "wind";
-  table.wanders[2].outputs = {"airspeed"};
+  table.error_budget = {velocity_bound(), gust_bound(), airspeed_bound()};
+  table.error_budget[0].port = table.error_budget[1].port = "wind";
+  table.error_budget[2].outputs = {"airspeed"};
   return table;
 }
 

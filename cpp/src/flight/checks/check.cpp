@@ -12,9 +12,8 @@
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/checks/taken_rows.hpp"
 #include "flight/files/headers.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/read_as.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 

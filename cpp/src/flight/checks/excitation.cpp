@@ -132,7 +132,7 @@ void note_rest(const Log& log, const std::vector<double>& speed, const Airspeed&
   if (between) {
     note.advice += ": " + slow.in_words(log);
   } else if (!log.time().empty()) {
-    note.advice += fmt::format(": --stage-one {0}:{1} --stage-two {0}:{1}",
+    note.advice += fmt::format(": --stage-one-segments {0}:{1} --stage-two-segments {0}:{1}",
                                base::stamp(log.time()[first]), base::stamp(log.time()[last]));
   }
   notes.push_back(std::move(note));

@@ -8,8 +8,8 @@
 #include "flight/probes/mounting.hpp"
 #include "numerics/order_statistics.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/rotation.hpp"
 #include "sepcal/models/pitot_static.hpp"
-#include "sepcal/rotation.hpp"
 
 namespace sepcal::checks {
 namespace {

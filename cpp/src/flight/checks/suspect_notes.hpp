@@ -3,7 +3,7 @@
 #pragma once
 
 #include "flight/checks/suspects.hpp"
-#include "sepcal/flight/log_choice.hpp"
+#include "sepcal/detail/flight/log_choice.hpp"
 
 namespace sepcal::checks {
 

@@ -3,7 +3,7 @@
 
 #include "flight/files/headers.hpp"
 #include "flight/probes/quantities.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::checks {
 

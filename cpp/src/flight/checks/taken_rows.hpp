@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "flight/probes/quantities.hpp"
+#include "sepcal/detail/flight/log_choice.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/log_choice.hpp"
 
 namespace sepcal::checks {
 

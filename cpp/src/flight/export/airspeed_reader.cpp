@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "flight/export/parameters.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 namespace {

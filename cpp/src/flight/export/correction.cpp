@@ -14,8 +14,8 @@
 #include "flight/export/bodies.hpp"
 #include "flight/export/driver_names.hpp"
 #include "flight/export/driver_origin.hpp"
-#include "sepcal/natural_spline.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/detail/natural_spline.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "flight/export/dialect.hpp"
+#include "sepcal/detail/quantity.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/quantity.hpp"
 
 namespace sepcal::exporting {
 

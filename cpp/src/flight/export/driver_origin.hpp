@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::exporting {
 

@@ -11,12 +11,12 @@
 #include <memory>
 #include <ranges>
 
+#include "flight/export/approximation.hpp"
 #include "flight/export/bodies.hpp"
 #include "flight/export/exporter.hpp"
 #include "flight/export/fit_for_use.hpp"
 #include "flight/export/header_text.hpp"
 #include "flight/export/held_rotation.hpp"
-#include "flight/export/loss.hpp"
 #include "flight/export/parameters.hpp"
 #include "flight/export/provenance.hpp"
 #include "flight/export/refusals.hpp"
@@ -25,10 +25,10 @@
 #include "flight/files/sha256.hpp"
 #include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "sepcal/flight/joint.hpp"
-#include "sepcal/flight/output_file.hpp"
-#include "sepcal/flight/read_as.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/detail/flight/joint.hpp"
+#include "sepcal/detail/flight/output_file.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 
@@ -106,7 +106,8 @@ void export_header(const Calibration& given, const Calibration& held, const std:
                         header_name(held, options));
   std::vector<std::string> comment =
       provenance(fmt::format("The correction of {}", exporter_of(held).instrument), given, held);
-  if (exported.loss) std::ranges::copy(loss_lines(*exported.loss), std::back_inserter(comment));
+  if (exported.approximation)
+    std::ranges::copy(approximation_lines(*exported.approximation), std::back_inserter(comment));
   Header header = header_text(held, dialect, id, comment);
   exported.text = std::move(header.text);
   exported.left_to_others = std::move(header.left_to_others);
@@ -121,7 +122,7 @@ void write_parameters(const std::vector<std::string>& comment, const ExportOptio
 
 /// What an autopilot holds, beside its parameters.
 struct OnAutopilot {
-  ExportLoss loss;
+  Approximation approximation;
   std::vector<std::string> told = {};  // what a person must know, a line each
 };
 
@@ -136,8 +137,8 @@ OnAutopilot export_field(const Calibration& given, const Calibration& base,
   if (mounting) options.mounting = mounting->angles;
   OnAutopilot there;
   Calibration held;
-  there.loss = hold_field({given, base, flight.find(), flight.is_one_of_several(), mounting},
-                          options, held, exported);
+  there.approximation = hold_field(
+      {given, base, flight.find(), flight.is_one_of_several(), mounting}, options, held, exported);
   const HeldField field = held_field(held);
   exported.parameters = options.target == ExportTarget::px4 ? px4_magnetometer(field, options)
                                                             : ardupilot_compass(field, options);
@@ -160,8 +161,8 @@ OnAutopilot export_airspeed(const Calibration& given, const Calibration& base,
   exported.parameters = options.target == ExportTarget::px4
                             ? px4_airspeed(fitted.held, options)
                             : ardupilot_airspeed(fitted.held, chosen.reader, options);
-  OnAutopilot there{.loss = airspeed_loss(given, fitted, chosen.reader, flight)};
-  drop_bias(base, fitted.held, chosen.reader, there.loss);
+  OnAutopilot there{.approximation = airspeed_approximation(given, fitted, chosen.reader, flight)};
+  drop_bias(base, fitted.held, chosen.reader, there.approximation);
   there.told = airspeed_notes(chosen, options);
   exported.calibration = std::move(fitted.calibration);
   return there;
@@ -176,7 +177,7 @@ OnAutopilot export_parameters(const Calibration& given, const Calibration& base,
   OnAutopilot there = is_field ? export_field(given, base, flight, options, exported)
                                : export_airspeed(given, base, flight, options, exported);
   for (const std::string& effect : options.without) {
-    there.loss.dropped.push_back("the effect " + effect);
+    there.approximation.dropped.push_back("the effect " + effect);
   }
   exported.left_to_others = effects_on_the_world(base);
   return there;
@@ -194,9 +195,10 @@ void leave_out(const Calibration& given, const FlightAtHand& at_hand, const Expo
   }
   exported.calibration = verbs::calibrate(given.probe, verbs::prepare(given, flight), fewer);
   if (!options.force) check_fit_for_use(exported.calibration, "the fit without what is left out");
-  ExportLoss loss = refit_loss(given, exported.calibration, flight);
-  for (const std::string& effect : options.without) loss.dropped.push_back("the effect " + effect);
-  exported.loss = std::move(loss);
+  Approximation approximation = refit_approximation(given, exported.calibration, flight);
+  for (const std::string& effect : options.without)
+    approximation.dropped.push_back("the effect " + effect);
+  exported.approximation = std::move(approximation);
 }
 
 }  // namespace
@@ -229,8 +231,8 @@ Exported export_calibration(const Calibration& calibration, const Flight* flight
   OnAutopilot there = export_parameters(given, base, at_hand, options, exported);
   std::vector<std::string> comment =
       provenance(vehicle_title(exported.calibration, options), given, exported.calibration);
-  std::ranges::copy(loss_lines(there.loss), std::back_inserter(comment));
-  exported.loss = std::move(there.loss);
+  std::ranges::copy(approximation_lines(there.approximation), std::back_inserter(comment));
+  exported.approximation = std::move(there.approximation);
   std::ranges::copy(rotation_lines(exported), std::back_inserter(comment));
   std::ranges::copy(there.told, std::back_inserter(comment));
   std::ranges::copy(there.told, std::back_inserter(exported.notes));

@@ -13,20 +13,20 @@ using namespace exporting;  // this room's own
 
 namespace {
 
-files::Json write_loss(const ExportLoss& loss) {
+files::Json write_approximation(const Approximation& approximation) {
   using files::number;
-  return {{"dropped", loss.dropped},
-          {"flight", loss.flight},
-          {"rows", loss.rows},
-          {"rotation_deg", number(loss.rotation_deg)},
-          {"heading_rms_deg", number(loss.heading_rms_deg)},
-          {"heading_largest_deg", number(loss.heading_largest_deg)},
-          {"strength_rms_ut", number(loss.strength_rms_ut)},
-          {"airspeed_rms_mps", number(loss.airspeed_rms_mps)},
-          {"airspeed_largest_mps", number(loss.airspeed_largest_mps)},
-          {"residual_before", number(loss.residual_before)},
-          {"residual_after", number(loss.residual_after)},
-          {"residual_unit", loss.residual_unit}};
+  return {{"dropped", approximation.dropped},
+          {"flight", approximation.flight},
+          {"rows", approximation.rows},
+          {"rotation_deg", number(approximation.rotation_deg)},
+          {"heading_rms_deg", number(approximation.heading_rms_deg)},
+          {"heading_largest_deg", number(approximation.heading_largest_deg)},
+          {"strength_rms_ut", number(approximation.strength_rms_ut)},
+          {"airspeed_rms_mps", number(approximation.airspeed_rms_mps)},
+          {"airspeed_largest_mps", number(approximation.airspeed_largest_mps)},
+          {"residual_before", number(approximation.residual_before)},
+          {"residual_after", number(approximation.residual_after)},
+          {"residual_unit", approximation.residual_unit}};
 }
 
 }  // namespace
@@ -43,12 +43,13 @@ std::string to_text(const Exported& exported, const std::string& output) {
   for (const std::string& effect : exported.left_to_others) {
     text += page("{}: acts on the reference or the wind, no part of the correction\n", effect);
   }
-  if (!exported.loss) return text.text();
-  if (!exported.loss->flight.empty()) {
-    text += page("against the calibration, over {} rows of {}:\n", exported.loss->rows,
-                 exported.loss->flight);
+  if (!exported.approximation) return text.text();
+  if (!exported.approximation->flight.empty()) {
+    text += page("against the calibration, over {} rows of {}:\n", exported.approximation->rows,
+                 exported.approximation->flight);
   }
-  for (const std::string& line : loss_lines(*exported.loss)) text += page("  {}\n", line);
+  for (const std::string& line : approximation_lines(*exported.approximation))
+    text += page("  {}\n", line);
   for (const std::string& line : rotation_lines(exported)) text += page("  {}\n", line);
   return text.text();
 }
@@ -69,10 +70,12 @@ std::string to_json(const Exported& exported, const std::string& output) {
        {"parameters", std::move(parameters)},
        {"held", std::move(estimates)},
        {"left_to_others", exported.left_to_others},
-       {"loss", exported.loss ? write_loss(*exported.loss) : files::Json(nullptr)},
+       {"approximation", exported.approximation ? write_approximation(*exported.approximation)
+                                                : files::Json(nullptr)},
        {"rotation", exported.rotation ? files::Json(to_string(*exported.rotation)) : files::Json()},
-       {"other_loss",
-        exported.other_loss ? write_loss(*exported.other_loss) : files::Json(nullptr)},
+       {"other_approximation", exported.other_approximation
+                                   ? write_approximation(*exported.other_approximation)
+                                   : files::Json(nullptr)},
        {"status", to_string(fit.status)},
        {"message", fit.message}});
 }

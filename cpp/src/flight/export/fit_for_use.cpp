@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "flight/verbs/at_bound.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 

@@ -16,8 +16,8 @@
 #include "flight/export/polar.hpp"
 #include "flight/export/symmetric_magnetometer.hpp"
 #include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal::exporting {
 namespace {
@@ -70,7 +70,7 @@ void forget_ranges(std::string_view prefix, FitOptions& fit) {
 
 void forget(std::string_view prefix, FitOptions& fit) {
   forget_ranges(prefix, fit);
-  std::erase_if(fit.fixed, [&](const auto& entry) { return entry.first.starts_with(prefix); });
+  std::erase_if(fit.fix, [&](const auto& entry) { return entry.first.starts_with(prefix); });
 }
 
 void keep_known(const Tables& model, CalibrationOptions& options) {
@@ -83,7 +83,7 @@ void keep_known(const Tables& model, CalibrationOptions& options) {
     return !of_effect && std::ranges::find(parameters, entry.first) == parameters.end();
   };
   std::erase_if(options.fit.bounds, is_foreign);
-  std::erase_if(options.fit.fixed, is_foreign);
+  std::erase_if(options.fit.fix, is_foreign);
   std::erase_if(options.fit.prior, is_foreign);
   std::erase_if(options.fit.start, is_foreign);
   std::erase_if(options.fit.sampling_distribution, is_foreign);

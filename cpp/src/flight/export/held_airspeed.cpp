@@ -11,7 +11,7 @@
 #include "flight/export/parameters.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/probes/air_columns.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 namespace {
@@ -77,7 +77,7 @@ double gain_of(const HeldAirspeed& held, const AirspeedReader& sensor,
 }
 
 bool is_held_at(const CalibrationOptions& options, const std::string& parameter) {
-  return options.fit.fixed.contains(parameter) || options.fit.prior.contains(parameter);
+  return options.fit.fix.contains(parameter) || options.fit.prior.contains(parameter);
 }
 
 /// Options for a tube without c_va, with an offset of the pressure where one is kept.
@@ -102,7 +102,7 @@ CalibrationOptions held_options(const Calibration& calibration, const TubeReader
   if (!has_zero && reader.has_offset) held.effects.push_back({.name = zero_of_tube});
   forget("c_va", held.fit);
   std::erase(held.free, "c_va");
-  held.fit.fixed["c_va"] = 0.0;
+  held.fit.fix["c_va"] = 0.0;
   return held;
 }
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "flight/export/approximation.hpp"
 #include "flight/export/fit_for_use.hpp"
-#include "flight/export/loss.hpp"
 #include "flight/export/vehicle_notes.hpp"
 
 namespace sepcal::exporting {
@@ -16,12 +16,13 @@ namespace {
 /// One of the two, on a flight.
 struct Held {
   Calibration calibration;
-  ExportLoss loss;
+  Approximation approximation;
 };
 
 Held hold(const ToHold& field, Calibration calibration) {
-  ExportLoss loss = field_loss(field.given, calibration, held_field(calibration), *field.flight);
-  return {std::move(calibration), std::move(loss)};
+  Approximation approximation =
+      field_approximation(field.given, calibration, held_field(calibration), *field.flight);
+  return {std::move(calibration), std::move(approximation)};
 }
 
 /// The refit, or a note on why there is none. Throws Error where it is asked for.
@@ -44,30 +45,31 @@ std::optional<Held> try_refit(const ToHold& field, const Calibration& kept,
 }
 
 /// As asked, else the one whose heading is nearer at its worst: where that is not known, keep.
-bool takes_refit(const ExportLoss& keep, const ExportLoss& refit, const ExportOptions& options) {
+bool takes_refit(const Approximation& keep, const Approximation& refit,
+                 const ExportOptions& options) {
   if (options.rotation) return *options.rotation == ExportRotation::refit;
   return refit.heading_largest_deg < keep.heading_largest_deg;
 }
 
 /// What a strength shows holds all of it: no rotation.
-ExportLoss hold_strength(const ToHold& field, Calibration& held) {
+Approximation hold_strength(const ToHold& field, Calibration& held) {
   held = field.base;
-  ExportLoss loss;
-  if (field.flight != nullptr) loss = hold(field, held).loss;
-  drop_rotation(false, loss);
-  return loss;
+  Approximation approximation;
+  if (field.flight != nullptr) approximation = hold(field, held).approximation;
+  drop_rotation(false, approximation);
+  return approximation;
 }
 
 }  // namespace
 
-ExportLoss hold_field(const ToHold& field, const ExportOptions& options, Calibration& held,
-                      Exported& exported) {
+Approximation hold_field(const ToHold& field, const ExportOptions& options, Calibration& held,
+                         Exported& exported) {
   if (!is_of_known_field(field.base)) return hold_strength(field, held);
-  ExportLoss loss;
+  Approximation approximation;
   held = keep_held(field.base, field.mounting);
   exported.rotation = ExportRotation::keep;
   if (field.flight == nullptr) {
-    loss.rotation_deg = angle_of(lost_rotation(field.base, held));
+    approximation.rotation_deg = angle_of(lost_rotation(field.base, held));
     exported.notes.emplace_back(
         "the flight is not at hand as it was fitted: the calibration is kept less its rotation; "
         "give the flight after the calibration to see what that loses in heading, and whether a "
@@ -75,16 +77,16 @@ ExportLoss hold_field(const ToHold& field, const ExportOptions& options, Calibra
   } else {
     Held taken = hold(field, held);
     std::optional<Held> other = try_refit(field, held, options, exported.notes);
-    if (other && takes_refit(taken.loss, other->loss, options)) {
+    if (other && takes_refit(taken.approximation, other->approximation, options)) {
       std::swap(taken, *other);
       exported.rotation = ExportRotation::refit;
     }
     held = std::move(taken.calibration);
-    loss = std::move(taken.loss);
-    if (other) exported.other_loss = std::move(other->loss);
+    approximation = std::move(taken.approximation);
+    if (other) exported.other_approximation = std::move(other->approximation);
   }
-  drop_rotation(true, loss);
-  return loss;
+  drop_rotation(true, approximation);
+  return approximation;
 }
 
 }  // namespace sepcal::exporting

@@ -22,9 +22,9 @@ struct ToHold {
 };
 
 /// What the autopilot holds into `held`; returns what that loses. Sets the rotation, the other
-/// one's loss and notes of `exported`. Throws Error where a refit is asked for and is not fit to be
-/// used.
-ExportLoss hold_field(const ToHold& field, const ExportOptions& options, Calibration& held,
-                      Exported& exported);
+/// one's approximation and notes of `exported`. Throws Error where a refit is asked for and is not
+/// fit to be used.
+Approximation hold_field(const ToHold& field, const ExportOptions& options, Calibration& held,
+                         Exported& exported);
 
 }  // namespace sepcal::exporting

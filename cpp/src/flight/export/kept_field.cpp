@@ -93,7 +93,7 @@ void restate_options(const Calibration& calibration, bool is_turned, Calibration
                                                                         {"alpha_xz", "c_xz"},
                                                                         {"alpha_yz", "c_yz"}}};
   CalibrationOptions& options = kept.options;
-  auto& fixed = options.fit.fixed;
+  auto& fixed = options.fit.fix;
   for (const auto& [of_full, of_symmetric] : entries) {
     if (fixed.contains(of_full)) fixed[of_symmetric] = 0.0;  // its value follows
   }

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 

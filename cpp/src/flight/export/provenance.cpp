@@ -34,34 +34,36 @@ std::vector<std::string> provenance(const std::string& what, const Calibration& 
   return lines;
 }
 
-std::vector<std::string> loss_lines(const ExportLoss& loss) {
+std::vector<std::string> approximation_lines(const Approximation& approximation) {
   std::vector<std::string> lines;
-  for (const std::string& dropped : loss.dropped) lines.push_back("dropped: " + dropped);
-  const bool compared = loss.rows > 0;
-  if (compared && !std::isnan(loss.rotation_deg) && std::isnan(loss.heading_rms_deg)) {
+  for (const std::string& dropped : approximation.dropped) lines.push_back("dropped: " + dropped);
+  const bool compared = approximation.rows > 0;
+  if (compared && !std::isnan(approximation.rotation_deg) &&
+      std::isnan(approximation.heading_rms_deg)) {
     lines.emplace_back("heading: not known, as roll and pitch are not logged");
   }
-  if (loss.heading_largest_deg <= rounding) {
+  if (approximation.heading_largest_deg <= rounding) {
     lines.emplace_back("heading: the calibration's");
-  } else if (!std::isnan(loss.heading_rms_deg)) {
+  } else if (!std::isnan(approximation.heading_rms_deg)) {
     lines.push_back(
         fmt::format("heading: rms {:.3g} deg, at most {:.3g} deg, off the calibration's",
-                    loss.heading_rms_deg, loss.heading_largest_deg));
+                    approximation.heading_rms_deg, approximation.heading_largest_deg));
   }
-  if (loss.strength_rms_ut <= rounding) {
+  if (approximation.strength_rms_ut <= rounding) {
     lines.emplace_back("field's strength: the calibration's");
-  } else if (!std::isnan(loss.strength_rms_ut)) {
-    lines.push_back(
-        fmt::format("field's strength: rms {:.3g} uT off the calibration's", loss.strength_rms_ut));
+  } else if (!std::isnan(approximation.strength_rms_ut)) {
+    lines.push_back(fmt::format("field's strength: rms {:.3g} uT off the calibration's",
+                                approximation.strength_rms_ut));
   }
-  if (!std::isnan(loss.airspeed_rms_mps)) {
+  if (!std::isnan(approximation.airspeed_rms_mps)) {
     lines.push_back(
         fmt::format("true airspeed: rms {:.3g} m/s, at most {:.3g} m/s, off the calibration's",
-                    loss.airspeed_rms_mps, loss.airspeed_largest_mps));
+                    approximation.airspeed_rms_mps, approximation.airspeed_largest_mps));
   }
-  if (!std::isnan(loss.residual_before)) {
-    lines.push_back(fmt::format("residual: {:.4g} {} before, {:.4g} {} after", loss.residual_before,
-                                loss.residual_unit, loss.residual_after, loss.residual_unit));
+  if (!std::isnan(approximation.residual_before)) {
+    lines.push_back(fmt::format("residual: {:.4g} {} before, {:.4g} {} after",
+                                approximation.residual_before, approximation.residual_unit,
+                                approximation.residual_after, approximation.residual_unit));
   }
   return lines;
 }
@@ -72,8 +74,8 @@ std::vector<std::string> rotation_lines(const Exported& exported) {
   std::vector<std::string> lines{
       kept ? "rotation keep: the calibration as it is, less its rotation"
            : "rotation refit: the symmetric matrix that fits the flight best"};
-  if (!exported.other_loss) return lines;
-  const ExportLoss& other = *exported.other_loss;
+  if (!exported.other_approximation) return lines;
+  const Approximation& other = *exported.other_approximation;
   std::string line = fmt::format("by {} instead:", kept ? "refit" : "keep");
   if (!std::isnan(other.heading_rms_deg)) {
     line += fmt::format(" heading rms {:.3g} deg, at most {:.3g} deg;", other.heading_rms_deg,

@@ -13,8 +13,8 @@ namespace sepcal::exporting {
 std::vector<std::string> provenance(const std::string& what, const Calibration& given,
                                     const Calibration& held);
 
-/// What a vehicle's user must know, a line each; `loss` too.
-std::vector<std::string> loss_lines(const ExportLoss& loss);
+/// What a vehicle's user must know, a line each; `approximation` too.
+std::vector<std::string> approximation_lines(const Approximation& approximation);
 
 /// Of a magnetometer that the calibration turns: what was done with that, and what the other way
 /// would lose. Empty of any other.

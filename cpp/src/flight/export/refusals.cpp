@@ -11,9 +11,9 @@
 
 #include "flight/export/exporter.hpp"
 #include "flight/export/held.hpp"
+#include "sepcal/detail/flight/joint.hpp"
 #include "sepcal/effect_name.hpp"
-#include "sepcal/flight/joint.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <memory>
 
+#include "sepcal/detail/model.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal::exporting {
 

@@ -13,7 +13,7 @@
 
 #include "flight/export/parameters.hpp"
 #include "flight/files/headers.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::exporting {
 namespace {

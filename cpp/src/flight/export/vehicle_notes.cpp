@@ -12,7 +12,7 @@
 #include "flight/files/headers.hpp"
 #include "flight/probes/mounting.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "sepcal/flight/read_as.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 
 namespace sepcal::exporting {
 namespace {
@@ -194,25 +194,25 @@ std::vector<std::string> airspeed_notes(const ChosenTubeReader& chosen,
   return notes;
 }
 
-void drop_rotation(bool is_known, ExportLoss& loss) {
+void drop_rotation(bool is_known, Approximation& approximation) {
   if (!is_known) {
-    loss.dropped.emplace_back(
+    approximation.dropped.emplace_back(
         "nothing, as the field's strength was all that was fitted; a rotation between sensor and "
         "body was not seen and is not corrected");
     return;
   }
-  if (loss.rotation_deg == 0.0) {
-    loss.dropped.emplace_back("nothing, as the calibration does not turn the sensor");
+  if (approximation.rotation_deg == 0.0) {
+    approximation.dropped.emplace_back("nothing, as the calibration does not turn the sensor");
     return;
   }
-  loss.dropped.push_back(fmt::format(
+  approximation.dropped.push_back(fmt::format(
       "the rotation between sensor and body, {:.3g} deg, has no home but the mounting itself",
-      loss.rotation_deg));
+      approximation.rotation_deg));
 }
 
 void drop_bias(const Calibration& full, const HeldAirspeed& held, const TubeReader& reader,
-               ExportLoss& loss) {
-  loss.dropped.push_back(fmt::format(
+               Approximation& approximation) {
+  approximation.dropped.push_back(fmt::format(
       "the airspeed's constant c_va, {:.3g} m/s, for which {}", full.fit["c_va"].value,
       reader.has_offset ? fmt::format("a pressure offset of {:.3g} Pa stands", held.offset)
                         : "nothing stands"));

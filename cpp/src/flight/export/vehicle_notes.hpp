@@ -22,9 +22,9 @@ std::vector<std::string> field_notes(const Calibration& given, const Exported& e
 std::vector<std::string> airspeed_notes(const ChosenTubeReader& chosen,
                                         const ExportOptions& options);
 
-/// Add what a vehicle can't hold to the loss.
-void drop_rotation(bool is_known, ExportLoss& loss);
+/// Add what a vehicle can't hold to the approximation.
+void drop_rotation(bool is_known, Approximation& approximation);
 void drop_bias(const Calibration& full, const HeldAirspeed& held, const TubeReader& reader,
-               ExportLoss& loss);
+               Approximation& approximation);
 
 }  // namespace sepcal::exporting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/aircraft_file.hpp"
+#include "sepcal/detail/flight/aircraft_file.hpp"
 
 #include <array>
 #include <functional>

@@ -8,8 +8,8 @@
 #include "base/spool.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/files/row_blocks.hpp"
+#include "sepcal/detail/quantity.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/quantity.hpp"
 
 namespace sepcal {
 namespace {

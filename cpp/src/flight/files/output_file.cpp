@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/output_file.hpp"
+#include "sepcal/detail/flight/output_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

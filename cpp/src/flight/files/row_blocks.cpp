@@ -7,7 +7,7 @@
 
 #include "flight/files/row_cells.hpp"
 #include "flight/files/text_lines.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::files {
 namespace {

@@ -14,8 +14,8 @@
 #include "flight/files/sha256.hpp"
 #include "flight/joint/own_by_flight.hpp"
 #include "flight/logs/chosen_columns.hpp"
-#include "sepcal/flight/joint.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/detail/flight/joint.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 

@@ -10,9 +10,9 @@
 
 #include "flight/joint/joint_probe.hpp"
 #include "flight/verbs/prepared_flight.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
-#include "sepcal/flight/probe_effects.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -27,7 +27,7 @@ CalibrationOptions of_each_flight(CalibrationOptions options, const JointSetup& 
     throw OptionError(
         {Option{"free"}, fmt::format(" {0}: {0} is each flight's own, and free", name)});
   }
-  spread_own(options.fit.fixed, setup);
+  spread_own(options.fit.fix, setup);
   spread_own(options.fit.bounds, setup);
   spread_own(options.fit.start, setup);
   spread_own(options.fit.prior, setup);
@@ -39,7 +39,7 @@ bool is_said_of_own(const CalibrationOptions& options, const JointSetup& setup) 
   const auto of_one = [&](const auto& entry) { return is_of_one_flight(setup, entry.first); };
   return std::ranges::any_of(options.fit.bounds, of_one) ||
          std::ranges::any_of(options.fit.prior, of_one) ||
-         std::ranges::any_of(options.fit.fixed, of_one);
+         std::ranges::any_of(options.fit.fix, of_one);
 }
 
 template <class Value>
@@ -54,7 +54,7 @@ CalibrationOptions without_own(CalibrationOptions options, const JointSetup& set
   drop_own(options.fit.bounds, setup);
   drop_own(options.fit.start, setup);
   drop_own(options.fit.prior, setup);
-  drop_own(options.fit.fixed, setup);
+  drop_own(options.fit.fix, setup);
   return options;
 }
 

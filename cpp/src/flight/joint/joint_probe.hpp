@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "flight/joint/own_by_flight.hpp"
-#include "sepcal/flight/joint.hpp"
+#include "sepcal/detail/flight/joint.hpp"
 
 namespace sepcal::joint {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "flight/files/headers.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 
 namespace sepcal::joint {
 

@@ -9,16 +9,16 @@
 
 #include "flight/catalogue/effect_table.hpp"
 #include "flight/files/text_file.hpp"
+#include "flight/json/earlier_versions.hpp"
 #include "flight/json/findings_json.hpp"
 #include "flight/json/fit_json.hpp"
 #include "flight/json/joint_json.hpp"
 #include "flight/json/options_json.hpp"
 #include "flight/json/output_values.hpp"
-#include "flight/json/version_1.hpp"
+#include "sepcal/detail/flight/joint.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/joint.hpp"
-#include "sepcal/option_error.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal {
 
@@ -116,25 +116,13 @@ Calibration read_or_refuse(Json& root, const std::string& source,
   const std::string before = source + " is damaged: ";
   const std::string after = "; fit the flight again";
   try {
-    if (root["schema_version"] == 1) convert_version_1(root.at("options"));
+    convert_earlier(root);
     return read(root, std::move(own));
   } catch (const Json::exception&) {
     throw Error(before + "a calibration's entries are missing or of another kind" + after);
   } catch (const Error& error) {
     throw_within(before, error, after);
   }
-}
-
-/// Throws Error for a version that is neither the present one nor one that is converted.
-void check_version(const Json& version, const std::string& source) {
-  static_assert(schema_version == 2);
-  if (version == 1 || version == 2) return;
-  const bool is_later =
-      version.is_number_unsigned() && version.get<std::uint64_t>() > schema_version;
-  throw Error(
-      fmt::format("{} has schema version {}, this sepcal reads versions 1 and 2; {}fit the "
-                  "flight again",
-                  source, describe(version), is_later ? "update sepcal or " : ""));
 }
 
 }  // namespace
@@ -176,7 +164,7 @@ Calibration parse(std::string_view json, const std::string& source,
   if (root.contains("aircraft")) {
     throw Error(source + " is a fit of an aircraft; use sepcal-aircraft for it");
   }
-  check_version(root["schema_version"], source);
+  check_version(root["schema_version"], 1, source);
   const std::string model = root["model"].get<std::string>();
   if (own && model != own->name()) {
     throw Error(fmt::format("{}: its model is '{}', and the one given is '{}'; give its own",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/json/output_values.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/effect_catalogue.hpp"
 
 namespace sepcal {
 

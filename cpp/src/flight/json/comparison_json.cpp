@@ -45,7 +45,7 @@ std::string to_json(const Comparison& comparison) {
                                {"rmse", by_name(window.rmse)},
                                {"mean", by_name(window.mean)}});
   }
-  if (comparison.by == FitMethod::filter_error) {
+  if (comparison.method == FitMethod::filter_error) {
     root["innovation"] = Json::object();
     for (std::size_t j = 0; j < comparison.sigma.size(); ++j) {
       root["innovation"][comparison.sigma[j].name] = {

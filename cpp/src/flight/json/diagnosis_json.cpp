@@ -58,7 +58,7 @@ Json write_effect(const EffectFinding& effect, const std::string& sentence) {
           {"beside", to_string(effect.beside)}};
 }
 
-Json write_cause(const UnloggedCause& cause) {
+Json write_cause(const UnmeasuredCause& cause) {
   return {{"kind", to_string(cause.kind)},
           {"sentence", describe(cause)},
           {"outputs", cause.outputs},
@@ -116,9 +116,9 @@ std::string to_json(const FlightDiagnosis& result) {
   root["rmse"] = number(diagnosis.rmse);
   root["noise_floor"] = number(diagnosis.floor);
   root["correlation_time"] = number(diagnosis.correlation_time);
-  root["wanders"] = Json::object();
-  for (const WanderBound& bound : diagnosis.wanders) {
-    root["wanders"][bound.name] = {{"size", number(bound.size)}, {"unit", bound.unit}};
+  root["error_budget"] = Json::object();
+  for (const ErrorBound& bound : diagnosis.error_budget) {
+    root["error_budget"][bound.name] = {{"size", number(bound.size)}, {"unit", bound.unit}};
   }
   root["work"] = {{"screened", diagnosis.work.screened},
                   {"tested", diagnosis.work.tested},
@@ -147,9 +147,9 @@ std::string to_json(const FlightDiagnosis& result) {
                          {"significant", diagnosis.omnibus.significant},
                          {"where", diagnosis.omnibus.where},
                          {"windows", windows}};
-  root["unlogged"] = Json::array();
-  for (const UnloggedCause& cause : diagnosis.unlogged) {
-    root["unlogged"].push_back(write_cause(cause));
+  root["unmeasured"] = Json::array();
+  for (const UnmeasuredCause& cause : diagnosis.unmeasured) {
+    root["unmeasured"].push_back(write_cause(cause));
   }
   root["limits"] = Json::object();
   for (const DetectionLimit& limit : diagnosis.limits) {

@@ -62,7 +62,7 @@ Json write_parameters(const Fit& fit) {
 
 /// Whether a parameter was held: by an option, or at the time that a step was found at.
 bool is_held(const CalibrationOptions& options, const std::string& name) {
-  if (options.fit.fixed.contains(name)) return true;
+  if (options.fit.fix.contains(name)) return true;
   return std::ranges::any_of(options.effects, [&](const EffectSetting& setting) {
     return setting.t0 && name == setting.name + ".t0";
   });
@@ -123,7 +123,7 @@ Json write_filter_error(const Fit& fit) {
 }
 
 void read_filter_error(const Json& object, Fit& fit) {
-  fit.by = FitMethod::filter_error;
+  fit.method = FitMethod::filter_error;
   fit.log_likelihood = number_or(object.at("log_likelihood"), undefined);
   fit.log_likelihood_without = number_or(object.at("log_likelihood_without"), undefined);
   for (const auto& [name, entry] : entries_of(object.at("noise_sizes"))) {
@@ -206,10 +206,11 @@ void write_rest(const Fit& fit, const FitOptions& options, Json& root) {
   root["cost"] = number(fit.cost);
   root["rmse"] = by_name(fit.rmse);
   root["noise"] = by_name(fit.noise);
-  if (fit.by == FitMethod::filter_error) root["filter_error"] = write_filter_error(fit);
+  if (fit.method == FitMethod::filter_error) root["filter_error"] = write_filter_error(fit);
   root["iterations"] = fit.iterations;
   root["stage_one"] = write_stage_one(fit, options);
-  root["stage_two"] = {{"method", to_string(fit.method)}, {"r_iterations", fit.noise_iterations}};
+  root["stage_two"] = {{"second_stage", to_string(fit.second_stage)},
+                       {"r_iterations", fit.noise_iterations}};
 }
 
 Fit read_fit(const Json& root, const CalibrationOptions& options,
@@ -227,8 +228,8 @@ Fit read_fit(const Json& root, const CalibrationOptions& options,
   if (root.contains("filter_error")) read_filter_error(root.at("filter_error"), fit);
   fit.iterations = whole_number<int>(root.at("iterations"));
   fit.stage_one = read_stage_one(root.at("stage_one"), fit);
-  fit.method = choice_of<SecondStage>("stage_two.method",
-                                      root.at("stage_two").at("method").get<std::string>());
+  fit.second_stage = choice_of<SecondStage>(
+      "stage_two.second_stage", root.at("stage_two").at("second_stage").get<std::string>());
   fit.noise_iterations = whole_number<int>(root.at("stage_two").at("r_iterations"));
   return fit;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/json/joint_json.hpp"
 
-#include "sepcal/flight/joint.hpp"
+#include "sepcal/detail/flight/joint.hpp"
 
 namespace sepcal::json {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/thread_pool.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/states/trajectory_options.hpp"
 
 namespace sepcal::json {
 namespace {
@@ -129,14 +129,14 @@ Json write_options(const CalibrationOptions& chosen) {
   for (const EffectSetting& setting : chosen.effects) {
     options["effects"].push_back(write_effect(setting));
   }
-  options["stage_one"] = fit.stage_one_segments;
-  options["stage_two"] = fit.stage_two_segments;
+  options["stage_one_segments"] = fit.stage_one_segments;
+  options["stage_two_segments"] = fit.stage_two_segments;
   options["bounds"] = Json::object();
   for (const auto& [name, bounds] : fit.bounds) {
     options["bounds"][name] = {number(bounds.lower), number(bounds.upper)};
   }
   options["start"] = fit.start;
-  options["fix"] = fit.fixed;
+  options["fix"] = fit.fix;
   options["free"] = chosen.free;
   options["noise"] = fit.noise;
   options["prior"] = write_normals(fit.prior);
@@ -168,8 +168,8 @@ Json write_options(const CalibrationOptions& chosen) {
 CalibrationOptions read_options(const Json& options) {
   CalibrationOptions result;
   FitOptions& fit = result.fit;
-  fit.stage_one_segments = options.at("stage_one").get<std::string>();
-  fit.stage_two_segments = options.at("stage_two").get<std::string>();
+  fit.stage_one_segments = options.at("stage_one_segments").get<std::string>();
+  fit.stage_two_segments = options.at("stage_two_segments").get<std::string>();
   for (const auto& [name, bounds] : entries_of(options.at("bounds"))) {
     fit.bounds[name] = {number_or(bounds.at(0), -infinity), number_or(bounds.at(1), infinity)};
   }
@@ -177,7 +177,7 @@ CalibrationOptions read_options(const Json& options) {
     result.effects.push_back(read_effect(effect));
   }
   fit.start = options.at("start").get<std::map<std::string, double>>();
-  fit.fixed = options.at("fix").get<std::map<std::string, double>>();
+  fit.fix = options.at("fix").get<std::map<std::string, double>>();
   result.free = options.at("free").get<std::vector<std::string>>();
   fit.noise = options.at("noise").get<std::map<std::string, double>>();
   fit.prior = read_normals(options.at("prior"));

@@ -2,8 +2,8 @@
 // A log's columns under the names that a choice gives them.
 #pragma once
 
+#include "sepcal/detail/flight/log_choice.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/log_choice.hpp"
 
 namespace sepcal::logs {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "sepcal/option_error.hpp"
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::logs {
 namespace {

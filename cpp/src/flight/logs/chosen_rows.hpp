@@ -8,7 +8,7 @@
 
 #include "flight/files/headers.hpp"
 #include "flight/logs/row_expression.hpp"
-#include "sepcal/flight/log_choice.hpp"
+#include "sepcal/detail/flight/log_choice.hpp"
 
 namespace sepcal::logs {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/read_as.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 
 #include "flight/logs/chosen_columns.hpp"
 #include "flight/logs/joined_clock.hpp"

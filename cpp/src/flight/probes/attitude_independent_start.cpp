@@ -16,8 +16,8 @@
 #include "flight/probes/ellipsoid.hpp"
 #include "model/soft_iron_and_scale.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal::probes {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "flight/probes/corrected_columns.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/model.hpp"
 
 namespace sepcal::probes {
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "sepcal/detail/natural_spline.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/natural_spline.hpp"
 
 namespace sepcal {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "numerics/symmetric.hpp"
-#include "sepcal/triangular_factor.hpp"
+#include "sepcal/detail/triangular_factor.hpp"
 
 namespace sepcal::probes {
 namespace {

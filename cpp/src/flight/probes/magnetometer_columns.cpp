@@ -11,7 +11,7 @@
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/record_builder.hpp"
 #include "sepcal/detail/flight/probe_columns.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <span>
 
-#include "sepcal/rotation.hpp"
+#include "sepcal/detail/rotation.hpp"
 
 namespace sepcal::probes {
 namespace {

@@ -8,7 +8,7 @@
 #include <array>
 #include <optional>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::probes {

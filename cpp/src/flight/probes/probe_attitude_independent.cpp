@@ -15,10 +15,10 @@
 #include "flight/probes/shipped.hpp"
 #include "numerics/order_statistics.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/attitude_independent_magnetometer.hpp"
-#include "sepcal/option_error.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {

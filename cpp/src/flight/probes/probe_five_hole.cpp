@@ -11,9 +11,9 @@
 #include "flight/probes/restatements.hpp"
 #include "flight/probes/shipped.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/five_hole_probe.hpp"
-#include "sepcal/option_error.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {

@@ -12,11 +12,11 @@
 #include "flight/probes/restatements.hpp"
 #include "flight/probes/shipped.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/flight/read_as.hpp"
 #include "sepcal/models/magnetometer.hpp"
-#include "sepcal/option_error.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {

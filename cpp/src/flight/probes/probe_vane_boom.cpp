@@ -9,9 +9,9 @@
 #include "flight/probes/shipped.hpp"
 #include "flight/probes/vane_boom_columns.hpp"
 #include "sepcal/detail/compiled_models.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/probe.hpp"
 #include "sepcal/models/vane_boom.hpp"
-#include "sepcal/option_error.hpp"
 #include "sepcal/static_model.hpp"
 
 namespace sepcal {

@@ -16,7 +16,7 @@
 #include "flight/probes/plausible_readings.hpp"
 #include "flight/probes/sampled_rows.hpp"
 #include "sepcal/effect_name.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::probes {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "flight/probes/sequence.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::probes {
 namespace {

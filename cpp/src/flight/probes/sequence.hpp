@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal::probes {

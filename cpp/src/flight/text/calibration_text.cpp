@@ -5,8 +5,8 @@
 #include "base/page.hpp"
 #include "flight/text/fit_text.hpp"
 #include "flight/text/pages.hpp"
+#include "sepcal/detail/flight/joint.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/joint.hpp"
 
 namespace sepcal {
 

@@ -3,7 +3,7 @@
 
 #include "base/page.hpp"
 #include "flight/text/pages.hpp"
-#include "sepcal/flight/effect_catalogue.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 
 namespace sepcal {
 

@@ -42,7 +42,7 @@ namespace {
 
 /// Innovations over their own standard deviations, and when a noise was more than noise.
 Page filter_lines(const Comparison& comparison) {
-  if (comparison.by != FitMethod::filter_error) return "";
+  if (comparison.method != FitMethod::filter_error) return "";
   Page text = "\nrms of innovations over the filter's own standard deviation, 1 where it is right:";
   for (const OutputValue& sigma : comparison.sigma) {
     text += page(" {} {:.3f}", sigma.name, sigma.value);
@@ -83,7 +83,7 @@ std::string to_text(const Comparison& comparison, Detail detail) {
   }
   text += filter_lines(comparison);
   text += page("\n{}\n{}", channel_table(comparison), window_table(comparison));
-  text += comparison.by == FitMethod::filter_error
+  text += comparison.method == FitMethod::filter_error
               ? Page("\nrmse and mean of innovations, which the readings before don't foretell, in")
               : "\nrmse and mean of measured - modelled, in";
   for (const Misfit& misfit : comparison.overall) {

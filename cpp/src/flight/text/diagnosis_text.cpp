@@ -163,9 +163,9 @@ Page beside_rows(const Diagnosis& diagnosis) {
 /// What noise would have to be to look like the effect that stands first.
 Page excuse_row(const Diagnosis& diagnosis) {
   const double excuse = diagnosis.effects.front().excuse;
-  if (std::isnan(excuse) || diagnosis.wanders.empty()) return {};
+  if (std::isnan(excuse) || diagnosis.error_budget.empty()) return {};
   Page usual;
-  for (const WanderBound& bound : diagnosis.wanders) {
+  for (const ErrorBound& bound : diagnosis.error_budget) {
     usual += page("{}{} {:.2g} {}", usual.empty() ? "" : ", ", bound.name, bound.size, bound.unit);
   }
   if (std::isinf(excuse)) return page("  no drift of the sensors looks like it ({})\n", usual);
@@ -252,7 +252,7 @@ std::string to_text(const FlightDiagnosis& result, Detail detail) {
   if (!diagnosis.left_undone.empty()) {
     text += page("there was no time for: {}\n", joined(diagnosis.left_undone, ", "));
   }
-  for (const UnloggedCause& cause : diagnosis.unlogged) text += page("{}\n", describe(cause));
+  for (const UnmeasuredCause& cause : diagnosis.unmeasured) text += page("{}\n", describe(cause));
   text += "\n";
   if (result.status != FitStatus::converged) {
     text += page("of a fit whose status is {}\n{}\n", to_string(result.status),

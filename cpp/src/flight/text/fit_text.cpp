@@ -29,7 +29,7 @@ Page limits(const Parameter& parameter) {
 bool is_scanned(const CalibrationOptions& options, const Parameter& parameter) {
   return std::ranges::any_of(options.effects, [&](const EffectSetting& setting) {
     return setting.t0 && parameter.name == setting.name + ".t0" &&
-           !options.fit.fixed.contains(parameter.name);
+           !options.fit.fix.contains(parameter.name);
   });
 }
 
@@ -54,8 +54,9 @@ Page stage_line(const Fit& fit, const CalibrationOptions& options) {
                   : page("stage one: {} {}, {} local minim{}", options.fit.samples, points,
                          one.minima.size(), one.minima.size() == 1 ? "um" : "a");
   for (const std::string& flat : one.flat_directions) text += page(", flat along {}", flat);
-  return text + page("; stage two: {}, {} iteration{}, R settled in {}\n", to_string(fit.method),
-                     fit.iterations, fit.iterations == 1 ? "" : "s", fit.noise_iterations);
+  return text + page("; stage two: {}, {} iteration{}, R settled in {}\n",
+                     to_string(fit.second_stage), fit.iterations, fit.iterations == 1 ? "" : "s",
+                     fit.noise_iterations);
 }
 
 /// Of a parameter or a derived quantity: the error to believe, the white one and, explained, those
@@ -141,7 +142,7 @@ Page text::fit_table(const Fit& fit, const CalibrationOptions& options,
             quantity.unit, "derived");
   }
   text += output_table(fit);
-  if (fit.by == FitMethod::filter_error) {
+  if (fit.method == FitMethod::filter_error) {
     return text + noise_table(fit, options.fit) +
            page("\nfilter error: {} step{} of scoring\n", fit.iterations,
                 fit.iterations == 1 ? "" : "s");

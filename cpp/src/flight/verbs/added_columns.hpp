@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/flight/output_file.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/output_file.hpp"
 #include "sepcal/flight/probe.hpp"
 
 namespace sepcal::verbs {

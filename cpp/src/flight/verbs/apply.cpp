@@ -14,9 +14,9 @@
 #include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/effect_readings.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "sepcal/flight/output_file.hpp"
-#include "sepcal/flight/read_as.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/detail/flight/output_file.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 

@@ -22,10 +22,10 @@
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/composition.hpp"
+#include "sepcal/detail/flight/output_file.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/check.hpp"
-#include "sepcal/flight/output_file.hpp"
-#include "sepcal/flight/probe_effects.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 
@@ -37,7 +37,7 @@ namespace {
 /// solvable: it would calibrate a flight of a few samples.
 void check_rows(const BlockModel& model, const CalibrationOptions& options, const Flight& flight,
                 std::size_t rows) {
-  const std::size_t parameters = model.tables().parameters().size() - options.fit.fixed.size();
+  const std::size_t parameters = model.tables().parameters().size() - options.fit.fix.size();
   if (rows >= parameters) return;
   throw OptionError(
       {fmt::format("{}: {} usable rows are fewer than the {} parameters; log more, or ",
@@ -289,10 +289,10 @@ Calibration calibrate_within(std::shared_ptr<const Probe> probe, const PreparedF
   const EffectiveFlight effective = with_effects(*probe, flight, prepared.readings, held.effects,
                                                  options.own_effects, options.fit.bounds);
   const Record& record = effective.prepared.record;
-  count_rows(record, options.fit.stage_one_segments, flight, "stage one", {"stage_one"});
-  check_rows(
-      *effective.model, held, flight,
-      count_rows(record, options.fit.stage_two_segments, flight, "stage two", {"stage_two"}));
+  count_rows(record, options.fit.stage_one_segments, flight, "stage one", {"stage_one_segments"});
+  check_rows(*effective.model, held, flight,
+             count_rows(record, options.fit.stage_two_segments, flight, "stage two",
+                        {"stage_two_segments"}));
   FittedFlight fitted{flight.name(), digest(*probe, prepared), flight.rows(), 0};
   Calibration calibration =
       calibrate_on(effective, std::move(fitted), std::move(probe), std::move(held));

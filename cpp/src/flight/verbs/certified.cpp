@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/certified.hpp"
+#include "sepcal/detail/flight/certified.hpp"
 
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/error.hpp"

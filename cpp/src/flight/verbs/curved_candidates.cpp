@@ -22,8 +22,8 @@
 #include "numerics/normal_equations.hpp"
 #include "numerics/residual_curves.hpp"
 #include "sepcal/composition.hpp"
+#include "sepcal/detail/natural_spline.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/natural_spline.hpp"
 #include "sepcal/noise_model.hpp"
 
 namespace sepcal::verbs {

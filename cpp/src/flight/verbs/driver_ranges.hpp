@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/named_effects.hpp"
 #include "sepcal/flight/probe.hpp"
-#include "sepcal/named_effects.hpp"
 
 namespace sepcal::verbs {
 

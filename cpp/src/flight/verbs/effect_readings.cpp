@@ -17,8 +17,8 @@
 #include "flight/verbs/residual_comparison.hpp"
 #include "numerics/interpolated_column.hpp"
 #include "sepcal/composition.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::verbs {
 namespace {

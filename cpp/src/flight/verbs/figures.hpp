@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/record.hpp"
 

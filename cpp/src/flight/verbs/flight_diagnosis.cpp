@@ -18,9 +18,9 @@
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
-#include "sepcal/flight/effect_catalogue.hpp"
-#include "sepcal/flight/probe_effects.hpp"
-#include "sepcal/option_error.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal {
 
@@ -276,8 +276,8 @@ FlightDiagnosis diagnose_with(const SizedEffect& injected, const Calibration& ca
   });
 }
 
-std::string describe(const UnloggedCause& cause) {
-  const bool common = cause.kind == UnloggedKind::common_cause;
+std::string describe(const UnmeasuredCause& cause) {
+  const bool common = cause.kind == UnmeasuredKind::common_cause;
   std::string text = fmt::format("{}, not logged: in {}{}", common ? "common cause" : "line",
                                  fmt::join(cause.outputs, " and "), common ? " together" : "");
   text += cause.all_along ? ", all along"
@@ -367,11 +367,11 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
         "window to window (p = {:.1g}).",
         left, found.omnibus.where, found.omnibus.p_adjusted);
   }
-  if (found.verdict == Verdict::unexplained && !found.unlogged.empty()) {
+  if (found.verdict == Verdict::unexplained && !found.unmeasured.empty()) {
     return fmt::format(
         "Something is missing that no candidate explains: {}; no channel of the log follows it "
         "(p = {:.1g}).",
-        left, found.unlogged.front().p_adjusted);
+        left, found.unmeasured.front().p_adjusted);
   }
   if (found.verdict == Verdict::unexplained) {
     const EffectFinding& first = found.effects.front();

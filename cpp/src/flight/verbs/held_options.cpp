@@ -7,7 +7,7 @@
 #include <ranges>
 #include <utility>
 
-#include "sepcal/option_error.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::verbs {
 namespace {
@@ -20,7 +20,7 @@ void check_freed(const std::vector<Variable>& parameters, const CalibrationOptio
            fmt::format(" {}: there is no such parameter; the model has: {}", name,
                        fmt::join(parameters | std::views::transform(&Variable::name), ", "))});
     }
-    if (options.fit.fixed.contains(name)) {
+    if (options.fit.fix.contains(name)) {
       throw OptionError({Option{"free"}, " " + name + " and ", Option{"fix"},
                          " " + name + " contradict each other; keep one"});
     }
@@ -40,12 +40,12 @@ CalibrationOptions hold(const std::map<std::string, double>& held, const Tables&
   for (const auto& [name, value] : held) {
     if (std::ranges::find(parameters, name, &Variable::name) == parameters.end()) continue;
     if (std::ranges::find(options.free, name) != options.free.end()) continue;
-    if (options.fit.bounds.contains(name) && !options.fit.fixed.contains(name)) {
+    if (options.fit.bounds.contains(name) && !options.fit.fix.contains(name)) {
       throw OptionError({Option{"bounds"},
                          fmt::format(" {}: it is held at {} unless ", name, value), Option{"free"},
                          " " + name + " frees it; add that"});
     }
-    options.fit.fixed.emplace(name, value);
+    options.fit.fix.emplace(name, value);
   }
   return options;
 }

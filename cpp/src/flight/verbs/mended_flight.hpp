@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "flight/probes/quantities.hpp"
+#include "sepcal/detail/flight/log_choice.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/log_choice.hpp"
 
 namespace sepcal::verbs {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/record.hpp"

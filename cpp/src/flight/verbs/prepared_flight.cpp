@@ -13,8 +13,8 @@
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/files/flight_digest.hpp"
 #include "flight/verbs/residual_comparison.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/read_as.hpp"
 
 namespace sepcal::verbs {
 
@@ -65,15 +65,15 @@ Calibration along(const Calibration& given, PreparedFlight& prepared) {
       prepared.flight.name()));
   CalibrationOptions options = given.options;
   FitOptions& fit = options.fit;
-  for (const auto drop : {&FitOptions::start, &FitOptions::fixed}) {
+  for (const auto drop : {&FitOptions::start, &FitOptions::fix}) {
     std::erase_if(fit.*drop, [&](const auto& entry) { return is_initial(entry.first); });
   }
   std::erase_if(fit.bounds, [&](const auto& entry) { return fitted.contains(entry.first); });
   std::erase_if(fit.prior, [&](const auto& entry) { return fitted.contains(entry.first); });
   for (const Parameter& one : given.fit.parameters) {
-    if (!is_initial(one.name)) fit.fixed[one.name] = one.value;
+    if (!is_initial(one.name)) fit.fix[one.name] = one.value;
   }
-  std::erase_if(fit.start, [&](const auto& entry) { return fit.fixed.contains(entry.first); });
+  std::erase_if(fit.start, [&](const auto& entry) { return fit.fix.contains(entry.first); });
   for (const OutputValue& noise : given.fit.noise) fit.noise[noise.name] = noise.value;
   fit.stage_one_segments.clear();
   fit.stage_two_segments.clear();
@@ -131,9 +131,9 @@ namespace {
 /// attitude wanders.
 EffectKit kit_for(const Probe& probe, const OwnEffects& own, const Record& readings) {
   EffectKit kit = effect_kit(probe, own);
-  std::erase_if(kit.wandering, [&](const EffectKit::Maker& maker) {
+  std::erase_if(kit.attitude_errors, [&](const EffectKit::Maker& maker) {
     Record record = readings;
-    EffectSetting setting{.name = "wandering"};
+    EffectSetting setting{.name = "attitude_error"};
     const Effect effect = maker(probe.model(), setting, record);
     return std::ranges::any_of(effect.corrections, [&](const auto& correction) {
       return std::ranges::any_of(correction->inputs(), [&](const Variable& input) {

@@ -10,9 +10,9 @@
 
 #include "base/thread_pool.hpp"
 #include "flight/verbs/mended_flight.hpp"
+#include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/diagnosis.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/probe_effects.hpp"
 
 namespace sepcal::verbs {
 

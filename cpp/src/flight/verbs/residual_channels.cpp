@@ -12,7 +12,7 @@
 #include "estimation/residual_colour.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/residual_curves.hpp"
-#include "sepcal/natural_spline.hpp"
+#include "sepcal/detail/natural_spline.hpp"
 
 namespace sepcal::verbs {
 namespace {

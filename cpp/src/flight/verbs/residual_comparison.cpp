@@ -46,7 +46,7 @@ Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, co
   result.message = fit.message;
   result.at_bound = names_at_bound(fit);
   result.residuals = std::move(residuals);
-  result.by = fit.by;
+  result.method = fit.method;
   result.modelled = outputs_of(tables, record) - result.residuals;
   result.time = base::gather_time(record);
   result.overall = measure_whole(record, tables.outputs, result.residuals);

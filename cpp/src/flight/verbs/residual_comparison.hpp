@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/thread_pool.hpp"
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight.hpp"

@@ -9,8 +9,8 @@
 
 #include "flight/verbs/prepared_flight.hpp"
 #include "flight/verbs/stepwise_loop.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/adding.hpp"
-#include "sepcal/option_error.hpp"
 
 namespace sepcal {
 

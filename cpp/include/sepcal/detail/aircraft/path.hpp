@@ -20,7 +20,7 @@ struct PathOptions {
   TrajectoryOptions trajectory = {};
   double gravity = 9.80665;                        // m/s^2, at the place of the flight
   Eigen::Vector3d vane = Eigen::Vector3d::Zero();  // from the inertial unit, body axes, m
-  /// FlightPath::held_at_zero is held unless named here or by fit.fixed.
+  /// FlightPath::held_at_zero is held unless named here or by fit.fix.
   std::vector<std::string> free = {};
   /// `start` of initial states goes before the first readings.
   FitOptions fit = {};

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/flight/log_choice.hpp"
 #include "sepcal/flight/flight.hpp"
-#include "sepcal/flight/log_choice.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {

@@ -8,11 +8,11 @@
 #include <array>
 #include <numbers>
 
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/hoisted_model.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/models/scale.hpp"
-#include "sepcal/eigen.hpp"
-#include "sepcal/model.hpp"
-#include "sepcal/rotation.hpp"
+#include "sepcal/detail/rotation.hpp"
 
 namespace sepcal {
 

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "sepcal/quantity.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal {
 

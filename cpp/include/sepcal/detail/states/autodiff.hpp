@@ -2,8 +2,8 @@
 // Exact Jacobians for the extended filters, S 3.6, by dual numbers.
 #pragma once
 
+#include "sepcal/detail/dual.hpp"
 #include "sepcal/detail/states/linearisation.hpp"
-#include "sepcal/dual.hpp"
 
 namespace sepcal {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace sepcal::states {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "sepcal/dual.hpp"
-#include "sepcal/model.hpp"
+#include "sepcal/detail/dual.hpp"
+#include "sepcal/detail/model.hpp"
 #include "sepcal/states/least_squares.hpp"
 
 namespace sepcal {

@@ -11,11 +11,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "sepcal/detail/states/bent_step.hpp"
+#include "sepcal/detail/states/integration.hpp"
 #include "sepcal/detail/states/noise_response.hpp"
+#include "sepcal/detail/states/second_order_step.hpp"
 #include "sepcal/detail/states/state_steps.hpp"
 #include "sepcal/detail/states/step_noise.hpp"
-#include "sepcal/states/integration.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {
@@ -197,21 +197,21 @@ class ModelSteps final : public StateSteps {
     return reading;
   }
 
-  BentStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const override {
+  SecondOrderStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const override {
     const StateRow<M> from = row_at(row);
     const StateRow<M> to = row_at(row + 1);
     const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
     const Vec<double, n_x> begin = whole<double>(from, x);
     const std::vector<int>& free = plan_.integrated();
-    const auto all =
-        bend_step<M>(model_, begin, p_, between, plan_.options().substeps, free, directions_);
-    BentStep step;
+    const auto all = second_order_step<M>(model_, begin, p_, between, plan_.options().substeps,
+                                          free, directions_);
+    SecondOrderStep step;
     step.x = pick(all.x, free, {0});
     step.Phi = pick(all.Phi, free, free);
     step.Pi = pick(all.Pi, free, parameters_);
     step.Phi_slopes = pick(all.Phi_slopes, transition_entries_, slope_columns_);
-    const auto noise = bend_noise<M>(model_, begin, p_, between, all);
-    BentNoise own;
+    const auto noise = second_order_noise<M>(model_, begin, p_, between, all);
+    SecondOrderNoise own;
     own.G = pick(noise.G, free, noises_);
     own.constant = noise.constant;
     if (!noise.constant) own.slopes = pick(noise.slopes, noise_entries_, slope_columns_);
@@ -219,13 +219,13 @@ class ModelSteps final : public StateSteps {
     return step;
   }
 
-  BentReading read_bent(std::size_t row, const Eigen::VectorXd& x) const override {
+  SecondOrderReading read_bent(std::size_t row, const Eigen::VectorXd& x) const override {
     const StateRow<M> here = row_at(row);
-    const auto all = bend_reading<M>(model_, whole<double>(here, x), here.u, xi1_, p_,
-                                     plan_.integrated(), directions_);
+    const auto all = second_order_reading<M>(model_, whole<double>(here, x), here.u, xi1_, p_,
+                                             plan_.integrated(), directions_);
     const std::vector<int>& free = plan_.integrated();
     const std::vector<int>& outputs = plan_.outputs();
-    BentReading reading;
+    SecondOrderReading reading;
     reading.z = pick(all.z, outputs, {0});
     reading.H = pick(all.H, outputs, free);
     reading.J = pick(all.J, outputs, parameters_);
@@ -282,7 +282,7 @@ class ModelSteps final : public StateSteps {
   }
 
   /// Which derivatives a bent step is asked for, and where they go among the columns that act. A
-  /// step that is linear in the state bends by no state.
+  /// step that is linear in the state curves by no state.
   void find_directions() {
     const std::vector<int>& acting = plan_.acting_columns();
     const auto place = [&acting](int column) {
@@ -389,7 +389,7 @@ class ModelSteps final : public StateSteps {
   Vec<double, n_1> xi1_ = Vec<double, n_1>::Zero();
   std::vector<std::span<const double>> columns_;
   std::vector<double> constants_;  // of inputs that the record doesn't have
-  std::vector<int> directions_;    // of bend_step()
+  std::vector<int> directions_;    // of second_order_step()
   std::vector<int> parameters_;    // of the acting columns: places among the model's n_1 + n_p
   std::vector<int> noises_;        // 0 to n_w - 1
   std::vector<int> transition_entries_;  // entries of the parts that are integrated or measured

@@ -4,7 +4,7 @@
 // allocator. Filters on a PC may have Eigen::Dynamic for a size, and then do ask for memory.
 #pragma once
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace sepcal::states {
 

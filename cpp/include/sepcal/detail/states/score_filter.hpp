@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sepcal/detail/states/bent_step.hpp"
+#include "sepcal/detail/states/second_order_step.hpp"
 #include "sepcal/states/filter.hpp"
 
 namespace sepcal {
@@ -58,8 +58,8 @@ class ScoreFilter {
 
   /// By y (n_z, NaN where missing), what was expected of it, and the outputs' deviations r (n_z).
   /// `rows` are this sample's; zero for what is missing, and where the status is not ok.
-  Innovation<NZ> update(const Outputs& y, const BentReading<NX, NZ, N>& expected, const Outputs& r,
-                        Rows& rows) {
+  Innovation<NZ> update(const Outputs& y, const SecondOrderReading<NX, NZ, N>& expected,
+                        const Outputs& r, Rows& rows) {
     rows.setZero(n_z_ + n_z_ * (n_z_ + 1) / 2, moves_.size() + 1);
     const Covariance P = filter_.covariance();
     const Eigen::Matrix<double, NZ, NZ> R = r.cwiseAbs2().asDiagonal();
@@ -80,7 +80,7 @@ class ScoreFilter {
 
   /// To the next row; `held` is the time to it (s; 1 of a model in discrete time), `q` the roots of
   /// the noises' densities (n_w).
-  FilterStatus predict(const BentStep<NX, NV, N>& step, const Noise& q, double held) {
+  FilterStatus predict(const SecondOrderStep<NX, NV, N>& step, const Noise& q, double held) {
     const Covariance P = filter_.covariance();
     Parts variance(step.Gamma.cols());
     for (Eigen::Index k = 0; k < variance.size(); ++k) {
@@ -136,7 +136,7 @@ class ScoreFilter {
     return Eigen::Map<const Eigen::Matrix<double, ROWS, COLUMNS>>(flat.data(), rows, columns);
   }
 
-  void differentiate_update(const Sample& at, const BentReading<NX, NZ, N>& expected,
+  void differentiate_update(const Sample& at, const SecondOrderReading<NX, NZ, N>& expected,
                             const Outputs& r, Eigen::Index i, Rows& rows) {
     const Eigen::Matrix<double, NZ, NZ>& S = at.innovation.S;
     Outputs dz = states::product(at.H, dx_.col(i));
@@ -152,7 +152,7 @@ class ScoreFilter {
   }
 
   /// Of theta_i that moves gains: dP, the rows of Lambda, and dK e, which it returns.
-  State differentiate_gain(const Sample& at, const BentReading<NX, NZ, N>& expected,
+  State differentiate_gain(const Sample& at, const SecondOrderReading<NX, NZ, N>& expected,
                            const Outputs& r, Eigen::Index i, Rows& rows) {
     const Eigen::Matrix<double, NZ, NZ>& S = at.innovation.S;
     Eigen::Matrix<double, NZ, NX> dH = along<NZ, NX>(expected.H_slopes, i, n_z_, dx_.rows());
@@ -188,7 +188,7 @@ class ScoreFilter {
     return states::product(dK, at.innovation.e);
   }
 
-  void differentiate_covariance(const BentStep<NX, NV, N>& step, const Covariance& Phi_P,
+  void differentiate_covariance(const SecondOrderStep<NX, NV, N>& step, const Covariance& Phi_P,
                                 const Parts& variance, Eigen::Index i) {
     const Eigen::Index n_x = dx_.rows();
     const Covariance dPhi = along<NX, NX>(step.Phi_slopes, i, n_x, n_x);

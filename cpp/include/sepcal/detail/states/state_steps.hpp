@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <memory>
 
-#include "sepcal/block_model.hpp"
+#include "sepcal/detail/block_model.hpp"
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/path_model.hpp"
-#include "sepcal/detail/states/bent_step.hpp"
+#include "sepcal/detail/states/second_order_step.hpp"
 #include "sepcal/detail/states/trajectory_plan.hpp"
-#include "sepcal/eigen.hpp"
 #include "sepcal/record.hpp"
 
 namespace sepcal {
@@ -66,11 +66,12 @@ class StateSteps {
   virtual Reading read_jointly(std::size_t row, const Eigen::VectorXd& x) const = 0;  // n_x + n
 
   /// With second derivatives. Their parameters are those of TrajectoryPlan::acting_columns().
-  using BentStep = sepcal::BentStep<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
-  using BentReading = sepcal::BentReading<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
-  using BentNoise = sepcal::BentNoise<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
-  virtual BentStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
-  virtual BentReading read_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
+  using SecondOrderStep = sepcal::SecondOrderStep<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
+  using SecondOrderReading =
+      sepcal::SecondOrderReading<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
+  using SecondOrderNoise = sepcal::SecondOrderNoise<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
+  virtual SecondOrderStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
+  virtual SecondOrderReading read_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
 
   /// n_x, what the model's start(u, z) says of a row; zero where it has none.
   virtual Eigen::VectorXd start(std::size_t row) const = 0;

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "sepcal/detail/states/autodiff.hpp"
+#include "sepcal/detail/states/integration.hpp"
 #include "sepcal/detail/states/product.hpp"
 #include "sepcal/states/discretise.hpp"
-#include "sepcal/states/integration.hpp"
 #include "sepcal/states/state_model.hpp"
 
 namespace sepcal {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "sepcal/eigen.hpp"
+#include "sepcal/detail/eigen.hpp"
+#include "sepcal/detail/states/trajectory_options.hpp"
+#include "sepcal/detail/tables.hpp"
 #include "sepcal/record.hpp"
-#include "sepcal/states/trajectory_options.hpp"
-#include "sepcal/tables.hpp"
 
 namespace sepcal {
 

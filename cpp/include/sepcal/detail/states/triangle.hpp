@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "sepcal/detail/eigen.hpp"
 #include "sepcal/detail/states/product.hpp"
-#include "sepcal/eigen.hpp"
 
 namespace sepcal::states {
 

@@ -11,10 +11,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "sepcal/detail/model.hpp"
 #include "sepcal/detail/states/information_root.hpp"
 #include "sepcal/detail/states/levenberg_marquardt.hpp"
 #include "sepcal/detail/states/model_rows.hpp"
-#include "sepcal/model.hpp"
 
 namespace sepcal {
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A log as a probe reads it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sepcal/detail/flight/log_choice.hpp"
+#include "sepcal/flight/flight.hpp"
+
+namespace sepcal {
+
+struct ReadFlight {
+  Flight flight;                   // shares the columns' memory with the log
+  std::vector<std::string> notes;  // what was done to it, one line each, for people
+};
+
+/// The log's columns as `choice` maps and ignores them; clocks that start anew joined; attitude
+/// from a quaternion (qw, qx, qy, qz, body to north-east-down) where no angles are logged; velocity
+/// from positions (lat_deg, lon_deg, altitude_m) where none is. Rows are
+/// those of the log. Throws OptionError for a choice of columns that are not there.
+ReadFlight read_as(const Flight& flight, const LogChoice& choice);
+
+}  // namespace sepcal
