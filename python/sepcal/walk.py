@@ -90,7 +90,7 @@ class Walk:
             end, Phi, G = self._steps(known, whole, p[:, np.newaxis], seeds)
             return end[:, 0], Phi[:, 0], G[..., 0]
 
-    def bend_step(
+    def second_order_step(
         self, known: Array, x: Array, p: Array, seeds: list[int]
     ) -> tuple[Array, Array, Array, Array, Array]:
         """As step(), with second derivatives, by differences of differences.
@@ -124,7 +124,7 @@ class Walk:
             z, slopes, A = self._readings(known, whole, p[:, np.newaxis], xi1, seeds)
             return z[:, 0], slopes[:, 0], A[..., 0]
 
-    def bend_reading(
+    def second_order_reading(
         self, known: Array, x: Array, p: Array, xi1: Array, seeds: list[int]
     ) -> tuple[Array, Array, Array, Array, Array]:
         """As read(), with second derivatives.

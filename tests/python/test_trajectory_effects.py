@@ -5,6 +5,7 @@ They are hidden by a simulator that knows nothing of the models.
 """
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar
 
@@ -23,7 +24,7 @@ CURVE = -4.0  # of Cm[alpha^2]
 PROMISE = 0.05  # of the error
 
 
-def fly(hide: dict[str, float], seed: int = 1) -> sepcal.Flight:
+def fly(hide: Mapping[str, float | list[float]], seed: int = 1) -> sepcal.Flight:
     """40 s at 25 Hz as one segment."""
     flown = sepcal.simulate("aircraft", hide=hide, rate=25.0, seed=seed)
     return sepcal.Flight({name: flown[name] for name in flown.columns})
@@ -50,6 +51,17 @@ def test_a_drifting_gyro_is_named(path: sepcal.AircraftFit) -> None:
     assert diagnosis.effects[0].name == "gyro_bias[imu_temp_degc]"
     assert diagnosis.advice.effect == "gyro_bias[imu_temp_degc]"
     assert diagnosis.effects[0].sentence == "the gyros' bias changes with imu_temp_degc"
+
+
+def test_a_wind_comes_before_a_bias_that_takes_half_of_what_it_takes() -> None:
+    """Both take little of the error: what one coefficient leaves is then about as little."""
+    size = 10.0
+    flight = fly({"wind[time]": [size * 6.5e-4, size * 1.2e-3, size * 1.1e-3]}, seed=2)
+    diagnosis = sepcal.fit(sepcal.FlightPath(), flight).diagnose()
+    own = next(effect for effect in diagnosis.effects if effect.name == "wind[time]")
+    bias = next(effect for effect in diagnosis.effects if effect.name == "alpha_bias[time]")
+    assert own.predicted_drop > 2.0 * bias.predicted_drop
+    assert own is diagnosis.effects[0] or own.beside == "equivalent"
 
 
 def test_the_error_falls_as_promised(corrected: sepcal.AircraftFit) -> None:

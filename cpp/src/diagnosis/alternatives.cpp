@@ -299,10 +299,12 @@ const Alternative* put_first(const ModelSelection& selection,
           does_nearly_as_well(error_left(other), error_left(one))) {
         return true;
       }
-      const double more = is_far_simpler(other->candidate, one->candidate) ? about : 1.0;
+      const bool does_about_as_well = is_far_simpler(other->candidate, one->candidate) &&
+                                      error_left(other) <= about * error_left(one) &&
+                                      takes_nearly_all(error_left(other), error_left(one));
       return is_simpler(other->candidate, one->candidate) &&
              !is_stand_in_for(other->candidate, one->candidate) &&
-             error_left(other) <= more * error_left(one);
+             (does_about_as_well || error_left(other) <= error_left(one));
     });
   };
   std::vector<const Alternative*> standing;  // noise that nobody knows makes likelihoods sure

@@ -17,12 +17,17 @@ inline constexpr double as_likely = 9.2;     // in -2 ln L: 1 % of chi-squared's
 inline constexpr double clearly_less = 0.8;  // of the error on rows held out
 inline constexpr double alike = 0.94;  // cosine of 20 deg, between what two take of the residual
 
-/// Whether what leaves so much of the error does nearly as well as what leaves the least of it: it
-/// takes nearly all of what that takes, or half of it where that does not leave clearly less.
+/// Whether what leaves so much of the error takes nearly all of what that takes which leaves the
+/// least.
+inline bool takes_nearly_all(double left, double least) {
+  return 1.0 - left >= 0.85 * (1.0 - least);
+}
+
+/// Whether it does nearly as well: it takes nearly all, or half where the other does not leave
+/// clearly less.
 inline bool does_nearly_as_well(double left, double least) {
-  constexpr double nearly_all = 0.85;
-  const double taken = (1.0 - left) / (1.0 - least);
-  return taken >= nearly_all || (taken >= 0.5 && clearly_less * left <= least);
+  return takes_nearly_all(left, least) ||
+         (1.0 - left >= 0.5 * (1.0 - least) && clearly_less * left <= least);
 }
 
 /// The fit of the model with one more effect.

@@ -28,8 +28,8 @@ struct Sums {
   double square_b = 0.0;
   double slope_a = 0.0;  // |dA/dxi2|^2
   double slope_b = 0.0;
-  MatrixXd bend_a;  // n_2 x n_2: second derivatives, summed over all entries
-  MatrixXd bend_b;
+  MatrixXd curvature_a;  // n_2 x n_2: second derivatives, summed over all entries
+  MatrixXd curvature_b;
 };
 
 /// The tangent D of blocks at one xi2 for several xi1: D is affine in xi1, so dA_p/dxi2 = D(e_p) -
@@ -109,8 +109,8 @@ void difference_slopes(const Tangents& tangents, const VectorXd& xi2, const Vect
     below[k] -= step * widths[k];
     const MatrixXd slope =
         (summed_slopes(tangents, above) - summed_slopes(tangents, below)) / (above[k] - below[k]);
-    sums.bend_a.col(k) = slope.col(0);
-    sums.bend_b.col(k) = slope.col(1);
+    sums.curvature_a.col(k) = slope.col(0);
+    sums.curvature_b.col(k) = slope.col(1);
   }
 }
 
@@ -118,8 +118,8 @@ Sums sum_over_record(const Tangents& tangents, const VectorXd& xi2, const Vector
   const Index n_1 = tangents.n_1();
   const Index n_2 = tangents.n_2();
   Sums sums;
-  MatrixXd bend_zero = MatrixXd::Zero(n_2, n_2);
-  MatrixXd bend_ones = MatrixXd::Zero(n_2, n_2);
+  MatrixXd curvature_zero = MatrixXd::Zero(n_2, n_2);
+  MatrixXd curvature_ones = MatrixXd::Zero(n_2, n_2);
   const VectorXd zero = VectorXd::Zero(n_1);
   const VectorXd ones = VectorXd::Ones(n_1);
   bool known = true;
@@ -134,12 +134,12 @@ Sums sum_over_record(const Tangents& tangents, const VectorXd& xi2, const Vector
                             }
                             known = known &&
                                     tangents.model().add_second_derivatives(
-                                        block, values_of(xi2), values_of(zero), bend_zero) &&
+                                        block, values_of(xi2), values_of(zero), curvature_zero) &&
                                     tangents.model().add_second_derivatives(
-                                        block, values_of(xi2), values_of(ones), bend_ones);
+                                        block, values_of(xi2), values_of(ones), curvature_ones);
                           });
-  sums.bend_a = bend_ones - bend_zero;
-  sums.bend_b = bend_zero;
+  sums.curvature_a = curvature_ones - curvature_zero;
+  sums.curvature_b = curvature_zero;
   if (!known) difference_slopes(tangents, xi2, widths, sums);
   return sums;
 }
@@ -151,9 +151,9 @@ double ratio(double slope_square, double square, double l_2) {
 
 /// The smallest eigenvalue of the second derivatives, in units of the widths, which don't touch
 /// its sign; zero below 1e-8 of the largest, which rounding and differences leave.
-double smallest_curvature(const MatrixXd& bend, const VectorXd& widths) {
-  if (!bend.allFinite()) return std::numeric_limits<double>::quiet_NaN();
-  const MatrixXd scaled = widths.asDiagonal() * bend * widths.asDiagonal();
+double smallest_curvature(const MatrixXd& curvature, const VectorXd& widths) {
+  if (!curvature.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  const MatrixXd scaled = widths.asDiagonal() * curvature * widths.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(numerics::symmetric_part(scaled),
                                                        Eigen::EigenvaluesOnly);
   const VectorXd& values = solver.eigenvalues();
@@ -209,8 +209,8 @@ ScreenResults screen(const Problem& problem, const Screens& screens,
     const double l_2 = reach(screens, xi2, box);
     results.ratio_a[s] = ratio(sums.slope_a, sums.square_a, l_2);
     results.ratio_b[s] = ratio(sums.slope_b, sums.square_b, l_2);
-    results.curvature_a[s] = smallest_curvature(sums.bend_a, widths);
-    results.curvature_b[s] = smallest_curvature(sums.bend_b, widths);
+    results.curvature_a[s] = smallest_curvature(sums.curvature_a, widths);
+    results.curvature_b[s] = smallest_curvature(sums.curvature_b, widths);
     const bool convex = (sums.slope_a == 0.0 || results.curvature_a[s] > 0.0) &&
                         (sums.slope_b == 0.0 || results.curvature_b[s] > 0.0);
     results.accepted[s] = results.ratio_a[s] <= screens.t_1 && results.ratio_b[s] <= screens.t_2 &&

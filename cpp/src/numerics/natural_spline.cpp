@@ -38,11 +38,11 @@ std::vector<double> solve_curvatures(const std::vector<double>& knots,
   for (std::size_t i = 1; i < last; ++i) {
     const double before = knots[i] - knots[i - 1];
     const double after = knots[i + 1] - knots[i];
-    const double bend =
+    const double turn =
         6.0 * ((values[i + 1] - values[i]) / after - (values[i] - values[i - 1]) / before);
     const double pivot = 2.0 * (before + after) - before * above[i - 1];
     above[i] = after / pivot;
-    curvatures[i] = (bend - before * curvatures[i - 1]) / pivot;
+    curvatures[i] = (turn - before * curvatures[i - 1]) / pivot;
   }
   for (std::size_t i = last - 1; i > 0; --i) curvatures[i] -= above[i] * curvatures[i + 1];
   return curvatures;
@@ -124,12 +124,12 @@ void SplineBasis::evaluate(double x, Eigen::Ref<RowVectorXd> values) const {
   const double left = 1.0 - right;
   const double beyond = x - inside;
   // Shares of the curvatures in the value and, past the ends, in the slope.
-  const double bend_left =
+  const double curvature_left =
       h * h / 6.0 * (left * left * left - left) + beyond * h / 6.0 * (1.0 - 3.0 * left * left);
-  const double bend_right = h * h / 6.0 * (right * right * right - right) +
-                            beyond * h / 6.0 * (3.0 * right * right - 1.0);
-  values = bend_left * curvatures_.row(row).rightCols(functions()) +
-           bend_right * curvatures_.row(row + 1).rightCols(functions());
+  const double curvature_right = h * h / 6.0 * (right * right * right - right) +
+                                 beyond * h / 6.0 * (3.0 * right * right - 1.0);
+  values = curvature_left * curvatures_.row(row).rightCols(functions()) +
+           curvature_right * curvatures_.row(row + 1).rightCols(functions());
   if (row > 0) values[row - 1] += left - beyond / h;
   values[row] += right + beyond / h;
 }
