@@ -48,7 +48,7 @@ std::string explain_missing(const CLI::App& verb, const CLI::ParseError& error) 
   if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return "";
   const CLI::Option* const more = verb.get_option_no_throw("MORE");
   if (more == nullptr || more->results().empty()) return "";
-  const std::string first = verb.get_option("FLIGHT")->as<std::string>();
+  const auto first = verb.get_option("FLIGHT")->as<std::string>();
   if (first.ends_with(".json")) {
     return fmt::format("; the flight stands before the calibration: {} {} {}", verb.get_name(),
                        more->results().back(), first);
