@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of schema version 2 are read, and mean what they meant: tests/schema_2 has two.
 
-They are of the last release that wrote them, of flights of `simulate --rows` 200 and 300.
+They are of 5d6693a, which wrote them, of flights of `simulate --rows` 200 and 300.
 """
 
 from pathlib import Path
