@@ -9,6 +9,7 @@
 #include <csignal>
 #include <new>
 
+#include "base/escaping.hpp"
 #include "interrupt.hpp"
 #include "sepcal/detail/solver_log.hpp"
 #include "sepcal/error.hpp"
@@ -51,7 +52,7 @@ std::string explain_missing(const CLI::App& verb, const CLI::ParseError& error) 
   const auto first = verb.get_option("FLIGHT")->as<std::string>();
   if (first.ends_with(".json")) {
     return fmt::format("; the flight stands before the calibration: {} {} {}", verb.get_name(),
-                       more->results().back(), first);
+                       base::file_in_shell(more->results().back()), base::file_in_shell(first));
   }
   return fmt::format("; {} is a log, not a calibration: give the JSON that fit wrote with -o",
                      more->results().back());

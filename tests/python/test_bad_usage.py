@@ -169,6 +169,10 @@ def test_field_options(magnetometer: Bench, options: tuple[str, ...], words: tup
             ("diagnose", "base.json", "flight.csv"),
             ("the flight stands before the calibration: diagnose flight.csv base.json",),
         ),
+        (
+            ("diagnose", "base.json", "my flight;.csv"),
+            ("the flight stands before the calibration: diagnose 'my flight;.csv' base.json",),
+        ),
         (("add", "flight.csv", "base.json"), ("E is required", "add --help")),
         (("apply", "flight.csv", "base.json"), ("--output is required", "apply --help")),
         (("simulate",), ("--output is required", "simulate --help")),

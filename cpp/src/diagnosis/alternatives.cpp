@@ -37,7 +37,7 @@ bool may_stand_first(const EffectFinding& finding) {
 
 /// In turn the surest, and those that take most of the error on rows held out: noise may make much
 /// of what explains little.
-std::vector<const EffectFinding*> choose_contenders(const Findings& findings) {
+std::vector<const EffectFinding*> choose_alternatives(const Findings& findings) {
   std::vector<const EffectFinding*> by_order;
   for (const EffectFinding& finding : findings) {
     if (may_stand_first(finding)) by_order.push_back(&finding);
@@ -58,7 +58,7 @@ std::vector<const EffectFinding*> choose_contenders(const Findings& findings) {
 /// form, if it was found.
 std::vector<Alternative> join_line(CandidateRoom& room, const Findings& findings) {
   std::vector<Alternative> asked;
-  for (const EffectFinding* finding : choose_contenders(findings)) {
+  for (const EffectFinding* finding : choose_alternatives(findings)) {
     asked.push_back({room.make(finding->name), shape_of(*finding)});
   }
   for (const EffectFinding& finding : findings) {
@@ -254,7 +254,7 @@ void fit_all(const CandidateTesting& testing, const NoiseMembers& noise,
   });
 }
 
-ModelSelection fit_contenders(CandidateTesting& testing, const Findings& findings) {
+ModelSelection fit_alternatives(CandidateTesting& testing, const Findings& findings) {
   ModelSelection selection{.alternatives = join_line(testing.room(), findings)};
   selection.noise = noise_beside(testing, selection.alternatives);
   fit_all(testing, selection.noise, selection.alternatives);

@@ -67,8 +67,8 @@ void fit_all(const CandidateTesting& testing, const NoiseMembers& noise,
              std::vector<Alternative>& asked);
 
 /// Fits the best of the findings that may stand for what is missing.
-ModelSelection fit_contenders(CandidateTesting& testing,
-                              const std::vector<EffectFinding>& findings);
+ModelSelection fit_alternatives(CandidateTesting& testing,
+                                const std::vector<EffectFinding>& findings);
 
 /// Of those found the one whose fit has the least criterion comes first, or the simplest of those
 /// that data can't tell from it, the preferred before others that are as simple. What would do as

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Candidates on the testing: made, screened, tested, calibrated and held out at one fit.
+// Candidates in testing: made, screened, tested, calibrated and held out at one fit.
 #pragma once
 
 #include <cstddef>

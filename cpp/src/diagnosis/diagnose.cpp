@@ -321,7 +321,7 @@ void Recipe::try_pairs() {
   result_.effects.insert(result_.effects.begin(), findings.begin(), findings.end());
 }
 
-/// What rows held out say of a alternative, by fits in place of one step.
+/// What rows held out say of an alternative, by fits in place of one step.
 void Recipe::confirm(const Alternative& alternative) {
   const auto trial = find_trial(alternative.candidate.name);
   if (trial == trials_.end() || !std::isfinite(alternative.criterion)) return;
@@ -365,7 +365,7 @@ bool Recipe::try_pairs_of_lines() {
 /// The order of what was found, and what becomes of the others beside the first: by real fits.
 void Recipe::settle() {
   testing_.report_progress("fitting what was found", 0.0);
-  selection_ = fit_contenders(testing_, result_.effects);
+  selection_ = fit_alternatives(testing_, result_.effects);
   for (const Alternative& alternative : selection_.alternatives) confirm(alternative);
   admit_nonlinear(testing_, selection_, result_.effects);
   const Alternative* first = put_first(selection_, options_.preferred, result_.effects);

@@ -12,7 +12,7 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 
 /// The best of what was tried; the log as it stands is tried first.
-class Contest {
+class AxisSearch {
  public:
   void enter(std::string axes, double agreement) {
     if (first_) best_.agreement_as_logged = agreement;
@@ -45,7 +45,7 @@ std::string name_axes(std::span<const char* const> names, std::span<const int> o
 std::optional<BetterAxes> find_track_axes(const std::vector<std::array<double, 3>>& moving) {
   if (moving.empty()) return std::nullopt;
   constexpr std::array names{"vn", "ve"};
-  Contest contest;
+  AxisSearch search;
   for (const std::array<int, 2> order : {std::array{0, 1}, std::array{1, 0}}) {
     for (unsigned signs = 0; signs < 4; ++signs) {
       double sum = 0.0;
@@ -54,10 +54,10 @@ std::optional<BetterAxes> find_track_axes(const std::vector<std::array<double, 3
         const double east = (signs & 2U ? -1 : 1) * row[static_cast<std::size_t>(order[1])];
         sum += std::cos(std::atan2(east, north) - row[2]);
       }
-      contest.enter(name_axes(names, order, signs), sum / static_cast<double>(moving.size()));
+      search.enter(name_axes(names, order, signs), sum / static_cast<double>(moving.size()));
     }
   }
-  const BetterAxes& best = contest.best();
+  const BetterAxes& best = search.best();
   if (best.agreement_as_logged < 0.5 && best.agreement > 0.85) return best;
   if (best.agreement_as_logged < 0.3) return BetterAxes{"", 0.0, best.agreement_as_logged};
   return std::nullopt;
@@ -71,7 +71,7 @@ std::optional<BetterAxes> find_field_axes(const Matrix3Xd& read, const Matrix3Xd
   const double scale = m.norm() * h.norm();
   if (!(scale > 0)) return std::nullopt;
   constexpr std::array names{"mx", "my", "mz"};
-  Contest contest;
+  AxisSearch search;
   std::array order{0, 1, 2};
   do {
     for (unsigned signs = 0; signs < 8; ++signs) {
@@ -79,12 +79,12 @@ std::optional<BetterAxes> find_field_axes(const Matrix3Xd& read, const Matrix3Xd
       for (unsigned j = 0; j < 3; ++j) {
         sum += (signs >> j & 1U ? -1 : 1) * products(order[j], j);
       }
-      contest.enter(name_axes(names, order, signs), sum / scale);
+      search.enter(name_axes(names, order, signs), sum / scale);
     }
   } while (std::ranges::next_permutation(order).found);
-  const auto& [axes, agreement, as_logged] = contest.best();
+  const auto& [axes, agreement, as_logged] = search.best();
   if (agreement > 0.9 && as_logged < 0.9 && 5 * (1 - agreement) < 1 - as_logged)
-    return contest.best();
+    return search.best();
   return std::nullopt;
 }
 

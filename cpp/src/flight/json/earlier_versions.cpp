@@ -44,7 +44,7 @@ void convert_earlier(Json& root) {
     rename(options, "priors", "sampling_distribution");
     rename(options, "knowledge", "prior");
   }
-  if (version == 1 || version == 2) {
+  if (version != schema_version) {
     rename(options, "stage_one", "stage_one_segments");
     rename(options, "stage_two", "stage_two_segments");
     rename(root.at("stage_two"), "method", "second_stage");
