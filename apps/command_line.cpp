@@ -103,7 +103,7 @@ class CommandLine {
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
         ->type_name("C.json");
     instrument.add_probe_options(*check_);
-    typed_.log.add_to(*check_);
+    typed_.log.add_log_choice_to(*check_);
     add_json(*check_);
 
     add_flight(*fit_);
@@ -164,7 +164,7 @@ class CommandLine {
     add_flight(verb);
     if (of_several) add_more_flights(verb, "the other flights of a joint fit, names in .csv");
     add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
-    typed_.log.add_to(verb);
+    typed_.log.add_log_choice_to(verb);
     add_explain(verb);
     add_json(verb);
     return &verb;

@@ -7,7 +7,6 @@
 #include <charconv>
 
 #include "sepcal/error.hpp"
-#include "sepcal/flight/csv.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -20,33 +19,6 @@ std::string without_blanks(const std::string& text) {
 }
 
 }  // namespace
-
-std::vector<std::string> split(std::string_view text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
-double parse_value(const std::string& option, const std::string& text) {
-  if (const auto value = parse_number(text)) return *value;
-  throw Error(fmt::format("{}: '{}' is not a number", option, text));
-}
-
-std::pair<std::string, std::string> parse_assignment(const std::string& option,
-                                                     const std::string& text,
-                                                     const std::string& form) {
-  const std::size_t at = text.find('=');
-  if (at == std::string::npos || at == 0) {
-    throw Error(fmt::format("{} {}: write it as {}", option, text, form));
-  }
-  return {text.substr(0, at), text.substr(at + 1)};
-}
 
 std::array<double, 3> parse_triple(const std::string& option, const std::string& text,
                                    const std::string& example) {

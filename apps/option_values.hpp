@@ -9,21 +9,14 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
+
+#include "flight/schema/option_text.hpp"
 
 namespace sepcal::app {
 
-std::vector<std::string> split(std::string_view text, char separator);
-
-/// The whole of `text` as a finite number; `option` opens the message. Throws Error.
-double parse_value(const std::string& option, const std::string& text);
-
-/// "NAME=VALUE" to its two halves. Throws Error with the form.
-std::pair<std::string, std::string> parse_assignment(const std::string& option,
-                                                     const std::string& text,
-                                                     const std::string& form);
+using schema::parse_assignment;
+using schema::parse_value;
+using schema::split;
 
 /// "X,Y,Z": exactly three finite numbers. Throws Error with the example.
 std::array<double, 3> parse_triple(const std::string& option, const std::string& text,

@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "fit_arguments.hpp"
 #include "instrument.hpp"
-#include "log_arguments.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/export.hpp"
 #include "sepcal/flight/stepwise.hpp"
@@ -28,7 +28,7 @@ struct Arguments {
   bool explain = false;   // the whole message of the fit
   bool stream = false;    // of fit and apply
   bool certify = false;   // of fit
-  LogArguments log = {};  // of check, and of a later verb whatever the calibration says
+  FitArguments log = {};  // of check, and of a later verb whatever the calibration says
 };
 
 /// Each returns the exit code: 0, or what the fit's status (4 not identifiable, 5 not converged) or

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import sepcal
+from sepcal.fit_options import FitOptions
 from sepcal.models import Model
-from sepcal.options import FitOptions
 
 NEXT_AT_MOST = 4  # steps of advice that are followed
 WAYS = (

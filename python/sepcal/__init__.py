@@ -62,6 +62,7 @@ from sepcal.design_trial import DesignTrial
 from sepcal.diagnosis import Diagnosis
 from sepcal.exporting import Exported, export
 from sepcal.filters import Filter, SmoothedPass
+from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv, stream_csv
 from sepcal.geomagnetism import EarthField, earth_field
@@ -93,7 +94,6 @@ from sepcal.models import (
 )
 from sepcal.monte_carlo_results import MonteCarlo, ParameterStudy
 from sepcal.noise import fit_noise, simulate_noise, whiten
-from sepcal.options import FitOptions
 from sepcal.own_effect import Effect
 from sepcal.own_model import OwnModel, SeparableModel
 from sepcal.own_state_model import StateModel, Trajectory

@@ -53,6 +53,7 @@ __all__: list[str] = [
     "NoiseFit",
     "NoiseModel",
     "NoiseSize",
+    "OptionRow",
     "Options",
     "Parameter",
     "ParameterInterval",
@@ -104,6 +105,7 @@ __all__: list[str] = [
     "in_shell",
     "magnetometer",
     "magnetometer_in_nine_states",
+    "option_rows",
     "parse_calibration",
     "pitot_static",
     "predict",
@@ -129,6 +131,63 @@ __all__: list[str] = [
     "write_whole",
 ]
 
+class OptionRow:
+    """
+    What is known of an option of fit().
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "name",
+        "sentence",
+        "unset",
+        "type",
+        "choices",
+        "flags",
+        "form",
+        "is_of_log",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def choices(self) -> list[str]:
+        """
+        Of one that is chosen by name.
+        """
+    @property
+    def flags(self) -> list[str]:
+        """
+        Of the programs; empty: code alone has it.
+        """
+    @property
+    def form(self) -> str:
+        """
+        What stands behind the flag.
+        """
+    @property
+    def is_of_log(self) -> bool:
+        """
+        Chooses of a flight's columns and rows.
+        """
+    @property
+    def name(self) -> str: ...
+    @property
+    def sentence(self) -> str: ...
+    @property
+    def type(self) -> str:
+        """
+        As type checkers call it.
+        """
+    @property
+    def unset(self) -> str:
+        """
+        What holds where it is not given; empty: its default.
+        """
+
 class Options:
     coloured_errors: bool
     drop_invalid: bool
@@ -143,6 +202,20 @@ class Options:
     stage_two_segments: str
     where: str
     def __init__(self) -> None: ...
+    def read_typed(self, name: str, texts: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def bounds(self) -> dict[str, tuple[float | None, float | None]]: ...
+    @bounds.setter
+    def bounds(
+        self,
+        arg1: collections.abc.Mapping[
+            str,
+            tuple[
+                typing.SupportsFloat | typing.SupportsIndex | None,
+                typing.SupportsFloat | typing.SupportsIndex | None,
+            ],
+        ],
+    ) -> None: ...
     @property
     def descents(self) -> int: ...
     @descents.setter
@@ -152,6 +225,10 @@ class Options:
     @drop_repeats.setter
     def drop_repeats(self, arg1: collections.abc.Sequence[str]) -> None: ...
     @property
+    def effects(self) -> list[str]: ...
+    @effects.setter
+    def effects(self, arg1: collections.abc.Sequence[str]) -> None: ...
+    @property
     def fix(self) -> dict[str, float]: ...
     @fix.setter
     def fix(
@@ -160,7 +237,7 @@ class Options:
     @property
     def free(self) -> list[str]: ...
     @free.setter
-    def free(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    def free(self, arg1: collections.abc.Sequence[str]) -> None: ...
     @property
     def from_time(self) -> float | None: ...
     @from_time.setter
@@ -196,6 +273,19 @@ class Options:
     @noise_tolerance.setter
     def noise_tolerance(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
+    def prior(self) -> dict[str, tuple[float, float]]: ...
+    @prior.setter
+    def prior(
+        self,
+        arg1: collections.abc.Mapping[
+            str,
+            tuple[
+                typing.SupportsFloat | typing.SupportsIndex,
+                typing.SupportsFloat | typing.SupportsIndex,
+            ],
+        ],
+    ) -> None: ...
+    @property
     def process_noise(self) -> dict[str, float]: ...
     @process_noise.setter
     def process_noise(
@@ -205,6 +295,25 @@ class Options:
     def samples(self) -> int: ...
     @samples.setter
     def samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def sampling_distribution(self) -> dict[str, tuple[float, float]]: ...
+    @sampling_distribution.setter
+    def sampling_distribution(
+        self,
+        arg1: collections.abc.Mapping[
+            str,
+            tuple[
+                typing.SupportsFloat | typing.SupportsIndex,
+                typing.SupportsFloat | typing.SupportsIndex,
+            ],
+        ],
+    ) -> None: ...
+    @property
+    def screens(self) -> dict[str, float] | None: ...
+    @screens.setter
+    def screens(
+        self, arg1: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] | None
+    ) -> None: ...
     @property
     def seed(self) -> int: ...
     @seed.setter
@@ -3891,6 +4000,7 @@ def magnetometer(
 def magnetometer_in_nine_states(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
 ) -> TwoStepProblem: ...
+def option_rows() -> list[OptionRow]: ...
 def parse_calibration(
     arg0: str,
     arg1: str,

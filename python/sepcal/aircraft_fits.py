@@ -13,9 +13,10 @@ from sepcal.aircraft import Aero, AircraftModel
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
+from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight, to_flight
 from sepcal.geometry import Aircraft
-from sepcal.options import FitOptions, spelled_out, to_core
+from sepcal.options import spelled_out, to_core
 from sepcal.own_effect import name_effects
 from sepcal.pages import Page
 from sepcal.results import Fit

@@ -11,8 +11,9 @@ from typing import Unpack
 
 from sepcal import _core
 from sepcal.columns import Columns, labels_in, take_columns
+from sepcal.fit_options import FitOptions
 from sepcal.intervals import as_fitted
-from sepcal.options import FitOptions, spelled_out
+from sepcal.options import spelled_out
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit
 

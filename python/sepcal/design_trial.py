@@ -11,8 +11,9 @@ from numpy.random import Generator
 
 from sepcal._core import Error
 from sepcal.columns import Array, Columns, by_name
+from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
-from sepcal.options import FitOptions, to_core
+from sepcal.options import to_core
 from sepcal.own_effect import name_effects
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit

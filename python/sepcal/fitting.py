@@ -9,9 +9,10 @@ from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.aircraft_fits import AircraftFit, fit_flight
 from sepcal.calibration import Calibration
 from sepcal.columns import Columns, by_name, labels_in, take_columns, take_drivers
+from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
-from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
+from sepcal.options import refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
 from sepcal.results import Fit

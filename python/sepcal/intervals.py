@@ -9,7 +9,8 @@ from typing import Any, Unpack
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
-from sepcal.options import FitOptions, spelled_out, to_core, to_names
+from sepcal.fit_options import FitOptions
+from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row

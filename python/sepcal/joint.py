@@ -6,8 +6,9 @@ from typing import Unpack
 
 from sepcal import _core
 from sepcal.calibration import Calibration
+from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight, to_flight
-from sepcal.options import FitOptions, spelled_out, to_core, to_names
+from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
 

@@ -12,10 +12,11 @@ from typing import Any, TypeAlias, Unpack
 
 from sepcal import _core
 from sepcal.executors import describe, stream
+from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
 from sepcal.many_results import ManyFit
 from sepcal.many_workers import PREPARED, Absent, Question, Source, Task, ask, unusable
-from sepcal.options import FitOptions, spelled_out, to_core, to_names
+from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.trajectories import TrajectoryModel
 from sepcal.whole_files import name_of

@@ -25,6 +25,7 @@ from sepcal.fitting import fit
 from sepcal.flight import Flight, read_csv
 from sepcal.joint import fit_jointly
 from sepcal.models import Model
+from sepcal.options import ROWS
 from sepcal.own_state_model import to_own
 from sepcal.printing import in_line, page_of, show, tell
 from sepcal.whole_files import name_of, refuse_outputs, write_whole
@@ -35,6 +36,7 @@ EXIT_CODES = {
     "adequate": 0, "effect_missing": 3, "slow_change": 6, "unexplained": 6,
 }  # fmt: skip
 FORM = "FILE.py:CLASS"
+SCALARS = {"int": int, "float": float}
 
 
 def add_to(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -107,43 +109,21 @@ def _add_output(verb: argparse.ArgumentParser, metavar: str, *, needed: bool = T
 
 
 def _add_options(verb: argparse.ArgumentParser) -> None:
-    """Those of sepcal.fit() that a fit of one's own model has most use for."""
-    several: dict[str, Any] = {"action": "append", "default": []}
-    verb.add_argument("--effect", metavar="EFFECT", help="that joins the model", **several)
-    verb.add_argument("--bounds", metavar="NAME=LOW:HIGH", help="either may be empty", **several)
-    verb.add_argument("--fix", metavar="NAME=VALUE", help="held there", **several)
-    verb.add_argument("--start", metavar="NAME=VALUE", help="of stage two", **several)
-    verb.add_argument("--noise", metavar="OUTPUT=SD", help="where it is known", **several)
-    verb.add_argument("--map", metavar="HEADER=COLUMN", help="the log's own name", **several)
-    verb.add_argument("--ignore", metavar="COLUMN", help="as if it were not there", **several)
-    verb.add_argument("--drop-repeats", metavar="COLUMN", help="slower than the log", **several)
-    verb.add_argument("--drop-invalid", action="store_true", help="rows with a bad cell")
-    verb.add_argument("--where", metavar="CONDITION", help="only rows in which it holds")
-    verb.add_argument("--from", dest="from_time", type=float, metavar="S", help="only from then on")
-    verb.add_argument("--to", dest="to_time", type=float, metavar="S", help="only up to then")
-    verb.add_argument("--stage-one-segments", metavar="SEGMENTS", help="labels or times, 10:60")
-    verb.add_argument("--stage-two-segments", metavar="SEGMENTS", help="the same")
-    verb.add_argument("--loss", help="squares, huber or cauchy")
-    verb.add_argument("--samples", type=int, metavar="N", help="of stage one")
-    verb.add_argument("--seed", type=int, metavar="N")
-
-
-def _split(option: str, texts: Sequence[str]) -> dict[str, str]:
-    """{name: text} of NAME=TEXT."""
-    halves = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not name or not equals:
-            raise _core.Error(f"{option} {text}: write it as NAME=VALUE")
-        halves[name] = value
-    return halves
-
-
-def _number(option: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise _core.Error(f"{option}: '{text}' is no number") from None
+    """Those of sepcal.fit() that the programs have."""
+    log = verb.add_argument_group("columns and rows of the log")
+    for row in ROWS.values():
+        if not row.flags:
+            continue
+        how: dict[str, Any] = {"metavar": row.form or None, "choices": row.choices or None}
+        if row.type == "bool":
+            how = {"action": "store_true"}
+        elif row.type in SCALARS:
+            how["type"] = SCALARS[row.type]
+        elif not row.choices and row.type != "str":
+            how |= {"action": "append", "default": []}
+        told = row.sentence.replace("%", "%%")
+        group = log if row.is_of_log else verb
+        group.add_argument(*row.flags, dest=row.name, help=told, **how)
 
 
 def read_numbers(option: str, texts: Sequence[str], form: str) -> dict[str, float]:
@@ -164,41 +144,22 @@ def _numbers(option: str, texts: Sequence[str]) -> dict[str, float]:
     return read_numbers(option, texts, "NAME=VALUE")
 
 
-def _bounds(texts: Sequence[str]) -> dict[str, tuple[float | None, float | None]]:
-    """{name: (lower, upper)} of NAME=LOW:HIGH."""
-    bounds = {}
-    for name, text in _split("--bounds", texts).items():
-        low, colon, high = text.partition(":")
-        if not colon:
-            raise _core.Error(f"--bounds {name}={text}: write it as NAME=LOW:HIGH")
-        bounds[name] = (
-            _number("--bounds", low) if low else None,
-            _number("--bounds", high) if high else None,
-        )
-    return bounds
-
-
 def _options(given: argparse.Namespace) -> dict[str, Any]:
-    options = {
-        "effects": given.effect,
-        "bounds": _bounds(given.bounds),
-        "fix": _numbers("--fix", given.fix),
-        "start": _numbers("--start", given.start),
-        "noise": _numbers("--noise", given.noise),
-        "map": _split("--map", given.map),
-        "ignore": given.ignore,
-        "drop_repeats": given.drop_repeats,
-        "drop_invalid": given.drop_invalid,
-        "where": given.where,
-        "from_time": given.from_time,
-        "to_time": given.to_time,
-        "stage_one_segments": given.stage_one_segments,
-        "stage_two_segments": given.stage_two_segments,
-        "loss": given.loss,
-        "samples": given.samples,
-        "seed": given.seed,
-    }
-    return {name: value for name, value in options.items() if value not in (None, [], {}, False)}
+    """Of what was typed."""
+    options = {}
+    for row in ROWS.values():
+        value = getattr(given, row.name, None)
+        if value in (None, [], False):
+            continue
+        if isinstance(value, list):
+            texts = value
+            if row.form.endswith("[,...]"):
+                texts = [text for each in value for text in each.split(",")]
+            core = _core.Options()
+            core.read_typed(row.name, texts)
+            value = getattr(core, row.name)
+        options[row.name] = value
+    return options
 
 
 def read_model(named: str) -> Model:

@@ -10,9 +10,10 @@ from numpy.random import Generator
 
 from sepcal._core import Error
 from sepcal.calibration import Calibration
+from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.models import FiveHoleProbe, Magnetometer, PitotStatic
-from sepcal.options import FitOptions, to_core
+from sepcal.options import to_core
 from sepcal.own_effect import name_effects
 from sepcal.simulation import SimulatedFlight, simulate
 

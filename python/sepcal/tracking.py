@@ -10,8 +10,9 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
+from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
-from sepcal.options import LOG_CHOICE, FitOptions, spelled_out, to_core
+from sepcal.options import LOG_CHOICE, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit
 from sepcal.states_module import states_module

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
-from sepcal.options import FitOptions, refuse_log_choice, spelled_out, to_core
+from sepcal.fit_options import FitOptions
+from sepcal.options import refuse_log_choice, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model
 
 

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 import sepcal
-from sepcal.options import LOG_CHOICE, FitOptions
+from sepcal.fit_options import FitOptions
+from sepcal.options import LOG_CHOICE
 
 Given = Mapping[str, Any]
 

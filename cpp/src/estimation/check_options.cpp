@@ -24,8 +24,8 @@ const Variable& find(const std::vector<Variable>& variables, const std::string& 
 
 void check_at_least(const std::string& option, int value, int least) {
   if (value >= least) return;
-  throw Error(option + " is " + std::to_string(value) + "; it must be at least " +
-              std::to_string(least));
+  throw OptionError({Option{option}, " is " + std::to_string(value) + "; it must be at least " +
+                                         std::to_string(least)});
 }
 
 void check_screens(const Screens& screens) {
@@ -110,8 +110,9 @@ void check_numbers(const FitOptions& options) {
   check_at_least("noise_iterations", options.noise_iterations, 1);
   check_at_least("threads", options.threads, 0);
   if (options.threads > base::most_threads) {
-    throw Error("threads is " + std::to_string(options.threads) + "; it must be at most " +
-                std::to_string(base::most_threads));
+    throw OptionError({Option{"threads"}, " " + std::to_string(options.threads) +
+                                              " is too large; take at most " +
+                                              std::to_string(base::most_threads)});
   }
   if (!(options.loss_width >= 0) || !std::isfinite(options.loss_width)) {
     throw Error("loss_width must be positive, or 0 for the loss's own");

@@ -10,11 +10,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from sepcal.columns import Array
+from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.flight import Flight
 from sepcal.intervals import Intervals, profile_intervals
 from sepcal.models import FiveHoleProbe, Model, PitotStatic, ScalarExample1
-from sepcal.options import FitOptions
 from sepcal.own_model import SeparableModel
 from sepcal.simulation import simulate
 

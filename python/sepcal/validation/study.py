@@ -17,8 +17,9 @@ from sepcal._core import Error
 from sepcal.columns import Array, Columns
 from sepcal.design_trial import DesignTrial
 from sepcal.executors import Executors
+from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
-from sepcal.options import FitOptions, open_ends
+from sepcal.options import open_ends
 from sepcal.own_state_model import AnyModel
 from sepcal.printing import aligned, page_of
 from sepcal.quantiles import binomial_limits
