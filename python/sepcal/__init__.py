@@ -247,3 +247,8 @@ __all__ = [
     "validate",
     "whiten",
 ]
+
+
+def __dir__() -> list[str]:
+    """The public names, without the modules that they come from."""
+    return __all__

@@ -4,6 +4,7 @@
 import copy
 import pickle
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from oracle.cases import CASE_NAMES, state_case
 from own_models import BUILT_IN
 
 PROBE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+PUBLIC_MODULES = {"rivals", "triads"}
 
 
 @pytest.fixture
@@ -217,3 +219,13 @@ def test_version_is_that_of_the_project() -> None:
     numbers = sepcal.__version__.split(".")
     assert len(numbers) == 3
     assert all(number.isdigit() for number in numbers)
+
+
+def test_dir_shows_what_is_public_and_no_internals() -> None:
+    """No modules but the two of __all__, no imported helpers."""
+    assert dir(sepcal) == sorted(sepcal.__all__)
+    shown = {name: getattr(sepcal, name) for name in dir(sepcal) if name != "__version__"}
+    assert {name for name, one in shown.items() if isinstance(one, ModuleType)} == PUBLIC_MODULES
+    assert not [name for name in shown if name.startswith("_")]
+    others = {name: one for name, one in shown.items() if name not in PUBLIC_MODULES}
+    assert not [name for name, one in others.items() if not one.__module__.startswith("sepcal")]
