@@ -125,7 +125,8 @@ def places(root: Path) -> str:
 
 def compile_seconds(root: Path) -> float:
     """CPU time of the compiler on a user's file, the least of three."""
-    cmake = (root / "cpp/CMakeLists.txt").read_text()
+    listed = (root / "cpp/CMakeLists.txt", *(root / "cpp").glob("*.cmake"))
+    cmake = "".join(file.read_text() for file in listed)
     defined = [f"-D{one}" for one in re.findall(r"\bEIGEN_MAX\w*ALIGN_BYTES=\d+", cmake)]
     include = ["-I", str(root / "cpp/include")]
     spent = []
