@@ -3,8 +3,12 @@
 
 Usage: house.py CHECKOUT...   folders and lines of cpp/src, public headers, the longest functions,
                               where density_error stands, the compile time of a user's file with one
-                              model and one fit, and the calls from main to at() of sepcal-pitot fit
-The calls need gdb and CHECKOUT/build/apps; only calls that the optimiser left are counted.
+                              model and one fit, the calls from main to at() of sepcal-pitot fit,
+                              and then a table with a column a checkout
+       house.py --sizes CHECKOUT...   the table alone, within seconds
+The calls need gdb and CHECKOUT/build/apps; only calls that the optimiser left are counted. The
+table counts in the sources, and has "-" for what isn't there. Whether a verb refuses a subject that
+its command line takes it can't see.
 """
 
 from __future__ import annotations
@@ -16,9 +20,12 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
-from rooms import functions
+from named_subjects import find_comparisons, sources
+from rooms import INCLUDE, functions
 
 FACT = "density_error"
 USER = """
@@ -40,6 +47,45 @@ struct TiltTable {
 double fit(const sepcal::Record& record) { return sepcal::fit(TiltTable{}, record)["s"].value; }
 """
 FLAGS = ["-std=c++20", "-O2", "-isystem", "/usr/include/eigen3"]
+NOTHING = "-"
+LOOP = ("check", "fit", "compare", "diagnose", "add", "intervals", "apply", "report", "save")
+AIRCRAFT = "apps/sepcal_aircraft.cpp"
+OWN = "python/sepcal/own_commands.py"
+OWN_STATES = "own, with a state"
+COMMANDS = {  # of each subject: the file whose verbs it has
+    "probes": "apps/sepcal_pitot.cpp",
+    **dict.fromkeys(("path", "longitudinal", "lateral", "six-dof", "aero"), AIRCRAFT),
+    "own, static": OWN,
+    OWN_STATES: OWN,
+}
+VERB = re.compile(r"""(?:add_subcommand\(|add_later_verb\(|_add\(commands,)\s*"([\w-]+)\"""")
+SUBJECTS = {
+    "boom with vanes": "vane.?boom",
+    "five-hole probe": "five.?hole",
+    "Pitot-static tube": "pitot.?static",
+}
+KINDS = ("own", "registration", "docs", "tests", "lab and scripts", "others")
+PRODUCT = ("cpp", "apps", "python", ":!*.pyi", ":!*rivals*")  # rivals have options of their own
+STANDS = {
+    "option `noise_tolerance`": r"\bnoise[_-]tolerance\b",
+    "choice `jacobian`": r"ProjectedJacobian|\"(--)?jacobian\"|options\(\)\.jacobian|^ +jacobian:",
+    "result field `held_out_gain`": r"\bheld_out_gain\b",
+    "result field `standard_error_blocks`": r"\bstandard_error_blocks\b",
+    "effect `upwash`": r"\bupwash\b",
+}
+WING = (
+    "cpp/src/flight/aircraft/*.?pp",
+    "cpp/include/sepcal/flight/aircraft.hpp",
+    "cpp/src/bindings/aircraft.cpp",
+    AIRCRAFT,
+    "python/sepcal/aircraft_fits.py",
+    "python/sepcal/reporting/trajectory.py",
+)
+PLUMBING = (
+    "cpp/src/flight/json/*.?pp",
+    "cpp/src/flight/aircraft/aircraft_json.cpp",
+    "cpp/src/bindings/*.?pp",
+)
 
 
 def folders(root: Path) -> str:
@@ -79,7 +125,8 @@ def places(root: Path) -> str:
 
 def compile_seconds(root: Path) -> float:
     """CPU time of the compiler on a user's file, the least of three."""
-    cmake = (root / "cpp/CMakeLists.txt").read_text()
+    listed = (root / "cpp/CMakeLists.txt", *(root / "cpp").glob("*.cmake"))
+    cmake = "".join(file.read_text() for file in listed)
     defined = [f"-D{one}" for one in re.findall(r"\bEIGEN_MAX\w*ALIGN_BYTES=\d+", cmake)]
     include = ["-I", str(root / "cpp/include")]
     spent = []
@@ -131,23 +178,164 @@ def calls(root: Path) -> list[str]:
     ]
 
 
-def main(roots: list[str]) -> int:
-    """Prints a page for each checkout."""
-    for name in roots:
+def verbs(root: Path, subject: str) -> set[str]:
+    """Those of the loop that a command line offers for a subject, by the sources."""
+    command = root / COMMANDS[subject]
+    text = command.read_text() if command.is_file() else ""
+    if subject == OWN_STATES and "own_state_model" not in text:
+        return set()
+    if '"instrument.hpp"' in text:  # the command line that apps share
+        text += (root / "apps/command_line.cpp").read_text()
+    found = set(VERB.findall(text))
+    page = root / "python/sepcal/reporting/command.py"
+    if found and page.is_file() and (COMMANDS[subject] != OWN or "add_model(" in page.read_text()):
+        found.add("report")
+    if "--output" in text:
+        found.add("save")
+    return found & set(LOOP)
+
+
+def loop(root: Path, subject: str) -> str:
+    """What a subject lacks of the loop."""
+    offered = verbs(root, subject)
+    lacking = [verb for verb in LOOP if verb not in offered]
+    return ("all but " + ", ".join(lacking) if lacking else "all") if offered else NOTHING
+
+
+def whole_loops(root: Path) -> str:
+    """How many subjects have all of it."""
+    return f"{sum(verbs(root, name) == set(LOOP) for name in COMMANDS)} of {len(COMMANDS)}"
+
+
+def grep(root: Path, pattern: str, *paths: str) -> dict[str, int]:
+    """Lines in which a pattern stands, by file, whatever its case."""
+    done = subprocess.run(
+        ["git", "-C", str(root), "grep", "-icIE", pattern, "--", *paths],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode > 1:
+        sys.exit(f"{root}: {done.stderr.strip()}")
+    found = (line.rpartition(":") for line in done.stdout.splitlines())
+    return {file: int(lines) for file, _, lines in found}
+
+
+def recipe() -> set[str]:
+    """Names of the files that CONTRIBUTING.md tells a new subject to touch."""
+    text = (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text()
+    section = text.partition("\n## A subject\n")[2].partition("\n## ")[0]
+    return {Path(file).name for file in re.findall(r"[\w/]+\.(?:[ch]pp|pyi?|toml)\b", section)}
+
+
+def kind(file: str, subject: str, registered: set[str]) -> str:
+    """Which of KINDS a file is that names a subject."""
+    if file.startswith("tests/"):
+        return "tests"
+    if file.endswith(".md") or file.startswith(("docs/", "examples/")):
+        return "docs"
+    if Path(file).name in {*registered, "_core.pyi"}:
+        return "registration"
+    if file.startswith(("lab/", "scripts/", "benchmarks/")):
+        return "lab and scripts"
+    return "own" if re.search(subject, file, re.IGNORECASE) else "others"
+
+
+def subject_files(root: Path, subject: str) -> str:
+    """How many files name a subject, and what they are."""
+    registered = recipe()
+    counts = Counter(kind(file, subject, registered) for file in grep(root, subject))
+    told = ", ".join(f"{counts[name]} {name}" for name in KINDS if counts[name])
+    return f"{counts.total()}: {told}" if counts else NOTHING
+
+
+def stands(root: Path, pattern: str) -> str:
+    """How often something is spelled by hand in the product."""
+    found = grep(root, pattern, *PRODUCT)
+    return f"{sum(found.values())} lines, {len(found)} files" if found else NOTHING
+
+
+def comparisons(root: Path) -> str:
+    """How often a subject is known by its name."""
+    texts = list(sources(root))
+    return str(len(find_comparisons(texts))) if texts else NOTHING
+
+
+def headers(root: Path) -> tuple[int, int]:
+    """How many are public, and how many lie below detail/."""
+    found = list((root / "cpp/include").rglob("*.hpp"))
+    hidden = sum("detail" in header.parts for header in found)
+    return len(found) - hidden, hidden
+
+
+def extent(root: Path, patterns: tuple[str, ...]) -> str:
+    """Lines and files of what is there."""
+    files = {file for pattern in patterns for file in root.glob(pattern)}
+    lines = sum(len(file.read_text().splitlines()) for file in files)
+    return f"{lines} lines, {len(files)} files" if files else NOTHING
+
+
+def includes(root: Path) -> str:
+    """How many a file of cpp/src has."""
+    found = {file: INCLUDE.findall(file.read_text()) for file in root.glob("cpp/src/**/*.?pp")}
+    if not found:
+        return NOTHING
+    most = max(sorted(found), key=lambda file: len(found[file]))
+    mean = sum(map(len, found.values())) / len(found)
+    return f"mean {mean:.1f}, most {len(found[most])} ({most.name})"
+
+
+def rows() -> dict[str, Callable[[Path], str]]:
+    """What the table tells of a checkout, by what is written before it."""
+    return {
+        "subjects with the whole loop": whole_loops,
+        **{f"verbs of: {name}": partial(loop, subject=name) for name in COMMANDS},
+        **{
+            f"files that name the {name}": partial(subject_files, subject=pattern)
+            for name, pattern in SUBJECTS.items()
+        },
+        **{name: partial(stands, pattern=pattern) for name, pattern in STANDS.items()},
+        "comparisons with a subject's name outside its own files": comparisons,
+        "public headers outside detail/": lambda root: str(headers(root)[0] or NOTHING),
+        "headers in detail/": lambda root: str(headers(root)[1] or NOTHING),
+        "the aircraft's wing": partial(extent, patterns=WING),
+        "JSON and bindings": partial(extent, patterns=PLUMBING),
+        "cpp/src": partial(extent, patterns=("cpp/src/**/*.?pp",)),
+        "includes of a file of cpp/src": includes,
+    }
+
+
+def commit(root: Path) -> str:
+    """What is checked out there."""
+    asked = ["git", "-C", str(root), "describe", "--always", "--dirty", "--exclude=*"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or root.resolve().name
+
+
+def table(roots: list[Path]) -> str:
+    """All rows in Markdown, with a column a checkout."""
+    lines = [["", *map(commit, roots)], ["---"] * (len(roots) + 1)]
+    lines += [[name, *(tell(root) for root in roots)] for name, tell in rows().items()]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def main(names: list[str], *, sizes: bool) -> int:
+    """Prints a page for each checkout, and the table of all."""
+    for name in [] if sizes else names:
         root = Path(name)
         print(f"{name}\n\nfolders of cpp/src:\n{folders(root)}")
-        headers = list((root / "cpp/include").rglob("*.hpp"))
-        hidden = sum("detail" in header.parts for header in headers)
-        print(f"public headers: {len(headers) - hidden}, and {hidden} in detail/")
+        public, hidden = headers(root)
+        print(f"public headers: {public}, and {hidden} in detail/")
         print(f"longest functions:\n{longest(root)}")
         print(f'"{FACT}" stands in: {places(root)}')
         print(f"a user's file with one model and one fit: {compile_seconds(root):.1f} s of CPU")
         chain = calls(root)
         print(f"from main to the model: {len(chain) - 1} calls: {' < '.join(chain)}\n")
+    print(table([Path(name) for name in names]))
     return 0
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
+    alone = sys.argv[1:2] == ["--sizes"]
+    checkouts = sys.argv[2:] if alone else sys.argv[1:]
+    if not checkouts:
         sys.exit((__doc__ or "").strip())
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(checkouts, sizes=alone))

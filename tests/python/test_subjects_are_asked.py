@@ -1,51 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subject is asked, never named: code that looks at a name knows what that subject should say.
+"""A subject is asked, never named: code that looks at a name knows what that subject should say."""
 
-A subject's own files give its name once, and a line registers it. The two apps of sensors are of
-their probes, whose options they take, and a two-step fit's file has a path and coefficients.
-"""
-
-from __future__ import annotations
-
-import re
-from collections.abc import Iterator
+import sys
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-NAMES = (
-    "five-hole", "five_hole", "vane-boom", "vane_boom", "pitot-static", "pitot_static",
-    "magnetometer", "magnetometer-norm", "magnetometer_norm", "path", "longitudinal", "lateral",
-    "six-dof", "aero", "sepcal-pitot", "sepcal-mag", "sepcal-aircraft",
-)  # fmt: skip
-NAME = rf"[\"'](?:{'|'.join(NAMES)})[\"'](?:sv)?"
-COMPARED = re.compile(
-    rf"(?:==|!=)\s*{NAME}|{NAME}\s*(?:==|!=)"
-    rf"|(?:starts_with|ends_with|startswith|endswith|compare|contains|strcmp)\([^()]*{NAME}"
-    rf"|\bin \(?{NAME}(?:, {NAME})+|\bcase {NAME}"
-)
-OWN_FILES = r"^apps/sepcal_(pitot|mag)\.cpp$|^cpp/src/flight/aircraft/"
-SHAPES = r"^python/sepcal/(aircraft|logs/recording)\.py$"  # "axes" of an aircraft, not its name
+sys.path.insert(0, str(ROOT / "scripts" / "parts"))
 
-
-def sources() -> Iterator[tuple[str, str]]:
-    for pattern in ("cpp/**/*.[ch]pp", "apps/**/*.[ch]pp", "python/sepcal/**/*.py"):
-        for file in sorted(ROOT.glob(pattern)):
-            yield str(file.relative_to(ROOT)), file.read_text()
-
-
-def find_comparisons(texts: Iterator[tuple[str, str]]) -> list[str]:
-    return [
-        f"{name}: {match[0]}"
-        for name, text in texts
-        if not re.search(f"{OWN_FILES}|{SHAPES}", name)
-        for match in COMPARED.finditer(text)
-    ]
+from named_subjects import find_comparisons, sources  # noqa: E402
 
 
 def test_no_subject_is_named() -> None:
-    assert not find_comparisons(sources())
+    assert not find_comparisons(sources(ROOT))
 
 
 @pytest.mark.parametrize(
@@ -61,4 +29,4 @@ def test_no_subject_is_named() -> None:
     ],
 )
 def test_one_that_is_planted_is_found(planted: str) -> None:
-    assert find_comparisons(iter([("cpp/src/flight/verbs/compare.cpp", planted)]))
+    assert find_comparisons([("cpp/src/flight/verbs/compare.cpp", planted)])
