@@ -8,6 +8,7 @@
 #include "export_arguments.hpp"
 #include "fit_arguments.hpp"
 #include "instrument.hpp"
+#include "interval_arguments.hpp"
 #include "option_values.hpp"
 #include "running.hpp"
 #include "sepcal/fit.hpp"
@@ -29,28 +30,11 @@ void add_simulate_options(CLI::App& simulate, Arguments& arguments, Instrument& 
   simulation.add_to(simulate);
 }
 
-void add_interval_options(CLI::App& intervals, Arguments& arguments) {
-  intervals
-      .add_option("--level", arguments.level,
-                  "how often an interval should hold the true value [0.95]")
-      ->type_name("LEVEL");
-  intervals
-      .add_option("--parameter", arguments.parameters, "only this one; may be given several times")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  add_file(intervals, "-o,--output", arguments.output, "writes the intervals there")
-      ->type_name("I.json");
-}
-
 void add_diagnose_options(CLI::App& diagnose, Arguments& arguments, DiagnoseArguments& asked) {
   add_file(diagnose, "-o,--output", arguments.output,
            "writes the diagnosis there, with --auto the calibration")
       ->type_name("D.json");
   asked.add_to(diagnose);
-  diagnose
-      .add_option("--inject", arguments.inject,
-                  "puts an effect into the measurements first: would it have been found?")
-      ->type_name("E=SIZE");
 }
 
 void add_adding_options(CLI::App& add, Arguments& arguments) {
@@ -107,7 +91,8 @@ class CommandLine {
     add_json(*check_);
 
     add_flight(*fit_);
-    add_more_flights(*fit_, "other flights, fitted jointly with it; their names end in .csv");
+    add_more_flights(*fit_, typed_.more_flights,
+                     "other flights, fitted jointly with it; their names end in .csv");
     fit_->add_option("--own", typed_.own,
                      "of several flights: parameters that each has for itself, e.g. wind")
         ->type_name("NAME[,...]")
@@ -125,7 +110,9 @@ class CommandLine {
     add_json(*fit_);
 
     instrument.add_flight_options(*compare_);
-    add_interval_options(*intervals_, typed_);
+    intervals_asked_.add_to(*intervals_);
+    add_file(*intervals_, "-o,--output", typed_.output, "writes the intervals there")
+        ->type_name("I.json");
     add_diagnose_options(*diagnose_, typed_, diagnosis_);
     instrument.add_flight_options(*diagnose_);
     add_adding_options(*add_, typed_);
@@ -148,12 +135,12 @@ class CommandLine {
     if (check_->parsed()) return verbs.check();
     if (fit_->parsed()) return verbs.fit(fit_arguments_.resolve());
     if (compare_->parsed()) return verbs.compare();
-    if (intervals_->parsed()) return verbs.intervals();
+    if (intervals_->parsed()) return verbs.intervals(intervals_asked_.resolve());
     if (add_->parsed()) return verbs.add();
     if (apply_->parsed()) return verbs.apply();
     if (export_->parsed()) return verbs.export_to(exporting_.resolve());
     if (simulate_->parsed()) return verbs.simulate(simulation_.resolve());
-    if (diagnose_->parsed()) return verbs.diagnose(diagnosis_.resolve(), diagnosis_.adds());
+    if (diagnose_->parsed()) return verbs.diagnose(diagnosis_);
     return verbs.effects();
   }
 
@@ -162,7 +149,9 @@ class CommandLine {
   CLI::App* add_later_verb(const char* name, const char* what, bool of_several = true) {
     CLI::App& verb = *cli_.add_subcommand(name, what);
     add_flight(verb);
-    if (of_several) add_more_flights(verb, "the other flights of a joint fit, names in .csv");
+    if (of_several)
+      add_more_flights(verb, typed_.more_flights,
+                       "the other flights of a joint fit, names in .csv");
     add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
     typed_.log.add_log_choice_to(verb);
     add_explain(verb);
@@ -172,17 +161,6 @@ class CommandLine {
 
   void add_flight(CLI::App& verb) {
     add_file(verb, "FLIGHT", typed_.flight, "the log, a CSV file")->required();
-  }
-
-  /// By their ending they are told from what may follow.
-  void add_more_flights(CLI::App& verb, const std::string& what) {
-    verb.validate_positionals();
-    verb.add_option("MORE", typed_.more_flights, what)
-        ->type_name("CSV")
-        ->check([](const std::string& file) {
-          const bool is_log = file.ends_with(".csv") || file.ends_with(".CSV");
-          return std::string(is_log ? "" : "the name of a log ends in .csv");
-        });
   }
 
   void add_json(CLI::App& verb) {
@@ -200,6 +178,7 @@ class CommandLine {
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
   DiagnoseArguments diagnosis_;
+  IntervalArguments intervals_asked_;
   ExportArguments exporting_;
   CLI::App* check_;
   CLI::App* fit_;

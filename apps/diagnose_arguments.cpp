@@ -50,6 +50,19 @@ void DiagnoseArguments::add_to(CLI::App& diagnose) {
                   "classic, all of it")
       ->type_name("BOUND")
       ->capture_default_str();
+  diagnose
+      .add_option("--inject", inject_,
+                  "puts an effect into the measurements first: would it have been found?")
+      ->type_name("E=SIZE");
+}
+
+std::optional<SizedEffect> DiagnoseArguments::injected() const {
+  if (inject_.empty()) return std::nullopt;
+  SizedEffect injected = parse_sized_effect(inject_, "--inject");
+  if (adds_) {
+    throw Error("--inject and --auto exclude each other: what is injected is not in the log");
+  }
+  return injected;
 }
 
 StepwiseOptions DiagnoseArguments::resolve() const {

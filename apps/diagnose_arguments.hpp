@@ -22,11 +22,15 @@ class DiagnoseArguments {
   /// Whether what is missing is to be added as well.
   bool adds() const { return adds_; }
 
+  /// What is put into the measurements first. Throws Error for another form, and with --auto.
+  std::optional<SizedEffect> injected() const;
+
   /// Throws Error for a choice that there isn't and for options that contradict each other.
   StepwiseOptions resolve() const;
 
  private:
   bool adds_ = false;
+  std::string inject_;  // "E=SIZE", or empty
   std::optional<std::size_t> most_;
   std::vector<std::string> only_;
   std::vector<std::string> error_budget_;

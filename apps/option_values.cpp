@@ -59,4 +59,12 @@ CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file
   return verb.add_option(name, file, description)->check(refuse_empty);
 }
 
+void add_more_flights(CLI::App& verb, std::vector<std::string>& files, const std::string& what) {
+  verb.validate_positionals();
+  verb.add_option("MORE", files, what)->type_name("CSV")->check([](const std::string& file) {
+    const bool is_log = file.ends_with(".csv") || file.ends_with(".CSV");
+    return std::string(is_log ? "" : "the name of a log ends in .csv");
+  });
+}
+
 }  // namespace sepcal::app

@@ -44,4 +44,7 @@ CLI::Option* add_whole_number(CLI::App& verb, const std::string& name, T& value,
 CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file,
                       const std::string& description);
 
+/// The argument MORE: other logs, which by their ending are told from what may follow.
+void add_more_flights(CLI::App& verb, std::vector<std::string>& files, const std::string& what);
+
 }  // namespace sepcal::app

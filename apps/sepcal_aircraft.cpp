@@ -14,6 +14,7 @@
 #include "diagnose_arguments.hpp"
 #include "fit_arguments.hpp"
 #include "flight/files/text_file.hpp"
+#include "interval_arguments.hpp"
 #include "option_values.hpp"
 #include "progress.hpp"
 #include "running.hpp"
@@ -43,6 +44,12 @@ class ModelArguments {
                     "aircraft; aero: its coefficients by equation error")
         ->type_name("MODEL")
         ->required();
+  }
+
+  AircraftModel model() const { return find_aircraft_model(model_); }
+
+  void add_to_fit(CLI::App& verb) {
+    add_model_to(verb);
     verb.add_option("--method", method_,
                     "output-error: states are integrated; filter-error: noise drives them too, and "
                     "its size is estimated")
@@ -182,10 +189,13 @@ std::map<std::string, double> parse_deviations(const std::string& option,
 class AircraftApp {
  public:
   explicit AircraftApp(CLI::App& cli)
-      : fit_(*cli.add_subcommand("fit", "fits a flight path or an aircraft to a flight")),
+      : check_(*cli.add_subcommand("check", "says what a log is, and what that does to a fit")),
+        fit_(*cli.add_subcommand("fit", "fits a flight path or an aircraft to a flight")),
         two_step_(*cli.add_subcommand("two-step",
                                       "reconstructs the path, then fits the aerodynamics to it")),
         compare_(*cli.add_subcommand("compare", "shows where the model fails")),
+        intervals_(*cli.add_subcommand("intervals",
+                                       "says how far each parameter may lie, by the likelihood")),
         diagnose_(*cli.add_subcommand("diagnose", "names the effect or regressor that is missing")),
         add_(*cli.add_subcommand("add", "adds an effect and fits again")),
         apply_(*cli.add_subcommand("apply", "adds what was flown to a log")),
@@ -193,16 +203,24 @@ class AircraftApp {
         simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
         effects_(
             *cli.add_subcommand("effects", "lists effects, regressors and how to write more")) {
-    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_, &apply_, &track_}) {
+    for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_,
+                           &apply_, &track_}) {
       add_flight(*verb);
     }
-    model_.add_model_to(fit_);
+    add_more_flights(fit_, more_flights_, "other flights, fitted together with it; names in .csv");
+    for (CLI::App* verb : {&compare_, &intervals_, &diagnose_, &add_}) {
+      add_more_flights(*verb, more_flights_,
+                       "the other flights of a fit of several; names in .csv");
+    }
+    model_.add_model_to(check_);
+    fit_arguments_.add_log_choice_to(check_);
+    model_.add_to_fit(fit_);
     for (CLI::App* verb : {&fit_, &two_step_}) {
       model_.add_to(*verb);
       fit_arguments_.add_to(*verb);
       add_output(*verb, "BASE.json", false);
     }
-    for (CLI::App* verb : {&compare_, &diagnose_, &add_, &apply_, &track_}) {
+    for (CLI::App* verb : {&compare_, &intervals_, &diagnose_, &add_, &apply_, &track_}) {
       add_file(*verb, "FIT", base_, "what fit wrote with -o")->required();
     }
     for (CLI::App* verb : {&fit_, &two_step_, &apply_, &track_}) {
@@ -218,7 +236,10 @@ class AircraftApp {
                    "standard deviation of a state where a segment begins; else as good as "
                    "unknown; may be repeated");
     add_.add_option("E", effect_, "the effect: Cm[alpha^2], imu_late (see effects)")->required();
+    add_output(check_, "C.json", false);
     add_output(compare_, "COMPARED.json", false);
+    add_output(intervals_, "I.json", false);
+    profiles_.add_to(intervals_);
     add_output(diagnose_, "D.json", false);
     diagnosis_.add_to(diagnose_);
     add_output(add_, "NEXT.json", false);
@@ -231,19 +252,21 @@ class AircraftApp {
     add_file(simulate_, "--geometry", geometry_, "writes the aircraft there, as fit takes it")
         ->type_name("AIRCRAFT.json");
     simulation_.add_to(simulate_);
-    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_, &apply_, &track_,
-                           &simulate_, &effects_}) {
+    for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_,
+                           &apply_, &track_, &simulate_, &effects_}) {
       verb->add_flag("--json", wishes_.json, "prints the result as JSON on standard output");
     }
-    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &diagnose_, &add_}) {
+    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_}) {
       verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
     }
   }
 
   int perform() const {
+    if (check_.parsed()) return check();
     if (fit_.parsed()) return fit();
     if (two_step_.parsed()) return two_step();
     if (compare_.parsed()) return compare();
+    if (intervals_.parsed()) return intervals();
     if (diagnose_.parsed()) return diagnose();
     if (add_.parsed()) return add();
     if (apply_.parsed()) return apply();
@@ -264,9 +287,32 @@ class AircraftApp {
         ->required(required);
   }
 
-  Flight read_flight() const {
+  static Flight read_flight(const std::string& file) {
     ProgressLine line;
-    return read_csv(flight_, [&](double fraction) { line.show("reading " + flight_, fraction); });
+    return read_csv(file, [&](double fraction) { line.show("reading " + file, fraction); });
+  }
+
+  Flight read_flight() const { return read_flight(flight_); }
+
+  /// All that were given as one; in the order of a fit that there is already.
+  Flight read_flights(const LogChoice& log, const AircraftFit* fitted = nullptr) const {
+    if (more_flights_.empty()) return read_flight();
+    std::vector<Flight> flights{read_flight()};
+    for (const std::string& file : more_flights_) flights.push_back(read_flight(file));
+    std::vector<std::string> notes;
+    Flight joined = join_aircraft_flights(std::move(flights), log, notes, fitted);
+    tell_notes(notes);
+    return joined;
+  }
+
+  Flight read_flights(const AircraftFit& base) const {
+    return read_flights(base.options.calibration.log, &base);
+  }
+
+  std::vector<std::string> input_files(const std::string& other) const {
+    std::vector<std::string> files{flight_, other};
+    files.insert(files.end(), more_flights_.begin(), more_flights_.end());
+    return files;
   }
 
   AircraftOptions resolve_fit() const {
@@ -275,10 +321,18 @@ class AircraftApp {
     return options;
   }
 
+  int check() const {
+    Delivery delivery(wishes_, {flight_});
+    const FlightCheck check =
+        check_aircraft(model_.model(), read_flight(), fit_arguments_.over({}), as_typed);
+    delivery.deliver(to_json(check), to_text(check));
+    return 0;
+  }
+
   int fit() const {
-    Delivery delivery(wishes_, {flight_, model_.geometry()});
+    Delivery delivery(wishes_, input_files(model_.geometry()));
     AircraftOptions options = resolve_fit();
-    const Flight flight = read_flight();
+    const Flight flight = read_flights(options.calibration.log);
     ProgressLine line;
     options.calibration.fit.progress = shown_on(line);
     const AircraftFit fitted = fit_aircraft(flight, options);
@@ -296,17 +350,31 @@ class AircraftApp {
   }
 
   int compare() const {
-    Delivery delivery(wishes_, {flight_, base_});
+    Delivery delivery(wishes_, input_files(base_));
     const AircraftFit base = read_aircraft_fit(base_);
-    delivery.deliver(compare_aircraft(base, read_flight()));
+    delivery.deliver(compare_aircraft(base, read_flights(base)));
     return 0;
   }
 
-  int diagnose() const {
-    Delivery delivery(wishes_, {flight_, base_});
-    StepwiseOptions options = diagnosis_.resolve();
+  int intervals() const {
+    Delivery delivery(wishes_, input_files(base_));
     const AircraftFit base = read_aircraft_fit(base_);
-    const Flight flight = read_flight();
+    ProfileOptions asked = profiles_.resolve();
+    const Flight flight = read_flights(base);
+    ProgressLine line;
+    asked.progress = shown_on(line);
+    const FlightIntervals intervals = find_aircraft_intervals(base, flight, asked);
+    line.clear();
+    delivery.deliver(intervals);
+    return exit_code(intervals.status);
+  }
+
+  int diagnose() const {
+    Delivery delivery(wishes_, input_files(base_));
+    StepwiseOptions options = diagnosis_.resolve();
+    const std::optional<SizedEffect> injected = diagnosis_.injected();
+    const AircraftFit base = read_aircraft_fit(base_);
+    const Flight flight = read_flights(base);
     ProgressLine line;
     options.diagnosis.threads = base.options.calibration.fit.threads;
     options.diagnosis.progress = shown_on(line);
@@ -318,16 +386,18 @@ class AircraftApp {
       const int fitted = exit_code(result.fitted.fit.status);
       return fitted != 0 ? fitted : exit_code(result.course.last.diagnosis.verdict);
     }
-    const FlightDiagnosis diagnosis = diagnose_aircraft(base, flight, options.diagnosis);
+    const FlightDiagnosis diagnosis =
+        injected ? diagnose_aircraft_with(*injected, base, flight, options.diagnosis)
+                 : diagnose_aircraft(base, flight, options.diagnosis);
     line.clear();
     delivery.deliver(diagnosis);
     return exit_code(diagnosis.diagnosis.verdict);
   }
 
   int add() const {
-    Delivery delivery(wishes_, {flight_, base_});
+    Delivery delivery(wishes_, input_files(base_));
     const AircraftFit base = read_aircraft_fit(base_);
-    const AircraftFit next = add_to_aircraft(base, read_flight(), effect_);
+    const AircraftFit next = add_to_aircraft(base, read_flights(base), effect_);
     delivery.deliver(next);
     return exit_code(next.fit.status);
   }
@@ -386,6 +456,7 @@ class AircraftApp {
 
   Delivery::Wishes wishes_;
   std::string flight_;
+  std::vector<std::string> more_flights_;
   std::string base_;
   std::string effect_;
   std::string truth_;
@@ -397,9 +468,12 @@ class AircraftApp {
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
   DiagnoseArguments diagnosis_;
+  IntervalArguments profiles_;
+  CLI::App& check_;
   CLI::App& fit_;
   CLI::App& two_step_;
   CLI::App& compare_;
+  CLI::App& intervals_;
   CLI::App& diagnose_;
   CLI::App& add_;
   CLI::App& apply_;

@@ -134,30 +134,26 @@ int Verbs::compare() const {
   return 0;
 }
 
-int Verbs::intervals() const {
+int Verbs::intervals(ProfileOptions asked) const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   const auto [base, flight] = read_whole_subject();
   ProgressLine line;
-  const FlightIntervals intervals = find_intervals(
-      base, flight,
-      {.level = arguments_.level, .names = arguments_.parameters, .progress = shown_on(line)});
+  asked.progress = shown_on(line);
+  const FlightIntervals intervals = find_intervals(base, flight, asked);
   line.clear();
   delivery.deliver(intervals);
   return exit_code(intervals.status);
 }
 
-int Verbs::diagnose(StepwiseOptions options, bool adds) const {
+int Verbs::diagnose(const DiagnoseArguments& asked) const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
-  std::optional<SizedEffect> injected;
-  if (!arguments_.inject.empty()) injected = parse_sized_effect(arguments_.inject, "--inject");
-  if (injected && adds) {
-    throw Error("--inject and --auto exclude each other: what is injected is not in the log");
-  }
+  StepwiseOptions options = asked.resolve();
+  const std::optional<SizedEffect> injected = asked.injected();
   const auto [base, flight] = read_whole_subject();
   ProgressLine line;
   options.diagnosis.threads = base.options.fit.threads;
   options.diagnosis.progress = shown_on(line);
-  if (adds) {
+  if (asked.adds()) {
     StepwiseCalibration result = diagnose_stepwise(base, flight, {}, options);
     find_departures(result.calibration, flight);
     line.clear();

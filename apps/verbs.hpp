@@ -5,11 +5,12 @@
 
 #include <string>
 
+#include "diagnose_arguments.hpp"
 #include "fit_arguments.hpp"
 #include "instrument.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/export.hpp"
-#include "sepcal/flight/stepwise.hpp"
+#include "sepcal/profile.hpp"
 
 namespace sepcal::app {
 
@@ -21,9 +22,6 @@ struct Arguments {
   std::string output;
   std::string truth;
   std::string effect;
-  std::string inject;  // "E=SIZE", or empty
-  double level = 0.95;
-  std::vector<std::string> parameters;
   bool json = false;
   bool explain = false;   // the whole message of the fit
   bool stream = false;    // of fit and apply
@@ -42,9 +40,9 @@ class Verbs {
   int check() const;
   int fit(CalibrationOptions options) const;
   int compare() const;
-  int intervals() const;
-  /// With `adds` the calibration is the result, and its status goes before the verdict.
-  int diagnose(StepwiseOptions options, bool adds) const;
+  int intervals(ProfileOptions asked) const;
+  /// Where it adds, the calibration is the result, and its status goes before the verdict.
+  int diagnose(const DiagnoseArguments& asked) const;
   int add() const;
   int apply() const;
   /// To the file of -o; `export` is a word of C++.

@@ -107,6 +107,7 @@ __all__: list[str] = [
     "magnetometer_in_nine_states",
     "option_rows",
     "parse_calibration",
+    "parse_sized_effect",
     "pitot_static",
     "predict",
     "prepare_columns",
@@ -4007,6 +4008,7 @@ def parse_calibration(
     arg2: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
     arg3: Model | None,
 ) -> Calibration: ...
+def parse_sized_effect(arg0: str) -> tuple[str, list[float]]: ...
 def pitot_static() -> Model: ...
 def predict(
     arg0: Model,

@@ -17,12 +17,14 @@ __all__: list[str] = [
     "Steps",
     "TrajectoryOptions",
     "aero_coefficients",
+    "check",
     "damped_sinusoids",
     "discretise",
     "discretise_inputs",
     "fit",
     "flight_path",
     "iterate_least_squares",
+    "join",
     "matrix_exponential",
     "parse",
     "propagate",
@@ -183,7 +185,11 @@ class Fit:
     ) -> sepcal._core.Applied: ...
     def compare(self, arg0: sepcal._core.Flight) -> sepcal._core.Comparison: ...
     def diagnose(
-        self, arg0: sepcal._core.Flight, arg1: sepcal._core.DiagnosisOptions
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: tuple[str, collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]]
+        | None,
+        arg2: sepcal._core.DiagnosisOptions,
     ) -> sepcal._core.Diagnosis: ...
     def diagnose_stepwise(
         self,
@@ -191,6 +197,12 @@ class Fit:
         arg1: typing.SupportsInt | typing.SupportsIndex | None,
         arg2: sepcal._core.DiagnosisOptions,
     ) -> SteppedFit: ...
+    def intervals(
+        self,
+        arg0: sepcal._core.Flight,
+        arg1: typing.SupportsFloat | typing.SupportsIndex,
+        arg2: collections.abc.Sequence[str],
+    ) -> sepcal._core.Intervals: ...
     def save(self, arg0: str) -> None: ...
     def smooth(
         self,
@@ -268,6 +280,7 @@ def aero_coefficients(
     arg3: collections.abc.Sequence[str],
     arg4: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[dict[str, numpy.typing.NDArray[numpy.float64]], list[str], float, list[str]]: ...
+def check(arg0: str, arg1: sepcal._core.Flight) -> sepcal._core.FlightCheck: ...
 def damped_sinusoids(arg0: typing.SupportsInt | typing.SupportsIndex) -> sepcal._core.Model: ...
 def discretise(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
@@ -318,6 +331,11 @@ def iterate_least_squares(
     int,
     float,
 ]: ...
+def join(
+    arg0: collections.abc.Sequence[sepcal._core.Flight],
+    arg1: sepcal._core.Options,
+    arg2: Fit | None,
+) -> sepcal._core.Flight: ...
 def matrix_exponential(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...

@@ -16,13 +16,14 @@ from sepcal.diagnosis import Diagnosis
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight, to_flight
 from sepcal.geometry import Aircraft
-from sepcal.options import spelled_out, to_core
+from sepcal.intervals import Intervals
+from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import name_effects
 from sepcal.pages import Page
 from sepcal.results import Fit
 from sepcal.smoothing import Smoothed
 from sepcal.states_module import states_module
-from sepcal.stepwise import Stepwise, diagnosis_options
+from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
 from sepcal.tracking import Track
 from sepcal.trajectories import FlightPath
 from sepcal.whole_files import name_of
@@ -96,7 +97,7 @@ class AircraftFit(Fit):
         parameters = len(self.parameters)
         return f"{self.model} by {self.method}: {self.status}, {parameters} parameters"
 
-    def compare(self, flight: Flight | None = None) -> Comparison:
+    def compare(self, flight: Flight | Sequence[Flight] | None = None) -> Comparison:
         """Residuals on a flight, by default the fitted one.
 
         Of another flight the initial states are estimated anew, all else is held.
@@ -109,8 +110,9 @@ class AircraftFit(Fit):
     @overload
     def diagnose(
         self,
-        flight: Flight | None = None,
+        flight: Flight | Sequence[Flight] | None = None,
         *,
+        inject: Mapping[str, float | Sequence[float]] | None = None,
         auto: Literal[False] = False,
         only: Sequence[str] = (),
         simulations: int = 40,
@@ -123,7 +125,7 @@ class AircraftFit(Fit):
     @overload
     def diagnose(
         self,
-        flight: Flight | None = None,
+        flight: Flight | Sequence[Flight] | None = None,
         *,
         auto: Literal[True],
         most: int | None = None,
@@ -137,8 +139,9 @@ class AircraftFit(Fit):
 
     def diagnose(
         self,
-        flight: Flight | None = None,
+        flight: Flight | Sequence[Flight] | None = None,
         *,
+        inject: Mapping[str, float | Sequence[float]] | None = None,
         auto: bool = False,
         most: int | None = None,
         only: Sequence[str] = (),
@@ -156,6 +159,8 @@ class AircraftFit(Fit):
 
         Args:
             flight: By default the fitted one.
+            inject: One effect with its size (or one a coefficient) that is put into the
+                measurements first, to see whether it would have been found.
             auto: Adds what is advised, fits and asks again, until nothing passes.
             most: Of auto: at most so many effects [no limit].
             only: The candidates, in place of those that are known.
@@ -172,10 +177,11 @@ class AircraftFit(Fit):
             A Diagnosis; with auto a Stepwise, whose `fitted` has what was added.
 
         Raises:
-            Error: Bad input, as in fit(); another model than Aero; most below 1 or without auto; a
-                name in only that is no regressor.
+            Error: Bad input, as in fit(); an effect to inject that the fit has, or beside auto;
+                most below 1 or without auto; a name in only that is no regressor.
         """
         chosen = self._or_fitted(flight, "diagnose(")
+        injected = to_injected(inject, auto=auto)
         asked = diagnosis_options(
             auto=auto,
             most=most,
@@ -187,11 +193,32 @@ class AircraftFit(Fit):
             within=within,
         )
         if not auto:
-            return Diagnosis(self.core.diagnose(chosen._core, asked))
+            return Diagnosis(self.core.diagnose(chosen._core, injected, asked))
         stepped = self.core.diagnose_stepwise(chosen._core, most, asked)
         return Stepwise(AircraftFit(stepped.fitted, chosen), stepped)
 
-    def add(self, effect: str, flight: Flight | None = None) -> AircraftFit:
+    def intervals(
+        self,
+        flight: Flight | Sequence[Flight] | None = None,
+        *,
+        level: float = 0.95,
+        names: Sequence[str] | None = None,
+    ) -> Intervals:
+        """Gaussian and profile-likelihood intervals of the parameters, side by side.
+
+        Args:
+            flight: That was fitted; to be given where the fit was loaded.
+            level: How often an interval should hold the true value.
+            names: Parameters [all that are free].
+
+        Raises:
+            Error: Another flight; a fit by filter error; a parameter that there isn't or that is
+                fixed; a level outside (0, 1).
+        """
+        chosen = self._or_fitted(flight, "intervals(")
+        return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
+
+    def add(self, effect: str, flight: Flight | Sequence[Flight] | None = None) -> AircraftFit:
         """The same fit with an effect more, as "Cm[alpha^2]" or "imu_late", from where it ended.
 
         Of Aero also a spline, "CX[spline(alpha,5)]".
@@ -293,8 +320,12 @@ class AircraftFit(Fit):
         )
         return Track(core)
 
-    def _or_fitted(self, flight: Flight | None, call: str) -> Flight:
+    def _or_fitted(self, flight: Flight | Sequence[Flight] | None, call: str) -> Flight:
+        """A flight, or several as one. Raises Error, which shows how to call again, for none."""
         flight = flight if flight is not None else self.flight
+        if isinstance(flight, Sequence) and not isinstance(flight, str):
+            given = [to_flight(one, call)._core for one in flight]
+            return Flight._of(states_module().join(given, _core.Options(), self.core))
         if flight is None:
             raise _core.Error(
                 f"a loaded fit has no flight; give one: {call}sepcal.read_csv({self.core.file!r}))"
@@ -353,6 +384,16 @@ def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> Air
     """Of a flight path or an aircraft; fit() calls it."""
     core = states_module().fit(flight._core, _core_options(model, options))
     return AircraftFit(core, flight)
+
+
+def fit_flights(
+    model: AircraftModel, flights: Sequence[Flight], options: FitOptions
+) -> AircraftFit:
+    """Of several flights together, each with initial states of its own; fit_jointly() calls it."""
+    given = [to_flight(one, "fit_jointly(model, [")._core for one in flights]
+    laid = _core_options(model, options)
+    joined = Flight._of(states_module().join(given, to_core(options), None))
+    return AircraftFit(states_module().fit(joined._core, laid), joined)
 
 
 @spelled_out()

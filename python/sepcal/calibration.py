@@ -23,7 +23,7 @@ from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.own_state_model import AnyModel, to_own
 from sepcal.results import Fit
-from sepcal.stepwise import Stepwise, diagnosis_options
+from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
 from sepcal.whole_files import name_of
 
 Path = str | os.PathLike[str]
@@ -197,11 +197,7 @@ class Calibration(Fit):
                 auto; most below 1 or without auto; one of only that the flight can't make.
         """
         chosen = self._or_fitted(flight, "diagnose(")
-        hidden = [(name, np.ravel(size).tolist()) for name, size in (inject or {}).items()]
-        if len(hidden) > 1:
-            raise _core.Error("inject takes one effect at a time")
-        if hidden and auto:
-            raise _core.Error("inject and auto exclude each other: it is not in the flight")
+        injected = to_injected(inject, auto=auto)
         asked = diagnosis_options(
             auto=auto,
             most=most,
@@ -214,7 +210,6 @@ class Calibration(Fit):
         )
         own = to_core_effects(effects)
         if not auto:
-            injected = hidden[0] if hidden else None
             return Diagnosis(self.core.diagnose(chosen._core, own, injected, asked))
         stepped = self.core.diagnose_stepwise(chosen._core, own, most, asked)
         return Stepwise(self._next(stepped.fitted, chosen, effects), stepped)

@@ -7,9 +7,12 @@ import json
 from typing import Any
 
 from sepcal import _core
+from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.flight import Flight
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
+from sepcal.states_module import states_module
+from sepcal.trajectories import FlightPath
 
 
 class FlightCheck(Page, _core.FlightCheck):
@@ -40,14 +43,13 @@ class FlightCheck(Page, _core.FlightCheck):
         return [note._asdict() for note in self.notes]
 
 
-def check(model: AnyModel, flight: Flight) -> FlightCheck:
+def check(model: AnyModel | Aero | RigidAircraft, flight: Flight) -> FlightCheck:
     """What a log is, column by column, and what that does to a calibration from it.
 
     Nothing is fitted, and a log that a fit would refuse is described all the same.
 
     Args:
-        model: FiveHoleProbe, VaneBoom, PitotStatic, Magnetometer or one of your own, as for the
-            fit.
+        model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own, as for the fit.
         flight: The log.
 
     Returns:
@@ -59,5 +61,8 @@ def check(model: AnyModel, flight: Flight) -> FlightCheck:
     """
     if isinstance(model, Flight) or not isinstance(flight, Flight):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
+    if isinstance(model, Aero | RigidAircraft | FlightPath):
+        name = model._aircraft_options()["model"]
+        return FlightCheck(states_module().check(name, flight._core))
     model = as_model(model)
     return FlightCheck(_core.check(model._core, flight._core))

@@ -2,36 +2,60 @@
 """Several flights of one probe, calibrated together."""
 
 from collections.abc import Sequence
-from typing import Unpack
+from typing import Unpack, overload
 
 from sepcal import _core
+from sepcal.aircraft import Aero, RigidAircraft
+from sepcal.aircraft_fits import AircraftFit, fit_flights
 from sepcal.calibration import Calibration
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight, to_flight
 from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
+from sepcal.trajectories import FlightPath
 
 
-@spelled_out()
+@overload
+def fit_jointly(  # type: ignore[overload-overlap]
+    model: Aero | RigidAircraft | FlightPath,
+    flights: Sequence[Flight],
+    *,
+    own: Sequence[str] = (),
+    **options: Unpack[FitOptions],
+) -> AircraftFit: ...
+
+
+@overload
 def fit_jointly(
     model: AnyModel,
     flights: Sequence[Flight],
     *,
     own: Sequence[str] = (),
     **options: Unpack[FitOptions],
-) -> Calibration:
-    """Calibrates a probe on several flights together: one probe, a wind a flight.
+) -> Calibration: ...
+
+
+@spelled_out()
+def fit_jointly(
+    model: AnyModel | Aero | RigidAircraft,
+    flights: Sequence[Flight],
+    *,
+    own: Sequence[str] = (),
+    **options: Unpack[FitOptions],
+) -> Calibration | AircraftFit:
+    """Calibrates a probe on several flights together, a wind a flight, or fits an aircraft to them.
 
         fit = sepcal.fit_jointly(probe, [monday, tuesday], own=["wind"])
         fit["w_n@monday"], fit.departed()
 
-    The result is a Calibration like another, of the flights joined: it is compared, diagnosed,
-    added to, saved and loaded. An effect is centred over all flights, so that its coefficient means
-    the same in each. For many flights, on many machines, there is fit_many().
+    The result is a Calibration or an AircraftFit like another, of the flights joined: it is
+    compared, diagnosed, added to, saved and loaded. An effect is centred over all flights, so that
+    its coefficient means the same in each. For many flights, on many machines, there is fit_many().
 
     Args:
-        model: A probe, or a model of your own; one with a state shares all but its initial states.
+        model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own; one with a
+            state shares all but its initial states.
         flights: Two or more, of different names. They need the same columns; what is not in all of
             them is left out. A flight is called by its file's name without folder and ending.
         own: Parameters that every flight has for itself, "wind" for w_n, w_e, w_d; the others are
@@ -46,6 +70,10 @@ def fit_jointly(
     """
     if isinstance(flights, Flight | str):
         raise _core.Error("flights is one flight; give several in a list, or fit() the one")
+    if isinstance(model, Aero | RigidAircraft | FlightPath):
+        if own:
+            raise _core.Error("own: the flights of an aircraft share all but their initial states")
+        return fit_flights(model, flights, options)
     effects = options.get("effects") or ()
     options["effects"] = name_effects(effects)
     subject = as_model(model)

@@ -140,10 +140,6 @@ def read_numbers(option: str, texts: Sequence[str], form: str) -> dict[str, floa
     return numbers
 
 
-def _numbers(option: str, texts: Sequence[str]) -> dict[str, float]:
-    return read_numbers(option, texts, "NAME=VALUE")
-
-
 def _options(given: argparse.Namespace) -> dict[str, Any]:
     """Of what was typed."""
     options = {}
@@ -297,7 +293,7 @@ def _diagnose(given: argparse.Namespace) -> int:
         return EXIT_CODES[stepped.fitted.status] or EXIT_CODES[stepped.diagnosis.verdict]
     if given.most is not None:
         raise _core.Error("--most is of --auto; add that, or leave it out")
-    inject = None if given.inject is None else _numbers("--inject", [given.inject])
+    inject = None if given.inject is None else dict([_core.parse_sized_effect(given.inject)])
     found = calibration.diagnose(flight, inject=inject, only=given.only, within=given.within)
     _tell_notes(found.notes)
     _deliver(given, found, found.to_json())

@@ -8,6 +8,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+import numpy as np
+
 from sepcal import _core
 from sepcal._core import StepwiseStep
 from sepcal.diagnosis import Diagnosis
@@ -105,3 +107,15 @@ def diagnosis_options(
         error_budget=sizes,
         within=math.inf if within is None else within,
     )
+
+
+def to_injected(
+    inject: Mapping[str, float | Sequence[float]] | None, *, auto: bool
+) -> tuple[str, list[float]] | None:
+    """What diagnose() puts into the measurements. Raises Error for several, and beside auto."""
+    hidden = [(name, np.ravel(size).tolist()) for name, size in (inject or {}).items()]
+    if len(hidden) > 1:
+        raise _core.Error("inject takes one effect at a time")
+    if hidden and auto:
+        raise _core.Error("inject and auto exclude each other: it is not in the flight")
+    return hidden[0] if hidden else None

@@ -204,9 +204,7 @@ def test_options_of_another_kind(options: dict[str, object]) -> None:
 
 
 def test_an_unknown_option_is_named() -> None:
-    with pytest.raises(
-        TypeError, match=r"no option 'sample'; it has: effects, .*samples"
-    ):
+    with pytest.raises(TypeError, match=r"no option 'sample'; it has: effects, .*samples"):
         sepcal.fit(SCALAR, RECORD, sample=3)
 
 

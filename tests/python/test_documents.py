@@ -19,6 +19,8 @@ from studies.trust.unmeasured import LINE, fly_with
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
 WHOLE = [b for b in BLOCKS if b["language"] == "python" and "import sepcal" in b["text"]]
 AIRCRAFT = (
+    "check",
+    "intervals",
     "fit",
     "two-step",
     "compare",

@@ -121,10 +121,33 @@ DiagnosisOptions with_threads_of(const AircraftFit& fitted, const DiagnosisOptio
   return with_threads(asked, fitted.options.calibration.fit.threads);
 }
 
-Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight,
+Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight, const Injected& injected,
                       const DiagnosisOptions& asked) {
   const Released released;
-  return diagnosed(diagnose_aircraft(fitted, flight, with_threads_of(fitted, asked)));
+  const DiagnosisOptions options = with_threads_of(fitted, asked);
+  return diagnosed(injected ? diagnose_aircraft_with({injected->first, injected->second}, fitted,
+                                                     flight, options)
+                            : diagnose_aircraft(fitted, flight, options));
+}
+
+FoundIntervals intervals_on(const AircraftFit& fitted, const Flight& flight, double level,
+                            const std::vector<std::string>& names) {
+  const Released released;
+  return found_intervals(find_aircraft_intervals(fitted, flight, {.level = level, .names = names}));
+}
+
+Checked check_on(const std::string& model, const Flight& flight) {
+  const Released released;
+  return checked(check_aircraft(find_aircraft_model(model), flight));
+}
+
+/// As a fit with these options reads them; in the order of one that there is.
+Flight join(const std::vector<Flight>& flights, const CalibrationOptions& options,
+            const std::optional<AircraftFit>& fitted) {
+  const Released released;
+  std::vector<std::string> notes;
+  return join_aircraft_flights(flights, fitted ? fitted->options.calibration.log : options.log,
+                               notes, fitted ? &*fitted : nullptr);
 }
 
 Stepped<AircraftFit> diagnose_stepwise_on(const AircraftFit& fitted, const Flight& flight,
@@ -211,6 +234,7 @@ void define_fits(py::module_& module) {
           },
           WithoutGil())
       .def("diagnose", &diagnose_on)
+      .def("intervals", &intervals_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)
       .def("add", &add_to_aircraft, WithoutGil())
       .def("apply", &apply_to)
@@ -243,6 +267,8 @@ void define_aircraft(py::module_& module) {
   define_fits(module);
   module.def("fit", &fit_aircraft, WithoutGil());
   module.def("two_steps", &two_steps, WithoutGil());
+  module.def("check", &check_on);
+  module.def("join", &join);
   module.def("parse", &parse_aircraft_fit);
   module.def("read", &read_aircraft_fit);
   module.def("read_aircraft", [](const std::string& file) { return to_json(read_aircraft(file)); });

@@ -12,19 +12,9 @@
 namespace sepcal::bindings {
 namespace {
 
-/// sepcal.FlightCheck
-struct Checked {
-  FlightCheck check;
-  std::string json;
-  std::string text;
-};
-
 Checked check_flight(const Model& model, const Flight& flight) {
   const Released released;
-  FlightCheck check = sepcal::check(probe_of(model), flight);
-  std::string json = to_json(check);
-  std::string text = without_last_end(to_text(check));
-  return {std::move(check), std::move(json), std::move(text)};
+  return checked(sepcal::check(probe_of(model), flight));
 }
 
 void define_parts(py::module_& module) {

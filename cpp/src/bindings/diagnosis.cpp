@@ -263,6 +263,10 @@ void define_steps(py::module_& module) {
 }  // namespace
 
 void define_diagnosis(py::module_& module) {
+  module.def("parse_sized_effect", [](const std::string& text) {
+    SizedEffect sized = parse_sized_effect(text, "--inject");
+    return std::pair(std::move(sized.name), std::move(sized.sizes));
+  });
   define_effect(module);
   define_parts(module);
   define_causes(module);

@@ -128,8 +128,7 @@ Compared compare_flight(const Calibration& calibration, const Flight& flight,
 }
 
 Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
-                      const std::vector<PythonEffect>& own,
-                      const std::optional<std::pair<std::string, std::vector<double>>>& injected,
+                      const std::vector<PythonEffect>& own, const Injected& injected,
                       const DiagnosisOptions& asked) {
   const OwnEffects makers = own_effects(own, effect_kit(*calibration.probe));
   const DiagnosisOptions options = with_threads(asked, calibration.options.fit.threads);
@@ -218,6 +217,13 @@ Certificate certify_on(const Calibration& calibration, const Flight& flight, dou
   return certify(
       calibration, flight,
       {.tolerance = tolerance, .boxes = boxes, .threads = calibration.options.fit.threads});
+}
+
+FoundIntervals intervals_on(const Calibration& calibration, const Flight& flight, double level,
+                            const std::vector<std::string>& names) {
+  const Released released;
+  need_own_effects(calibration);
+  return found_intervals(find_intervals(calibration, flight, {.level = level, .names = names}));
 }
 
 FlightPrediction predict_flight(const Calibration& calibration, const Flight& flight,
@@ -353,7 +359,7 @@ void define_calibration(py::module_& module) {
       .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt)
       .def("diagnose", &diagnose_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)
-      .def("intervals", &bindings::find_intervals)
+      .def("intervals", &intervals_on)
       .def("certify", &certify_on)
       .def("predict", &predict_flight)
       .def("add", &add_to)

@@ -56,18 +56,6 @@ FlightPrediction predict_columns(const Model& model, const py::dict& columns,
 
 }  // namespace
 
-FoundIntervals find_intervals(const Calibration& calibration, const Flight& flight, double level,
-                              const std::vector<std::string>& names) {
-  const Released released;
-  need_own_effects(calibration);
-  FlightIntervals found =
-      sepcal::find_intervals(calibration, flight, {.level = level, .names = names});
-  Page page = page_of(found);
-  std::string json = to_json(found);
-  return {level, std::move(found.parameters), std::move(found.notes), std::move(json),
-          std::move(page)};
-}
-
 void define_intervals(py::module_& module) {
   BoundStruct<ProfileInterval>(module, "ParameterInterval",
                                "Both intervals of one parameter, (lower, upper) in `unit`.")

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "sepcal/flight/check.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
+#include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "sepcal/states/track.hpp"
 
@@ -173,7 +175,27 @@ struct FoundIntervals {
   Page page;
 };
 
-FoundIntervals find_intervals(const Calibration& calibration, const Flight& flight, double level,
-                              const std::vector<std::string>& names);
+inline FoundIntervals found_intervals(FlightIntervals found) {
+  Page page = page_of(found);
+  std::string json = to_json(found);
+  return {found.level, std::move(found.parameters), std::move(found.notes), std::move(json),
+          std::move(page)};
+}
+
+/// sepcal.FlightCheck
+struct Checked {
+  FlightCheck check;
+  std::string json;
+  std::string text;
+};
+
+inline Checked checked(FlightCheck check) {
+  std::string json = to_json(check);
+  std::string text = without_last_end(to_text(check));
+  return {std::move(check), std::move(json), std::move(text)};
+}
+
+/// An effect that is put into the measurements, {name: sizes}; None: none is.
+using Injected = std::optional<std::pair<std::string, std::vector<double>>>;
 
 }  // namespace sepcal::bindings

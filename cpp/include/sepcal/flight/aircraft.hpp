@@ -3,6 +3,7 @@
 // equation error, output error and in two steps; what `sepcal-aircraft` does.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,8 +16,10 @@
 #include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/check.hpp"
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
+#include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "sepcal/states/track.hpp"
@@ -84,6 +87,16 @@ AeroEquation parse_equation(std::string_view text);
 /// sense, in one line.
 AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options);
 
+/// What a log is, column by column, and what that does to a fit of that model (check.hpp).
+FlightCheck check_aircraft(AircraftModel model, const Flight& flight, const LogChoice& log = {},
+                           const std::function<std::string(const std::string& name)>& spell = {});
+
+/// Several flights fitted together: their segments follow each other, each with initial states of
+/// its own, and share all else. In the order in which a fit has them, where `fitted` names them.
+/// Throws Error for fewer than two, two of one name, or a flight without a time.
+Flight join_aircraft_flights(std::vector<Flight> flights, const LogChoice& log,
+                             std::vector<std::string>& notes, const AircraftFit* fitted = nullptr);
+
 /// The path and, where it was reconstructed, the aerodynamics (options.model is not looked at).
 struct TwoStepFit {
   AircraftFit path;
@@ -101,6 +114,17 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight);
 /// bad input.
 FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
                                   const DiagnosisOptions& options = {});
+
+/// The same with an effect put into the measurements first, to which it is then fitted anew from
+/// its estimates. Throws Error also for an effect that the fit has, and another number of sizes
+/// than one or the effect's coefficients.
+FlightDiagnosis diagnose_aircraft_with(const SizedEffect& injected, const AircraftFit& base,
+                                       const Flight& flight, const DiagnosisOptions& options = {});
+
+/// Profiles the fit on its own flight. Throws Error as profile_intervals() does, for another
+/// flight, and for filter error, whose noises would have to be found again at every point.
+FlightIntervals find_aircraft_intervals(const AircraftFit& fitted, const Flight& flight,
+                                        const ProfileOptions& asked = {});
 
 /// The same fit with an effect more, from where it ended: "Cm[alpha^2]", "Cm[alpha*elevator]"; of
 /// `aero` also "CX[spline(alpha,5)]"; along a trajectory those that aircraft_effects_text() lists.

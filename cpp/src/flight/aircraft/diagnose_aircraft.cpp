@@ -12,6 +12,8 @@
 #include "flight/aircraft/coefficient_diagnosis.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
+#include "flight/files/flight_digest.hpp"
+#include "flight/verbs/injection.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/stepwise_loop.hpp"
 #include "sepcal/flight/aircraft.hpp"
@@ -53,6 +55,52 @@ Diagnosed diagnose_trajectory(const AircraftFit& fitted, const Flight& flight, L
           [=](const std::string& effect) { return describe_along(model, effect); }};
 }
 
+/// Of a fit that is laid along the flight. `notes` come before those of the log.
+FlightDiagnosis diagnose_laid(const AircraftFit& fitted, const Flight& flight, LaidAircraft& laid,
+                              std::vector<std::string> notes, const DiagnosisOptions& options) {
+  FlightDiagnosis result;
+  result.model = to_string(fitted.options.model);
+  result.app = "sepcal-aircraft";
+  result.calibration = fitted.file;
+  result.status = fitted.fit.status;
+  result.message = fitted.fit.message;
+  Diagnosed diagnosed = fitted.options.model == AircraftModel::aero
+                            ? diagnose_equations(fitted, flight, laid, options)
+                            : diagnose_trajectory(fitted, flight, laid, options);
+  result.diagnosis = std::move(diagnosed.found);
+  result.notes = std::move(notes);
+  std::ranges::move(laid.notes, std::back_inserter(result.notes));
+  if (!is_same_flight(fitted, flight)) {
+    result.notes.push_back(
+        fmt::format("{} is not the flight of the fit: the errors here are those of a prediction",
+                    flight.name()));
+  }
+  for (const EffectFinding& effect : result.diagnosis.effects) {
+    result.sentences.push_back(diagnosed.describe(effect.name));
+  }
+  const DiagnosedFit& whole = diagnosed.fitted;
+  std::size_t used = 0;
+  for (const Segment& segment : whole.rows) used += segment.rows();
+  result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
+  result.where = verbs::measure_parts(whole);
+  return result;
+}
+
+/// What an effect adds to the outputs of a fit that is laid along the flight.
+Eigen::MatrixXd added_outputs(const AircraftFit& fitted, const Flight& flight,
+                              const SizedEffect& injected, Injection& injection) {
+  AircraftOptions options = options_on(fitted, flight);
+  options.calibration.effects.push_back({.name = injected.name});
+  LaidAircraft with = aircraft_log::lay(flight, options);
+  verbs::check_new(with.effects);
+  injection.effect = with.effects.back().name;
+  const bool is_along = acts_along(fitted.options.model, injection.effect);
+  base::ThreadPool pool(fitted.options.calibration.fit.threads);
+  return verbs::added_outputs({*with.model, with.record, fit_on(flight, fitted, with).by_name(),
+                               is_along ? verbs::shape_of(with.along.back()) : ""},
+                              injected, injection, pool);
+}
+
 }  // namespace
 
 FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
@@ -60,32 +108,30 @@ FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
   std::vector<std::string> left_out;
   const AircraftFit fitted = without_suspects(base, flight, left_out);
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
+  return within(flight,
+                [&] { return diagnose_laid(fitted, flight, laid, std::move(left_out), options); });
+}
+
+FlightDiagnosis diagnose_aircraft_with(const SizedEffect& injected, const AircraftFit& base,
+                                       const Flight& flight, const DiagnosisOptions& options) {
+  std::vector<std::string> left_out;
+  AircraftFit fitted = without_suspects(base, flight, left_out);
+  Injection injection;
+  const Eigen::MatrixXd added =
+      within(flight, [&] { return added_outputs(fitted, flight, injected, injection); });
+  LaidAircraft laid = lay(flight, options_on(fitted, flight));
+  const Record original = laid.record;
+  laid.record = verbs::with_outputs(original, laid.model->tables().outputs, added);
   return within(flight, [&] {
-    FlightDiagnosis result;
-    result.model = to_string(fitted.options.model);
-    result.app = "sepcal-aircraft";
-    result.calibration = fitted.file;
-    result.status = fitted.fit.status;
-    result.message = fitted.fit.message;
-    Diagnosed diagnosed = fitted.options.model == AircraftModel::aero
-                              ? diagnose_equations(fitted, flight, laid, options)
-                              : diagnose_trajectory(fitted, flight, laid, options);
-    result.diagnosis = std::move(diagnosed.found);
-    result.notes = std::move(left_out);
-    std::ranges::move(laid.notes, std::back_inserter(result.notes));
-    if (!is_same_flight(fitted, flight)) {
-      result.notes.push_back(
-          fmt::format("{} is not the flight of the fit: the errors here are those of a prediction",
-                      flight.name()));
+    FitOptions again = laid.fit;
+    for (const auto& [name, value] : fit_on(flight, fitted, laid).nonlinear_estimates()) {
+      if (!again.fix.contains(name)) again.start[name] = value;
     }
-    for (const EffectFinding& effect : result.diagnosis.effects) {
-      result.sentences.push_back(diagnosed.describe(effect.name));
-    }
-    const DiagnosedFit& whole = diagnosed.fitted;
-    std::size_t used = 0;
-    for (const Segment& segment : whole.rows) used += segment.rows();
-    result.flight = {flight.name(), flight.sha256(), flight.rows(), used};
-    result.where = verbs::measure_parts(whole);
+    fitted.fit = fit_laid(laid, again);
+    fitted.flight.sha256 = files::digest_of(flight);
+    FlightDiagnosis result = diagnose_laid(fitted, flight, laid, std::move(left_out), options);
+    verbs::judge_injection(result.diagnosis, injection);
+    result.injection = std::move(injection);
     return result;
   });
 }

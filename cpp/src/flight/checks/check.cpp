@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/check.hpp"
+#include "flight/checks/checked_subject.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,9 +49,10 @@ ColumnCheck describe_column(const Flight::Column& column, const Log& log) {
 }
 
 /// All rows where the choice can't be followed, of which `refused` tells.
-TakenRows take_what_can_be(const Probe& probe, const Flight& flight, const LogChoice& choice) {
+TakenRows take_what_can_be(const probes::ModelQuantities& quantities, const Flight& flight,
+                           const LogChoice& choice) {
   try {
-    return take_rows(probe, flight, choice);
+    return take_rows(quantities, flight, choice);
   } catch (const Error&) {
     return {flight};
   }
@@ -69,11 +70,11 @@ std::unique_ptr<const Probe> settled_by(const Probe& probe, const Flight& flight
 }
 
 /// What a fit would make of the flight.
-void describe_use(const Probe& probe, const Flight& flight, const LogChoice& choice,
+void describe_use(const CheckedSubject& subject, const Flight& flight, const LogChoice& choice,
                   const std::function<std::string(const std::string& name)>& spell,
                   FlightCheck& check) {
   try {
-    const ProbeRecord prepared = probe.prepare(flight, choice);
+    const ProbeRecord prepared = subject.prepare(flight, choice);
     check.rows_used = prepared.rows_used();
     check.segments = prepared.record.segments().size();
   } catch (const OptionError& error) {
@@ -89,16 +90,30 @@ FlightCheck check(const Probe& given, const Flight& logged, const LogChoice& cho
                   const std::function<std::string(const std::string& name)>& spell) {
   const std::unique_ptr<const Probe> settled = settled_by(given, logged, choice);
   const Probe& probe = settled ? *settled : given;
+  const CheckedSubject subject{.model = std::string(probe.name()),
+                               .app = std::string(probe.app()),
+                               .quantities = probe,
+                               .settings = probe.settings(),
+                               .asks_for_turns = true,
+                               .prepare = [&](const Flight& flight, const LogChoice& log) {
+                                 return probe.prepare(flight, log);
+                               }};
+  return check_subject(subject, logged, choice, spell);
+}
+
+FlightCheck checks::check_subject(
+    const CheckedSubject& subject, const Flight& logged, const LogChoice& choice,
+    const std::function<std::string(const std::string& name)>& spell) {
   const ReadFlight read = read_as(logged, choice);
   const Flight& flight = read.flight;
-  FlightCheck check{.model = std::string(probe.name()),
-                    .app = std::string(probe.app()),
+  FlightCheck check{.model = subject.model,
+                    .app = subject.app,
                     .file = flight.name(),
                     .sha256 = flight.sha256(),
                     .rows = flight.rows()};
-  describe_use(probe, flight, choice, spell, check);
-  const TakenRows taken = take_what_can_be(probe, flight, choice);
-  const Log log(probe, taken.flight);
+  describe_use(subject, flight, choice, spell, check);
+  const TakenRows taken = take_what_can_be(subject.quantities, flight, choice);
+  const Log log(subject.quantities, taken.flight);
   check.rate = 1 / log.interval();
   if (std::isfinite(check.rate)) {
     std::vector<double> stamps;
@@ -113,9 +128,8 @@ FlightCheck check(const Probe& given, const Flight& logged, const LogChoice& cho
     missing -=
         std::min(missing, check.columns.back().quantity == "time" ? 0 : taken.left_out.size());
   }
-  const Settings settings = probe.settings();
-  check_across(log, settings, check.notes);
-  check_excitation(log, settings, check.notes);
+  check_across(log, subject.settings, check.notes);
+  if (subject.asks_for_turns) check_excitation(log, subject.settings, check.notes);
   check_samples(log, check.notes);
   check_clock(log, check.notes);
   check_clipping(log, check.notes);

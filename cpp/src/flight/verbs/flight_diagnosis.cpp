@@ -6,17 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parameter_values.hpp"
 #include "base/short_number.hpp"
 #include "base/thread_pool.hpp"
 #include "flight/catalogue/effect_candidates.hpp"
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/checks/taken_rows.hpp"
 #include "flight/verbs/curved_candidates.hpp"
+#include "flight/verbs/injection.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "model/measurements.hpp"
-#include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/detail/flight/effect_catalogue.hpp"
 #include "sepcal/detail/flight/probe_effects.hpp"
@@ -28,9 +26,7 @@ using namespace verbs;  // this room's own
 
 namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 /// The calibration's own effects and the caller's.
 OwnEffects all_own(const Calibration& calibration, const OwnEffects& own) {
@@ -140,8 +136,7 @@ FlightDiagnosis name_errors(const Flight& flight, Task task) {
   }
 }
 
-/// What the effect adds to every output at the calibration's estimates (rows x n_z, of the whole
-/// record), zero outside its segments.
+/// What the effect adds to every output at the calibration's estimates.
 MatrixXd added_outputs(const Calibration& calibration, const PreparedFlight& prepared,
                        const OwnEffects& own, const SizedEffect& injected, Injection& injection) {
   const Probe& probe = *calibration.probe;
@@ -150,69 +145,12 @@ MatrixXd added_outputs(const Calibration& calibration, const PreparedFlight& pre
   std::vector<EffectSetting> settings = calibration.options.effects;
   settings.push_back({.name = injected.name});
   const std::vector<Effect> effects = make_effects(kit, *model_of(probe), settings, record);
+  check_new(settings);
   injection.effect = settings.back().name;
-  for (std::size_t i = 0; i + 1 < settings.size(); ++i) {
-    if (settings[i].name != injection.effect) continue;
-    throw Error(fmt::format("the calibration has the effect {} already", injection.effect));
-  }
   const auto model = compose(model_of(probe), effects, record);
-  base::ParameterValues values = calibration.fit.by_name();
-  std::vector<std::string> added;
-  for (const Variable& parameter : model->tables().parameters()) {
-    if (!values.contains(parameter.name)) added.push_back(parameter.name);
-  }
-  std::vector<double> sizes = injected.sizes;
-  if (sizes.size() == 1) sizes.assign(added.size(), sizes.front());
-  if (sizes.size() != added.size()) {
-    throw Error(fmt::format("inject {}: {} sizes for the {} parameters {}", injection.effect,
-                            injected.sizes.size(), added.size(), fmt::join(added, ", ")));
-  }
-  injection.sizes = sizes;
-  base::ParameterValues without = values;
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    values[added[i]] = sizes[i];
-    const bool is_shape = effects.back().driver && effects.back().driver->shape() &&
-                          added[i].ends_with("." + effects.back().driver->shape()->name);
-    without[added[i]] = is_shape ? sizes[i] : 0.0;
-  }
-  const model::Measurements measurements(*model, record);
   base::ThreadPool pool(calibration.options.fit.threads);
-  const model::Sweep sweep(*model, measurements, pool);
-  const auto residuals = [&](const base::ParameterValues& at) {
-    return sweep.residuals(base::in_order(model->tables().linear, at),
-                           base::in_order(model->tables().nonlinear, at));
-  };
-  const MatrixXd difference = residuals(without) - residuals(values);
-  MatrixXd whole = MatrixXd::Constant(static_cast<Index>(record.length()), difference.cols(), 0.0);
-  Index at = 0;
-  for (const Segment& segment : record.segments()) {
-    const auto rows = static_cast<Index>(segment.rows());
-    whole.middleRows(static_cast<Index>(segment.first), rows) = difference.middleRows(at, rows);
-    at += rows;
-  }
-  return whole;
-}
-
-/// The record with something added to its outputs.
-Record with_outputs(const Record& record, const std::vector<Variable>& outputs,
-                    const MatrixXd& added) {
-  Record changed;
-  for (const std::string& name : record.names()) {
-    const auto output = std::ranges::find(outputs, name, &Variable::name);
-    if (output == outputs.end()) {
-      changed.view(name, record.column(name));
-      continue;
-    }
-    const auto column = record.column(name);
-    std::vector<double> values(column.begin(), column.end());
-    const VectorXd shift = added.col(output - outputs.begin());
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      values[row] += shift[static_cast<Index>(row)];
-    }
-    changed.add(name, std::move(values));
-  }
-  changed.cut(record.segments());
-  return changed;
+  return verbs::added_outputs({*model, record, calibration.fit.by_name(), shape_of(effects.back())},
+                              injected, injection, pool);
 }
 
 }  // namespace
@@ -228,20 +166,6 @@ FlightDiagnosis diagnose(const Calibration& calibration, const Flight& flight,
 }
 
 namespace {
-
-/// Where the injected effect came; in the first place too where it would have done as well as the
-/// first.
-void judge_injection(const Diagnosis& diagnosis, Injection& injection) {
-  const std::vector<EffectFinding>& effects = diagnosis.effects;
-  const auto own = std::ranges::find(effects, injection.effect, &EffectFinding::name);
-  if (own == effects.end()) return;
-  injection.estimate = own->coefficients;
-  injection.p_adjusted = own->p_adjusted;
-  if (own->status == FindingStatus::cannot_be_seen) return;
-  const bool as_good = own->beside == Beside::equivalent;
-  injection.rank = as_good ? 1 : static_cast<std::size_t>(own - effects.begin()) + 1;
-  injection.found = as_good || own->status == FindingStatus::found;
-}
 
 FlightDiagnosis inject(const SizedEffect& injected, const Calibration& calibration,
                        PreparedFlight prepared, const OwnEffects& own,
