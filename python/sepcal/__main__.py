@@ -78,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         return refuse(f"{asked}: memory ran out")
     except _core.Error as error:
-        return refuse(f"{asked}: {error}")
+        return refuse(f"{asked}: {getattr(error, 'as_typed', error)}")
     except KeyboardInterrupt:
         tell(f"{asked}: stopped by Ctrl-C; no file was written")
         return INTERRUPTED

@@ -2855,6 +2855,10 @@ class Calibration:
         arg1: typing.SupportsFloat | typing.SupportsIndex,
         arg2: typing.SupportsInt | typing.SupportsIndex,
     ) -> Certificate: ...
+    def command(self, arg0: str) -> str:
+        """
+        A verb of it, as a shell takes it.
+        """
     def compare(self, flight: Flight, effect: str | None = None) -> Comparison: ...
     def diagnose(
         self,
@@ -2884,11 +2888,6 @@ class Calibration:
     def rejoin(self, arg0: collections.abc.Sequence[Flight]) -> Flight: ...
     def save(self, arg0: str) -> None: ...
     def to_json(self) -> str: ...
-    @property
-    def app(self) -> str:
-        """
-        The program that calibrates it.
-        """
     @property
     def departures(self) -> list[FlightDeparture]: ...
     @property
@@ -4058,6 +4057,7 @@ def python_model(
         "FixedSize(4)",
     ],
     arg2: PythonFunctions,
+    arg3: tuple[str, str],
 ) -> Model: ...
 def quantiles(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],

@@ -101,11 +101,10 @@ class Calibration(Fit):
 
     def _summary(self) -> str:
         errors = np.array(list(self.rmse.values()))
-        total = float(np.sqrt(np.mean(errors**2)))
-        return (
-            f"{self.core.model}: {self.status}, rmse {total:.3g} {self.core.unit}, "
-            f"{len(self.parameters)} parameters"
-        )
+        total = f"{float(np.sqrt(np.mean(errors**2))):.3g} {self.core.unit}"
+        if not self.core.unit:
+            total = ", ".join(f"{name} {error:.3g}" for name, error in self.rmse.items())
+        return f"{self.core.model}: {self.status}, rmse {total}, {len(self.parameters)} parameters"
 
     @property
     def fit(self) -> Fit:

@@ -13,6 +13,7 @@ import inspect
 import json
 import os
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import Any
@@ -27,6 +28,7 @@ from sepcal.joint import fit_jointly
 from sepcal.models import Model
 from sepcal.options import ROWS
 from sepcal.own_state_model import to_own
+from sepcal.pages import Page
 from sepcal.printing import in_line, page_of, show, tell
 from sepcal.whole_files import name_of, refuse_outputs, write_whole
 
@@ -79,8 +81,25 @@ def _add(
     verb = commands.add_parser(name, help=f"{what}, with a model of your own", description=what)
     add_model(verb, needed=True)
     verb.add_argument("--json", action="store_true", help="prints JSON in place of the page")
-    verb.set_defaults(run=run)
+    verb.add_argument("--explain", action="store_true", help="prints all that there is to say")
+    verb.set_defaults(run=lambda given: _run_or_name_line(run, given))
     return verb
+
+
+def _run_or_name_line(run: Callable[[argparse.Namespace], int], given: argparse.Namespace) -> int:
+    """Raises Error with the line of the model's file where the model itself fails."""
+    try:
+        return run(given)
+    except (_core.Error, OSError, MemoryError):
+        raise
+    except Exception as error:
+        file = os.path.abspath(given.model.rpartition(":")[0])
+        frames = traceback.extract_tb(error.__traceback__)
+        lines = [frame.lineno for frame in frames if os.path.abspath(frame.filename) == file]
+        if not lines:
+            raise
+        what = f"{type(error).__name__}: {error}"
+        raise _core.Error(f"--model {given.model}: line {lines[-1]}: {in_line(what)}") from error
 
 
 def add_model(verb: argparse.ArgumentParser, *, needed: bool) -> None:
@@ -213,6 +232,7 @@ def _read_subject(
     """The calibration and its flight, or flights; `whole`: all those of a joint fit."""
     calibration = load(given.calibration, model=read_model(given.model))
     assert isinstance(calibration, Calibration)
+    _tell_notes(calibration.notes)
     flights = [read_csv(file) for file in given.flights]
     if whole and calibration.flights and len(flights) == 1:
         number = len(calibration.flights)
@@ -225,12 +245,13 @@ def _tell_notes(notes: Sequence[str]) -> None:
         tell(f"note: {note}")
 
 
-def _deliver(given: argparse.Namespace, page: object, told: str) -> None:
+def _deliver(given: argparse.Namespace, page: Page, told: str) -> None:
     """Prints one and writes the other."""
     output = getattr(given, "output", "")
     if output:
         write_whole({name_of(output): told})
-    show(told if given.json else str(page))
+    explained: str = page.explained  # type: ignore[attr-defined]
+    show(told if given.json else explained if given.explain else str(page))
     if output and not given.json:
         show(in_line(f"wrote {output}"))
 
@@ -321,6 +342,7 @@ def _apply(given: argparse.Namespace) -> int:
     refuse_outputs((given.output,), _inputs(given))
     calibration = load(given.calibration, model=read_model(given.model))
     assert isinstance(calibration, Calibration)
+    _tell_notes(calibration.notes)
     if len(given.flights) > 1:
         raise _core.Error("apply takes one log at a time")
     applied = calibration.apply_to_file(given.flights[0], given.output)

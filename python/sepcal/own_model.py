@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A model of your own in Python: four tables and at(), z = A(u, xi2) xi1 + b(u, xi2) + v."""
 
+import hashlib
+import inspect
 import math
+import os
 from collections import namedtuple
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -117,7 +121,8 @@ class OwnModel(Model):
             try_at=try_at,
             derivatives=getattr(definition, "derivatives", None),
         )
-        super().__init__(_core.python_model(self._owner, tables, functions))
+        source = source_of(definition)
+        super().__init__(_core.python_model(self._owner, tables, functions, source))
 
     @property
     def _owner(self) -> str:
@@ -128,6 +133,22 @@ class OwnModel(Model):
 
     def __repr__(self) -> str:
         return f"OwnModel({self.definition!r})"
+
+
+def source_of(definition: object) -> tuple[str, str]:
+    """FILE.py:CLASS as the command line takes it, and the file's SHA-256; empty where unknown."""
+    kind = type(definition)
+    if kind.__module__.partition(".")[0] == "sepcal":
+        return f"sepcal:{kind.__name__}", ""
+    try:
+        file = inspect.getsourcefile(kind)
+        if file is None or "<" in kind.__qualname__:
+            return "", ""
+        digest = hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except (OSError, TypeError):  # typed at a prompt
+        return "", ""
+    path = os.path.relpath(file)
+    return f"{os.path.basename(file) if path.startswith('..') else path}:{kind.__name__}", digest
 
 
 def check_parts(

@@ -13,7 +13,15 @@ from sepcal import _core
 from sepcal.answers import Layout
 from sepcal.columns import Array
 from sepcal.models import Model
-from sepcal.own_model import OwnModel, SeparableModel, Table, check_bounds_of, check_parts, to_rows
+from sepcal.own_model import (
+    OwnModel,
+    SeparableModel,
+    Table,
+    check_bounds_of,
+    check_parts,
+    source_of,
+    to_rows,
+)
 from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryModel, TrajectoryOptions, complete, to_core_options
 from sepcal.walk import Walk
@@ -132,7 +140,9 @@ class Trajectory(TrajectoryModel):
             facts.discrete,
         )
         walk = Walk(self._owner, model, facts.layout(rows["nonlinear"], whole))
-        core = states_module().python_state_model(self._owner, tables, to_core_options(whole), walk)
+        core = states_module().python_state_model(
+            self._owner, tables, to_core_options(whole), walk, source_of(model)
+        )
         super().__init__(core, whole)
 
     @property

@@ -7,6 +7,7 @@ go with the run and drive nothing.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import pickle
@@ -14,7 +15,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -389,3 +390,144 @@ def test_exit_codes_are_those_of_the_apps() -> None:
     told = {"adequate": 0, "effect_missing": 3, "slow_change": 6, "unexplained": 6}
     told |= {"converged": 0, "not_identifiable": 4, "not_converged": 5}
     assert told == EXIT_CODES
+
+
+# --- what others found with models of their own
+
+
+class VoltAndLoad:
+    """Two outputs of different units; the temperature shifts the first alone."""
+
+    inputs: ClassVar = {"x": "m"}
+    outputs: ClassVar = {"volt": "V", "load": "N"}
+    linear: ClassVar = {"v0": "V", "gain": "V/m", "p": "N"}
+    nonlinear: ClassVar = {"c": ("1/m", -2.0, 2.0)}
+
+    def at(self, u: Any, xi2: Array) -> tuple[Array, Array]:
+        """Z = A xi1 + b."""
+        A = np.zeros((u.x.size, 2, 3))
+        A[:, 0, 0], A[:, 0, 1], A[:, 1, 2] = 1.0, u.x, np.exp(xi2[0] * u.x)
+        return A, np.zeros((u.x.size, 2))
+
+
+def _volts_and_loads(seed: int) -> sepcal.Flight:
+    rng = np.random.default_rng(seed)
+    time = 0.05 * np.arange(800.0)
+    x = np.sin(0.7 * time) + 0.3 * np.sin(0.19 * time)
+    temp = 20.0 + 6.0 * np.sin(0.05 * time) + 0.05 * rng.standard_normal(time.size)
+    volt = 0.5 + 0.02 * x + 0.002 * (temp - 20.0) + 0.001 * rng.standard_normal(time.size)
+    load = 800.0 * np.exp(0.3 * x) + 2.5 * rng.standard_normal(time.size)
+    return sepcal.Flight({"time_s": time, "x_m": x, "temp_degc": temp, "volt": volt, "load": load})
+
+
+def test_a_step_is_measured_as_it_was_promised_where_units_differ() -> None:
+    """Each output by its own before: of two, one falls to a tenth and the other stays."""
+    base = sepcal.fit(VoltAndLoad(), _volts_and_loads(1))
+    assert isinstance(base, sepcal.Calibration)
+    better = base.add("v0[temp_degc]")
+    entry = better.history[0]
+    ratios = [better.rmse[name] / base.rmse[name] for name in ("volt", "load")]
+    assert entry.rmse_before == pytest.approx(1.0)
+    assert entry.rmse_after == pytest.approx(np.sqrt(np.mean(np.square(ratios))))
+    assert 1.0 - entry.rmse_after == pytest.approx(entry.predicted_drop, abs=0.02)
+    assert "each by its own before" in better.text
+    assert "volt" in repr(better)
+    again = better.add("p[temp_degc]").history  # and the chain goes on where it ended
+    assert again[1].rmse_before == pytest.approx(again[0].rmse_after)
+
+
+@pytest.mark.parametrize("auto", [False, True])
+def test_what_a_calibration_has_already_may_be_asked_for(*, auto: bool) -> None:
+    """`only` what it has leaves nothing to ask, and a note says so."""
+    base = sepcal.fit(VoltAndLoad(), _volts_and_loads(1), effects=["v0[temp_degc]"])
+    assert isinstance(base, sepcal.Calibration)
+    found = base.diagnose(auto=auto, only=["v0[temp_degc]"])
+    last = found.diagnosis if isinstance(found, sepcal.Stepwise) else found
+    assert list(last.effects) == []
+    assert "has v0[temp_degc] already" in "".join(last.notes)
+
+
+def test_squares_of_channels_are_candidates_at_inputs() -> None:
+    base = sepcal.fit(VoltAndLoad(), _volts_and_loads(1))
+    assert isinstance(base, sepcal.Calibration)
+    asked = {effect.name for effect in base.diagnose().effects}
+    assert {"x[temp_degc]", "x[temp_degc^2]", "v0[temp_degc^2]"} <= asked
+
+
+def test_the_unit_of_a_square_is_that_of_the_whole() -> None:
+    flight = _volts_and_loads(1)
+    columns = {name: flight[name] for name in flight.columns}
+    columns["rate_degps"] = np.cos(np.asarray(columns["time_s"]))
+    effects = ["v0[rate_degps^2]", "v0[temp_degc^2]"]
+    fit = sepcal.fit(VoltAndLoad(), sepcal.Flight(columns), effects=effects)
+    assert fit["v0[rate_degps^2].s"].unit == "V per (deg/s)^2"
+    assert fit["v0[temp_degc^2].s"].unit == "V per degC^2"
+
+
+def test_a_file_that_has_changed_is_noted(tmp_path: Path) -> None:
+    """The calibration keeps the model's file and its hash; commands that are printed name it."""
+    file, log, base = tmp_path / "mine.py", tmp_path / "tunnel.csv", tmp_path / "base.json"
+    file.write_text(FILE.read_text())
+    _write(_draw("HotWire", 1), log)
+    model = ("--model", f"{file}:HotWire")
+    fitted = _run("fit", *model, str(log), "-o", str(base))
+    assert fitted.returncode == 0, fitted.stderr
+    source = json.loads(base.read_text())["source"]
+    assert source["sha256"] == hashlib.sha256(file.read_bytes()).hexdigest()
+    assert source["model"].endswith("mine.py:HotWire")
+    same = _run("diagnose", *model, str(log), str(base))
+    assert "has changed since the fit" not in same.stderr
+    assert f"add --model {source['model']}" in same.stdout
+    file.write_text(file.read_text() + "\n# another line\n")
+    for verb in ("compare", "diagnose"):
+        changed = _run(verb, *model, str(log), str(base))
+        assert "mine.py:HotWire has changed since the fit" in changed.stderr
+
+
+def test_a_model_that_fails_is_named_with_its_line(tmp_path: Path) -> None:
+    file, log = tmp_path / "mine.py", tmp_path / "tunnel.csv"
+    text = FILE.read_text().replace("def at(", "def at(", 1)
+    at = text.index("def at(", text.index("class HotWire"))
+    end = text.index(":\n", at) + 2
+    file.write_text(text[:end] + "        raise ZeroDivisionError('oops')\n" + text[end:])
+    line = text[:end].count("\n") + 1
+    _write(_draw("HotWire", 1), log)
+    refused = _run("fit", "--model", f"{file}:HotWire", str(log), "-o", str(tmp_path / "b.json"))
+    assert refused.returncode == 2
+    assert f"line {line}: ZeroDivisionError: oops" in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1
+
+
+def test_options_are_named_as_they_are_typed(tmp_path: Path) -> None:
+    log = tmp_path / "tunnel.csv"
+    flight = _draw("HotWire", 1)
+    _write(flight, log)
+    rows = log.read_text().splitlines()
+    rows[5] = "," + rows[5].partition(",")[2]
+    log.write_text("\n".join(rows) + "\n")
+    model = ("--model", f"{FILE}:HotWire")
+    refused = _run("fit", *model, str(log), "-o", str(tmp_path / "b.json"))
+    assert "--drop-invalid" in refused.stderr
+    taken = _run(
+        "fit", *model, str(log), "-o", str(tmp_path / "b.json"), "--drop-invalid",
+        "--bounds", "n=0.2,0.9", "--bounds", "B=0,", "--prior", "n=0.45:0.2", "--explain",
+    )  # fmt: skip
+    assert taken.returncode == 0, taken.stderr
+    options = json.loads((tmp_path / "b.json").read_text())["options"]
+    assert options["bounds"] == {"n": [0.2, 0.9], "B": [0.0, None]}
+    assert options["prior"] == {"n": [0.45, 0.2]}
+
+
+def test_apply_notes_what_the_fit_never_saw(tmp_path: Path) -> None:
+    log, hot = tmp_path / "tunnel.csv", tmp_path / "hot.csv"
+    flight = _draw("HotWire", 1)
+    _write(flight, log)
+    base, model = str(tmp_path / "base.json"), ("--model", f"{FILE}:HotWire")
+    _run("fit", *model, str(log), "--effect", "A[temp_degc]", "-o", base)
+    columns = {name: np.array(flight[name]) for name in flight.columns}
+    columns["temp_degc"] += 60.0
+    _write(sepcal.Flight(columns), hot)
+    out = str(tmp_path / "out.csv")
+    assert "beyond" not in _run("apply", *model, str(log), base, "-o", out).stderr
+    noted = _run("apply", *model, str(hot), base, "-o", str(tmp_path / "out2.csv"))
+    assert "rows have temp_degc beyond" in noted.stderr

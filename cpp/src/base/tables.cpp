@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/detail/tables.hpp"
 
+#include <algorithm>
+
 #include <set>
 
 #include "sepcal/error.hpp"
@@ -30,6 +32,12 @@ void Tables::check_names() const {
   check_unique(inputs, "input");
   check_unique(outputs, "output");
   check_unique(parameters(), "parameter");
+}
+
+std::string Tables::output_unit() const {
+  const bool one = std::ranges::all_of(
+      outputs, [&](const Variable& output) { return output.unit == outputs.front().unit; });
+  return one && !outputs.empty() ? outputs.front().unit : "";
 }
 
 }  // namespace sepcal

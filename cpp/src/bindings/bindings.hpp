@@ -46,21 +46,26 @@ struct Model {
   std::map<std::string, double> held;  // unless freed, of a model without a probe
 };
 
+/// Where a model is written, and the file's SHA-256; both empty: unknown.
+using Source = std::pair<std::string, std::string>;
+
 /// A model of the caller's own as a probe; nullptr where it is called as one that ships: its
 /// columns can be fitted all the same.
 template <class Given>
-std::shared_ptr<const Probe> own_if_free(const std::string& name, const Given& model) {
+std::shared_ptr<const Probe> own_if_free(const std::string& name, const Given& model,
+                                         const ModelSource& source = {}) {
   try {
-    return own_model(name, model);
+    return own_model(name, model, source);
   } catch (const Error&) {
     return nullptr;
   }
 }
 
 /// One without a probe that ships: its tables say what it takes of a flight.
-inline Model plain_model(const std::string& name, std::shared_ptr<const BlockModel> block) {
+inline Model plain_model(const std::string& name, std::shared_ptr<const BlockModel> block,
+                         const ModelSource& source = {}) {
   Model model(std::move(block));
-  model.own = own_if_free(name, model.block);
+  model.own = own_if_free(name, model.block, source);
   return model;
 }
 

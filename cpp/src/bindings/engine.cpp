@@ -54,12 +54,11 @@ std::vector<Variable> to_table(const std::vector<Row>& rows) {
 }
 
 Model python_model(const std::string& name, const std::array<std::vector<Row>, 4>& tables,
-                   const PythonFunctions& functions) {
-  return plain_model(
-      name, std::make_shared<const PythonModel>(name,
-                                                Tables{to_table(tables[0]), to_table(tables[1]),
-                                                       to_table(tables[2]), to_table(tables[3])},
-                                                functions));
+                   const PythonFunctions& functions, const Source& source) {
+  const Tables all{to_table(tables[0]), to_table(tables[1]), to_table(tables[2]),
+                   to_table(tables[3])};
+  return plain_model(name, std::make_shared<const PythonModel>(name, all, functions),
+                     {source.first, source.second});
 }
 
 /// The model for a record of these columns.

@@ -366,12 +366,15 @@ void define_calibration(py::module_& module) {
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)
       .def_property_readonly("model", [](const Calibration& self) { return self.probe->name(); })
-      .def_property_readonly(
-          "app", [](const Calibration& self) { return self.probe->app(); },
-          "The program that calibrates it.")
+      .def(
+          "command",
+          [](const Calibration& self, const std::string& verb) {
+            return command_of(self.probe->app(), verb);
+          },
+          "A verb of it, as a shell takes it.")
       .def_property_readonly(
           "unit",
-          [](const Calibration& self) { return self.probe->model().tables().outputs.front().unit; })
+          [](const Calibration& self) { return self.probe->model().tables().output_unit(); })
       .def("to_json", [](const Calibration& self) { return to_json(self); })
       .def("save", &write_calibration, WithoutGil());
 }

@@ -7,6 +7,8 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 
+#include <algorithm>
+
 namespace sepcal::bindings {
 namespace {
 
@@ -21,7 +23,15 @@ std::string bytes_of(const py::str& text) {
   return {};
 }
 
-/// sepcal.Error, with the text of the C++ one; that of one which Python raised is a line too.
+/// An option as a command line has it.
+std::string as_typed(const std::string& name) {
+  std::string option = "--" + name;
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
+/// sepcal.Error, with the text of the C++ one; that of one which Python raised is a line too. One
+/// with options in it has `as_typed`, which names them as a command line does.
 void define_error(py::module_& module) {
   const auto& error = py::register_exception<sepcal::Error>(module, "Error", PyExc_ValueError);
   error.attr("__module__") = "sepcal";
@@ -32,6 +42,15 @@ void define_error(py::module_& module) {
     const py::object said = py::handle(PyExc_ValueError).attr("__str__")(self);
     return base::in_line(bytes_of(py::str(said)));
   };
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const OptionError& refused) {
+      py::object made = py::module_::import("sepcal._core").attr("Error")(refused.what());
+      made.attr("as_typed") = refused.spelled(as_typed);
+      PyErr_SetObject(py::type::handle_of(made).ptr(), made.ptr());
+    }
+  });
   error.attr("__str__") = py::cpp_function(text_of, py::name("__str__"), py::is_method(error));
 }
 

@@ -109,7 +109,8 @@ StateTables state_tables(const std::array<std::vector<Row>, 6>& tables,
 }
 
 Model python_state_model(const std::string& name, const StateTables& tables,
-                         const TrajectoryOptions& options, const py::object& walk) {
+                         const TrajectoryOptions& options, const py::object& walk,
+                         const Source& source) {
   const std::shared_ptr<const py::object> kept = share(walk);
   const auto lay = [=](const Record* record) {
     return std::make_shared<const PythonStateModel>(
@@ -117,7 +118,8 @@ Model python_state_model(const std::string& name, const StateTables& tables,
   };
   Model model{Along(lay)};
   model.own = own_if_free(
-      name, LaidAlong([=](const Record* record) { return laid_model(lay(record), options); }));
+      name, LaidAlong([=](const Record* record) { return laid_model(lay(record), options); }),
+      {source.first, source.second});
   return model;
 }
 

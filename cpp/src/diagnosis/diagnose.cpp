@@ -561,6 +561,7 @@ void Recipe::weigh_held_out() {
 /// A function of any form that takes much has been chosen to follow the noise too: where a line
 /// along its channel leaves hardly more, this stands first, as what would do as well.
 void Recipe::put_line_first() {
+  if (result_.effects.empty()) return;  // nothing was asked that the fit lacks
   const EffectFinding first = result_.effects.front();
   if (first.status != FindingStatus::slow_change && first.status != FindingStatus::undecided)
     return;

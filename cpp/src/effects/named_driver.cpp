@@ -36,14 +36,20 @@ std::string unit_of_channel(const std::string& header) {
   return found == known.end() ? "" : found->second;
 }
 
+/// "degC^2", "(deg/s)^2"; of power 1 the unit itself.
+std::string power_of(const std::string& unit, int power) {
+  if (power <= 1) return unit;
+  const bool is_compound = unit.find_first_of("/^ ") != std::string::npos;
+  return (is_compound ? "(" + unit + ")" : unit) + "^" + std::to_string(power);
+}
+
 /// "1 per rad m"; the port's own unit where that of a factor isn't known.
 std::string unit_of_product(const std::string& port_unit, const EffectName& name) {
   std::string units;
   for (const ChannelFactor& factor : name.factors) {
     const std::string unit = unit_of_channel(factor.channel);
     if (unit.empty()) return port_unit;
-    units.append(" ").append(unit);
-    if (factor.power > 1) units.append("^").append(std::to_string(factor.power));
+    units.append(" ").append(power_of(unit, factor.power));
   }
   return port_unit + " per" + units;
 }
@@ -200,9 +206,7 @@ std::string coefficient_unit(const std::string& port_unit, const EffectName& nam
   const bool as_it_is =
       name.shape != Shape::power && name.shape != Shape::ramp && name.shape != Shape::delay;
   if (as_it_is || channel.empty() || name.base == "maneuver") return port_unit;
-  std::string unit = port_unit + " per " + channel;
-  if (name.number > 1) unit.append("^").append(std::to_string(name.number));
-  return unit;
+  return port_unit + " per " + power_of(channel, name.number);
 }
 
 DriverPointer make_named_driver(const EffectName& name, const Port& port, EffectSetting& setting,

@@ -146,7 +146,8 @@ void check_linear(const Trial& trial, const Tables& tables, const VectorXd& xi2,
     if (largest <= linear_tolerance * size) continue;
     throw Error("the model's " + entry_name(tables, row / rows, column) +
                 " changes with the linear parameters; what multiplies them, and what is added, "
-                "must not depend on them");
+                "must not depend on them (a table linear_dynamic, even an empty one, says that the "
+                "rates of a model are linear in its states)");
   }
 }
 

@@ -19,7 +19,6 @@ from sepcal.reporting.words import number, with_unit
 from sepcal.results import Fit
 
 BEYOND_ALL = 1e6  # of a port's unit: nothing that would have shown is so large
-OWN_MODEL = "FILE.py:CLASS"
 DEPARTS = 0.01  # of p
 TWINS = 4  # effects that would do as well, or pairs, that are named
 
@@ -207,21 +206,17 @@ def next_command(material: Material, file: str) -> str:
     effect = advised(material)
     if effect is None or not file or not material.flight.sha256:
         return ""
-    if material.last.own_model is not None:
-        app = ["python", "-m", "sepcal", "add", "--model", OWN_MODEL]
-    else:
-        app = [material.last.core.app, "add"]
-    words = [*app, *material.flight_files, file, effect.name]
-    return f"{in_shell(words)} -o NEXT.json"
+    words = [*material.flight_files, file, effect.name]
+    return f"{material.last.core.command('add')} {in_shell(words)} -o NEXT.json"
 
 
 def report_command(material: Material, file: str) -> str:
     """What makes this page again."""
     if material.files and material.flight.sha256:
         flights = material.flight_files
-        own = [] if material.last.own_model is None else ["--model", OWN_MODEL]
-        words = ["python", "-m", "sepcal", "report", *own, *flights, *material.files]
-        return in_shell([*words, "-o", file])
+        own = material.last.own_model is not None
+        command = material.last.core.command("report") if own else "python -m sepcal report"
+        return f"{command} {in_shell([*flights, *material.files, '-o', file])}"
     return f"sepcal.report(calibrations, {file!r}, flight)"
 
 

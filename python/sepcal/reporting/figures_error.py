@@ -75,7 +75,10 @@ def draw_waterfall(steps: list[Step], floor: float, unit: str) -> Figure:
         shapes=shapes,
         annotations=notes,
         xaxis=ticks,
-        yaxis=words.axis(f"RMSE over all outputs [{unit}]", rangemode="tozero"),
+        yaxis=words.axis(
+            f"RMSE over all outputs [{unit}]" if unit else "RMSE, each output by its own before",
+            rangemode="tozero",
+        ),
     )
     return Figure(data, layout, "The error after every step")
 

@@ -45,8 +45,8 @@ def compose(material: Material, file: str) -> Page:
 
 
 def pooled_unit(material: Material) -> str:
-    """Of the RMSE over all outputs: they share one."""
-    return material.units[0]
+    """Of the RMSE over all outputs; empty where they have several: each by its own before."""
+    return material.units[0] if len(set(material.units)) == 1 else ""
 
 
 def show_verdict(material: Material) -> Html:
@@ -57,6 +57,9 @@ def show_verdict(material: Material) -> Html:
         (words.with_unit(found.rmse, unit), "RMSE left, all outputs"),
         (words.with_unit(found.noise_floor, unit), "noise floor"),
     ]
+    if not unit:
+        share = found.noise_floor / found.rmse
+        facts = [(words.percent(share), "of the error is what noise alone would leave")]
     if best := advice.advised(material):
         facts += [
             (words.percent(best.predicted_drop), f"less with {best.name}"),
@@ -91,6 +94,8 @@ def show_waterfall(material: Material) -> Section:
     """Fitted and held out after every step, and what was promised before it."""
     unit, history = pooled_unit(material), material.last.history
     found = material.diagnosis.found
+    scale = history[-1].rmse_after if history and not unit else 1.0
+    left, floor = scale * material.diagnosis.rmse, scale * material.diagnosis.noise_floor
     steps: list[Step] = []
     if history:
         before = history[0]
@@ -100,15 +105,13 @@ def show_waterfall(material: Material) -> Section:
         steps.append(Step(f"+ {entry.effect}", entry.rmse_after, entry.held_out_after, promised))
     if not steps:
         held = found[0].held_out_before if found else math.nan
-        steps.append(Step("this model", material.diagnosis.rmse, held, math.nan))
+        steps.append(Step("this model", left, held, math.nan))
     best = advice.advised(material)
-    promised = material.diagnosis.rmse * (1 - best.predicted_drop) if best else math.nan
+    promised = left * (1 - best.predicted_drop) if best else math.nan
     if best and not math.isnan(promised):
         label = f"next: + {best.name}"
-        steps.append(Step(label, promised, best.held_out_after, math.nan, is_next=True))
-    blocks: list[str | Figure | Grid] = [
-        draw_waterfall(steps, material.diagnosis.noise_floor, unit)
-    ]
+        steps.append(Step(label, promised, scale * best.held_out_after, math.nan, is_next=True))
+    blocks: list[str | Figure | Grid] = [draw_waterfall(steps, floor, unit)]
     if history:
         blocks.append(tables.list_history(history, unit))
     blocks.append(tables.list_calibrations(material.chain, material.files, material.comparisons))

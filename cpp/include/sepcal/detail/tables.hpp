@@ -46,6 +46,9 @@ struct Tables {
   /// Linear parameters first, then nonlinear: the order of every estimate and covariance.
   std::vector<Variable> parameters() const;
 
+  /// Of all outputs; empty where they have several.
+  std::string output_unit() const;
+
   /// Throws Error where a parameter's, input's or output's name is empty or used twice.
   void check_names() const;
 };

@@ -45,7 +45,8 @@ struct Derived {
 };
 
 /// One step of a chain of added effects. Undefined numbers are NaN; errors are RMSE over all
-/// outputs together, before and after on the same rows.
+/// outputs together, before and after on the same rows: in the outputs' unit or, where they have
+/// several (Tables::output_unit()), each in units of its own before the first step.
 struct HistoryEntry {
   std::string effect;
   double rmse_before = not_a_number;

@@ -37,7 +37,8 @@ namespace sepcal {
 ///
 /// Throws Error where the name is empty or one that ships, and for a model that carries a state
 /// from row to row, which is given as what lays it along a record.
-std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model);
+std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model,
+                                       ModelSource source = {});
 
 /// A model with a state, laid along a record.
 struct LaidModel {
@@ -54,7 +55,8 @@ using LaidAlong = std::function<LaidModel(const Record*)>;
 /// flight: an initial state a segment, which other flights estimate anew, all else held. Ports are
 /// the inputs, the linear parameters of the outputs and the outputs' zeros; inputs may be late or
 /// lag.
-std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay);
+std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay,
+                                       ModelSource source = {});
 
 template <SeparableModel M>
 std::shared_ptr<const Probe> own_model(std::string name, M model) {

@@ -70,8 +70,15 @@ struct ReadingEffects {
 inline constexpr std::string_view own_app = "python -m sepcal";
 
 /// A verb of an app as people type it: "sepcal-pitot add", or "python -m sepcal add --model
-/// FILE.py:CLASS".
+/// FILE.py:CLASS" with what the app names as its model, if it does.
 std::string command_of(std::string_view app, std::string_view verb);
+
+/// Where a model of the caller's own is written, so that people find it again and a change of it is
+/// noticed.
+struct ModelSource {
+  std::string name;    // as --model takes it, "my_models.py:HotWire"
+  std::string sha256;  // of the file's bytes; empty: there is none
+};
 
 class Probe {
  public:
@@ -100,6 +107,9 @@ class Probe {
   /// How a model of the caller's own is laid along a record; its calibration's file tells, and is
   /// read with no other. Else nullptr.
   virtual const TrajectoryOptions* trajectory() const { return nullptr; }
+
+  /// Of a model of the caller's own, where that is known; else nullptr.
+  virtual const ModelSource* source() const { return nullptr; }
 
   /// All that it reads of a log.
   virtual std::span<const probes::ProbeQuantity> quantities() const = 0;

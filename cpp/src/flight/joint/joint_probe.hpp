@@ -39,6 +39,7 @@ class JointProbe final : public Probe {
   const catalogue::EffectTable& effects() const override { return one_->effects(); }
   std::span<const probes::ProbeQuantity> quantities() const override { return one_->quantities(); }
   const TrajectoryOptions* trajectory() const override { return one_->trajectory(); }
+  const ModelSource* source() const override { return one_->source(); }
   std::map<std::string, std::vector<double>> settings() const override { return one_->settings(); }
   std::unique_ptr<const Probe> settle(const Flight& flight, const LogChoice& log) const override;
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "base/escaping.hpp"
 #include "flight/catalogue/effect_table.hpp"
 #include "flight/files/text_file.hpp"
 #include "flight/json/earlier_versions.hpp"
@@ -89,8 +90,24 @@ void check_trajectory(const Json& fitted, const TrajectoryOptions& given,
   }
 }
 
+/// That the file with the model is another than at the fit; empty where it isn't, or is not known.
+std::string say_changed(const Json& root, const Probe& own) {
+  const ModelSource* const now = own.source();
+  if (now == nullptr || now->sha256.empty() || !root.contains("source")) return "";
+  const std::string then = files::sha256_of(root.at("source").at("sha256"));
+  if (then.empty() || then == now->sha256) return "";
+  return fmt::format(
+      "{} has changed since the fit: if what the model computes has, fit again; the parameters are "
+      "those of the model as it was",
+      now->name);
+}
+
 Calibration read(const Json& root, std::shared_ptr<const Probe> own) {
   Calibration calibration;
+  if (own) {
+    const std::string changed = say_changed(root, *own);
+    if (!changed.empty()) calibration.notes.push_back(changed);
+  }
   calibration.options = read_options(root.at("options"));
   calibration.probe =
       own ? std::move(own) : read_probe(root.at("model").get<std::string>(), root.at("options"));
@@ -133,6 +150,9 @@ std::string to_json(const Calibration& calibration) {
   root["model"] = calibration.probe->name();
   if (calibration.probe->predicts()) {
     root["tables"] = write_tables(*calibration.probe);
+  }
+  if (const ModelSource* source = calibration.probe->source()) {
+    root["source"] = {{"model", source->name}, {"sha256", source->sha256}};
   }
   if (const TrajectoryOptions* along = calibration.probe->trajectory()) {
     root["trajectory"] = write_trajectory(*along);
@@ -180,10 +200,13 @@ Calibration parse(std::string_view json, const std::string& source,
         source, model));
   }
   if (!own && !catalogue::effect_tables().contains(model)) {
-    throw Error(
-        fmt::format("{}: its model, '{}', is no probe of sepcal's; give it: {} VERB --model "
-                    "FILE.py:CLASS, or sepcal.load(file, model=...)",
-                    source, model, own_app));
+    const bool is_known = root.contains("source") && root["source"].contains("model") &&
+                          root["source"]["model"].is_string();
+    const std::string named = is_known ? root["source"]["model"].get<std::string>() : "";
+    throw Error(fmt::format(
+        "{}: its model, '{}', is no probe of sepcal's; give it: {} VERB --model {}, or "
+        "sepcal.load(file, model=...)",
+        source, model, own_app, is_known ? base::file_in_shell(named) : "FILE.py:CLASS"));
   }
   return read_or_refuse(root, source, std::move(own));
 }

@@ -7,7 +7,9 @@
 
 namespace sepcal {
 std::string command_of(std::string_view app, std::string_view verb) {
-  return fmt::format("{} {}{}", app, verb, app == own_app ? " --model FILE.py:CLASS" : "");
+  if (!app.starts_with(own_app)) return fmt::format("{} {}", app, verb);
+  const std::string_view model = app.substr(own_app.size());
+  return fmt::format("{} {}{}", own_app, verb, model.empty() ? " --model FILE.py:CLASS" : model);
 }
 
 bool is_initial_state(const Probe& probe, std::string_view parameter) {

@@ -38,7 +38,8 @@ PortRow row_of_input(const Variable& input) {
                    .components = {{.name = "s", .input = input.name}},
                    .constant_is_own = false},
           .sentence = input.name + " is off, changing",
-          .forms = {{any_driver, input.name + " + s x"}}};
+          .forms = {{any_driver, input.name + " + s x"}},
+          .curves = {{"", "{}^2"}}};
 }
 
 PortRow row_of_output(const Variable& output, int place) {

@@ -9,6 +9,7 @@
 #include <deque>
 #include <string_view>
 
+#include "base/escaping.hpp"
 #include "flight/probes/corrected_columns.hpp"
 #include "flight/probes/record_builder.hpp"
 #include "flight/subjects/own_effects.hpp"
@@ -100,15 +101,20 @@ class OwnQuantities {
 
 class OwnProbe final : public Probe {
  public:
-  OwnProbe(std::string name, LaidModel laid, LaidAlong lay = {})
+  OwnProbe(std::string name, ModelSource source, LaidModel laid, LaidAlong lay = {})
       : name_(std::move(name)),
+        source_(std::move(source)),
+        app_(own_app),
         laid_(std::move(laid)),
         lay_(std::move(lay)),
         quantities_(laid_.model->tables()),
-        effects_(subjects::own_effects(laid_)) {}
+        effects_(subjects::own_effects(laid_)) {
+    if (!source_.name.empty()) app_ += " --model " + base::file_in_shell(source_.name);
+  }
 
   std::string_view name() const override { return name_; }
-  std::string_view app() const override { return own_app; }
+  std::string_view app() const override { return app_; }
+  const ModelSource* source() const override { return source_.name.empty() ? nullptr : &source_; }
   const BlockModel& model() const override { return *laid_.model; }
   const catalogue::EffectTable& effects() const override { return effects_; }
   std::span<const ProbeQuantity> quantities() const override { return quantities_.list(); }
@@ -116,7 +122,7 @@ class OwnProbe final : public Probe {
 
   std::shared_ptr<const Probe> along(const Record& record) const override {
     if (!lay_) return nullptr;
-    return std::make_shared<const OwnProbe>(name_, lay_(&record), lay_);
+    return std::make_shared<const OwnProbe>(name_, source_, lay_(&record), lay_);
   }
 
   std::vector<std::string> initial_states() const override { return laid_.initial_states; }
@@ -176,6 +182,8 @@ class OwnProbe final : public Probe {
   }
 
   std::string name_;
+  ModelSource source_;
+  std::string app_;
   LaidModel laid_;
   LaidAlong lay_;  // empty of a model without a state
   OwnQuantities quantities_;
@@ -190,7 +198,8 @@ void check_name(const std::string& name) {
 
 }  // namespace
 
-std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model) {
+std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const BlockModel> model,
+                                       ModelSource source) {
   check_name(name);
   if (model->new_carry() != nullptr) {
     throw Error("the model " + name + " carries a state from row to row; give what lays it along " +
@@ -198,13 +207,13 @@ std::shared_ptr<const Probe> own_model(std::string name, std::shared_ptr<const B
   }
   const auto linear = static_cast<std::size_t>(model->tables().n_1());
   return std::make_shared<const OwnProbe>(
-      std::move(name),
+      std::move(name), std::move(source),
       LaidModel{.model = std::move(model), .initial_states = {}, .varying = linear});
 }
 
-std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay) {
+std::shared_ptr<const Probe> own_model(std::string name, const LaidAlong& lay, ModelSource source) {
   check_name(name);
-  return std::make_shared<const OwnProbe>(std::move(name), lay(nullptr), lay);
+  return std::make_shared<const OwnProbe>(std::move(name), std::move(source), lay(nullptr), lay);
 }
 
 }  // namespace sepcal

@@ -19,8 +19,9 @@ namespace {
 Page history_table(const Calibration& calibration) {
   const std::vector<HistoryEntry>& history = calibration.history;
   if (history.empty()) return "";
-  const auto& outputs = calibration.probe->model().tables().outputs;
-  Page text = page("\nRMSE over all outputs [{}]\n", outputs.front().unit);
+  const std::string unit = calibration.probe->model().tables().output_unit();
+  Page text = unit.empty() ? Page("\nRMSE over all outputs, each by its own before\n")
+                           : page("\nRMSE over all outputs [{}]\n", unit);
   std::size_t width = 0;
   for (const HistoryEntry& entry : history) width = std::max(width, entry.effect.size());
   for (const HistoryEntry& entry : history) {

@@ -20,16 +20,44 @@ using namespace verbs;  // this room's own
 
 namespace {
 
-/// RMSE of a calibration over all outputs together, on the rows of `record`.
-double total_rmse(const Calibration& calibration, const EffectiveFlight& flight,
-                  const Record& record) {
+using Eigen::VectorXd;
+
+/// Squares of a calibration's residuals, summed over the rows of `record`, an output each.
+struct Squares {
+  VectorXd sums;
+  double rows = 0.0;
+
+  double total(const VectorXd& units) const {
+    const double all = sums.cwiseQuotient(units.cwiseAbs2()).sum();
+    return std::sqrt(all / (rows * static_cast<double>(sums.size())));
+  }
+};
+
+Squares squares_of(const Calibration& calibration, const EffectiveFlight& flight,
+                   const Record& record) {
   const model::Measurements measurements(*flight.model, record);
   base::ThreadPool pool(calibration.options.fit.threads);
   const model::Sweep sweep(*flight.model, measurements, pool);
-  const double square = sweep.squared_residuals(calibration.fit.xi1(), calibration.fit.xi2()).sum();
-  const auto count =
-      static_cast<double>(measurements.rows()) * static_cast<double>(flight.model->tables().n_z());
-  return std::sqrt(square / count);
+  return {sweep.squared_residuals(calibration.fit.xi1(), calibration.fit.xi2()),
+          static_cast<double>(measurements.rows())};
+}
+
+/// Where the outputs have several units, what the errors of a step start at, so that a chain goes
+/// on where it ended; each output's own RMSE before it is the unit of that. Else 1.
+double start_of_step(const Calibration& base) {
+  const bool one_unit = !base.probe->model().tables().output_unit().empty();
+  return one_unit || base.history.empty() ? 1.0 : base.history.back().rmse_after;
+}
+
+VectorXd units_of_step(const Calibration& base, const Squares& before) {
+  VectorXd units = VectorXd::Ones(before.sums.size());
+  if (!base.probe->model().tables().output_unit().empty()) return units;
+  for (Eigen::Index j = 0; j < units.size(); ++j) {
+    if (before.sums[j] > 0.0) {
+      units[j] = std::sqrt(before.sums[j] / before.rows) / start_of_step(base);
+    }
+  }
+  return units;
 }
 
 void refuse_twice(const CalibrationOptions& options) {
@@ -80,11 +108,14 @@ Calibration add_to(const Calibration& base, const PreparedFlight& prepared,
     next.notes.push_back(fmt::format("diagnose would not advise {}: {}", added, promised.against));
   }
   next.history = base.history;
+  const Squares squares = squares_of(base, before, rows);
+  const VectorXd units = units_of_step(base, squares);
+  const double start = start_of_step(base);
   next.history.push_back({.effect = added,
-                          .rmse_before = total_rmse(base, before, rows),
-                          .rmse_after = total_rmse(next, after, record),
-                          .held_out_before = promised.held_out_before,
-                          .held_out_after = promised.held_out_after,
+                          .rmse_before = squares.total(units),
+                          .rmse_after = squares_of(next, after, record).total(units),
+                          .held_out_before = start * promised.held_out_before,
+                          .held_out_after = start * promised.held_out_after,
                           .predicted_drop = promised.predicted_drop});
   return next;
 }

@@ -12,6 +12,7 @@
 #include "base/excerpt.hpp"
 #include "flight/probes/quantities.hpp"
 #include "flight/verbs/added_columns.hpp"
+#include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/effect_readings.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/detail/flight/output_file.hpp"
@@ -144,6 +145,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
   std::vector<std::string> more;
   const auto outside = find_outside(calibration, read.flight, more);
   std::ranges::move(more, std::back_inserter(readings.notes));
+  note_beyond(calibration.driver_ranges, readings.record, readings.notes);
   if (outside) {
     applied.headers.push_back(outside->header);
     if (!stream) columns.push_back(*outside);

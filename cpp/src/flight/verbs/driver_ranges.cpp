@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/verbs/driver_ranges.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -39,6 +41,25 @@ std::map<std::string, Interval> ranges_of_drivers(const Probe& probe,
     }
   }
   return ranges;
+}
+
+void note_beyond(const std::map<std::string, Interval>& ranges, const Record& record,
+                 std::vector<std::string>& notes) {
+  constexpr double allowed = 0.1;
+  for (const auto& [channel, seen] : ranges) {
+    if (!record.has(channel)) continue;
+    const double margin = allowed * (seen.upper - seen.lower);
+    const auto is_beyond = [&](double value) {
+      return value < seen.lower - margin || value > seen.upper + margin;
+    };
+    const std::span<const double> values = record.column(channel);
+    const auto beyond = std::ranges::count_if(values, is_beyond);
+    if (beyond == 0) continue;
+    notes.push_back(fmt::format(
+        "{} of {} rows have {} beyond {:.4g} to {:.4g}, which the fit saw: what follows it is a "
+        "guess there",
+        beyond, values.size(), channel, seen.lower, seen.upper));
+  }
 }
 
 }  // namespace sepcal::verbs

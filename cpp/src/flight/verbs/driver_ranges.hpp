@@ -18,4 +18,8 @@ std::map<std::string, Interval> ranges_of_drivers(const Probe& probe,
                                                   const std::vector<EffectSetting>& settings,
                                                   const Record& record);
 
+/// Notes each driver that a log has further than a tenth of its range beyond what the fit saw.
+void note_beyond(const std::map<std::string, Interval>& ranges, const Record& record,
+                 std::vector<std::string>& notes);
+
 }  // namespace sepcal::verbs

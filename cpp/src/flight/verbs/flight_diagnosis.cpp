@@ -2,6 +2,7 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,7 +89,12 @@ FlightDiagnosis run(const Calibration& calibration, const PreparedFlight& prepar
   note_other_flight(calibration, flight, result.notes);
   DiagnosisOptions preferring = options;
   preferring.preferred = catalogued(*calibration.probe);
-  result.diagnosis = diagnose(fitted, candidates_for(table, fitted, flight, options), preferring);
+  const std::vector<std::string> candidates = candidates_for(table, fitted, flight, options);
+  if (!options.only.empty() && candidates.empty()) {
+    result.notes.push_back(fmt::format("the calibration has {} already; nothing else was asked",
+                                       fmt::join(options.only, ", ")));
+  }
+  result.diagnosis = diagnose(fitted, candidates, preferring);
   for (const EffectFinding& effect : result.diagnosis.effects) {
     result.sentences.push_back(catalogue::describe_effect(table, effect.name));
   }

@@ -69,6 +69,14 @@ std::vector<std::string> verbs::list_as_good(const Diagnosis& found) {
   return list_beside(found, Beside::equivalent);
 }
 
+bool verbs::still_counts(const Diagnosis& of_one) {
+  constexpr double matters = 0.1;
+  if (of_one.verdict == Verdict::effect_missing) return true;
+  return std::ranges::any_of(of_one.effects, [](const EffectFinding& effect) {
+    return effect.held_out_passed && effect.held_out_gain >= matters;
+  });
+}
+
 std::vector<std::string> verbs::list_kept(const Stepwise& course) {
   std::vector<std::string> kept;
   for (const StepwiseStep& step : course.steps) {

@@ -34,6 +34,10 @@ const EffectFinding* next_effect(Stepwise& course, std::size_t most);
 /// What would do as well as what is advised: of the first alone it was asked.
 std::vector<std::string> list_as_good(const Diagnosis& found);
 
+/// Whether the one effect that was asked about is found, or takes what matters on rows held out,
+/// however sure that is: without it the model would be worse.
+bool still_counts(const Diagnosis& of_one);
+
 /// What the steps added and none dropped, in that order.
 std::vector<std::string> list_kept(const Stepwise& course);
 
@@ -65,7 +69,7 @@ struct StepwiseLoop {
       std::erase(others, asked);
       try {
         Fitted without = with(others);
-        if (diagnose(without, asked, among).diagnosis.verdict == Verdict::effect_missing) continue;
+        if (still_counts(diagnose(without, asked, among).diagnosis)) continue;
         course.steps.back().dropped.push_back(asked);
         fitted = std::move(without);
       } catch (const Error&) {
