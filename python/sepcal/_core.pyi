@@ -415,7 +415,7 @@ class NoiseSize:
     A noise's size that filter error estimated, or was given.
     """
 
-    _fields: typing.ClassVar[tuple] = ("name", "unit", "value", "standard_error", "at_floor")
+    _fields: typing.ClassVar[tuple] = ("name", "value", "unit", "standard_error", "at_floor")
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -1877,17 +1877,13 @@ class EffectFinding:
 
     _fields: typing.ClassVar[tuple] = (
         "name",
-        "sentence",
         "drivers",
-        "estimate",
-        "standard_error",
-        "unit",
-        "is_fitted",
         "shapes",
         "p_value",
         "log10_p",
         "p_adjusted",
         "p_listed",
+        "share_after_selection",
         "outputs",
         "partial_f",
         "sse",
@@ -1899,14 +1895,18 @@ class EffectFinding:
         "held_out_before",
         "held_out_after",
         "held_out_passed",
-        "share_after_selection",
         "held_out_interleaved",
         "held_out_refitted",
+        "is_fitted",
         "excuse",
         "visibility",
         "absorbed_by",
         "status",
         "beside",
+        "sentence",
+        "estimate",
+        "standard_error",
+        "unit",
     )
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> tuple: ...

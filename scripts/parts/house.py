@@ -65,7 +65,8 @@ SUBJECTS = {
     "Pitot-static tube": "pitot.?static",
 }
 KINDS = ("own", "registration", "docs", "tests", "lab and scripts", "others")
-PRODUCT = ("cpp", "apps", "python", ":!*.pyi", ":!*rivals*")  # rivals have options of their own
+# Written by hand; rivals have options of their own.
+PRODUCT = ("cpp", "apps", "python", ":!*.pyi", ":!*/fit_options.py", ":!*rivals*")
 STANDS = {
     "option `noise_tolerance`": r"\bnoise[_-]tolerance\b",
     "choice `jacobian`": r"ProjectedJacobian|\"(--)?jacobian\"|options\(\)\.jacobian|^ +jacobian:",

@@ -65,6 +65,29 @@ def test_an_option_stands_in_two_places(option: str) -> None:
         assert option in asked_for or f'"{option}"' not in (ROOT / shell).read_text(), shell
 
 
+def told_rows() -> list[tuple[str, str]]:
+    """(struct, field) of each row of result_fields.hpp."""
+    text = (ROOT / "cpp" / "src" / "flight" / "schema" / "result_fields.hpp").read_text()
+    parts = re.split(r"struct ResultFields<(\w+)>", text)
+    return [
+        (struct, field)
+        for struct, body in zip(parts[1::2], parts[2::2], strict=True)
+        for field in re.findall(r'row\("(\w+)"', body)
+    ]
+
+
+def test_a_field_of_a_result_stands_in_two_places() -> None:
+    """Its member and its row: neither JSON nor bindings ask for it by name."""
+    rows = told_rows()
+    assert len(rows) > 80
+    assert len(rows) == len(set(rows))
+    shells = [*(ROOT / "cpp/src/flight/json").glob("*"), *(ROOT / "cpp/src/bindings").glob("*.?pp")]
+    text = "".join(file.read_text() for file in shells)
+    for field in ("held_out_gain", "share_after_selection", "slope_error", "ljung_box_p"):
+        assert field in {name for _, name in rows}
+        assert not re.search(rf"\b{field}\b", text), field
+
+
 @pytest.mark.parametrize("probe", PROBES)
 def test_an_effect_stands_where_it_says(probe: str) -> None:
     """Each that is called without a driver is in docs/effects.md, and is flown somewhere."""

@@ -33,20 +33,7 @@ void define_parts(py::module_& module) {
       .comparable()
       .finish();
 
-  BoundStruct<LogNote>(module, "LogNote", "Something about a log.")
-      .field("kind", &LogNote::kind, R"("held", "units", ...)")
-      .field("concern", &LogNote::concern,
-             R"("wrong": a result is, or there is none; "matters": estimates or their errors )"
-             R"(suffer; "slight": good to know.)")
-      .field("columns", &LogNote::columns, "")
-      .field("rows", &LogNote::rows, "Concerned.")
-      .field("first_s", &LogNote::first_s, "Time of the first of these rows; NaN: of all.")
-      .field("last_s", &LogNote::last_s, "And of the last.")
-      .field("found", &LogNote::found, "What it is.")
-      .field("effect", &LogNote::effect, "What it does to the result.")
-      .field("advice", &LogNote::advice, "What to do.")
-      .comparable()
-      .finish();
+  BoundStruct<LogNote>(module, "LogNote", "Something about a log.").told().comparable().finish();
 }
 
 }  // namespace

@@ -14,15 +14,7 @@ namespace sepcal::bindings {
 void define_comparison(py::module_& module) {
   BoundStruct<Misfit>(module, "Misfit",
                       "One output over one stretch of a flight; NaN where there are too few rows.")
-      .field("segment", &Misfit::segment,
-             R"(Maneuver, or "120.0:180.5" [s] where there are no labels; empty: the whole.)")
-      .field("output", &Misfit::output, "")
-      .field("unit", &Misfit::unit, "")
-      .field("rows", &Misfit::rows, "")
-      .field("rmse", &Misfit::rmse, "")
-      .field("mean", &Misfit::mean, "Of z - model: what a constant offset would explain.")
-      .field("lag_one", &Misfit::lag_one,
-             "Correlation of neighbouring residuals, never across a segment's edge.")
+      .told()
       .comparable()
       .finish()
       .def_property_readonly("verdict", &verdict_on_noise,
@@ -33,26 +25,12 @@ void define_comparison(py::module_& module) {
 
   BoundStruct<ChannelMisfit>(module, "ChannelMisfit",
                              "One output's residual against one channel of the flight.")
-      .field("driver", &ChannelMisfit::driver,
-             R"("altitude_m"; "time", "alpha", "roll" for what the probe knows by itself.)")
-      .field("output", &ChannelMisfit::output, "")
-      .field("share_line", &ChannelMisfit::share_line,
-             "Of the residual's variance that a straight line would explain.")
-      .field("share_smooth", &ChannelMisfit::share_smooth,
-             "The same of a natural spline of six even knots.")
-      .field("slope", &ChannelMisfit::slope, "Of the line.")
-      .field("slope_error", &ChannelMisfit::slope_error,
-             "Its standard error in the residual's own noise, rather too large.")
-      .field("unit", &ChannelMisfit::unit, "Of the slope.")
+      .told()
       .comparable()
       .finish();
 
   BoundStruct<Window>(module, "Window", "A stretch of about a twentieth of the rows.")
-      .field("first_s", &Window::first_s, "Time of its first row.")
-      .field("last_s", &Window::last_s, "And of its last.")
-      .field("rows", &Window::rows, "")
-      .field("rmse", &Window::rmse, "By output.")
-      .field("mean", &Window::mean, "By output, of z - model.")
+      .told()
       .comparable()
       .finish();
 

@@ -46,65 +46,16 @@ void add_coefficients(Class& bound, const char* name, Value Coefficient::* membe
       doc);
 }
 
-void add_structure(Class& bound, const char* name, double Structure::* member, const char* doc) {
-  bound.field(
-      name, [=](const FoundEffect& self) { return self.finding.structure.*member; },
-      [=](FoundEffect& self, double value) { self.finding.structure.*member = value; }, doc);
-}
-
 void define_effect(py::module_& module) {
-  constexpr auto of = &FoundEffect::finding;
-  using Finding = EffectFinding;
   Class bound(module, "EffectFinding",
               "What a flight says about one candidate; NaN where a number is undefined.");
-  bound.field("name", of, &Finding::name, "What add() takes.")
-      .field("sentence", &FoundEffect::sentence, "In plain words.")
-      .field("drivers", of, &Finding::drivers, "Channels.");
+  bound.told(&FoundEffect::finding).field("sentence", &FoundEffect::sentence, "In plain words.");
   add_coefficients(bound, "estimate", &Coefficient::estimate,
                    "By coefficient, of one step from the fit, or of a fit.");
   add_coefficients(bound, "standard_error", &Coefficient::standard_error,
                    "In the noise model with the effect, or the fit's.");
   add_coefficients(bound, "unit", &Coefficient::unit, "By coefficient.");
-  bound.field("is_fitted", of, &Finding::is_fitted, "The estimates are those of a fit with it.")
-      .field("shapes", of, &Finding::shapes, R"(Of a scan: {"bias_step.t0": 41.2}.)")
-      .field("p_value", of, &Finding::p_value, "For itself, corrected for its scan.")
-      .field("log10_p", of, &Finding::log10_p, "Of the same, which may be too small for a float.")
-      .field("p_adjusted", of, &Finding::p_adjusted, "After Holm: for the verdict.")
-      .field("p_listed", of, &Finding::p_listed, "After Benjamini & Hochberg: for the list.")
-      .field("outputs", of, &Finding::outputs,
-             "That it can reach: all where they share parameters.");
-  add_structure(bound, "partial_f", &Structure::partial_f,
-                "As stepwise regression has it, residuals taken for white; sums of squares over "
-                "`outputs`, each in units of its RMSE in the fit.");
-  add_structure(bound, "sse", &Structure::sse, "Without it.");
-  add_structure(bound, "sse_reduction", &Structure::sse_reduction,
-                "By orthogonal functions: what it takes of sse.");
-  add_structure(bound, "pse", &Structure::pse, "Predicted square error, SSE/N + 2 s2max p/N.");
-  add_structure(bound, "pse_without", &Structure::pse_without, "The same without it.");
-  bound
-      .field("predicted_drop", of, &Finding::predicted_drop,
-             "Of the RMSE over these outputs, 1 - after / before.")
-      .field("held_out_gain", of, &Finding::held_out_gain, "The same on rows left out.")
-      .field("held_out_before", of, &Finding::held_out_before, "RMSE of rows left out.")
-      .field("held_out_after", of, &Finding::held_out_after, "The same with it.")
-      .field("held_out_passed", of, &Finding::held_out_passed,
-             "The mean gain of a block exceeds its standard error.")
-      .field("share_after_selection", of, &Finding::share_after_selection,
-             "Of the estimates, allowing for the effect's choice.")
-      .field("held_out_interleaved", of, &Finding::held_out_interleaved,
-             "Blocks in between, not whole segments, were left out.")
-      .field("held_out_refitted", of, &Finding::held_out_refitted,
-             "By real fits with it and without, not by one step.")
-      .field("excuse", of, &Finding::excuse,
-             "How many times too far noise would have to wander to look like it.")
-      .field("visibility", of, &Finding::visibility,
-             "Below 0.05 the flight can't show at least a part of it.")
-      .field("absorbed_by", of, &Finding::absorbed_by, "How far ignoring it shifts each parameter.")
-      .field("status", of, &Finding::status,
-             R"("found", "slow_change", "undecided", "not_seen", "cannot_be_seen".)")
-      .field("beside", of, &Finding::beside,
-             R"(The first found: "equivalent", "fades", "counts"; "untried" of others.)")
-      .comparable()
+  bound.comparable()
       .finish()
       .def_property_readonly(
           "in_words", [](const FoundEffect& self) { return status_in_words(self.finding); },
@@ -131,14 +82,7 @@ void define_parts(py::module_& module) {
 
   BoundStruct<ResidualNoise>(module, "ResidualNoise",
                              "An output's residual; NaN where a number is undefined.")
-      .field("output", &ResidualNoise::output, "")
-      .field("unit", &ResidualNoise::unit, "")
-      .field("rmse", &ResidualNoise::rmse, "")
-      .field("lag_one", &ResidualNoise::lag_one, "Correlation of neighbouring rows.")
-      .field("ljung_box_p", &ResidualNoise::ljung_box_p,
-             "Of 20 lags: small where the residual is not white.")
-      .field("noise", &ResidualNoise::noise, "Its NoiseModel.")
-      .field("floor", &ResidualNoise::floor, "What no model of the past predicts better.")
+      .told()
       .finish();
 
   BoundStruct<Omnibus>(module, "Unexplained",
@@ -156,46 +100,26 @@ void define_causes(py::module_& module) {
   BoundStruct<UnmeasuredCause>(
       module, "UnmeasuredCause",
       "A cause that no logged channel follows. Rows and cycles a row where there is no time.")
-      .field("kind", &UnmeasuredCause::kind, R"("common_cause" or "spectral_line".)")
-      .field(
-          "sentence", [](const UnmeasuredCause& self) { return describe(self); },
-          [](UnmeasuredCause&, const std::string&) {}, "In plain words.")
-      .field("outputs", &UnmeasuredCause::outputs, "That show it.")
-      .field("p_value", &UnmeasuredCause::p_value, "For itself.")
-      .field("p_adjusted", &UnmeasuredCause::p_adjusted, "After Holm: for the verdict.")
-      .field("all_along", &UnmeasuredCause::all_along, "Strongest over the whole flight.")
-      .field("first_s", &UnmeasuredCause::first_s, "Of the rows where it is strongest [s].")
-      .field("last_s", &UnmeasuredCause::last_s, "")
-      .field("frequency_hz", &UnmeasuredCause::frequency, "NaN where none stands out.")
+      .told()
       .comparable()
       .finish();
 
   BoundStruct<DetectionLimit>(module, "DetectionLimit",
                               "The smallest slow effect that the flight would have shown: a "
                               "straight line in time that is found nine times in ten.")
-      .field("port", &DetectionLimit::port, "")
-      .field("size", &DetectionLimit::size, "Change over the whole flight.")
-      .field("unit", &DetectionLimit::unit, "")
+      .told()
       .comparable()
       .finish();
 
   BoundStruct<ErrorBound>(module, "ErrorBound", "How far an error was let wander.")
-      .field("name", &ErrorBound::name, "As `error_budget` of diagnose() takes it.")
-      .field("size", &ErrorBound::size, "Standard deviation of each component, at most.")
-      .field("unit", &ErrorBound::unit, "")
+      .told()
       .comparable()
       .finish();
 }
 
 void define_work(py::module_& module) {
   BoundStruct<DiagnosisWork>(module, "DiagnosisWork", "What a diagnosis did.")
-      .field("screened", &DiagnosisWork::screened, "Candidates.")
-      .field("tested", &DiagnosisWork::tested, "By likelihood ratios, their noise estimated anew.")
-      .field("calibrated", &DiagnosisWork::calibrated, "By draws of the noise.")
-      .field("drawn", &DiagnosisWork::drawn, "These draws, of each noise.")
-      .field("refitted", &DiagnosisWork::refitted, "Models with a candidate that were fitted.")
-      .field("tried_on_some_rows", &DiagnosisWork::tried_on_some_rows,
-             "The same to 400 rows, where a fit is far off.")
+      .told()
       .comparable()
       .finish();
 
@@ -226,38 +150,13 @@ void define_work(py::module_& module) {
 }
 
 void define_steps(py::module_& module) {
-  using Step = StepwiseStep;
-  constexpr auto promised = &Step::promised;
-  BoundStruct<Step> bound(
+  BoundStruct<StepwiseStep> bound(
       module, "StepwiseStep",
       "An effect that was added: what it promised and what came of it; NaN where undefined.\n\n"
       "The RMSE is over `outputs`, of the rows that are fitted, in their unit; where these have "
       "different ones in units of each one's own before. partial_f, pse and pse_without are those "
       "of EffectFinding.");
-  bound.field("effect", promised, &EffectFinding::name, "")
-      .field("outputs", promised, &EffectFinding::outputs, "That it can reach.")
-      .field("p_adjusted", promised, &EffectFinding::p_adjusted, "");
-  const auto as_structured = [&](const char* name, double Structure::* member) {
-    bound.field(
-        name, [=](const Step& self) { return self.promised.structure.*member; },
-        [=](Step& self, double value) { self.promised.structure.*member = value; }, "");
-  };
-  as_structured("partial_f", &Structure::partial_f);
-  as_structured("pse", &Structure::pse);
-  as_structured("pse_without", &Structure::pse_without);
-  bound
-      .field("held_out_gain", promised, &EffectFinding::held_out_gain,
-             "Promised, on rows left out.")
-      .field("predicted_drop", promised, &EffectFinding::predicted_drop,
-             "Promised, of the RMSE: 1 - after / before.")
-      .field(
-          "found_drop", &Step::found_drop, [](Step&, double) {}, "")
-      .field("rmse_before", &Step::rmse_before, "")
-      .field("rmse_after", &Step::rmse_after, "")
-      .field("as_good", &Step::as_good, "What would have done as well in its place.")
-      .field("dropped", &Step::dropped, "What was added before and counts no more beside it.")
-      .comparable()
-      .finish();
+  bound.told().comparable().finish();
 }
 
 }  // namespace

@@ -252,17 +252,7 @@ void define_calibration_parts(py::module_& module) {
   BoundStruct<Derived>(
       module, "Derived",
       "A quantity that follows from the estimates, in `unit`; errors by the delta method.")
-      .field("name", &Derived::name, "")
-      .field("value", &Derived::value, "")
-      .field("standard_error", &Derived::standard_error,
-             "NaN where that of a parameter it depends on is.")
-      .field("standard_error_white", &Derived::standard_error_white,
-             "What it would be if the residuals were white.")
-      .field("standard_error_noise_model", &Derived::standard_error_noise_model,
-             "By a noise model of each output's residual.")
-      .field("standard_error_blocks", &Derived::standard_error_blocks,
-             "By leaving out blocks of the record; NaN where too few tell.")
-      .field("unit", &Derived::unit, "")
+      .told()
       .comparable()
       .finish();
 
@@ -270,12 +260,7 @@ void define_calibration_parts(py::module_& module) {
   BoundStruct<Entry>(module, "HistoryEntry",
                      "One step of a chain of added effects; NaN where a number is undefined. "
                      "Errors are RMSE over all outputs together, on the rows of the new fit.")
-      .field("effect", &Entry::effect, R"(Several that were added together: "E1+E2".)")
-      .field("rmse_before", &Entry::rmse_before, "")
-      .field("rmse_after", &Entry::rmse_after, "")
-      .field("held_out_before", &Entry::held_out_before, "")
-      .field("held_out_after", &Entry::held_out_after, "")
-      .field("predicted_drop", &Entry::predicted_drop, "Of the RMSE, 1 - after / before.")
+      .told()
       .comparable()
       .finish();
 

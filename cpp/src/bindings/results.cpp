@@ -24,21 +24,7 @@ std::string_view remark(const Parameter& parameter) {
 
 void define_parameters(py::module_& module) {
   BoundStruct<Parameter>(module, "Parameter", "One estimate, in `unit`.")
-      .field("name", &Parameter::name, "")
-      .field("value", &Parameter::value, "")
-      .field("standard_error", &Parameter::standard_error,
-             "The one to believe. NaN where undefined: fixed, at a bound, singular.")
-      .field("standard_error_white", &Parameter::standard_error_white,
-             "What it would be if the residuals were white.")
-      .field("standard_error_noise_model", &Parameter::standard_error_noise_model,
-             "By a noise model of each output's residual.")
-      .field("standard_error_blocks", &Parameter::standard_error_blocks,
-             "By leaving out blocks of the record; NaN where too few tell.")
-      .field("unit", &Parameter::unit, "")
-      .field("lower", &Parameter::lower, "Its bounds; infinite where there is none.")
-      .field("upper", &Parameter::upper, "")
-      .field("at_bound", &Parameter::at_bound, "Whether a bound stopped it.")
-      .field("fixed", &Parameter::fixed, "Whether it was held.")
+      .told()
       .comparable()
       .finish()
       .def_property_readonly("remark", &remark,
@@ -46,12 +32,7 @@ void define_parameters(py::module_& module) {
 
   BoundStruct<NoiseSize>(module, "NoiseSize",
                          "A noise's size that filter error estimated, or was given.")
-      .field("name", &NoiseSize::name, R"("q_alpha" of a process noise, "r_alpha_m" of an output.)")
-      .field("unit", &NoiseSize::unit, "")
-      .field("value", &NoiseSize::value,
-             "Root of the spectral density; of an output the standard deviation.")
-      .field("standard_error", &NoiseSize::standard_error, "NaN: given, or at its floor.")
-      .field("at_floor", &NoiseSize::at_floor, "Nothing but the floor stopped it.")
+      .told()
       .comparable()
       .finish();
 

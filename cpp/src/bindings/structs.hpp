@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "flight/schema/result_fields.hpp"
 
 namespace sepcal::bindings {
 
@@ -87,6 +88,16 @@ class BoundStruct {
     return *this;
   }
 
+  /// The fields that its table tells, of the struct or of a part of it.
+  BoundStruct& told() {
+    return told([](auto& self) -> auto& { return self; }, static_cast<Struct*>(nullptr));
+  }
+
+  template <class Part>
+  BoundStruct& told(Part Struct::* part) {
+    return told([part](auto& self) -> auto& { return self.*part; }, static_cast<Part*>(nullptr));
+  }
+
   /// For derived classes in Python: made from another.
   BoundStruct& copied() {
     class_.def(py::init<const Struct&>());
@@ -119,6 +130,25 @@ class BoundStruct {
   }
 
  private:
+  template <class Of, class Part>
+  BoundStruct& told(const Of& part_of, Part* /*of which type*/) {
+    schema::ResultFields<Part>::each([&](const char* name, const auto& member, const char* sentence,
+                                         schema::Told = schema::Told::everywhere,
+                                         schema::Null = schema::Null::not_a_number) {
+      using Given = std::invoke_result_t<decltype(member), Part&>;
+      using Value = std::decay_t<Given>;
+      field(
+          name, [=](const Struct& self) -> Value { return std::invoke(member, part_of(self)); },
+          [=](Struct& self, Value value) {
+            if constexpr (std::is_lvalue_reference_v<Given>) {
+              std::invoke(member, part_of(self)) = std::move(value);
+            }
+          },
+          sentence);
+    });
+    return *this;
+  }
+
   struct Field {
     const char* name;
     std::function<void(Struct&, const py::handle&)> set;

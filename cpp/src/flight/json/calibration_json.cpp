@@ -16,6 +16,7 @@
 #include "flight/json/joint_json.hpp"
 #include "flight/json/options_json.hpp"
 #include "flight/json/output_values.hpp"
+#include "flight/json/result_json.hpp"
 #include "sepcal/detail/flight/joint.hpp"
 #include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/error.hpp"
@@ -161,13 +162,13 @@ std::string to_json(const Calibration& calibration) {
   if (joint_setup(*calibration.probe) != nullptr) root["joint"] = write_joint(calibration);
   root["options"] = write_options(calibration);
   write_estimates(calibration.fit, root);
-  root["derived"] = write_derived(calibration.derived);
+  root["derived"] = write_by_name(calibration.derived, &Derived::name);
   if (!calibration.restated.empty()) root["restated"] = write_restated(calibration.restated);
   if (!calibration.driver_ranges.empty()) {
     root["driver_ranges"] = write_ranges(calibration.driver_ranges);
   }
   write_rest(calibration.fit, calibration.options.fit, root);
-  root["history"] = write_history(calibration.history);
+  root["history"] = write_list(calibration.history);
   return text_of(root);
 }
 

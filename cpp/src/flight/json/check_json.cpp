@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "flight/json/output_values.hpp"
+#include "flight/json/result_json.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/check.hpp"
 
@@ -25,22 +25,6 @@ Json write_columns(const std::vector<ColumnCheck>& columns) {
   return list;
 }
 
-Json write_notes(const std::vector<LogNote>& notes) {
-  Json list = Json::array();
-  for (const LogNote& note : notes) {
-    list.push_back({{"kind", note.kind},
-                    {"concern", to_string(note.concern)},
-                    {"columns", note.columns},
-                    {"rows", note.rows},
-                    {"first_s", number(note.first_s)},
-                    {"last_s", number(note.last_s)},
-                    {"found", note.found},
-                    {"effect", note.effect},
-                    {"advice", note.advice}});
-  }
-  return list;
-}
-
 }  // namespace
 
 std::string to_json(const FlightCheck& check) {
@@ -56,7 +40,7 @@ std::string to_json(const FlightCheck& check) {
   root["rate"] = number(check.rate);
   root["segments"] = check.segments;
   root["columns"] = write_columns(check.columns);
-  root["notes"] = write_notes(check.notes);
+  root["notes"] = write_list(check.notes);
   return text_of(root);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "flight/json/findings_json.hpp"
+#include "flight/json/result_json.hpp"
 #include "sepcal/flight/comparison.hpp"
 
 namespace sepcal {
@@ -23,28 +23,9 @@ std::string to_json(const Comparison& comparison) {
     root["residual"][misfit.output] = {{"lag_one", number(misfit.lag_one)},
                                        {"mean", number(misfit.mean)}};
   }
-  root["where"] = Json::array();
-  for (const Misfit& misfit : comparison.where) {
-    root["where"].push_back(write_misfit(misfit));
-  }
-  root["channels"] = Json::array();
-  for (const ChannelMisfit& channel : comparison.channels) {
-    root["channels"].push_back({{"driver", channel.driver},
-                                {"output", channel.output},
-                                {"share_line", number(channel.share_line)},
-                                {"share_smooth", number(channel.share_smooth)},
-                                {"slope", number(channel.slope)},
-                                {"slope_error", number(channel.slope_error)},
-                                {"unit", channel.unit}});
-  }
-  root["windows"] = Json::array();
-  for (const Window& window : comparison.windows) {
-    root["windows"].push_back({{"first_s", number(window.first_s)},
-                               {"last_s", number(window.last_s)},
-                               {"rows", window.rows},
-                               {"rmse", by_name(window.rmse)},
-                               {"mean", by_name(window.mean)}});
-  }
+  root["where"] = write_list(comparison.where);
+  root["channels"] = write_list(comparison.channels);
+  root["windows"] = write_list(comparison.windows);
   if (comparison.method == FitMethod::filter_error) {
     root["innovation"] = Json::object();
     for (std::size_t j = 0; j < comparison.sigma.size(); ++j) {

@@ -2,41 +2,16 @@
 #include "flight/json/findings_json.hpp"
 
 #include "flight/files/invalid_cells.hpp"
+#include "flight/json/result_json.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::json {
 
-Json write_misfit(const Misfit& misfit) {
-  return {{"segment", misfit.segment},   {"output", misfit.output},
-          {"rows", misfit.rows},         {"rmse", number(misfit.rmse)},
-          {"mean", number(misfit.mean)}, {"lag_one", number(misfit.lag_one)}};
-}
-
-Json write_derived(const std::vector<Derived>& derived) {
-  Json object = Json::object();
-  for (const Derived& quantity : derived) {
-    object[quantity.name] = {
-        {"value", number(quantity.value)},
-        {"standard_error", number(quantity.standard_error)},
-        {"standard_error_white", number(quantity.standard_error_white)},
-        {"standard_error_noise_model", number(quantity.standard_error_noise_model)},
-        {"standard_error_blocks", number(quantity.standard_error_blocks)},
-        {"unit", quantity.unit}};
-  }
-  return object;
-}
-
 std::vector<Derived> read_derived(const Json& object) {
   std::vector<Derived> derived;
   for (const auto& [name, entry] : entries_of(object)) {
-    derived.push_back(
-        {.name = name,
-         .unit = entry.at("unit").get<std::string>(),
-         .value = number_or(entry.at("value"), not_a_number),
-         .standard_error = number_or(entry.at("standard_error"), not_a_number),
-         .standard_error_white = number_or(entry.at("standard_error_white"), not_a_number),
-         .standard_error_noise_model = number_at(entry, "standard_error_noise_model"),
-         .standard_error_blocks = number_at(entry, "standard_error_blocks")});
+    derived.push_back(read_fields<Derived>(entry));
+    derived.back().name = name;
   }
   return derived;
 }
@@ -93,29 +68,9 @@ std::map<std::string, Interval> read_ranges(const Json& object) {
   return ranges;
 }
 
-Json write_history(const std::vector<HistoryEntry>& history) {
-  Json list = Json::array();
-  for (const HistoryEntry& entry : history) {
-    list.push_back({{"effect", entry.effect},
-                    {"rmse_before", number(entry.rmse_before)},
-                    {"rmse_after", number(entry.rmse_after)},
-                    {"held_out_before", number(entry.held_out_before)},
-                    {"held_out_after", number(entry.held_out_after)},
-                    {"predicted_drop", number(entry.predicted_drop)}});
-  }
-  return list;
-}
-
 std::vector<HistoryEntry> read_history(const Json& list) {
   std::vector<HistoryEntry> history;
-  for (const Json& entry : elements_of(list)) {
-    history.push_back({.effect = entry.at("effect").get<std::string>(),
-                       .rmse_before = number_or(entry.at("rmse_before"), not_a_number),
-                       .rmse_after = number_or(entry.at("rmse_after"), not_a_number),
-                       .held_out_before = number_or(entry.at("held_out_before"), not_a_number),
-                       .held_out_after = number_or(entry.at("held_out_after"), not_a_number),
-                       .predicted_drop = number_or(entry.at("predicted_drop"), not_a_number)});
-  }
+  for (const Json& entry : elements_of(list)) history.push_back(read_fields<HistoryEntry>(entry));
   return history;
 }
 

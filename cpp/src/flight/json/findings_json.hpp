@@ -9,14 +9,9 @@
 
 #include "flight/json/output_values.hpp"
 #include "sepcal/flight/calibration.hpp"
-#include "sepcal/flight/comparison.hpp"
 
 namespace sepcal::json {
 
-/// {segment, output, rows, rmse, mean, lag_one}
-Json write_misfit(const Misfit& misfit);
-
-Json write_derived(const std::vector<Derived>& derived);
 std::vector<Derived> read_derived(const Json& object);
 
 Json write_restated(const std::vector<Restatement>& restated);
@@ -25,7 +20,6 @@ std::vector<Restatement> read_restated(const Json& object);
 Json write_ranges(const std::map<std::string, Interval>& ranges);
 std::map<std::string, Interval> read_ranges(const Json& object);
 
-Json write_history(const std::vector<HistoryEntry>& history);
 std::vector<HistoryEntry> read_history(const Json& list);
 
 Json write_combinations(const std::vector<Combination>& combinations);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "flight/json/findings_json.hpp"
+#include "flight/json/result_json.hpp"
 
 namespace sepcal::json {
 namespace {
@@ -41,21 +42,10 @@ std::vector<Index> estimated_indices(const Fit& fit) {
 // --- parameters
 
 Json write_parameters(const Fit& fit) {
-  Json parameters = Json::object();
+  Json parameters = write_by_name(fit.parameters, &Parameter::name);
   int k = 0;
   for (const Parameter& parameter : fit.parameters) {
-    parameters[parameter.name] = {
-        {"value", number(parameter.value)},
-        {"standard_error", number(parameter.standard_error)},
-        {"standard_error_white", number(parameter.standard_error_white)},
-        {"standard_error_noise_model", number(parameter.standard_error_noise_model)},
-        {"standard_error_blocks", number(parameter.standard_error_blocks)},
-        {"unit", parameter.unit},
-        {"lower", number(parameter.lower)},
-        {"upper", number(parameter.upper)},
-        {"at_bound", parameter.at_bound},
-        {"kind", k < fit.n_1 ? "linear" : "nonlinear"}};
-    ++k;
+    parameters[parameter.name]["kind"] = k++ < fit.n_1 ? "linear" : "nonlinear";
   }
   return parameters;
 }
@@ -70,18 +60,10 @@ bool is_held(const CalibrationOptions& options, const std::string& name) {
 
 void read_parameters(const Json& parameters, const CalibrationOptions& options, Fit& fit) {
   for (const auto& [name, entry] : entries_of(parameters)) {
-    fit.parameters.push_back(
-        {.name = name,
-         .unit = entry.at("unit").get<std::string>(),
-         .value = entry.at("value").get<double>(),
-         .standard_error = number_or(entry.at("standard_error"), undefined),
-         .standard_error_white = number_or(entry.at("standard_error_white"), undefined),
-         .standard_error_noise_model = number_at(entry, "standard_error_noise_model"),
-         .standard_error_blocks = number_at(entry, "standard_error_blocks"),
-         .lower = number_or(entry.at("lower"), -infinity),
-         .upper = number_or(entry.at("upper"), infinity),
-         .at_bound = entry.at("at_bound").get<bool>(),
-         .fixed = is_held(options, name)});
+    Parameter parameter = read_fields<Parameter>(entry);
+    parameter.name = name;
+    parameter.fixed = is_held(options, name);
+    fit.parameters.push_back(std::move(parameter));
     if (entry.at("kind") == "linear") ++fit.n_1;
   }
 }
@@ -110,14 +92,7 @@ void read_correlation(const Json& correlation, Fit& fit) {
 // --- filter error
 
 Json write_filter_error(const Fit& fit) {
-  Json sizes = Json::object();
-  for (const NoiseSize& size : fit.noise_sizes) {
-    sizes[size.name] = {{"value", number(size.value)},
-                        {"unit", size.unit},
-                        {"standard_error", number(size.standard_error)},
-                        {"at_floor", size.at_floor}};
-  }
-  return {{"noise_sizes", sizes},
+  return {{"noise_sizes", write_by_name(fit.noise_sizes, &NoiseSize::name)},
           {"log_likelihood", number(fit.log_likelihood)},
           {"log_likelihood_without", number(fit.log_likelihood_without)}};
 }
@@ -127,11 +102,8 @@ void read_filter_error(const Json& object, Fit& fit) {
   fit.log_likelihood = number_or(object.at("log_likelihood"), undefined);
   fit.log_likelihood_without = number_or(object.at("log_likelihood_without"), undefined);
   for (const auto& [name, entry] : entries_of(object.at("noise_sizes"))) {
-    fit.noise_sizes.push_back({.name = name,
-                               .unit = entry.at("unit").get<std::string>(),
-                               .value = entry.at("value").get<double>(),
-                               .standard_error = number_or(entry.at("standard_error"), undefined),
-                               .at_floor = entry.at("at_floor").get<bool>()});
+    fit.noise_sizes.push_back(read_fields<NoiseSize>(entry));
+    fit.noise_sizes.back().name = name;
   }
 }
 
