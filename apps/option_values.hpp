@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "flight/schema/option_text.hpp"
+#include "flight/schema/typed_options.hpp"
 
 namespace sepcal::app {
 

@@ -154,8 +154,7 @@ int Verbs::diagnose(const DiagnoseArguments& asked) const {
   options.diagnosis.threads = base.options.fit.threads;
   options.diagnosis.progress = shown_on(line);
   if (asked.adds()) {
-    StepwiseCalibration result = diagnose_stepwise(base, flight, {}, options);
-    find_departures(result.calibration, flight);
+    const StepwiseCalibration result = diagnose_stepwise(base, flight, {}, options);
     line.clear();
     tell_notes(result.calibration.notes);
     delivery.deliver(to_json(result), to_text(result, detail_of(arguments_.explain)));
@@ -174,8 +173,7 @@ int Verbs::add() const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   const auto [base, flight] = read_whole_subject();
   ProgressLine line;
-  Calibration next = sepcal::add(base, flight, arguments_.effect, {}, shown_on(line));
-  find_departures(next, flight);
+  const Calibration next = sepcal::add(base, flight, arguments_.effect, {}, shown_on(line));
   line.clear();
   delivery.deliver(next);
   return exit_code(next.fit.status);

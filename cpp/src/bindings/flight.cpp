@@ -149,7 +149,6 @@ Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const 
   const Released released;
   need_own_effects(calibration);
   StepwiseCalibration result = diagnose_stepwise(calibration, flight, makers, options);
-  find_departures(result.calibration, flight);
   std::string json = to_json(result);
   Page page = page_of(result);
   return stepped(std::move(result.calibration), std::move(result.course), std::move(json),
@@ -238,9 +237,7 @@ Calibration add_to(const Calibration& base, const Flight& flight, const std::str
   const OwnEffects makers = own_effects(own, effect_kit(*base.probe));
   const Released released;
   need_own_effects(base);
-  Calibration next = add(base, flight, effect, makers);
-  find_departures(next, flight);
-  return next;
+  return add(base, flight, effect, makers);
 }
 
 Calibration with_own_effects(Calibration calibration, const std::vector<PythonEffect>& own) {

@@ -9,7 +9,7 @@
 
 #include "bindings.hpp"
 #include "flight/schema/option_fields.hpp"
-#include "flight/schema/option_text.hpp"
+#include "flight/schema/typed_options.hpp"
 #include "sepcal/error.hpp"
 #include "structs.hpp"
 

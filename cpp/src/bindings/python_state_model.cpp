@@ -289,7 +289,7 @@ class PythonStateModel::Steps final : public StateSteps {
     return {arrays[0].cast<VectorXd>()(plan_.outputs()), std::move(H)};
   }
 
-  SecondOrderStep advance_bent(std::size_t row, const VectorXd& x) const override {
+  SecondOrderStep advance_to_second_order(std::size_t row, const VectorXd& x) const override {
     SecondOrderStep step;
     SecondOrderNoise noise;
     {
@@ -309,7 +309,7 @@ class PythonStateModel::Steps final : public StateSteps {
     return step;
   }
 
-  SecondOrderReading read_bent(std::size_t row, const VectorXd& x) const override {
+  SecondOrderReading read_to_second_order(std::size_t row, const VectorXd& x) const override {
     const py::gil_scoped_acquire gil;
     const py::tuple arrays =
         model_.walk_->attr("second_order_reading")(known_at(row, 1), x, p_, xi1_, seeds_);

@@ -278,8 +278,9 @@ StateSteps::Reading ComposedSteps::read_jointly(std::size_t row, const VectorXd&
   return reading;
 }
 
-StateSteps::SecondOrderStep ComposedSteps::advance_bent(std::size_t row, const VectorXd& x) const {
-  const SecondOrderStep own = own_->advance_bent(row, x);
+StateSteps::SecondOrderStep ComposedSteps::advance_to_second_order(std::size_t row,
+                                                                   const VectorXd& x) const {
+  const SecondOrderStep own = own_->advance_to_second_order(row, x);
   const std::vector<Index> places = own_acting();
   const auto acting = static_cast<Index>(model_.plan().acting_columns().size());
   const auto widen = [&](const MatrixXd& slopes) {
@@ -310,10 +311,11 @@ StateSteps::SecondOrderStep ComposedSteps::advance_bent(std::size_t row, const V
   return step;
 }
 
-StateSteps::SecondOrderReading ComposedSteps::read_bent(std::size_t row, const VectorXd& x) const {
+StateSteps::SecondOrderReading ComposedSteps::read_to_second_order(std::size_t row,
+                                                                   const VectorXd& x) const {
   const std::vector<Column> columns = columns_at(row);
   const VectorXd added = read_effects(row, columns);
-  const SecondOrderReading own = own_->read_bent(row, x);
+  const SecondOrderReading own = own_->read_to_second_order(row, x);
   const std::vector<Index> places = own_acting();
   const auto acting = static_cast<Index>(model_.plan().acting_columns().size());
   SecondOrderReading reading{.z = own.z + added,

@@ -27,8 +27,8 @@ class ComposedSteps final : public StateSteps {
   JointStep advance_jointly(std::size_t row, const Eigen::VectorXd& x,
                             const Eigen::VectorXd& density) const override;
   Reading read_jointly(std::size_t row, const Eigen::VectorXd& x) const override;
-  SecondOrderStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const override;
-  SecondOrderReading read_bent(std::size_t row, const Eigen::VectorXd& x) const override;
+  SecondOrderStep advance_to_second_order(std::size_t row, const Eigen::VectorXd& x) const override;
+  SecondOrderReading read_to_second_order(std::size_t row, const Eigen::VectorXd& x) const override;
   Eigen::VectorXd start(std::size_t row) const override { return own_->start(row); }
 
   /// Of the model without effects.

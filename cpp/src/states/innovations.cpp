@@ -75,7 +75,8 @@ class StateInnovations final : public InnovationModel {
           return begin(trajectory, xi);
         },
         [&](Scores& filter, std::size_t row) {
-          return filter.update(readings(row), steps->read_bent(row, filter.x()), noise.r, sample);
+          return filter.update(readings(row), steps->read_to_second_order(row, filter.x()), noise.r,
+                               sample);
         },
         [&](const Place& at, const Innovation<Dynamic>& /*innovation*/) {
           const auto in_block = static_cast<Index>((at.row - at.first) % block_rows);
@@ -91,7 +92,8 @@ class StateInnovations final : public InnovationModel {
           }
         },
         [&](Scores& filter, std::size_t row) {
-          return filter.predict(steps->advance_bent(row, filter.x()), noise.q, held(row));
+          return filter.predict(steps->advance_to_second_order(row, filter.x()), noise.q,
+                                held(row));
         });
   }
 

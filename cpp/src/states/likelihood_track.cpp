@@ -183,7 +183,7 @@ class LikelihoodStream {
 
   void predict(Recursion& recursion, std::size_t row) {
     const double held = plan_.discrete() ? 1.0 : time_[row + 1] - time_[row];
-    if (recursion.predict(steps_->advance_bent(row, recursion.filter().x()), held) !=
+    if (recursion.predict(steps_->advance_to_second_order(row, recursion.filter().x()), held) !=
         FilterStatus::ok) {
       ++track_.refused;
     }
@@ -195,7 +195,7 @@ class LikelihoodStream {
     for (Index j = 0; j < n_z_; ++j) y[j] = outputs_[static_cast<std::size_t>(j)][row];
     const bool in_start = seen < start_.rows;
     const Innovation<Dynamic> innovation =
-        recursion.update(y, steps_->read_bent(row, recursion.filter().x()), free_,
+        recursion.update(y, steps_->read_to_second_order(row, recursion.filter().x()), free_,
                          in_start ? 1.0 : options_.forgetting);
     if (in_start) return;
     if (innovation.status != FilterStatus::ok) ++track_.refused;

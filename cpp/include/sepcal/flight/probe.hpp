@@ -20,6 +20,7 @@
 
 namespace sepcal {
 
+struct Calibration;
 struct Fit;
 struct TrajectoryOptions;
 
@@ -165,6 +166,10 @@ class Probe {
 
   /// Adds what only the probe knows to a fit's status, message and unobservable combinations.
   virtual void judge(Fit& fit) const;
+
+  /// Of several flights: sets `departures` of a calibration of it, or adds a note that says why
+  /// not.
+  virtual void judge_flights(Calibration& /*calibration*/, const Flight& /*joined*/) const {}
 
   /// What another setting would make of a fit's record, where that is far better; else nothing.
   virtual std::string suggest(const Fit& /*fit*/, const Record& /*record*/) const { return {}; }

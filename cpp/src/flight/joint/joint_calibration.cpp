@@ -114,14 +114,13 @@ Calibration calibrate_or_say_why(const std::shared_ptr<const Probe>& probe, cons
 
 }  // namespace
 
-void find_departures(Calibration& calibration, const Flight& joined) {
-  const JointProbe* const probe = as_joint(*calibration.probe);
-  if (probe == nullptr) return;
+/// By fit_many.hpp, with the effects that the calibration has.
+void JointProbe::judge_flights(Calibration& calibration, const Flight& joined) const {
   calibration.departures.clear();
-  const JointSetup& setup = probe->setup();
+  const JointSetup& setup = setup_;
   CalibrationOptions options = without_own(calibration.options, setup);
-  if (options.fit.loss != Loss::squares || probe->one()->with_noise(1.0) ||
-      !probe->initial_states().empty() || is_said_of_own(calibration.options, setup)) {
+  if (options.fit.loss != Loss::squares || one_->with_noise(1.0) || !initial_states().empty() ||
+      is_said_of_own(calibration.options, setup)) {
     calibration.notes.emplace_back(
         "flights are not tested for their departure from each other where a loss forgives "
         "outliers, where the model has a state or depends on its own noise, or where bounds, a "
@@ -130,10 +129,10 @@ void find_departures(Calibration& calibration, const Flight& joined) {
   }
   const verbs::PreparedFlight prepared = verbs::prepare(calibration, joined);
   const EffectiveFlight flight =
-      with_effects(*probe->one(), prepared.flight, prepared.readings, options.effects,
-                   options.own_effects, options.fit.bounds);
+      with_effects(*one_, prepared.flight, prepared.readings, options.effects, options.own_effects,
+                   options.fit.bounds);
   const Record record = flight.prepared.record.select(options.fit.stage_two_segments);
-  ManyOptions many{.own = setup.own, .fit = probe->one()->complete(options.fit, record)};
+  ManyOptions many{.own = setup.own, .fit = one_->complete(options.fit, record)};
   many.fit.stage_one_segments.clear();
   many.fit.stage_two_segments.clear();
   std::vector<std::pair<std::string, Record>> flights;
@@ -161,7 +160,7 @@ Calibration calibrate_jointly(const std::shared_ptr<const Probe>& probe,
   Calibration calibration =
       calibrate_or_say_why(joint, joined, of_each_flight(options, *joint_setup(*joint)), notes);
   std::ranges::move(notes, std::back_inserter(calibration.notes));
-  find_departures(calibration, joined);
+  joint->judge_flights(calibration, joined);
   return calibration;
 }
 

@@ -59,6 +59,7 @@ class JointProbe final : public Probe {
   FitOptions complete(const FitOptions& options, const Record& record) const override;
   std::unique_ptr<const Probe> with_noise(double standard_deviation) const override;
   void judge(Fit& fit) const override { one_->judge(fit); }
+  void judge_flights(Calibration& calibration, const Flight& joined) const override;
   std::string suggest(const Fit& fit, const Record& record) const override {
     return one_->suggest(fit, record);
   }

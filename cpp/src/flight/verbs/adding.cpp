@@ -122,13 +122,21 @@ Calibration add_to(const Calibration& base, const PreparedFlight& prepared,
 
 }  // namespace
 
-Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
-                const OwnEffects& own, const FitProgress& progress) {
+Calibration verbs::add_effect(const Calibration& base, const Flight& flight,
+                              const std::string& effect, const OwnEffects& own,
+                              const FitProgress& progress) {
   PreparedFlight prepared = prepare(base, flight);
   const OnFlight here = on_readings_of(along(base, prepared), flight, prepared, own, progress);
   note_mended(prepared);
   Calibration next = add_to(here.calibration, prepared, effect, own, progress);
   next.notes.insert(next.notes.begin(), here.notes.begin(), here.notes.end());
+  return next;
+}
+
+Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
+                const OwnEffects& own, const FitProgress& progress) {
+  Calibration next = add_effect(base, flight, effect, own, progress);
+  next.probe->judge_flights(next, flight);
   return next;
 }
 

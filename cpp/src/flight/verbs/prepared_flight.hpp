@@ -91,6 +91,10 @@ CalibrationOptions options_from(const Calibration& base, const OwnEffects& own,
 Calibration refit_to(const Calibration& base, const PreparedFlight& prepared, const OwnEffects& own,
                      const FitProgress& progress);
 
+/// As the public add(), but for what is said of several flights.
+Calibration add_effect(const Calibration& base, const Flight& flight, const std::string& effect,
+                       const OwnEffects& own, const FitProgress& progress);
+
 /// As the engine's diagnosis takes it. `own`: effects that the calibration or the caller made.
 DiagnosedFit diagnosed_fit(const Calibration& calibration, const Record& readings,
                            const OwnEffects& own);

@@ -131,9 +131,10 @@ StepwiseCalibration diagnose_stepwise(const Calibration& base, const Flight& fli
         return diagnose(at, flight, own, about(options.diagnosis, only, among));
       },
       [&](const Calibration& at, const std::string& effect) {
-        return add(at, flight, effect, own, progress);
+        return add_effect(at, flight, effect, own, progress);
       }};
   Stepwise course = loop.run(calibration);
+  calibration.probe->judge_flights(calibration, flight);
   return {std::move(calibration), std::move(course)};
 }
 

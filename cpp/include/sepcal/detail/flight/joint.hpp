@@ -70,8 +70,4 @@ void check_known(const Calibration& calibration, const Flight& flight);
 Flight rejoin_flights(const Calibration& calibration, const std::vector<Flight>& flights,
                       std::vector<std::string>& notes);
 
-/// Tests each flight of a joint calibration for its departure from the others (fit_many.hpp), with
-/// the effects that it has: sets `departures`, or adds a note that says why not.
-void find_departures(Calibration& calibration, const Flight& joined);
-
 }  // namespace sepcal

@@ -197,7 +197,8 @@ class ModelSteps final : public StateSteps {
     return reading;
   }
 
-  SecondOrderStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const override {
+  SecondOrderStep advance_to_second_order(std::size_t row,
+                                          const Eigen::VectorXd& x) const override {
     const StateRow<M> from = row_at(row);
     const StateRow<M> to = row_at(row + 1);
     const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
@@ -219,7 +220,8 @@ class ModelSteps final : public StateSteps {
     return step;
   }
 
-  SecondOrderReading read_bent(std::size_t row, const Eigen::VectorXd& x) const override {
+  SecondOrderReading read_to_second_order(std::size_t row,
+                                          const Eigen::VectorXd& x) const override {
     const StateRow<M> here = row_at(row);
     const auto all = second_order_reading<M>(model_, whole<double>(here, x), here.u, xi1_, p_,
                                              plan_.integrated(), directions_);
@@ -281,8 +283,8 @@ class ModelSteps final : public StateSteps {
     return all;
   }
 
-  /// Which derivatives a bent step is asked for, and where they go among the columns that act. A
-  /// step that is linear in the state curves by no state.
+  /// Which derivatives a step of second order is asked for, and where they go among the columns
+  /// that act. A step that is linear in the state curves by no state.
   void find_directions() {
     const std::vector<int>& acting = plan_.acting_columns();
     const auto place = [&acting](int column) {

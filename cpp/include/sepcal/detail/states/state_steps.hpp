@@ -70,8 +70,10 @@ class StateSteps {
   using SecondOrderReading =
       sepcal::SecondOrderReading<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
   using SecondOrderNoise = sepcal::SecondOrderNoise<Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic>;
-  virtual SecondOrderStep advance_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
-  virtual SecondOrderReading read_bent(std::size_t row, const Eigen::VectorXd& x) const = 0;
+  virtual SecondOrderStep advance_to_second_order(std::size_t row,
+                                                  const Eigen::VectorXd& x) const = 0;
+  virtual SecondOrderReading read_to_second_order(std::size_t row,
+                                                  const Eigen::VectorXd& x) const = 0;
 
   /// n_x, what the model's start(u, z) says of a row; zero where it has none.
   virtual Eigen::VectorXd start(std::size_t row) const = 0;

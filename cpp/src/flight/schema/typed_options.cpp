@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "flight/schema/option_text.hpp"
+#include "flight/schema/typed_options.hpp"
 
 #include <fmt/format.h>
 
