@@ -86,3 +86,21 @@ loop octocopter_internal mag "$recordings/octocopter_internal_mag.csv" "bias[vol
 loop uav pitot "$recordings/uav_pitot_static_2022_05_07_11.csv" "time_offset"
 loop airliner pitot "$recordings/airliner_mode_s.csv" "wind[spline(time,6)]"
 loop stall pitot "$recordings/rv_deceleration_stall.csv" "time_offset"
+
+run aircraft-effects aircraft effects --json
+run simulate-aircraft aircraft simulate -o aircraft.csv --geometry aircraft.json --rows 700 --seed 3
+run simulate-another aircraft simulate -o another.csv --rows 700 --seed 4
+for model in path longitudinal lateral six-dof aero; do
+  run "$model-check" aircraft check aircraft.csv --model "$model" --json
+  run "$model-fit" aircraft fit aircraft.csv --model "$model" --geometry aircraft.json -o "$model.json"
+  run "$model-compare" aircraft compare aircraft.csv "$model.json" --json
+  run "$model-another" aircraft compare another.csv "$model.json"
+  run "$model-apply" aircraft apply aircraft.csv "$model.json" -o "$model.csv"
+done
+for model in longitudinal aero; do
+  run "$model-diagnose" aircraft diagnose aircraft.csv "$model.json" -o "$model.diagnosis.json"
+  run "$model-add" aircraft add aircraft.csv "$model.json" "Cm[alpha^2]" -o "$model.next.json"
+  run "$model-intervals" aircraft intervals aircraft.csv "$model.json" --parameter Cm_alpha
+done
+run two-step aircraft two-step aircraft.csv --geometry aircraft.json -o two.json
+run track aircraft track another.csv longitudinal.json -o track.csv

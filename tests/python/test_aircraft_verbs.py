@@ -115,6 +115,19 @@ def test_own_parameters_are_refused(moment: sepcal.Aero, flights: list[sepcal.Fl
     )
 
 
+def test_a_flight_whose_segments_tell_nothing_of_each_other(tmp_path: Path) -> None:
+    """All but initial states is held, so that a block of rows has all of a state or nothing."""
+    for seed, name in ((3, "f.csv"), (4, "g.csv")):
+        apps.run(
+            "sepcal-aircraft", "simulate", "-o", name, "--seed", f"{seed}", "--rows", "700",
+            folder=tmp_path,
+        )  # fmt: skip
+    apps.run("sepcal-aircraft", "fit", "f.csv", "--model", "path", "-o", "p.json", folder=tmp_path)
+    compared = apps.run("sepcal-aircraft", "compare", "g.csv", "p.json", folder=tmp_path)
+    assert compared.code == 0
+    assert "g.csv is not the flight of the fit" in compared.err
+
+
 # --- intervals
 
 

@@ -13,6 +13,7 @@ import os
 import pickle
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
@@ -23,7 +24,9 @@ import pytest
 
 import sepcal
 from example_models import FILE, models
+from sepcal import _core
 from sepcal.own_commands import EXIT_CODES
+from sepcal.printing import told_work
 
 Array = npt.NDArray[np.float64]
 ROWS = 1500
@@ -531,3 +534,27 @@ def test_apply_notes_what_the_fit_never_saw(tmp_path: Path) -> None:
     assert "beyond" not in _run("apply", *model, str(log), base, "-o", out).stderr
     noted = _run("apply", *model, str(hot), base, "-o", str(tmp_path / "out2.csv"))
     assert "rows have temp_degc beyond" in noted.stderr
+
+
+def test_what_is_being_done_is_heard() -> None:
+    """What the commands show: tasks, and how far each is."""
+    heard: list[tuple[str, float]] = []
+    _core.hear_progress(lambda task, fraction: heard.append((task, fraction)))
+    try:
+        base = sepcal.fit(models.HotWire(), _draw("HotWire", 1), seed=1)
+        assert isinstance(base, sepcal.Calibration)
+        base.diagnose()
+    finally:
+        _core.hear_progress(None)
+    assert {"stage one", "screening effects", "testing effects"} <= {task for task, _ in heard}
+    assert all(0.0 <= fraction <= 1.0 for _, fraction in heard)
+    count = len(heard)
+    base.compare()
+    assert len(heard) == count
+
+
+def test_long_work_is_told_off_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    """A line every ten seconds says what is done, and for how long."""
+    with told_work("sepcal fit", every=0.02):
+        time.sleep(0.2)
+    assert "sepcal fit: at work, 0 s" in capsys.readouterr().err

@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "listener.hpp"
 #include "python_effect.hpp"
 #include "released.hpp"
 #include "results.hpp"
@@ -131,7 +132,8 @@ Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
                       const std::vector<PythonEffect>& own, const Injected& injected,
                       const DiagnosisOptions& asked) {
   const OwnEffects makers = own_effects(own, effect_kit(*calibration.probe));
-  const DiagnosisOptions options = with_threads(asked, calibration.options.fit.threads);
+  DiagnosisOptions options = with_threads(asked, calibration.options.fit.threads);
+  options.progress = heard();
   const Released released;
   need_own_effects(calibration);
   return diagnosed(injected ? diagnose_with({injected->first, injected->second}, calibration,
@@ -144,8 +146,9 @@ Stepped<Calibration> diagnose_stepwise_on(const Calibration& calibration, const 
                                           std::optional<std::size_t> most,
                                           const DiagnosisOptions& asked) {
   const OwnEffects makers = own_effects(own, effect_kit(*calibration.probe));
-  const StepwiseOptions options =
+  StepwiseOptions options =
       stepwise_options(most, with_threads(asked, calibration.options.fit.threads));
+  options.diagnosis.progress = heard();
   const Released released;
   need_own_effects(calibration);
   StepwiseCalibration result = diagnose_stepwise(calibration, flight, makers, options);
@@ -181,6 +184,7 @@ Applied apply_file(const Calibration& calibration, const std::string& file,
 Calibration calibrate_probe(const Model& model, const Flight& flight, CalibrationOptions options,
                             const std::vector<PythonEffect>& own) {
   options.own_effects = own_effects(own, effect_kit(probe_of(model)));
+  options.fit.progress = heard();
   const Released released;
   return calibrate(subject_of(model), flight, options);
 }
@@ -192,6 +196,7 @@ std::pair<Calibration, Flight> calibrate_flights(const Model& model,
                                                  CalibrationOptions options,
                                                  const std::vector<PythonEffect>& own_made) {
   options.own_effects = own_effects(own_made, effect_kit(probe_of(model)));
+  options.fit.progress = heard();
   const Released released;
   std::vector<std::string> notes;  // calibrate_jointly() gives them with the calibration
   Flight joined = join_flights(flights, options.log, notes);
@@ -220,9 +225,11 @@ Certificate certify_on(const Calibration& calibration, const Flight& flight, dou
 
 FoundIntervals intervals_on(const Calibration& calibration, const Flight& flight, double level,
                             const std::vector<std::string>& names) {
+  const FitProgress progress = heard();
   const Released released;
   need_own_effects(calibration);
-  return found_intervals(find_intervals(calibration, flight, {.level = level, .names = names}));
+  return found_intervals(
+      find_intervals(calibration, flight, {.level = level, .names = names, .progress = progress}));
 }
 
 FlightPrediction predict_flight(const Calibration& calibration, const Flight& flight,
@@ -235,9 +242,10 @@ FlightPrediction predict_flight(const Calibration& calibration, const Flight& fl
 Calibration add_to(const Calibration& base, const Flight& flight, const std::string& effect,
                    const std::vector<PythonEffect>& own) {
   const OwnEffects makers = own_effects(own, effect_kit(*base.probe));
+  const FitProgress progress = heard();
   const Released released;
   need_own_effects(base);
-  return add(base, flight, effect, makers);
+  return add(base, flight, effect, makers, progress);
 }
 
 Calibration with_own_effects(Calibration calibration, const std::vector<PythonEffect>& own) {
@@ -373,6 +381,7 @@ const Probe& probe_of(const Model& model) {
 }
 
 void define_flight(py::module_& module) {
+  module.def("hear_progress", [](const py::object& heard_by) { listener() = heard_by; });
   define_flights(module);
   define_calibration_parts(module);
   define_calibration(module);

@@ -24,6 +24,9 @@ double score_likelihood(const VectorXd& g, const MatrixXd& C, const MatrixXd& wh
   constexpr double least = 1e-8;  // of the largest variance
   const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(white);
   const VectorXd& variances = parts.eigenvalues();
+  constexpr double rounding =
+      1e-12;  // a block that has all or nothing of every parameter shows none
+  if (!(variances.maxCoeff() > rounding)) return 0.0;
   const double floor = least * variances.maxCoeff();
   const Index seen = (variances.array() > floor).count();
   const MatrixXd directions = parts.eigenvectors().rightCols(seen);
