@@ -72,21 +72,6 @@ run help-pitot pitot --help
 run help-fit pitot fit --help
 run help-mag mag fit --help
 
-[[ -n $recordings ]] || exit 0
-run bench-check mag check "$recordings/bench_tilt_sphere_mag.csv" --field-strength 48
-run octocopter-check mag check "$recordings/octocopter_internal_mag.csv" --field 19.72,-1.41,49.44
-for log in uav_pitot_static_2022_05_07_11 airliner_mode_s rv_deceleration_stall; do
-  run "$log-check" pitot check "$recordings/$log.csv"
-done
-loop bench mag "$recordings/bench_tilt_sphere_mag.csv" "bias_step" --field-strength 48
-loop octocopter_external mag "$recordings/octocopter_external_mag.csv" "bias[current_a]" \
-  --field 19.72,-1.41,49.44
-loop octocopter_internal mag "$recordings/octocopter_internal_mag.csv" "bias[voltage_v]" \
-  --field 19.72,-1.41,49.44
-loop uav pitot "$recordings/uav_pitot_static_2022_05_07_11.csv" "time_offset"
-loop airliner pitot "$recordings/airliner_mode_s.csv" "wind[spline(time,6)]"
-loop stall pitot "$recordings/rv_deceleration_stall.csv" "time_offset"
-
 run aircraft-effects aircraft effects --json
 run simulate-aircraft aircraft simulate -o aircraft.csv --geometry aircraft.json --rows 700 --seed 3
 run simulate-another aircraft simulate -o another.csv --rows 700 --seed 4
@@ -104,3 +89,18 @@ for model in longitudinal aero; do
 done
 run two-step aircraft two-step aircraft.csv --geometry aircraft.json -o two.json
 run track aircraft track another.csv longitudinal.json -o track.csv
+
+[[ -n $recordings ]] || exit 0
+run bench-check mag check "$recordings/bench_tilt_sphere_mag.csv" --field-strength 48
+run octocopter-check mag check "$recordings/octocopter_internal_mag.csv" --field 19.72,-1.41,49.44
+for log in uav_pitot_static_2022_05_07_11 airliner_mode_s rv_deceleration_stall; do
+  run "$log-check" pitot check "$recordings/$log.csv"
+done
+loop bench mag "$recordings/bench_tilt_sphere_mag.csv" "bias_step" --field-strength 48
+loop octocopter_external mag "$recordings/octocopter_external_mag.csv" "bias[current_a]" \
+  --field 19.72,-1.41,49.44
+loop octocopter_internal mag "$recordings/octocopter_internal_mag.csv" "bias[voltage_v]" \
+  --field 19.72,-1.41,49.44
+loop uav pitot "$recordings/uav_pitot_static_2022_05_07_11.csv" "time_offset"
+loop airliner pitot "$recordings/airliner_mode_s.csv" "wind[spline(time,6)]"
+loop stall pitot "$recordings/rv_deceleration_stall.csv" "time_offset"
