@@ -64,7 +64,7 @@ def in_environment(build: Path) -> dict[str, str]:
 def formatted(text: str, file: Path) -> str:
     """By ruff."""
     told = subprocess.run(
-        ["ruff", "format", "--stdin-filename", str(file), "-"],
+        [sys.executable, "-m", "ruff", "format", "--stdin-filename", str(file), "-"],
         input=text, capture_output=True, text=True, check=True,
     )  # fmt: skip
     return told.stdout
@@ -109,6 +109,11 @@ def main(action: str, build: str) -> int:
     """0 where the files are current or were written."""
     status = 0
     folder = (ROOT / build).resolve()
+    for stub in STUBS:
+        if not list((folder / "python" / "sepcal").glob(f"{stub.stem}.*.so")):
+            raise SystemExit(
+                f"{build} has no {stub.stem}: run ninja -C {build} _core _states first"
+            )
     made = {stub: generate(folder, stub) for stub in STUBS} | {OPTIONS: generate_options(folder)}
     for file, text in made.items():
         if action == "write":
