@@ -42,7 +42,8 @@ void define_error(py::module_& module) {
     const py::object said = py::handle(PyExc_ValueError).attr("__str__")(self);
     return base::in_line(bytes_of(py::str(said)));
   };
-  py::register_exception_translator([](std::exception_ptr thrown) {
+  // As pybind11 calls it. NOLINTNEXTLINE(performance-unnecessary-value-param)
+  py::register_exception_translator([](const std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const OptionError& refused) {

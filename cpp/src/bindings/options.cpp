@@ -22,7 +22,7 @@ using Options = CalibrationOptions;
 template <class Value>
 struct InPython {
   using Type = Value;
-  static const Value& to(const Value& value) { return value; }
+  static Value to(const Value& value) { return value; }
   static Value from(const std::string& /*name*/, Value value) { return value; }
 };
 
@@ -222,7 +222,7 @@ void define_options(py::module_& module) {
         name.c_str(),
         [field](const Options& self) ->
         typename Python::Type { return Python::to(field.in(self)); },
-        [field, name](Options& self, const typename Python::Type& value) {
+        [field, name](Options& self, const Python::Type& value) {
           field.in(self) = Python::from(name, value);
         });
   });

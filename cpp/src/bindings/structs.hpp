@@ -139,9 +139,9 @@ class BoundStruct {
       using Value = std::decay_t<Given>;
       field(
           name, [=](const Struct& self) -> Value { return std::invoke(member, part_of(self)); },
-          [=](Struct& self, Value value) {
+          [=](Struct& self, const Value& value) {
             if constexpr (std::is_lvalue_reference_v<Given>) {
-              std::invoke(member, part_of(self)) = std::move(value);
+              std::invoke(member, part_of(self)) = value;
             }
           },
           sentence);

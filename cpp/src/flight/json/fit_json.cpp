@@ -60,7 +60,7 @@ bool is_held(const CalibrationOptions& options, const std::string& name) {
 
 void read_parameters(const Json& parameters, const CalibrationOptions& options, Fit& fit) {
   for (const auto& [name, entry] : entries_of(parameters)) {
-    Parameter parameter = read_fields<Parameter>(entry);
+    auto parameter = read_fields<Parameter>(entry);
     parameter.name = name;
     parameter.fixed = is_held(options, name);
     fit.parameters.push_back(std::move(parameter));

@@ -50,7 +50,7 @@ Json write(const std::string& value) { return value; }
 Json write(const std::vector<std::string>& value) { return value; }
 Json write(const std::map<std::string, double>& value) { return value; }
 Json write(const std::map<std::string, std::string>& value) { return value; }
-Json write(std::optional<double> value) { return *value; }
+Json write(std::optional<double> value) { return value ? Json(*value) : Json(); }
 template <std::integral Value>
 Json write(Value value) {
   return value;
@@ -75,6 +75,7 @@ Json write(const std::map<std::string, Normal>& normals) {
   return object;
 }
 Json write(const std::optional<Screens>& screens) {
+  if (!screens) return {};
   return {{"t_1", number(screens->t_1)},
           {"t_2", number(screens->t_2)},
           {"l_2", screens->l_2},
