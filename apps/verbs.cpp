@@ -17,7 +17,6 @@
 #include "sepcal/detail/flight/output_file.hpp"
 #include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/check.hpp"
 #include "sepcal/flight/comparison.hpp"

@@ -18,7 +18,6 @@
 #include "sepcal/detail/flight/output_file.hpp"
 #include "sepcal/detail/flight/probe_effects.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"

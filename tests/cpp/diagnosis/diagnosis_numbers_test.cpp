@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "diagnosed_flights.hpp"
-#include "sepcal/flight/adding.hpp"
 
 namespace diagnosis_numbers_test {
 

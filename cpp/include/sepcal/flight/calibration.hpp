@@ -90,6 +90,13 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
 Calibration calibrate(std::shared_ptr<const Probe> probe, const Record& record,
                       const CalibrationOptions& options = {});
 
+/// `base` with `effect` (a name, an alias, or several joined by '+'), refitted to `flight` from the
+/// base's estimates. Its history is the base's and one entry more, in which both errors are of the
+/// rows that the new fit used. `own` joins the base's own effects. Throws Error for bad input and
+/// for an effect that the base has already.
+Calibration add(const Calibration& base, const Flight& flight, const std::string& effect,
+                const OwnEffects& own = {}, const FitProgress& progress = {});
+
 /// The values of the probe's own parameters, in the order of its tables.
 Eigen::VectorXd own_values(const Calibration& calibration);
 

@@ -83,6 +83,10 @@ struct Comparison {
 /// them, but for its outputs and what is constant. Throws Error for bad input, as calibrate() does.
 Comparison compare(const Calibration& calibration, const Flight& flight);
 
+/// Where the model would fail with `effect` added, for a look: no history, nothing promised. Throws
+/// Error as add() does.
+Comparison compare_with(const Calibration& base, const Flight& flight, const std::string& effect);
+
 /// The JSON object: model, inputs, status, message, rmse {output}, residual {output: {lag_one}},
 /// where [{segment, output, rows, rmse, mean, lag_one}], channels [{driver, output, share_line,
 /// share_smooth, slope, slope_error, unit}], windows [{first_s, last_s, rows, rmse {output}, mean

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sepcal/flight/adding.hpp"
+// The step from one calibration to the next: an effect is added, everything is fitted again from
+// where the last fit ended, and the error before and after goes into the history.
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "model/sweep.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/flight/comparison.hpp"
 
 namespace sepcal {
 

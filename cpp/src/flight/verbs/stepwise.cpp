@@ -10,7 +10,6 @@
 #include "flight/verbs/prepared_flight.hpp"
 #include "flight/verbs/stepwise_loop.hpp"
 #include "sepcal/error.hpp"
-#include "sepcal/flight/adding.hpp"
 
 namespace sepcal {
 

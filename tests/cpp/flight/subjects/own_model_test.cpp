@@ -16,7 +16,6 @@
 #include "sepcal/detail/flight/effect_catalogue.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
-#include "sepcal/flight/adding.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"

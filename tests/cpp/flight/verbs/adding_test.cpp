@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From one calibration to the next: effects added one by one or in pairs, the history's errors
 // against those of compare(), and what is refused.
-#include "sepcal/flight/adding.hpp"
 
 #include <cmath>
 
 #include "flights_with_effects.hpp"
+#include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/comparison.hpp"
 
 namespace adding_test {
