@@ -21,7 +21,8 @@ class FitOptions(TypedDict, total=False):
         stage_one_segments: Maneuvers or times that stage one uses, e.g. wind_circle_1,510.9:530
             [all].
         stage_two_segments: The same for stage two [all].
-        bounds: Bounds of parameters, in their units; either may be left open [the model's].
+        bounds: Bounds of parameters, in their units; either may be left open, of a nonlinear one
+            with a start [the model's].
         start: Where stage two starts, by nonlinear parameter; then nothing is sampled, and those
             not named start from the middle of their bounds, or from zero without [sampling finds
             it].

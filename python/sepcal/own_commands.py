@@ -165,7 +165,7 @@ def _options(given: argparse.Namespace) -> dict[str, Any]:
     options = {}
     for row in ROWS.values():
         value = getattr(given, row.name, None)
-        if value in (None, [], False):
+        if value is None or value is False or value == []:
             continue
         if isinstance(value, list):
             texts = value

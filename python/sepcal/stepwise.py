@@ -113,7 +113,19 @@ def to_injected(
     inject: Mapping[str, float | Sequence[float]] | None, *, auto: bool
 ) -> tuple[str, list[float]] | None:
     """What diagnose() puts into the measurements. Raises Error for several, and beside auto."""
-    hidden = [(name, np.ravel(size).tolist()) for name, size in (inject or {}).items()]
+    if inject is not None and not isinstance(inject, Mapping):
+        raise _core.Error(f"inject is {inject!r}; give {{effect: size}}")
+    try:
+        hidden = [
+            (name, np.ravel(np.asarray(size, dtype=float)).tolist())
+            for name, size in (inject or {}).items()
+        ]
+    except (TypeError, ValueError):
+        raise _core.Error(
+            f"inject is {inject!r}; a size is a number, or one a coefficient"
+        ) from None
+    if any(not math.isfinite(size) for _, sizes in hidden for size in sizes):
+        raise _core.Error(f"inject is {inject!r}; sizes must be finite")
     if len(hidden) > 1:
         raise _core.Error("inject takes one effect at a time")
     if hidden and auto:

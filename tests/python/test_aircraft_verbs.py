@@ -128,6 +128,17 @@ def test_a_flight_whose_segments_tell_nothing_of_each_other(tmp_path: Path) -> N
     assert "g.csv is not the flight of the fit" in compared.err
 
 
+def test_flights_of_different_rates_are_refused(
+    moment: sepcal.Aero, flights: list[sepcal.Flight]
+) -> None:
+    thin = {name: np.array(flights[1][name])[::3] for name in flights[1].columns}
+    slow = sepcal.Flight(thin, name="slow")
+    refuse(
+        lambda: sepcal.fit_jointly(moment, [flights[0], slow]),
+        "slow has", "rows a second", "thin the faster log out",
+    )  # fmt: skip
+
+
 # --- intervals
 
 
@@ -217,6 +228,18 @@ def test_what_is_put_along_a_trajectory_is_found(
     assert (found.injected.found, found.injected.rank) == (True, 1)
     for estimate in found.injected.estimate.values():
         assert_allclose(estimate, size, rtol=0.2)
+
+
+def test_what_is_put_into_another_flight_is_found(
+    aircraft: sepcal.Aircraft, flights: list[sepcal.Flight]
+) -> None:
+    """Its initial states are estimated anew before anything is put in."""
+    base = sepcal.fit(sepcal.RigidAircraft(aircraft, "longitudinal"), flights[0])
+    found = base.diagnose(flights[1], inject={"Cm[alpha^2]": 3.0}, only=["Cm[alpha^2]"])
+    assert found.injected is not None
+    assert (found.injected.found, found.injected.rank) == (True, 1)
+    (estimate,) = found.injected.estimate.values()
+    assert_allclose(estimate, 3.0, rtol=0.2)
 
 
 def test_what_an_injection_refuses(moment: sepcal.Aero, flights: list[sepcal.Flight]) -> None:

@@ -519,6 +519,10 @@ def test_options_are_named_as_they_are_typed(tmp_path: Path) -> None:
     options = json.loads((tmp_path / "b.json").read_text())["options"]
     assert options["bounds"] == {"n": [0.2, 0.9], "B": [0.0, None]}
     assert options["prior"] == {"n": [0.45, 0.2]}
+    zero = ("--samples", "0", "--noise-tolerance", "0")  # a value like another
+    none = _run("fit", *model, str(log), "-o", str(tmp_path / "c.json"), "--drop-invalid", *zero)
+    assert none.returncode == 2
+    assert "--noise-tolerance must be positive" in none.stderr
 
 
 def test_apply_notes_what_the_fit_never_saw(tmp_path: Path) -> None:

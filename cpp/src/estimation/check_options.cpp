@@ -115,17 +115,20 @@ void check_numbers(const FitOptions& options) {
                                               std::to_string(base::most_threads)});
   }
   if (!(options.loss_width >= 0) || !std::isfinite(options.loss_width)) {
-    throw Error("loss_width must be positive, or 0 for the loss's own");
+    throw OptionError({Option{"loss_width"}, " must be positive, or 0 for the loss's own"});
   }
   if (options.loss_width > 0 && options.loss == Loss::squares) {
-    throw Error("loss_width is given without a loss; choose huber or cauchy, or leave it out");
+    throw OptionError({Option{"loss_width"}, " is given without a loss; choose ", Option{"loss"},
+                       " huber or cauchy, or leave it out"});
   }
   if (options.hessian != Hessian::fisher && options.method != FitMethod::filter_error) {
     throw OptionError({Option{"hessian"}, " is of filter error alone; leave it out, or choose ",
                        Option{"method"}, " filter-error"});
   }
   if (options.screens) check_screens(*options.screens);
-  if (!(options.noise_tolerance > 0)) throw Error("noise_tolerance must be positive");
+  if (!(options.noise_tolerance > 0)) {
+    throw OptionError({Option{"noise_tolerance"}, " must be positive"});
+  }
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ std::function<double(double)> quantile_of(const Variable& parameter, const FitOp
   }
   if (!std::isfinite(lower) || !std::isfinite(upper)) {
     throw Error("nonlinear parameter '" + parameter.name +
-                "' has no finite bounds to draw samples from; give it bounds or a normal "
+                "' has no finite bounds to draw samples from; give it both, a start, or a normal "
                 "sampling distribution");
   }
   return [=](double u) { return lower + u * (upper - lower); };

@@ -86,9 +86,11 @@ FlightDiagnosis diagnose_laid(const AircraftFit& fitted, const Flight& flight, L
   return result;
 }
 
-/// What an effect adds to the outputs of a fit that is laid along the flight.
+/// What an effect adds to the outputs along the flight, where the model without it is at
+/// `estimates`.
 Eigen::MatrixXd added_outputs(const AircraftFit& fitted, const Flight& flight,
-                              const SizedEffect& injected, Injection& injection) {
+                              const base::ParameterValues& estimates, const SizedEffect& injected,
+                              Injection& injection) {
   AircraftOptions options = options_on(fitted, flight);
   options.calibration.effects.push_back({.name = injected.name});
   LaidAircraft with = aircraft_log::lay(flight, options);
@@ -96,9 +98,9 @@ Eigen::MatrixXd added_outputs(const AircraftFit& fitted, const Flight& flight,
   injection.effect = with.effects.back().name;
   const bool is_along = acts_along(fitted.options.model, injection.effect);
   base::ThreadPool pool(fitted.options.calibration.fit.threads);
-  return verbs::added_outputs({*with.model, with.record, fit_on(flight, fitted, with).by_name(),
-                               is_along ? verbs::shape_of(with.along.back()) : ""},
-                              injected, injection, pool);
+  return verbs::added_outputs(
+      {*with.model, with.record, estimates, is_along ? verbs::shape_of(with.along.back()) : ""},
+      injected, injection, pool);
 }
 
 }  // namespace
@@ -117,14 +119,14 @@ FlightDiagnosis diagnose_aircraft_with(const SizedEffect& injected, const Aircra
   std::vector<std::string> left_out;
   AircraftFit fitted = without_suspects(base, flight, left_out);
   Injection injection;
-  const Eigen::MatrixXd added =
-      within(flight, [&] { return added_outputs(fitted, flight, injected, injection); });
-  LaidAircraft laid = lay(flight, options_on(fitted, flight));
-  const Record original = laid.record;
-  laid.record = verbs::with_outputs(original, laid.model->tables().outputs, added);
+  LaidAircraft laid = aircraft_log::lay(flight, options_on(fitted, flight));
   return within(flight, [&] {
+    const Fit at = fit_on(flight, fitted, laid);
+    const Eigen::MatrixXd added = added_outputs(fitted, flight, at.by_name(), injected, injection);
+    const Record original = laid.record;
+    laid.record = verbs::with_outputs(original, laid.model->tables().outputs, added);
     FitOptions again = laid.fit;
-    for (const auto& [name, value] : fit_on(flight, fitted, laid).nonlinear_estimates()) {
+    for (const auto& [name, value] : at.nonlinear_estimates()) {
       if (!again.fix.contains(name)) again.start[name] = value;
     }
     fitted.fit = fit_laid(laid, again);

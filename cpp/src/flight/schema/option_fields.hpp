@@ -84,7 +84,9 @@ inline constexpr std::tuple option_fields{
             .flags = "--stage-two-segments",
             .form = "SEGMENTS"}),
     option("bounds", &FitOptions::bounds,
-           {.sentence = "bounds of parameters, in their units; either may be left open",
+           {.sentence = "bounds of parameters, in their units; either may be left open, of a "
+                        "nonlinear one with a "
+                        "start",
             .unset = "the model's",
             .flags = "--bounds",
             .form = "NAME=LO,HI"}),
