@@ -61,7 +61,7 @@ NONSENSE: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("--seed", "once"), ("--seed", "once", "fit --help")),
     (("--noise", "airspeed=0.1"), ("'airspeed'", "the model has: {output}, ")),
     (("--noise", "{output}=0.1"), ("noise is given, but not for output", "every output")),
-    (("--noise-tolerance", "-1"), ("noise_tolerance", "positive")),
+    (("--noise-tolerance", "-1"), ("--noise-tolerance", "positive")),
     (("--noise-tolerance", "tight"), ("--noise-tolerance", "tight", "fit --help")),
     (("--effect", "magic"), ("there is no effect 'magic'", "known: ")),
     (("--effect", "magic[time]"), ("there is no effect 'magic[time]'", "[driver]")),
