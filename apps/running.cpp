@@ -80,12 +80,6 @@ int refuse_usage(const CLI::App& cli, const CLI::ParseError& error) {
 
 }  // namespace
 
-std::string as_typed(const std::string& name) {
-  std::string option = "--" + name;
-  std::ranges::replace(option, '_', '-');
-  return option;
-}
-
 int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform) {
   std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, not an end
   silence_solver_log();

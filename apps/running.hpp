@@ -7,13 +7,14 @@
 #include <functional>
 #include <string>
 
+#include "base/escaping.hpp"
+
 namespace sepcal::app {
 
 /// Parses the command line, calls `perform`, and maps every error to one line. Returns the exit
 /// code: 0, 2, or what `perform` gives. `cli` has the app's name and its verbs.
 int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform);
 
-/// An option, by its name in code, as it is typed here: "--drop-invalid".
-std::string as_typed(const std::string& name);
+using base::as_typed;
 
 }  // namespace sepcal::app

@@ -99,4 +99,10 @@ std::string file_in_shell(std::string_view name) {
   return name.starts_with('-') ? in_shell("./" + std::string(name)) : in_shell(name);
 }
 
+std::string as_typed(const std::string& name) {
+  std::string option = "--" + name;
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
 }  // namespace sepcal::base

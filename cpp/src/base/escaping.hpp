@@ -23,4 +23,7 @@ std::string in_shell(std::string_view text);
 /// The same for the name of a file, so that one that begins with - is not taken for an option.
 std::string file_in_shell(std::string_view name);
 
+/// An option's name in code as a command line has it: "--drop-invalid" of drop_invalid.
+std::string as_typed(const std::string& name);
+
 }  // namespace sepcal::base

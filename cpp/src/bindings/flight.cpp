@@ -9,7 +9,6 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "listener.hpp"
 #include "python_effect.hpp"
 #include "released.hpp"
 #include "results.hpp"
@@ -30,6 +29,22 @@ namespace sepcal::bindings {
 namespace {
 
 using namespace py::literals;
+
+/// The function that hears what a long task does and how far it is, of the commands of `python -m
+/// sepcal`; None: nobody does. It is never destroyed, as Python may be gone by then.
+py::object& listener() {
+  static auto* const heard_by = new py::object(py::none());
+  return *heard_by;
+}
+
+/// What tells it; nothing where nobody hears. Call it with the interpreter's lock.
+FitProgress heard() {
+  if (listener().is_none()) return {};
+  return [](std::string_view task, double fraction) {
+    const py::gil_scoped_acquire gil;
+    listener()(std::string(task), fraction);
+  };
+}
 
 std::vector<std::string> headers(const Flight& flight) {
   std::vector<std::string> headers;

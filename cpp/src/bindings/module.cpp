@@ -7,8 +7,6 @@
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 
-#include <algorithm>
-
 namespace sepcal::bindings {
 namespace {
 
@@ -21,13 +19,6 @@ std::string bytes_of(const py::str& text) {
     PyErr_Clear();
   }
   return {};
-}
-
-/// An option as a command line has it.
-std::string as_typed(const std::string& name) {
-  std::string option = "--" + name;
-  std::ranges::replace(option, '_', '-');
-  return option;
 }
 
 /// sepcal.Error, with the text of the C++ one; that of one which Python raised is a line too. One
@@ -48,7 +39,7 @@ void define_error(py::module_& module) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const OptionError& refused) {
       py::object made = py::module_::import("sepcal._core").attr("Error")(refused.what());
-      made.attr("as_typed") = refused.spelled(as_typed);
+      made.attr("as_typed") = refused.spelled(base::as_typed);
       PyErr_SetObject(py::type::handle_of(made).ptr(), made.ptr());
     }
   });
