@@ -72,6 +72,11 @@ class Flight(Mapping[str, Array]):
         return tuple(self._core.headers)
 
     @property
+    def notes(self) -> list[str]:
+        """What its reader decided about the file, one line each."""
+        return self._core.notes
+
+    @property
     def maneuvers(self) -> list[str]:
         """A label a row; empty where the log has none."""
         return self._core.maneuvers

@@ -68,11 +68,21 @@ std::vector<std::string> maneuvers(const Flight& flight) {
   return {flight.maneuvers().begin(), flight.maneuvers().end()};
 }
 
+/// A reader in Python for files of other forms, which is never destroyed; None: they are refused.
+void read_foreign_files(py::object reader) {
+  if (reader.is_none()) return read_foreign_files_with({});
+  auto* const kept = new py::object(std::move(reader));
+  read_foreign_files_with([kept](const std::string& file, const std::string& form) {
+    const py::gil_scoped_acquire gil;
+    return (*kept)(file, form).cast<Flight>();
+  });
+}
+
 /// [(header, values, first cell that is no number or None), ...]
 using PickledColumns =
     std::vector<std::tuple<std::string, Array, std::optional<std::pair<std::size_t, std::string>>>>;
-using PickledFlight =
-    std::tuple<std::string, std::string, PickledColumns, std::vector<std::string>>;
+using PickledFlight = std::tuple<std::string, std::string, PickledColumns, std::vector<std::string>,
+                                 std::vector<std::string>>;
 
 /// All that a flight is, so that another process says and writes the same of it.
 PickledFlight pickled(const Flight& flight) {
@@ -82,11 +92,11 @@ PickledFlight pickled(const Flight& flight) {
     if (first_text) text.emplace(first_text->row, first_text->text);
     columns.emplace_back(header, read_only_array(values, owner), std::move(text));
   }
-  return {flight.name(), flight.sha256(), std::move(columns), maneuvers(flight)};
+  return {flight.name(), flight.sha256(), std::move(columns), maneuvers(flight), flight.notes()};
 }
 
 Flight unpickled(const PickledFlight& state) {
-  const auto& [name, sha256, columns, labels] = state;
+  const auto& [name, sha256, columns, labels, notes] = state;
   Flight flight(name, sha256);
   for (const auto& [header, values, text] : columns) {
     std::optional<Flight::Cell> first_text;
@@ -95,6 +105,7 @@ Flight unpickled(const PickledFlight& state) {
     flight.view(header, span, std::move(owner), std::move(first_text));
   }
   if (!labels.empty()) flight.label(labels);
+  for (const std::string& note : notes) flight.note(note);
   return flight;
 }
 
@@ -109,7 +120,9 @@ void check_output(const std::string& file) {
 
 void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
-      .def(py::init<std::string>())
+      .def(py::init<std::string, std::string>(), "name"_a, "sha256"_a = "")
+      .def("note", [](Flight& self, std::string text) { self.note(std::move(text)); })
+      .def_property_readonly("notes", &Flight::notes)
       .def("view", &view, "header"_a, "values"_a.noconvert())
       .def("label",
            [](Flight& self, std::vector<std::string> labels) { self.label(std::move(labels)); })
@@ -126,6 +139,7 @@ void define_flights(py::module_& module) {
   module.def("check_not_input", [](const std::string& output, const std::string& input) {
     check_not_input(output, input);
   });
+  module.def("read_foreign_files", &read_foreign_files);
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
   module.def(
       "stream_csv",

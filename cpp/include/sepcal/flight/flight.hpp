@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -77,6 +78,9 @@ class Flight {
   /// have.
   Flight& label_stretches(std::vector<Segment> stretches);
 
+  /// Adds what a reader decided about the file, one line for people; fits and checks repeat it.
+  Flight& note(std::string text);
+
   /// Sets a label a row. Throws Error for a second set and for another length than the columns'.
   Flight& label(std::vector<std::string> maneuvers);
 
@@ -96,6 +100,9 @@ class Flight {
 
   /// The labels as stretches; none where the log has no column "maneuver".
   std::vector<Segment> label_stretches() const;
+
+  /// What its reader decided, one line each; none where the file left no choice.
+  const std::vector<std::string>& notes() const { return notes_; }
 
   bool is_mapped() const { return spool_ != nullptr; }
   const std::shared_ptr<base::Spool>& spool() const { return spool_; }
@@ -124,9 +131,18 @@ class Flight {
   std::shared_ptr<const std::vector<std::string>> maneuvers_;  // copies share it
   std::vector<Segment> label_stretches_;
   std::vector<Part> parts_;
+  std::vector<std::string> notes_;
   std::shared_ptr<base::Spool> spool_;
   std::size_t rows_ = 0;
 };
+
+/// Reads a flight from a file of a form that the library doesn't know itself: an autopilot's log, a
+/// Parquet file. `form` is what the file seems to be. Throws Error.
+using ForeignReader = std::function<Flight(const std::string& file, const std::string& form)>;
+
+/// Hands such files to `reader`; empty, as it begins: they are refused. Call it before files are
+/// read.
+void read_foreign_files_with(ForeignReader reader);
 
 /// Reads a whole CSV file (csv.hpp says which). A column "maneuver" becomes the labels; every other
 /// becomes numbers, with NaN and a memory of the first such cell where one is no finite number.

@@ -36,6 +36,12 @@ void append_label(std::vector<Segment>& stretches, const std::string& label) {
   ++stretches.back().last;
 }
 
+/// Set before files are read, by one thread.
+ForeignReader& foreign_reader() {
+  static ForeignReader reader;
+  return reader;
+}
+
 /// Gives back memory that was asked for in vain, where it is worth a copy.
 template <class T>
 void shrink(std::vector<T>& values) {
@@ -113,6 +119,11 @@ Flight& Flight::join(std::vector<Part> parts) {
   return *this;
 }
 
+Flight& Flight::note(std::string text) {
+  notes_.push_back(std::move(text));
+  return *this;
+}
+
 Flight& Flight::label_stretches(std::vector<Segment> stretches) {
   label_stretches_ = std::move(stretches);
   return *this;
@@ -169,6 +180,8 @@ void Flight::check_length(std::string_view header, std::size_t length) {
                             length, rows_));
   }
 }
+
+void read_foreign_files_with(ForeignReader reader) { foreign_reader() = std::move(reader); }
 
 Flight read_csv(const std::string& file, const Progress& progress, int threads) {
   CsvReader reader(file, progress);

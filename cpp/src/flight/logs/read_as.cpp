@@ -9,7 +9,7 @@
 namespace sepcal {
 
 ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
-  ReadFlight read{flight, {}};
+  ReadFlight read{flight, flight.notes()};
   logs::choose_columns(read.flight, choice);
   logs::join_clock(read.flight, read.notes);
   logs::convert_quaternion(read.flight, read.notes);

@@ -242,6 +242,26 @@ inline constexpr std::tuple option_fields{
             .flags = "--to,--to-time",
             .form = "S",
             .in_file = InFile::where_set}),
+    option("delimiter", &LogChoice::delimiter,
+           {.sentence = "what parts the file's columns, where it can be read in two ways: ',', "
+                        "';', '|', tab or space",
+            .unset = "as the file shows",
+            .flags = "--delimiter",
+            .form = "MARK",
+            .in_file = InFile::where_set}),
+    option("decimal", &LogChoice::decimal,
+           {.sentence = "the file's decimal mark, where it can be read in two ways: '.' or ','",
+            .unset = "as the file shows",
+            .flags = "--decimal",
+            .form = "MARK",
+            .in_file = InFile::where_set}),
+    option("join", &LogChoice::join,
+           {.sentence = "brings quantities that are logged at other times to the rows of the "
+                        "measured one: linear or held",
+            .unset = "they stand in one row",
+            .flags = "--join",
+            .form = "HOW",
+            .in_file = InFile::where_set}),
 };
 
 /// `visit` of each row.

@@ -35,6 +35,15 @@ struct LogChoice {
   std::optional<double> from_time = std::nullopt;
   std::optional<double> to_time = std::nullopt;
 
+  /// How the file is written, where it can be read in two ways: what parts its columns (",", ";",
+  /// "tab", "space", "|") and its decimals ("." or ","); empty: as the file shows.
+  std::string delimiter = {};
+  std::string decimal = {};
+
+  /// How quantities that are logged at other times than those of the measured one come to its rows:
+  /// "linear" or "held"; empty: they must stand in one row.
+  std::string join = {};
+
   bool operator==(const LogChoice&) const = default;
 };
 
