@@ -287,18 +287,19 @@ class AircraftApp {
         ->required(required);
   }
 
-  static Flight read_flight(const std::string& file) {
+  static Flight read_flight(const std::string& file, const LogChoice& log) {
     ProgressLine line;
-    return read_csv(file, [&](double fraction) { line.show("reading " + file, fraction); });
+    const auto show = [&](double fraction) { line.show("reading " + file, fraction); };
+    return read_csv(file, show, 0, log.form());
   }
 
-  Flight read_flight() const { return read_flight(flight_); }
+  Flight read_flight(const LogChoice& log) const { return read_flight(flight_, log); }
 
   /// All that were given as one; in the order of a fit that there is already.
   Flight read_flights(const LogChoice& log, const AircraftFit* fitted = nullptr) const {
-    if (more_flights_.empty()) return read_flight();
-    std::vector<Flight> flights{read_flight()};
-    for (const std::string& file : more_flights_) flights.push_back(read_flight(file));
+    if (more_flights_.empty()) return read_flight(log);
+    std::vector<Flight> flights{read_flight(log)};
+    for (const std::string& file : more_flights_) flights.push_back(read_flight(file, log));
     std::vector<std::string> notes;
     Flight joined = join_aircraft_flights(std::move(flights), log, notes, fitted);
     tell_notes(notes);
@@ -323,8 +324,8 @@ class AircraftApp {
 
   int check() const {
     Delivery delivery(wishes_, {flight_});
-    const FlightCheck check =
-        check_aircraft(model_.model(), read_flight(), fit_arguments_.over({}), as_typed);
+    const FlightCheck check = check_aircraft(model_.model(), read_flight(fit_arguments_.over({})),
+                                             fit_arguments_.over({}), as_typed);
     delivery.deliver(to_json(check), to_text(check));
     return 0;
   }
@@ -344,7 +345,7 @@ class AircraftApp {
   int two_step() const {
     Delivery delivery(wishes_, {flight_, model_.geometry()});
     const AircraftOptions options = resolve_fit();
-    const TwoStepFit fitted = fit_two_steps(read_flight(), options);
+    const TwoStepFit fitted = fit_two_steps(read_flight(options.calibration.log), options);
     delivery.deliver(fitted);
     return std::max(exit_code(fitted.path.fit.status), exit_code(fitted.aero.fit.status));
   }
@@ -420,7 +421,8 @@ class AircraftApp {
     options.how.initial_states = parse_deviations("--initial-state", initial_states_);
     const AircraftFit base = read_aircraft_fit(base_);
     OutputFile output(wishes_.output);
-    const TrackedAircraft tracked = track_aircraft(base, read_flight(), options);
+    const TrackedAircraft tracked =
+        track_aircraft(base, read_flight(base.options.calibration.log), options);
     tell_notes(tracked.notes);
     write_csv(tracked, output);
     output.commit();

@@ -29,13 +29,16 @@ namespace sepcal::app {
 
 using base::page;
 
-Flight Verbs::read_flight(int threads) const { return read_flight(arguments_.flight, threads); }
+Flight Verbs::read_flight(const LogChoice& log, int threads) const {
+  return read_flight(arguments_.flight, log, threads);
+}
 
-Flight Verbs::read_flight(const std::string& file, int threads) const {
+Flight Verbs::read_flight(const std::string& file, const LogChoice& log, int threads) const {
   ProgressLine line;
   const auto show = [&](double fraction) { line.show("reading " + file, fraction); };
-  if (!arguments_.stream) return read_csv(file, show, threads);
-  return stream_csv(file, {}, show, threads);
+  const CsvForm form = arguments_.log.over(log).form();
+  if (!arguments_.stream) return read_csv(file, show, threads, form);
+  return stream_csv(file, {}, show, threads, form);
 }
 
 std::vector<std::string> Verbs::flight_files() const {
@@ -50,20 +53,20 @@ std::vector<std::string> Verbs::input_files() const {
   return files;
 }
 
-std::vector<Flight> Verbs::read_flights(int threads) const {
+std::vector<Flight> Verbs::read_flights(const LogChoice& log, int threads) const {
   std::vector<Flight> flights;
-  for (const std::string& file : flight_files()) flights.push_back(read_flight(file, threads));
+  for (const std::string& file : flight_files()) flights.push_back(read_flight(file, log, threads));
   return flights;
 }
 
 Verbs::Subject Verbs::read_subject() const {
   Calibration calibration = read_base();
   if (arguments_.more_flights.empty()) {
-    Flight flight = read_flight();
+    Flight flight = read_flight(calibration.options.log);
     return {for_flight(calibration, flight), std::move(flight)};
   }
   std::vector<std::string> notes;
-  Flight joined = rejoin_flights(calibration, read_flights(), notes);
+  Flight joined = rejoin_flights(calibration, read_flights(calibration.options.log), notes);
   tell_notes(notes);
   return {std::move(calibration), std::move(joined)};
 }
@@ -89,7 +92,7 @@ Calibration Verbs::read_base() const {
 
 int Verbs::fit(CalibrationOptions options) const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, flight_files());
-  const std::vector<Flight> flights = read_flights(options.fit.threads);
+  const std::vector<Flight> flights = read_flights(options.log, options.fit.threads);
   const Flight& flight = flights.front();
   if (flights.size() == 1 && !arguments_.own.empty()) {
     throw Error("--own is of several flights; give them, or leave it out");
@@ -182,7 +185,7 @@ int Verbs::apply() const {
   check_not_input(arguments_.output, arguments_.calibration);
   Calibration calibration = read_base();
   if (joint_setup(*calibration.probe) != nullptr) {
-    calibration = for_flight(calibration, read_flight());
+    calibration = for_flight(calibration, read_flight(calibration.options.log));
   }
   ProgressLine line;
   const Applied applied = apply_to_file(
@@ -200,7 +203,7 @@ int Verbs::export_to(ExportOptions options) const {
   check_not_input(arguments_.output, arguments_.calibration);
   const Calibration calibration = read_base();
   std::optional<Flight> flight;
-  if (!arguments_.flight.empty()) flight = read_flight();
+  if (!arguments_.flight.empty()) flight = read_flight(calibration.options.log);
   ProgressLine line;
   options.progress = shown_on(line);
   const Exported exported =

@@ -51,11 +51,12 @@ class Verbs {
   int effects() const;
 
  private:
-  /// Reads FLIGHT with its progress shown, by so many threads (0: one a core).
-  Flight read_flight(int threads = 0) const;
-  Flight read_flight(const std::string& file, int threads) const;
+  /// Reads FLIGHT with its progress shown, by so many threads (0: one a core), as it is written by
+  /// what was typed, or by `log` where nothing was.
+  Flight read_flight(const LogChoice& log = {}, int threads = 0) const;
+  Flight read_flight(const std::string& file, const LogChoice& log, int threads) const;
   /// FLIGHT and those after it.
-  std::vector<Flight> read_flights(int threads = 0) const;
+  std::vector<Flight> read_flights(const LogChoice& log, int threads = 0) const;
   std::vector<std::string> flight_files() const;
   /// Those and CALIBRATION.
   std::vector<std::string> input_files() const;

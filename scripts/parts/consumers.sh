@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 
 # Where find_package finds nothing that the core can do without.
-others=(Ceres glog NLopt Threads fmt nlohmann_json OpenSSL)
+others=(Ceres glog NLopt Threads fmt nlohmann_json OpenSSL ZLIB zstd)
 without_others=("${others[@]/#/-DCMAKE_DISABLE_FIND_PACKAGE_}")
 without_others=("${without_others[@]/%/=ON}")
 

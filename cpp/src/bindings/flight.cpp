@@ -120,7 +120,10 @@ void check_output(const std::string& file) {
 
 void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
-      .def(py::init<std::string, std::string>(), "name"_a, "sha256"_a = "")
+      .def(py::init([](std::string name, std::string sha256) {
+             return Flight(std::move(name), std::move(sha256)).number_lines({});
+           }),
+           "name"_a, "sha256"_a = "")
       .def("note", [](Flight& self, std::string text) { self.note(std::move(text)); })
       .def_property_readonly("notes", &Flight::notes)
       .def("view", &view, "header"_a, "values"_a.noconvert())
@@ -140,11 +143,19 @@ void define_flights(py::module_& module) {
     check_not_input(output, input);
   });
   module.def("read_foreign_files", &read_foreign_files);
-  module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
+  module.def(
+      "read_csv",
+      [](const std::string& file, std::string delimiter, std::string decimal) {
+        return read_csv(file, {}, 0, {std::move(delimiter), std::move(decimal)});
+      },
+      "file"_a, "delimiter"_a = "", "decimal"_a = "", WithoutGil());
   module.def(
       "stream_csv",
-      [](const std::string& file, const std::string& folder) { return stream_csv(file, folder); },
-      WithoutGil());
+      [](const std::string& file, const std::string& folder, std::string delimiter,
+         std::string decimal) {
+        return stream_csv(file, folder, {}, 0, {std::move(delimiter), std::move(decimal)});
+      },
+      "file"_a, "folder"_a = "", "delimiter"_a = "", "decimal"_a = "", WithoutGil());
 }
 
 /// With an effect added where one is named.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A streaming reader of comma-separated text: one header line, one row a line, memory of one chunk
-// whatever the file's length. It knows text and cells; what they mean is Flight's business.
+// A streaming reader of text tables, as loggers, spreadsheets and avionics write them: memory of
+// one chunk whatever the file's length. It knows text and cells; what they mean is Flight's
+// business.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +16,11 @@
 namespace sepcal {
 
 namespace files {
-class TextLines;  // the file as lines
-class RowCells;   // a line as cells
-class RowBlocks;  // many rows at once
+class TextLines;    // the file as lines
+class RowCells;     // a line as cells
+class RowBlocks;    // many rows at once
+struct TableForm;   // how the table is written
+class RisingClock;  // time of day across midnights
 }  // namespace files
 
 /// Told the fraction of a file that has been read, from 0 to 1, about once in two MiB. May be
@@ -28,16 +31,24 @@ using Progress = std::function<void(double fraction)>;
 /// "nan", "inf", "0x1p3", "1,5", "3 m" and for numbers too large or too small for a double.
 std::optional<double> parse_number(std::string_view text);
 
-/// Rows of cells, in the file's order. LF or CRLF line ends, a UTF-8 byte-order mark, blanks round
-/// cells, a missing last line end and blank lines at the very end are taken; a cell may stand in
-/// double quotes (a quote inside doubled), but no line end in them. Every error is one line,
-/// "FILE line N: ...", N counted from 1, the header's.
+/// How a file is written, where it may be read in two ways; empty: as it shows.
+struct CsvForm {
+  std::string delimiter = {};  // ",", ";", "|", "tab" or "space"
+  std::string decimal = {};    // "." or ","
+};
+
+/// Rows of cells, in the file's order. It finds out how the table is written and says so in
+/// notes(): commas, semicolons, tabs, strokes or blanks between columns; a decimal comma; groups of
+/// thousands; UTF-8, UTF-16 or Windows-1252; LF, CRLF or CR; gzip or Zstandard; lines before the
+/// header, comments, a row of units, no header; a delimiter more at each row's end; a last row that
+/// is cut; NUL bytes at the end. A cell may stand in double quotes (a quote inside doubled), but no
+/// line end in them. Every error is one line, "FILE line N: ...", N counted from 1, the file's
+/// first.
 class CsvReader {
  public:
   /// Opens the file and reads its header. Throws Error where the file isn't there, is a folder or
-  /// can't be read, is empty or binary, is separated by semicolons or tabs, or has a column name
-  /// that is empty or used twice.
-  explicit CsvReader(std::string file, Progress progress = {});
+  /// can't be read, is empty or binary, and OptionError where `form` must say how to read it.
+  explicit CsvReader(std::string file, Progress progress = {}, const CsvForm& form = {});
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
   ~CsvReader();
@@ -47,19 +58,29 @@ class CsvReader {
   /// Column names without the blanks round them: unique and not empty.
   const std::vector<std::string>& header() const { return header_; }
 
-  /// Goes to the next row; false at the end. Throws Error for a short or long row, a blank line
-  /// between rows, an unclosed quote, bytes that no text has, a file without any row.
+  /// Goes to the next row; false at the end. Blank lines, comments and other lines without a number
+  /// are passed. Throws Error for an unclosed quote, bytes that no text has, a file without any
+  /// row.
   bool next();
 
-  /// The row's cells, as many as the header has. Valid until the next call of next().
+  /// The row's cells, as many as the header has; all empty where the row has not as many. Valid
+  /// until the next call of next().
   std::span<const std::string_view> cells() const;
 
-  /// The row, or before the first next() the header, as it stands in the file, without its line
-  /// end. Valid until the next call of next().
-  std::string_view text() const { return text_; }
+  /// The number in column `column` of the row, in the header's unit: time in seconds where it is
+  /// written as text. Nothing where the cell is no finite number.
+  std::optional<double> number(std::size_t column) const;
 
-  /// Line number of the row, counted from 1, the header's.
+  /// The row, or before the first next() the header, as a line of plain comma-separated text: as it
+  /// stands in the file where it is such. Valid until the next call.
+  std::string_view text();
+
+  /// Line number of the row, counted from 1; before the first next() the header's.
   std::size_t line() const { return line_; }
+
+  /// How the file was read where it left a choice, one line each. What is at the end is known
+  /// there.
+  const std::vector<std::string>& notes() const { return notes_; }
 
   /// SHA-256 of the file's bytes, 64 lower-case hexadecimal digits. Throws Error before all were
   /// read.
@@ -69,16 +90,39 @@ class CsvReader {
   friend class files::RowBlocks;
 
   void read_header();
-  void split();
-  void refuse_rows_after_blank(std::size_t blank);
+  bool take_row();
+  bool repeats_header() const;
+  bool breaks_off(bool whole) const;
+  std::string write_row() const;
+  void note_end();
   [[noreturn]] void fail(std::size_t line, const std::string& message) const;
+
+  /// Lines that are no rows.
+  struct Passed {
+    std::size_t lines = 0;
+    std::size_t first = 0;
+    void count(std::size_t line);
+  };
 
   std::string file_;
   std::unique_ptr<files::TextLines> lines_;
+  std::unique_ptr<files::TableForm> form_;
   std::vector<std::string> header_;
-  std::unique_ptr<files::RowCells> cells_;
-  std::string_view text_;
+  std::unique_ptr<files::RowCells> row_;  // as the file has it
+  std::vector<std::string_view> cells_;   // the columns'
+  std::string wrong_length_;              // "5 cells, not 6"; empty: the row is whole
+  std::unique_ptr<files::RisingClock> clock_;
+  std::optional<double> time_of_row_;  // of the clock
+  std::string_view line_text_;
+  std::string plain_text_;
   std::size_t line_ = 0;
+  std::size_t rows_ = 0;
+  std::vector<std::string> notes_;
+  Passed blank_;             // between rows
+  std::size_t pending_ = 0;  // blank lines that may be the file's last
+  Passed others_;            // comments, and text that is no row
+  Passed headers_;           // that stand there once more
+  bool last_is_cut_ = false;
 };
 
 }  // namespace sepcal

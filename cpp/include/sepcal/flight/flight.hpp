@@ -36,6 +36,12 @@ class Flight {
     std::size_t first = 0;
   };
 
+  /// A row of a file that doesn't stand in the line behind the row before it; lines count from 1.
+  struct Line {
+    std::size_t row = 0;
+    std::size_t line = 0;
+  };
+
   struct Column {
     std::string header;                 // "roll_deg"
     std::span<const double> values;     // rows() of them, in the header's unit; NaN for text
@@ -78,6 +84,13 @@ class Flight {
   /// have.
   Flight& label_stretches(std::vector<Segment> stretches);
 
+  /// Says in which lines of its file the rows stand, the first one first; none: rows have no lines.
+  /// Without it a file's first row stands in line 2, below its header.
+  Flight& number_lines(std::vector<Line> lines);
+
+  /// Says that it was read from a text table of that form.
+  Flight& read_as(CsvForm form);
+
   /// Adds what a reader decided about the file, one line for people; fits and checks repeat it.
   Flight& note(std::string text);
 
@@ -103,6 +116,9 @@ class Flight {
 
   /// What its reader decided, one line each; none where the file left no choice.
   const std::vector<std::string>& notes() const { return notes_; }
+
+  /// Of the text table that it was read from; nothing of arrays and of files of another form.
+  const std::optional<CsvForm>& form() const { return form_; }
 
   bool is_mapped() const { return spool_ != nullptr; }
   const std::shared_ptr<base::Spool>& spool() const { return spool_; }
@@ -132,6 +148,8 @@ class Flight {
   std::vector<Segment> label_stretches_;
   std::vector<Part> parts_;
   std::vector<std::string> notes_;
+  std::vector<Line> lines_{{0, 2}};
+  std::optional<CsvForm> form_;
   std::shared_ptr<base::Spool> spool_;
   std::size_t rows_ = 0;
 };
@@ -146,13 +164,15 @@ void read_foreign_files_with(ForeignReader reader);
 
 /// Reads a whole CSV file (csv.hpp says which). A column "maneuver" becomes the labels; every other
 /// becomes numbers, with NaN and a memory of the first such cell where one is no finite number.
-/// `threads` of them parse, the caller's included; 0: one a core. Throws Error as CsvReader does.
-Flight read_csv(const std::string& file, const Progress& progress = {}, int threads = 0);
+/// `threads` of them parse, the caller's included; 0: one a core. A file of another form goes to
+/// the reader of read_foreign_files_with(). Throws Error as CsvReader does.
+Flight read_csv(const std::string& file, const Progress& progress = {}, int threads = 0,
+                const CsvForm& form = {});
 
 /// The same of a file that may be longer than memory: block by block into files without a name in
 /// `folder` (empty: $TMPDIR or /tmp; 8 bytes a cell), from where its columns are mapped. The file
 /// may be a pipe. Throws Error as read_csv(), and where the folder's disc is full.
 Flight stream_csv(const std::string& file, const std::string& folder = {},
-                  const Progress& progress = {}, int threads = 0);
+                  const Progress& progress = {}, int threads = 0, const CsvForm& form = {});
 
 }  // namespace sepcal

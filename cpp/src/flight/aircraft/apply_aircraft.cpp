@@ -208,7 +208,7 @@ Applied apply_aircraft_to_file(const AircraftFit& fitted, const std::string& fil
                                const Progress& progress) {
   check_not_input(output, file);
   OutputFile target(output);
-  const Flight flight = read_csv(file, progress);
+  const Flight flight = read_csv(file, progress, 0, fitted.options.calibration.log.form());
   Applied applied{.output = output, .rows = flight.rows(), .headers = {}, .notes = {}};
   const Columns columns = apply_aircraft(fitted, flight, process_noise, applied.notes);
   verbs::write_with_columns(flight, columns, target);

@@ -44,7 +44,7 @@ class FlightAtHand {
     if (flight_ != nullptr || fitted_.sha256.empty()) return;
     std::error_code unreadable;
     if (!std::filesystem::is_regular_file(fitted_.file, unreadable)) return;
-    Flight named = read_csv(fitted_.file);
+    Flight named = read_csv(fitted_.file, {}, 0, calibration.options.log.form());
     if (named.sha256() != fitted_.sha256) return;
     named_ = std::make_shared<const Flight>(std::move(named));
     flight_ = named_.get();

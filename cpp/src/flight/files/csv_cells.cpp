@@ -14,4 +14,17 @@ void append_number(std::string& line, double value) {
   line.append(text.data(), end);
 }
 
+std::string join_cells(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != &cells.front()) line += ',';
+    const bool is_quoted = cell.find_first_of(",\"") != std::string::npos ||
+                           cell.starts_with(' ') || cell.ends_with(' ');
+    if (is_quoted) line += '"';
+    for (const char c : cell) line.append(is_quoted && c == '"' ? 2 : 1, c);
+    if (is_quoted) line += '"';
+  }
+  return line;
+}
+
 }  // namespace sepcal::files

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <variant>
 
 #include "base/spool.hpp"
 #include "base/thread_pool.hpp"
+#include "flight/files/foreign_forms.hpp"
 #include "flight/files/row_blocks.hpp"
 #include "sepcal/detail/quantity.hpp"
 #include "sepcal/error.hpp"
@@ -40,6 +43,36 @@ void append_label(std::vector<Segment>& stretches, const std::string& label) {
 ForeignReader& foreign_reader() {
   static ForeignReader reader;
   return reader;
+}
+
+/// The file's reader, or the flight that it is of another form.
+std::variant<std::unique_ptr<CsvReader>, Flight> open_table(const std::string& file,
+                                                            const Progress& progress,
+                                                            const CsvForm& form) {
+  try {
+    return std::make_unique<CsvReader>(file, progress, form);
+  } catch (const files::ForeignFile& foreign) {
+    if (!foreign_reader()) throw;
+    return foreign_reader()(file, foreign.form());
+  }
+}
+
+/// Where the part's rows, which begin with row `first`, stand in the file.
+void append_lines(std::vector<Flight::Line>& lines, const files::RowPart& part, std::size_t first) {
+  for (const Flight::Line& line : part.lines) {
+    const Flight::Line next{first + line.row, line.line};
+    const bool follows =
+        !lines.empty() && next.line - lines.back().line == next.row - lines.back().row;
+    if (!follows) lines.push_back(next);
+  }
+}
+
+/// The flight with what its reader decided.
+Flight tell_reading(Flight& flight, const CsvReader& reader, const CsvForm& form) {
+  for (const std::string& note : reader.notes()) {
+    flight.note(fmt::format("{}: {}", flight.name(), note));
+  }
+  return flight.read_as(form);
 }
 
 /// Gives back memory that was asked for in vain, where it is worth a copy.
@@ -119,6 +152,16 @@ Flight& Flight::join(std::vector<Part> parts) {
   return *this;
 }
 
+Flight& Flight::number_lines(std::vector<Line> lines) {
+  lines_ = std::move(lines);
+  return *this;
+}
+
+Flight& Flight::read_as(CsvForm form) {
+  form_ = std::move(form);
+  return *this;
+}
+
 Flight& Flight::note(std::string text) {
   notes_.push_back(std::move(text));
   return *this;
@@ -147,8 +190,10 @@ const Flight::Column* Flight::find(std::string_view header) const {
 std::string Flight::locate(std::size_t row) const {
   const auto after = std::ranges::upper_bound(parts_, row, {}, &Part::first);
   const Part part = parts_.empty() ? Part{name_, 0} : *std::prev(after);
-  return from_file() ? fmt::format("{} line {}", part.name, row - part.first + 2)
-                     : fmt::format("{} row {}", part.name, row - part.first);
+  const std::size_t in_part = row - part.first;
+  if (!from_file() || lines_.empty()) return fmt::format("{} row {}", part.name, in_part);
+  const Line line = *std::prev(std::ranges::upper_bound(lines_, in_part, {}, &Line::row));
+  return fmt::format("{} line {}", part.name, line.line + in_part - line.row);
 }
 
 std::string Flight::list_columns() const {
@@ -183,12 +228,17 @@ void Flight::check_length(std::string_view header, std::size_t length) {
 
 void read_foreign_files_with(ForeignReader reader) { foreign_reader() = std::move(reader); }
 
-Flight read_csv(const std::string& file, const Progress& progress, int threads) {
-  CsvReader reader(file, progress);
+Flight read_csv(const std::string& file, const Progress& progress, int threads,
+                const CsvForm& form) {
+  const auto opened = open_table(file, progress, form);
+  if (const auto* foreign = std::get_if<Flight>(&opened)) return *foreign;
+  CsvReader& reader = *std::get<std::unique_ptr<CsvReader>>(opened);
   base::ThreadPool pool(threads);
   const auto& header = reader.header();
   std::vector<GrowingColumn> columns(header.size());
   std::vector<std::string> labels;
+  std::vector<Flight::Line> lines;
+  std::size_t rows = 0;
   const auto maneuver_at =
       static_cast<std::size_t>(std::ranges::find(header, maneuver) - header.begin());
   files::RowBlocks blocks(reader, maneuver_at, pool);
@@ -196,6 +246,8 @@ Flight read_csv(const std::string& file, const Progress& progress, int threads) 
     for (GrowingColumn& column : columns) column.values.reserve(blocks.expected_rows());
     for (const files::RowPart& part : parts) {
       labels.insert(labels.end(), part.labels.begin(), part.labels.end());
+      append_lines(lines, part, rows);
+      rows += part.rows;
       for (std::size_t i = 0; i < header.size(); ++i) {
         columns[i].append(part.columns[i], part.first_text[i]);
       }
@@ -210,12 +262,14 @@ Flight read_csv(const std::string& file, const Progress& progress, int threads) 
     flight.view(header[i], *owned, owned, std::move(columns[i].first_text));
   }
   if (maneuver_at < header.size()) flight.label(std::move(labels));
-  return flight;
+  return tell_reading(flight.number_lines(std::move(lines)), reader, form);
 }
 
 Flight stream_csv(const std::string& file, const std::string& folder, const Progress& progress,
-                  int threads) {
-  CsvReader reader(file, progress);
+                  int threads, const CsvForm& form) {
+  const auto opened = open_table(file, progress, form);
+  if (const auto* foreign = std::get_if<Flight>(&opened)) return *foreign;
+  CsvReader& reader = *std::get<std::unique_ptr<CsvReader>>(opened);
   base::ThreadPool pool(threads);
   const auto& header = reader.header();
   const auto spool = std::make_shared<base::Spool>(folder);
@@ -227,11 +281,13 @@ Flight stream_csv(const std::string& file, const std::string& folder, const Prog
   }
   std::vector<std::optional<Flight::Cell>> first_text(header.size());
   std::vector<Segment> labels;
+  std::vector<Flight::Line> lines;
   std::size_t rows = 0;
   files::RowBlocks blocks(reader, maneuver_at, pool);
   for (auto parts = blocks.next(); !parts.empty(); parts = blocks.next()) {
     for (const files::RowPart& part : parts) {
       for (const std::string& label : part.labels) append_label(labels, label);
+      append_lines(lines, part, rows);
       for (std::size_t i = 0; i < header.size(); ++i) {
         if (i == maneuver_at) continue;
         columns[i]->append(part.columns[i]);
@@ -247,7 +303,8 @@ Flight stream_csv(const std::string& file, const std::string& folder, const Prog
     if (i == maneuver_at) continue;
     flight.view(header[i], columns[i]->finish(), spool, std::move(first_text[i]));
   }
-  return flight.label_stretches(std::move(labels)).map(spool);
+  flight.label_stretches(std::move(labels)).map(spool).number_lines(std::move(lines));
+  return tell_reading(flight, reader, form);
 }
 
 }  // namespace sepcal

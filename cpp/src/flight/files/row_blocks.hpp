@@ -19,6 +19,8 @@ namespace sepcal::files {
 /// Rows that follow each other.
 struct RowPart {
   std::size_t rows = 0;
+  std::size_t bytes = 0;            // of the text that they were parsed from
+  std::vector<Flight::Line> lines;  // of the first row, and of each that isn't in the next line
   /// One a header, `rows` values each, NaN for text; empty for the labels'.
   std::vector<std::vector<double>> columns;
   std::vector<std::optional<Flight::Cell>> first_text;  // one a header; rows from this part's first
@@ -31,23 +33,26 @@ class RowBlocks {
   /// has read no row yet; it and the pool must outlive this.
   RowBlocks(CsvReader& reader, std::size_t labels_at, base::ThreadPool& pool);
 
-  /// The rows that come next, in order; empty at the end. Valid until the next call. Throws Error
-  /// as CsvReader does.
+  /// The rows that come next, in order, none of them empty; nothing at the end. Valid until the
+  /// next call. Throws Error as CsvReader does.
   std::span<const RowPart> next();
 
   /// About as many rows as the file has, judged by the first block; 0 where nothing is known.
   std::size_t expected_rows() const { return expected_rows_; }
 
  private:
-  bool parse(std::string_view text);
-  bool parse_part(std::string_view text, std::size_t at);
+  std::size_t parse(std::string_view text);
+  bool parse_part(std::string_view text, RowPart& part) const;
   void read_by_rows();
   void take(std::span<const std::string_view> cells, RowPart& part) const;
-  static void clear(RowPart& part);
+  void put(std::size_t column, std::optional<double> number, std::string_view cell,
+           RowPart& part) const;
+  void clear(RowPart& part) const;
 
   CsvReader& reader_;
   std::size_t labels_at_;
   base::ThreadPool& pool_;
+  bool is_plain_;
   std::vector<RowPart> parts_;
   std::size_t expected_rows_ = 0;
 };

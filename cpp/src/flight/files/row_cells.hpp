@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cells of one line: cut at commas, without the blanks and quotes round them.
+// The cells of one line: cut at a delimiter, without the blanks and quotes round them.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,9 @@ bool is_blank(std::string_view text);
 
 class RowCells {
  public:
-  /// Cuts a line. Returns what is wrong with it, nothing where all is well.
-  std::string cut(std::string_view text);
+  /// Cuts a line; at ' ', runs of blanks and tabs part cells. Returns what is wrong with it,
+  /// nothing where all is well.
+  std::string cut(std::string_view text, char delimiter = ',');
 
   /// Views of the line, or of this where doubled quotes became single ones. Valid until the next
   /// cut() and as long as the line.
@@ -25,9 +26,9 @@ class RowCells {
   void clear() { cells_.clear(); }
 
  private:
-  /// Takes the cell whose opening quote is at `open`; returns where its comma or the line's end is,
-  /// or npos, with `fault_` set.
-  std::size_t take_quoted(std::string_view text, std::size_t open);
+  /// Takes the cell whose opening quote is at `open`; returns where its delimiter or the line's end
+  /// is, or npos, with `fault_` set.
+  std::size_t take_quoted(std::string_view text, std::size_t open, char delimiter);
 
   std::vector<std::string_view> cells_;
   std::string unquoted_;

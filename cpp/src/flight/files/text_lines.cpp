@@ -5,12 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 
-#include "base/stop.hpp"
 #include "base/utf8.hpp"
 #include "sepcal/error.hpp"
 
@@ -48,35 +44,50 @@ unsigned char classes_of(std::string_view text) {
   return seen;
 }
 
+/// LF, or CR where there is no other.
+char find_line_end(std::string_view text) {
+  const bool is_old_mac =
+      text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos;
+  return is_old_mac ? '\r' : '\n';
+}
+
 }  // namespace
 
-bool is_text(std::string_view line) {
-  const unsigned char seen = classes_of(line);
-  if (seen == plain) return true;
-  return (seen & control) == 0 && find_invalid_utf8(line) == line.size();
+bool has_control(std::string_view line) { return (classes_of(line) & control) != 0; }
+
+bool is_utf8(std::string_view text) { return find_invalid_utf8(text) == text.size(); }
+
+std::string to_utf8(std::string_view text) {
+  if (is_utf8(text)) return std::string(text);
+  // Windows-1252 from 0x80 to 0x9F; what it leaves open is the control of that number.
+  constexpr std::array<char16_t, 32> windows{
+      0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+      0x2039, 0x0152, 0x8D,   0x017D, 0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D,   0x017E, 0x0178};
+  std::string utf8;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const unsigned code = byte < 0x80 || byte >= 0xA0 ? byte : windows.at(byte - 0x80U);
+    if (code < 0x80) {
+      utf8 += c;
+    } else if (code < 0x800) {
+      utf8 += static_cast<char>(0xC0U | (code >> 6U));
+      utf8 += static_cast<char>(0x80U | (code & 0x3FU));
+    } else {
+      utf8 += static_cast<char>(0xE0U | (code >> 12U));
+      utf8 += static_cast<char>(0x80U | ((code >> 6U) & 0x3FU));
+      utf8 += static_cast<char>(0x80U | (code & 0x3FU));
+    }
+  }
+  return utf8;
 }
 
 TextLines::TextLines(const std::string& file, Progress progress)
     : file_(file),
       progress_(std::move(progress)),
+      source_(file),
       buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)),  // NOLINT
-      ahead_(std::make_unique_for_overwrite<char[]>(text_chunk)) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(file, ignored);
-  if (status.type() == std::filesystem::file_type::not_found) {
-    throw Error(file + ": no such file");
-  }
-  if (std::filesystem::is_directory(status)) {
-    throw Error(file + ": is a folder; name a CSV file in it");
-  }
-  stream_.reset(std::fopen(file.c_str(), "rb"));
-  if (!stream_) throw Error(file + ": can't be read: " + std::strerror(errno));
-  std::setvbuf(stream_.get(), nullptr, _IONBF, 0);
-  if (std::filesystem::is_regular_file(status)) {
-    const auto size = std::filesystem::file_size(file, ignored);
-    if (!ignored) bytes_total_ = size;
-  }
-}
+      ahead_(std::make_unique_for_overwrite<char[]>(text_chunk)) {}
 
 std::optional<std::string_view> TextLines::next() {
   std::size_t searched = 0;
@@ -86,10 +97,11 @@ std::optional<std::string_view> TextLines::next() {
     searched = last_ - first_;
     end = static_cast<const char*>(
         std::memchr(from, '\n', static_cast<std::size_t>(buffer_.get() + last_ - from)));
-    if (end != nullptr || stream_ended_ || searched >= longest_line) break;
+    if (end != nullptr || source_ended_ || searched >= longest_line) break;
     fill();
   }
   if (end == nullptr && searched == 0) return std::nullopt;
+  was_cut_ = end == nullptr;
 
   const char* begin = buffer_.get() + first_;
   const auto length = end != nullptr ? static_cast<std::size_t>(end - begin) : searched;
@@ -98,7 +110,7 @@ std::optional<std::string_view> TextLines::next() {
   std::string_view text(begin, length);
   first_ += text.size() + (end != nullptr ? 1 : 0);
   ++line_;
-  if (text.ends_with('\r')) text.remove_suffix(1);
+  while (text.ends_with('\r')) text.remove_suffix(1);
   check_text(text, offset);
   if (line_ == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   return text;
@@ -107,7 +119,7 @@ std::optional<std::string_view> TextLines::next() {
 std::string_view TextLines::peek() {
   for (;;) {
     const std::string_view text(buffer_.get() + first_, last_ - first_);
-    if (stream_ended_) return text;
+    if (source_ended_) return text;
     if (text.size() >= text_chunk) return text.substr(0, text.rfind('\n') + 1);
     fill();
   }
@@ -119,7 +131,7 @@ void TextLines::skip(std::size_t bytes, std::size_t lines) {
 }
 
 void TextLines::read_ahead() {
-  if (stream_ended_ || ahead_first_ < ahead_last_) return;
+  if (source_ended_ || ahead_first_ < ahead_last_) return;
   ahead_first_ = 0;
   ahead_last_ = read(ahead_.get(), text_chunk);
 }
@@ -134,29 +146,30 @@ void TextLines::fill() {
   ahead_first_ += count;
   last_ += count;
   bytes_read_ += count;
-  stream_ended_ = ahead_first_ == ahead_last_ && at_end();
-  if (progress_ && bytes_total_ > 0) {
-    progress_(std::min(1.0, static_cast<double>(bytes_read_) / static_cast<double>(bytes_total_)));
+  source_ended_ = ahead_first_ == ahead_last_ && all_read_;
+  const FileProgress& read = source_.progress();
+  if (progress_ && read.total > 0) {
+    progress_(std::min(1.0, static_cast<double>(read.read) / static_cast<double>(read.total)));
   }
 }
 
-/// How many bytes came. A signal that interrupts is a time to ask.
+/// How many bytes came, less NULs behind the last of others.
 std::size_t TextLines::read(char* to, std::size_t most) {
-  if (at_end()) return 0;
-  for (;;) {
-    base::heed_stop();
-    errno = 0;
-    const std::size_t count = std::fread(to, 1, most, stream_.get());
-    const int error = errno;
-    if (std::ferror(stream_.get()) != 0) {
-      if (error != EINTR) throw Error(file_ + ": can't be read: " + std::strerror(error));
-      std::clearerr(stream_.get());
-      if (count == 0) continue;
+  while (!all_read_) {
+    const std::size_t count = source_.read(to, most);
+    all_read_ = count == 0;
+    const std::size_t text = std::string_view(to, count).find_last_not_of('\0') + 1;
+    if (text > 0 && nuls_ > 0) {
+      throw Error(fmt::format("{}: {} NUL bytes stand between its lines; is this a CSV file?",
+                              file_, nuls_));
     }
-    hash_.absorb(to, count);
-    if (std::feof(stream_.get()) != 0) digest_ = hash_.finish();
-    return count;
+    nuls_ += count - text;
+    if (text == 0) continue;
+    if (line_end_ == 0) line_end_ = find_line_end({to, text});
+    if (line_end_ == '\r') std::replace(to, to + text, '\r', '\n');
+    return text;
   }
+  return 0;
 }
 
 void TextLines::refuse_length() {
@@ -166,23 +179,14 @@ void TextLines::refuse_length() {
 }
 
 void TextLines::check_text(std::string_view text, std::uint64_t offset) const {
-  if (is_text(text)) return;
+  if (!has_control(text)) return;
   const auto first_control = std::ranges::find_if(
       text, [](char c) { return byte_classes[static_cast<unsigned char>(c)] == control; });
-  const auto at =
-      std::min(static_cast<std::size_t>(first_control - text.begin()), find_invalid_utf8(text));
-  if (at == text.size()) return;
+  const auto at = static_cast<std::size_t>(first_control - text.begin());
   if (text[at] == '\r') {
     fail("a carriage return inside the line; end lines with LF or CRLF");
   }
-  for (const auto& [opening, format] : {std::pair{"\xa3\x95", "DataFlash"}, {"ULog", "ULog"}}) {
-    if (offset > 0 || !text.starts_with(opening)) continue;
-    fail(fmt::format(
-        "this is an autopilot's log ({}), no CSV file; convert it: python -m sepcal log "
-        "{} -o flight.csv",
-        format, file_));
-  }
-  fail(fmt::format("byte 0x{:02x} (byte {} of the file) is no UTF-8 text; is this a CSV file?",
+  fail(fmt::format("byte 0x{:02x} (byte {} of the file) is no text; is this a CSV file?",
                    static_cast<unsigned char>(text[at]), offset + at));
 }
 

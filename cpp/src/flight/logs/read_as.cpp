@@ -4,6 +4,7 @@
 #include "flight/logs/chosen_columns.hpp"
 #include "flight/logs/joined_clock.hpp"
 #include "flight/logs/quaternion_columns.hpp"
+#include "flight/logs/shared_stamps.hpp"
 #include "flight/logs/velocity_columns.hpp"
 
 namespace sepcal {
@@ -11,6 +12,7 @@ namespace sepcal {
 ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
   ReadFlight read{flight, flight.notes()};
   logs::choose_columns(read.flight, choice);
+  logs::spread_stamps(read.flight, read.notes);
   logs::join_clock(read.flight, read.notes);
   logs::convert_quaternion(read.flight, read.notes);
   logs::turn_climb(read.flight, read.notes);

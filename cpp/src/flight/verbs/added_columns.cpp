@@ -4,13 +4,51 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "flight/files/csv_cells.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/csv.hpp"
 
 namespace sepcal::verbs {
+namespace {
+
+/// The header and the rows as plain comma-separated text: of the file where the flight is of a text
+/// table, of its numbers otherwise.
+class FlightLines {
+ public:
+  explicit FlightLines(const Flight& flight) : flight_(flight) {
+    if (flight.form()) file_.emplace(flight.name(), Progress(), *flight.form());
+    std::vector<std::string> headers;
+    for (const Flight::Column& column : flight.columns()) headers.push_back(column.header);
+    text_ = files::join_cells(headers);
+  }
+
+  std::string_view text() { return file_ ? file_->text() : std::string_view(text_); }
+
+  bool next() {
+    if (file_) return file_->next();
+    if (row_ == flight_.rows()) return false;
+    text_.clear();
+    for (const Flight::Column& column : flight_.columns()) {
+      if (&column != flight_.columns().data()) text_ += ',';
+      files::append_number(text_, column.values[row_]);
+    }
+    ++row_;
+    return true;
+  }
+
+ private:
+  const Flight& flight_;
+  std::optional<CsvReader> file_;
+  std::string text_;
+  std::size_t row_ = 0;
+};
+
+}  // namespace
 
 void write_with_columns(const Flight& flight, const std::vector<CorrectedColumn>& columns,
                         OutputFile& target) {
@@ -28,7 +66,7 @@ void write_with_columns(const Flight& flight, const std::vector<std::string>& he
         fmt::format("{} has a column '{}' already; apply the calibration to the original log",
                     flight.name(), header));
   }
-  CsvReader lines(flight.name());
+  FlightLines lines(flight);
   std::string line(lines.text());
   for (const std::string& header : headers) line += "," + header;
   target.write(line + "\n");

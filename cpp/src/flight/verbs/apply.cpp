@@ -121,7 +121,9 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
                        "it out"});
   }
   OutputFile target(output);
-  const Flight flight = stream ? stream_csv(file, {}, progress) : read_csv(file, progress);
+  const CsvForm form = calibration.options.log.form();
+  const Flight flight =
+      stream ? stream_csv(file, {}, progress, 0, form) : read_csv(file, progress, 0, form);
   Applied applied{
       .output = output, .rows = flight.rows(), .headers = probe.corrected_headers(), .notes = {}};
   const auto finish = [&](ProbeReadings& readings) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The CSV reader: what it takes, and one clear line for everything that it refuses.
+// The reader of text tables: what it takes and says of it, and one clear line for what it refuses.
 #include "sepcal/flight/csv.hpp"
 
 #include <doctest/doctest.h>
@@ -23,7 +23,9 @@ using namespace std::string_view_literals;
 
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
+using Lines = std::vector<std::string>;
+using Rows = std::vector<Lines>;
+using Numbers = std::vector<std::vector<std::optional<double>>>;
 
 Rows read_rows(std::string_view bytes) {
   const TemporaryFolder folder;
@@ -31,6 +33,27 @@ Rows read_rows(std::string_view bytes) {
   Rows rows{reader.header()};
   while (reader.next()) rows.emplace_back(reader.cells().begin(), reader.cells().end());
   return rows;
+}
+
+Numbers numbers_of(std::string_view bytes, const sepcal::CsvForm& form = {}) {
+  const TemporaryFolder folder;
+  CsvReader reader(folder.write(bytes), {}, form);
+  Numbers rows;
+  while (reader.next()) {
+    rows.emplace_back();
+    for (std::size_t i = 0; i < reader.header().size(); ++i) {
+      rows.back().push_back(reader.number(i));
+    }
+  }
+  return rows;
+}
+
+Lines notes_of(std::string_view bytes) {
+  const TemporaryFolder folder;
+  CsvReader reader(folder.write(bytes));
+  while (reader.next()) {
+  }
+  return reader.notes();
 }
 
 /// What is wrong, without the folder's name before "flight.csv".
@@ -137,22 +160,15 @@ TEST_CASE("files without rows") {
   CHECK(refuse("") == "flight.csv: the file is empty; its first line should name the columns");
   CHECK(refuse("a,b\n") == "flight.csv: there is a header, but no row of data below it");
   CHECK(refuse("a,b\n\n\n") == "flight.csv: there is a header, but no row of data below it");
-  CHECK(refuse("\n1,2\n") ==
-        "flight.csv line 1: column 1 of 1 has no name; name it or delete the "
-        "column");
 }
 
 TEST_CASE("binary files name the byte") {
   CHECK(refuse("a,b\n1,\0"
                "2\n"sv) ==
         "flight.csv line 2: byte 0x00 (byte 6 of the file) is no "
-        "UTF-8 text; is this a CSV file?");
-  CHECK(refuse("\x1F\x8B\x08\n") ==
-        "flight.csv line 1: byte 0x1f (byte 0 of the file) is no UTF-8 "
         "text; is this a CSV file?");
-  CHECK(refuse("\x89PNG\r\n") ==
-        "flight.csv line 1: byte 0x89 (byte 0 of the file) is no UTF-8 "
-        "text; is this a CSV file?");
+  CHECK(refuse("\x1A\x8B\x08\n") ==
+        "flight.csv line 1: byte 0x1a (byte 0 of the file) is no text; is this a CSV file?");
   CHECK_MESSAGE(refuse("a,b\n1,2\x7F\n").find("0x7f (byte 7") != std::string::npos, "delete");
   const std::string one_line(3'000'000, '7');
   CHECK(refuse(one_line) == "flight.csv line 1: is longer than 1 MiB; is this a CSV file?");
@@ -161,53 +177,171 @@ TEST_CASE("binary files name the byte") {
         "with LF or CRLF");
 }
 
-TEST_CASE("UTF-8 is taken, other encodings are refused") {
+TEST_CASE("UTF-8 is taken as it is, other bytes for Windows-1252") {
   CHECK(read_rows("a,b\n\xC2\xB5T,\xE2\x82\xAC\xF0\x9F\x9B\xA9\n") ==
         Rows{{"a", "b"}, {"\xC2\xB5T", "\xE2\x82\xAC\xF0\x9F\x9B\xA9"}});
-  CHECK_MESSAGE(refuse("a,b\n\xB5T,1\n").find("0xb5 (byte 4") != std::string::npos, "Latin-1");
-  CHECK_MESSAGE(refuse("a\n\xE2\x82\n").find("0xe2 (byte 2") != std::string::npos, "cut short");
-  CHECK_MESSAGE(refuse("a\n\xE2(\xAC\n").find("0xe2 (byte 2") != std::string::npos, "broken");
-  CHECK_MESSAGE(refuse("a\n\xED\xA0\x80\n").find("0xed (byte 2") != std::string::npos, "surrogate");
-  CHECK_MESSAGE(refuse("a\n\xE0\x80\xAF\n").find("0xe0 (byte 2") != std::string::npos, "overlong");
-  CHECK_MESSAGE(refuse("a\n\xF4\x90\x80\x80\n").find("0xf4 (byte 2") != std::string::npos,
-                "above U+10FFFF");
+  CHECK(read_rows("Kurs \xB0,\x80\n1,2\n") == Rows{{"Kurs \xC2\xB0", "\xE2\x82\xAC"}, {"1", "2"}});
+  CHECK(notes_of("Kurs \xB0,b\n1,2\n") == Lines{"the text is not UTF-8: taken for Windows-1252"});
 }
 
-TEST_CASE("a name with a tab or a line separator in it is quoted in one line") {
-  CHECK(refuse("\"a\tb\",\"a\tb\",c\n1,2,3\n") ==
-        "flight.csv line 1: column 'a\\tb' is there twice; rename or delete one");
-  CHECK(refuse("x\xE2\x80\xA8,x\xE2\x80\xA8\n1,2\n") ==
-        "flight.csv line 1: column 'x\\xe2\\x80\\xa8' is there twice; rename or delete one");
+TEST_CASE("a plain table leaves nothing to say") {
+  CHECK(notes_of("a,b\n1,2\n3,4\n").empty());
+  CHECK(notes_of("a,b\r\n1,\r\n3,4").empty());
+  CHECK(notes_of("a,b\nx,y\nx,y\n").empty());
 }
 
-TEST_CASE("other separators are named") {
-  CHECK_THROWS_WITH_AS(read_rows("a;b;c\n1,5;2;3\n"), Contains("separated by semicolons"), Error);
-  CHECK_THROWS_WITH_AS(read_rows("a\tb\n1\t2\n"), Contains("separated by tabs"), Error);
-  CHECK_THROWS_WITH_AS(read_rows("a;b\n1;2\n"), Contains("export the file with commas"), Error);
+TEST_CASE("other delimiters, and decimal commas") {
+  CHECK(read_rows("a;b;c\n1,5;2;3\n") == Rows{{"a", "b", "c"}, {"1,5", "2", "3"}});
+  CHECK(numbers_of("a;b\n1,5;-2e1\n") == Numbers{{1.5, -20.0}});
+  CHECK(notes_of("a;b\n1,5;2\n") ==
+        Lines{"semicolons part the columns", "a comma is the decimal mark"});
+  CHECK(numbers_of("a\tb\n1\t\n") == Numbers{{1.0, {}}});
+  CHECK(numbers_of("  a   b \n  1  -2\n 3   4 \n") == Numbers{{1.0, -2.0}, {3.0, 4.0}});
+  CHECK(numbers_of("| a | b |\n|---|---|\n| 1 | 2 |\n") == Numbers{{1.0, 2.0}});
+  CHECK(numbers_of("a,b\n\"1,5\",\"2,25\"\n") == Numbers{{1.5, 2.25}});
 }
 
-TEST_CASE("short and long rows") {
-  CHECK(refuse("a,b,c\n1,2,3\n1,2\n") ==
-        "flight.csv line 3: 2 cells, but the header has 3 columns; "
-        "complete the row or delete it");
-  CHECK(refuse("a,b\n1,2,3\n") ==
-        "flight.csv line 2: 3 cells, but the header has 2 columns; quote "
-        "a cell that holds a comma, and use a point in decimals");
-  CHECK(refuse("a,b\n1,2\n\n3,4\n") ==
-        "flight.csv line 3: the line is blank, and rows follow; "
-        "delete it");
+TEST_CASE("thousands, and what may be either") {
+  CHECK(numbers_of("a;b\n1.234,5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n1'234.5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n1 234,5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n\"1,234.5\";2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n1,234;0,5\n") == Numbers{{1.234, 0.5}});
+  CHECK(refuse("a;b\n1,234;2\n") ==
+        "flight.csv: '1,234' is a number with decimals or with thousands: say decimal ',' or "
+        "decimal '.'");
+  CHECK(numbers_of("a;b\n1,234;2\n", {.decimal = ","}) == Numbers{{1.234, 2.0}});
+  CHECK(numbers_of("a;b\n1,234;2\n", {.decimal = "."}) == Numbers{{1234.0, 2.0}});
+  CHECK(numbers_of("a\n\xE2\x88\x92"
+                   "1.5\n2\n") == Numbers{{-1.5}, {2.0}});
 }
 
-TEST_CASE("column names are there and unique") {
-  CHECK(refuse("a,b,a\n1,2,3\n") ==
-        "flight.csv line 1: column 'a' is there twice; rename or delete "
-        "one");
-  CHECK(refuse("a,,b\n1,2,3\n") ==
-        "flight.csv line 1: column 2 of 3 has no name; name it or delete "
-        "the column");
-  CHECK(refuse("a,\n1,2\n") ==
-        "flight.csv line 1: column 2 of 2 has no name; name it or delete "
-        "the column");
+TEST_CASE("lines above the rows") {
+  CHECK(read_rows("# Logger\nsn 7\na,b\n1,2\n") == Rows{{"a", "b"}, {"1", "2"}});
+  CHECK(notes_of("# Logger\nsn 7\na,b\n1,2\n") == Lines{"2 lines above the rows are left out"});
+  CHECK(read_rows("sep=;\na;b\n1;2\n") == Rows{{"a", "b"}, {"1", "2"}});
+  CHECK(read_rows("# a b\n1 2\n3 4\n") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
+  CHECK(read_rows("vn,t\nm/s,s\n1,2\n") == Rows{{"vn (m/s)", "t (s)"}, {"1", "2"}});
+  CHECK(read_rows("#m/s,degrees\nvn,track\n1,2\n") ==
+        Rows{{"vn (m/s)", "track (degrees)"}, {"1", "2"}});
+  // A data logger's four lines (Campbell Scientific, TOA5).
+  CHECK(read_rows("\"TOA5\",\"CR1000\"\n\"n\",\"vn\"\n\"RN\",\"m/s\"\n\"\",\"Smp\"\n1,2\n2,3\n") ==
+        Rows{{"n (RN)", "vn (m/s)"}, {"1", "2"}, {"2", "3"}});
+  CHECK(read_rows("1,2\n3,4\n") == Rows{{"column_1", "column_2"}, {"1", "2"}, {"3", "4"}});
+  CHECK(read_rows("\n\na,b\n\n1,2\n") == Rows{{"a", "b"}, {"1", "2"}});
+}
+
+TEST_CASE("columns that number rows, have no name or one name") {
+  CHECK(read_rows(",a\n0,5\n1,6\n") == Rows{{"a"}, {"5"}, {"6"}});
+  CHECK(read_rows("a b\n\"1\" 5 6\n\"2\" 7 8\n") == Rows{{"a", "b"}, {"5", "6"}, {"7", "8"}});
+  CHECK(read_rows("a,b\n1,2,\n3,4,\n") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
+  CHECK(read_rows("a,b,\n1,2,\n3,4,\n") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
+  CHECK(read_rows("a,,b\n1,2,3\n") == Rows{{"a", "column_2", "b"}, {"1", "2", "3"}});
+  CHECK(read_rows("a,b,a\n1,2,3\n") == Rows{{"a.1", "b", "a.2"}, {"1", "2", "3"}});
+  CHECK(notes_of("a,b,a\n1,2,3\n") == Lines{"column 'a' is there twice: the first is a.1"});
+  CHECK(read_rows("\"a\tb\",c\n1,2\n") == Rows{{"a\tb", "c"}, {"1", "2"}});
+}
+
+TEST_CASE("a unit in each cell") {
+  CHECK(read_rows("v,n\n14.2 m/s,1\n15 m/s,2\n").front() == Lines{"v (m/s)", "n"});
+  CHECK(numbers_of("v,n\n14.2 m/s,1\n15 m/s,2\n") == Numbers{{14.2, 1.0}, {15.0, 2.0}});
+}
+
+TEST_CASE("lines that are no rows") {
+  CHECK(read_rows("a,b\n1,2\n\n3,4\n") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
+  CHECK(notes_of("a,b\n1,2\n\n3,4\n") == Lines{"line 3 is blank and is passed"});
+  CHECK(notes_of("a,b\n1,2\n\n\n").empty());
+  CHECK(notes_of("a,b\n1,2\n# pause\nend of log\n") ==
+        Lines{"2 lines are no rows and are passed, the first is line 3"});
+  CHECK(read_rows("a,b\n1,2\na,b\n3,4\n") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
+  CHECK(notes_of("a,b\n1,2\na,b\n3,4\n") == Lines{"line 3 is the header once more and is passed"});
+}
+
+TEST_CASE("a row of another length has no values") {
+  CHECK(numbers_of("a,b,c\n1,2,3\n1,2\n4,5,6\n") ==
+        Numbers{{1.0, 2.0, 3.0}, {{}, {}, {}}, {4.0, 5.0, 6.0}});
+  CHECK(numbers_of("a,b\n1,2\n1,2,3\n3,4\n") == Numbers{{1.0, 2.0}, {{}, {}}, {3.0, 4.0}});
+}
+
+TEST_CASE("the end of a log that was cut") {
+  CHECK(numbers_of("a,b\n1,2.50\n3,4.75\n5,") == Numbers{{1.0, 2.5}, {3.0, 4.75}});
+  CHECK(numbers_of("a,b\n1,2.50\n3,4.75\n5,6.2") == Numbers{{1.0, 2.5}, {3.0, 4.75}});
+  CHECK(numbers_of("a,b\n1,2.50\n3,4.75\n5,6.25") == Numbers{{1.0, 2.5}, {3.0, 4.75}, {5.0, 6.25}});
+  CHECK(notes_of("a,b\n1,2\n3") == Lines{"line 3, the last, breaks off and is left out"});
+  CHECK(read_rows("a,b\n1,2\n\0\0\0"sv) == Rows{{"a", "b"}, {"1", "2"}});
+  CHECK(notes_of("a,b\n1,2\n\0\0\0"sv) == Lines{"the file ends with 3 NUL bytes"});
+}
+
+TEST_CASE("UTF-16 and the line ends of old") {
+  CHECK(read_rows("\xFF\xFE"
+                  "a\0,\0b\0\n\0"
+                  "1\0,\0\xAC\x20\n\0"sv) == Rows{{"a", "b"}, {"1", "\xE2\x82\xAC"}});
+  CHECK(read_rows("\xFE\xFF\0a\0,\0b\0\n\0"
+                  "1\0,\0"
+                  "2\0\n"sv) == Rows{{"a", "b"}, {"1", "2"}});
+  CHECK(read_rows("a\0,\0b\0b\0,\0c\0\n\0"
+                  "1\0,\0"
+                  "2\0,\0"
+                  "3\0\n\0"sv) == Rows{{"a", "bb", "c"}, {"1", "2", "3"}});
+  CHECK(read_rows("a,b\r1,2\r3,4\r") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
+  CHECK(read_rows("a,b\r\r\n1,2\r\r\n") == Rows{{"a", "b"}, {"1", "2"}});
+}
+
+TEST_CASE("time in text") {
+  const auto seconds = [](const std::string& header, const std::vector<std::string>& stamps) {
+    std::string bytes = header + ";x\n";
+    for (const std::string& stamp : stamps) bytes += stamp + ";1\n";
+    std::vector<double> times;
+    for (const auto& row : numbers_of(bytes)) times.push_back(row[0].value_or(-1.0));
+    return times;
+  };
+  using Times = std::vector<double>;
+  CHECK(seconds("time", {"10:00:00.25", "10:00:00.5"}) == Times{36000.25, 36000.5});
+  CHECK(seconds("Clock", {"23:59:59.5", "0:00:00.5"}) == Times{86399.5, 86400.5});
+  CHECK(seconds("t", {"1:00:00 PM", "1:00:01 PM"}) == Times{46800.0, 46801.0});
+  CHECK(seconds("t", {"12:34.5", "12:35.5"}) == Times{754.5, 755.5});
+  CHECK(seconds("when", {"2024-05-03T10:00:00.2Z", "2024-05-04T00:00:00Z"}) ==
+        Times{36000.2, 86400.0});
+  CHECK(seconds("when", {"2024-05-03 10:00:00+02:00", "2024-05-03 10:00:01+02:00"}) ==
+        Times{28800.0, 28801.0});
+  CHECK(seconds("when", {"20240503T100000.5", "20240503T100001"}) == Times{36000.5, 36001.0});
+  CHECK(seconds("when", {"03-May-2024 10:00:00", "04-May-2024 00:00:01"}) ==
+        Times{36000.0, 86401.0});
+  CHECK(seconds("when", {"13.05.2024 10:00:00", "14.05.2024 00:00:00"}) == Times{36000.0, 86400.0});
+  CHECK(seconds("when", {"5/13/2024 10:00:00 AM", "5/13/2024 1:00:00 PM"}) ==
+        Times{36000.0, 46800.0});
+  // A day or a month first: the time of day is enough, midnight included.
+  CHECK(seconds("when", {"03/05/2024 23:59:59", "04/05/2024 00:00:01"}) == Times{86399.0, 86401.0});
+  CHECK(seconds("timestamp", {"1714730400.25", "1714730401.25"}) == Times{36000.25, 36001.25});
+  CHECK(seconds("timestamp", {"1714730400250", "1714730401250"}) == Times{36000.25, 36001.25});
+  CHECK(seconds("t", {"0.0", "0.2", "0.4"}) == Times{0.0, 0.2, 0.4});
+  CHECK(numbers_of("Date,Time,x\n2024-05-03,23:59:59,1\n2024-05-04,00:00:01,2\n") ==
+        Numbers{{{}, 86399.0, 1.0}, {{}, 86401.0, 2.0}});
+  CHECK(read_rows("Date,Time,x\n2024-05-03,23:59:59,1\n").front() == Lines{"Date", "time_s", "x"});
+  // Which count is not known: nothing is guessed.
+  CHECK(read_rows("t,x\n0,1\n200,2\n400,3\n").front() == Lines{"t", "x"});
+}
+
+TEST_CASE("gzip and Zstandard") {
+  const Rows rows{{"a", "b"}, {"1", "2"}, {"3", "4"}};
+  // Of "a,b\n1,2\n3,4\n": gzip -9n, of the lines in two members, and zstd.
+  const auto packed =
+      "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\x4b\xd4\x49\xe2\x32\xd4\x31\xe2\x32\xd6\x31\xe1\x02\x00\xe5\xe9\xd6\xce\x0c\x00\x00\x00"sv;
+  CHECK(read_rows(packed) == rows);
+  CHECK(
+      read_rows(
+          "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\x4b\xd4\x49\xe2\x32\xd4\x31\xe2\x02\x00\x7b\x07\x97\x0a\x08\x00\x00\x00\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\x33\xd6\x31\xe1\x02\x00\x3e\x2d\x72\xa9\x04\x00\x00\x00"sv) ==
+      rows);
+  CHECK(
+      read_rows(
+          "\x28\xb5\x2f\xfd\x04\x58\x61\x00\x00\x61\x2c\x62\x0a\x31\x2c\x32\x0a\x33\x2c\x34\x0a\xe1\xb3\xcb\x2e"sv) ==
+      rows);
+  CHECK(refuse(packed.substr(0, 20)) ==
+        "flight.csv: its gzip data breaks off or is damaged; 'zcat FILE > flight.csv' unpacks what "
+        "there is");
+  std::string damaged(packed);
+  damaged[24] ^= 0x10;
+  CHECK(refuse(damaged).find("breaks off or is damaged") != std::string::npos);
 }
 
 TEST_CASE("quotes that don't close or don't end the cell") {

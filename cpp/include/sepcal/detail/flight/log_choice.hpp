@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/flight/csv.hpp"
+
 namespace sepcal {
 
 struct LogChoice {
@@ -43,6 +45,9 @@ struct LogChoice {
   /// How quantities that are logged at other times than those of the measured one come to its rows:
   /// "linear" or "held"; empty: they must stand in one row.
   std::string join = {};
+
+  /// What of it says how to read the file.
+  CsvForm form() const { return {delimiter, decimal}; }
 
   bool operator==(const LogChoice&) const = default;
 };

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/files/number_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "sepcal/flight/csv.hpp"
+
+namespace sepcal::files {
+namespace {
+
+constexpr std::string_view minus = "\xE2\x88\x92";  // U+2212
+constexpr std::array<std::string_view, 3> wide_blanks{"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// With "-" for a minus sign and " " for every blank.
+std::string in_ascii(std::string_view cell) {
+  std::string text;
+  while (!cell.empty()) {
+    const auto blank = std::ranges::find_if(
+        wide_blanks, [&](std::string_view wide) { return cell.starts_with(wide); });
+    const bool is_blank = blank != wide_blanks.end();
+    const bool is_minus = cell.starts_with(minus);
+    text += is_blank ? ' ' : is_minus ? '-' : cell.front();
+    cell.remove_prefix(is_blank ? blank->size() : is_minus ? minus.size() : 1);
+  }
+  return text;
+}
+
+/// What stands between a sign and an exponent.
+std::string_view mantissa_of(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  return text.substr(0, text.find_first_of("eE"));
+}
+
+/// Whether `mark` parts digits into a group of one to three and groups of three.
+bool groups_by(std::string_view digits, char mark) {
+  std::size_t at = digits.find(mark);
+  if (at == 0 || at > 3 || digits.front() == '0') return false;
+  for (;;) {
+    const std::size_t next = std::min(digits.find(mark, at + 1), digits.size());
+    if (next - at != 4) return false;
+    if (next == digits.size()) return true;
+    at = next;
+  }
+}
+
+std::string without(std::string_view text, std::string_view marks) {
+  std::string left(text);
+  std::erase_if(left, [&](char c) { return marks.find(c) != std::string_view::npos; });
+  return left;
+}
+
+}  // namespace
+
+NumberLook look_at_number(std::string_view cell) {
+  if (parse_number(cell)) return {.is_number = true};
+  const std::string text = in_ascii(cell);
+  NumberLook look;
+  std::string digits(mantissa_of(text));
+  if (digits.empty() || !std::ranges::all_of(digits, [](char c) {
+        return is_digit(c) || c == '.' || c == ',' || c == '\'' || c == ' ';
+      })) {
+    return {};
+  }
+  for (const char mark : {' ', '\''}) {
+    if (digits.find(mark) == std::string::npos) continue;
+    if (!groups_by(digits.substr(0, digits.find_first_of(".,")), mark)) return {};
+    look.groups += mark;
+  }
+  digits = without(digits, look.groups);
+  const auto commas = std::ranges::count(digits, ',');
+  const auto points = std::ranges::count(digits, '.');
+  const std::size_t last = digits.find_last_of(".,");
+  if (commas > 0 && points > 0) {  // the last mark is the decimal one
+    const char decimal = digits[last];
+    const char group = decimal == ',' ? '.' : ',';
+    if (!groups_by(std::string_view(digits).substr(0, last), group)) return {};
+    look.decimal_comma = decimal == ',';
+    look.groups += group;
+  } else if (commas > 1 || points > 1) {
+    const char group = commas > 1 ? ',' : '.';
+    if (!groups_by(digits, group)) return {};
+    look.groups += group;
+  } else if (commas == 1) {
+    look.either = groups_by(digits, ',') && look.groups.empty();
+    look.decimal_comma = !look.either;
+  }
+  look.is_number =
+      parse_number_as(text, look.decimal_comma || look.either ? ',' : '.', look.groups).has_value();
+  return look.is_number ? look : NumberLook{};
+}
+
+std::optional<double> parse_number_as(std::string_view cell, char decimal,
+                                      std::string_view groups) {
+  if (decimal == '.' && groups.empty()) {
+    const auto number = parse_number(cell);
+    if (number || cell.find(minus.front()) == std::string_view::npos) return number;
+  }
+  std::string text = without(in_ascii(cell), groups);
+  if (decimal == ',') {
+    if (text.find('.') != std::string::npos) return std::nullopt;
+    std::ranges::replace(text, ',', '.');
+  }
+  return parse_number(text);
+}
+
+int count_decimals(std::string_view cell, char decimal) {
+  const std::string_view digits = mantissa_of(cell);
+  if (digits.empty() || !is_digit(digits.back())) return -1;
+  const std::size_t point = digits.find(decimal);
+  return point == std::string_view::npos ? 0 : static_cast<int>(digits.size() - point - 1);
+}
+
+}  // namespace sepcal::files

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers as the world writes them: with a decimal comma, groups of thousands, a typographic minus.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace sepcal::files {
+
+/// What a cell's number shows of how numbers are written.
+struct NumberLook {
+  bool is_number = false;
+  bool decimal_comma = false;  // "14,2"
+  bool either = false;         // "14,200": a decimal comma or a group of thousands
+  std::string groups = {};     // marks that group digits for sure: "," of "1,234,567"
+};
+
+NumberLook look_at_number(std::string_view cell);
+
+/// The finite number that `cell` is under these marks; as parse_number() where they are "." and "".
+std::optional<double> parse_number_as(std::string_view cell, char decimal, std::string_view groups);
+
+/// "2.50": 2, "7": 0; -1 of what is no number.
+int count_decimals(std::string_view cell, char decimal);
+
+}  // namespace sepcal::files

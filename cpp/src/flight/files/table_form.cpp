@@ -1,0 +1,512 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/files/table_form.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <deque>
+#include <map>
+
+#include "flight/files/number_text.hpp"
+#include "flight/files/row_cells.hpp"
+#include "flight/files/table_head.hpp"
+#include "flight/files/text_lines.hpp"
+#include "flight/files/time_column.hpp"
+#include "sepcal/error.hpp"
+
+namespace sepcal::files {
+namespace {
+
+constexpr std::size_t most_lines = 400;   // that are looked at
+constexpr std::size_t most_cells = 4000;  // of a row
+
+struct Delimiter {
+  char mark;
+  const char* option;
+  const char* name;
+};
+
+// Of forms that fit as well, the first counts.
+constexpr std::array delimiters{
+    Delimiter{',', ",", "commas"},     Delimiter{';', ";", "semicolons"},
+    Delimiter{'\t', "tab", "tabs"},    Delimiter{'|', "|", "upright strokes"},
+    Delimiter{' ', "space", "blanks"},
+};
+
+std::vector<std::string_view> split_lines(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty() && lines.size() < most_lines) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    while (line.ends_with('\r')) line.remove_suffix(1);
+    lines.push_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  if (!lines.empty() && lines.front().starts_with("\xEF\xBB\xBF")) lines.front().remove_prefix(3);
+  return lines;
+}
+
+bool is_missing(std::string_view cell) {
+  constexpr std::array words{"",     "-",    "--",  "---",  "na",   "n/a", "nan",
+                             "null", "none", "inf", "-inf", "#n/a", "?"};
+  std::string lower(cell);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::ranges::find(words, lower) != words.end();
+}
+
+/// Where the number ends in "14.2 m/s"; npos where no unit follows one.
+std::size_t find_suffix(std::string_view cell) {
+  constexpr std::size_t longest = 8;
+  const std::size_t digits = cell.find_last_of("0123456789");
+  if (digits == std::string_view::npos || cell.find_first_of("0123456789+-.,") != 0) return digits;
+  for (std::size_t end = std::min(cell.size() - 1, digits); end > 0; --end) {
+    const std::string_view number = cell.substr(0, end + 1);
+    if (!look_at_number(number).is_number) continue;
+    const std::string_view rest = cell.substr(end + 1);
+    const bool is_unit = !rest.empty() && rest.size() <= longest && is_unit_like(rest);
+    return is_unit ? end + 1 : std::string_view::npos;
+  }
+  return std::string_view::npos;
+}
+
+bool is_value(std::string_view cell) {
+  return look_at_number(cell).is_number || is_time_text(cell) ||
+         find_suffix(cell) != std::string_view::npos;
+}
+
+/// The lines cut by a delimiter.
+struct Layout {
+  const Delimiter* by = nullptr;
+  std::vector<std::vector<std::string_view>> lines;  // empty: nothing stands there, or a comment
+  std::size_t first_row = 0;                         // among the lines
+  std::size_t cells = 0;                             // of a row
+  double values = 0.0;                               // numbers and times in a row, on average
+};
+
+/// How many values a line's cells are; nothing where it is no row's.
+std::optional<std::size_t> count_values(const std::vector<std::string_view>& cells) {
+  std::size_t values = 0;
+  std::size_t filled = 0;
+  for (std::size_t i = 0; i < std::min(cells.size(), most_cells); ++i) {
+    if (is_missing(cells[i])) continue;
+    ++filled;
+    values += is_value(cells[i]) ? 1U : 0U;
+  }
+  if (filled == 0) return cells.size() > 1 ? std::optional(values) : std::nullopt;
+  return values > 0 && 10 * values >= 3 * filled ? std::optional(values) : std::nullopt;
+}
+
+/// Cells of which a doubled quote is one; kept by `texts`.
+std::vector<std::string_view> cut(std::string_view line, char delimiter,
+                                  std::deque<std::string>& texts) {
+  RowCells cells;
+  if (!cells.cut(line, delimiter).empty()) return {};
+  std::vector<std::string_view> kept;
+  for (const std::string_view cell : cells.cells()) {
+    const bool in_line =
+        cell.empty() || (cell.data() >= line.data() && cell.data() <= line.data() + line.size());
+    if (!in_line) texts.emplace_back(cell);
+    kept.push_back(in_line ? cell : std::string_view(texts.back()));
+  }
+  return kept;
+}
+
+/// The rows begin at the first line like one that is followed by others as long.
+Layout lay_out(const std::vector<std::string_view>& lines, const Delimiter& by,
+               std::deque<std::string>& texts) {
+  Layout layout;
+  layout.by = &by;
+  std::vector<std::optional<std::size_t>> values;
+  for (const std::string_view line : lines) {
+    const bool is_left_out = is_blank(line) || is_comment(line);
+    layout.lines.push_back(is_left_out ? std::vector<std::string_view>()
+                                       : cut(line, by.mark, texts));
+    values.push_back(count_values(layout.lines.back()));
+  }
+  constexpr std::size_t followers = 20;
+  for (std::size_t first = 0; first < lines.size(); ++first) {
+    if (!values[first]) continue;
+    std::map<std::size_t, std::size_t> lengths;
+    std::size_t rows = 0;
+    std::size_t seen = 0;
+    for (std::size_t i = first; i < lines.size() && seen < followers; ++i) {
+      if (layout.lines[i].empty()) continue;
+      ++seen;
+      if (!values[i]) continue;
+      ++rows;
+      ++lengths[layout.lines[i].size()];
+    }
+    const auto usual = std::ranges::max_element(lengths, {}, [](auto& l) { return l.second; });
+    const std::size_t own = layout.lines[first].size();
+    if (5 * rows < 4 * seen || (own != usual->first && own != usual->first + 1)) continue;
+    layout.first_row = first;
+    layout.cells = usual->first;
+    std::size_t sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = first; i < lines.size(); ++i) {
+      if (!values[i]) continue;
+      sum += *values[i];
+      ++count;
+    }
+    layout.values = static_cast<double>(sum) / static_cast<double>(count);
+    break;
+  }
+  return layout;
+}
+
+const Delimiter* find_delimiter(const std::string& asked) {
+  if (asked.empty()) return nullptr;
+  for (const Delimiter& known : delimiters) {
+    if (asked == known.option || (asked.size() == 1 && asked.front() == known.mark)) return &known;
+  }
+  throw OptionError({Option{"delimiter"}, " is ',', ';', '|', tab or space, not '" + asked + "'"});
+}
+
+/// The one that "sep=;" names, as spreadsheets write it.
+std::string find_sep(std::string_view line) {
+  while (line.starts_with('"')) line.remove_prefix(1);
+  std::string lower(line.substr(0, 4));
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (lower != "sep=" || line.size() < 5) return "";
+  return std::string(1, line[4]);
+}
+
+/// Where no line looks like a row: the mark that is in the first line most often.
+const Delimiter& find_commonest(std::string_view line) {
+  return *std::ranges::max_element(delimiters, {}, [&](const Delimiter& by) {
+    return by.mark == ' ' ? 0 : std::ranges::count(line, by.mark);
+  });
+}
+
+/// A comment's text, and any other line.
+std::string_view without_mark(std::string_view line) {
+  while (!line.empty() && (line.front() == '#' || line.front() == '%' || line.front() == ' ')) {
+    line.remove_prefix(1);
+  }
+  while (line.starts_with("//")) line.remove_prefix(2);
+  return line;
+}
+
+class Recogniser {
+ public:
+  Recogniser(const std::string& file, std::string_view text, const CsvForm& asked)
+      : file_(file), asked_(asked), lines_(split_lines(text)) {}
+
+  TableForm recognise() {
+    choose_layout();
+    find_numbers();
+    read_head();
+    name_columns();
+    find_suffixes();
+    find_time(form_, rows_);
+    number_decimals();
+    return std::move(form_);
+  }
+
+ private:
+  void choose_layout() {
+    std::string asked = asked_.delimiter;
+    if (!lines_.empty() && asked.empty()) {
+      asked = find_sep(lines_.front());
+      if (!asked.empty()) lines_.front() = {};  // it is read
+    }
+    const Delimiter* const only = find_delimiter(asked);
+    for (const Delimiter& by : delimiters) {
+      if (only != nullptr && only != &by) continue;
+      Layout tried = lay_out(lines_, by, texts_);
+      if (layout_.by == nullptr || tried.values > layout_.values) layout_ = std::move(tried);
+    }
+    if (layout_.cells == 0) lay_out_text(only);
+    form_.delimiter = layout_.by->mark;
+    form_.first_row = layout_.first_row + 1;
+    for (std::size_t i = layout_.first_row; i < lines_.size(); ++i) {
+      const auto& cells = layout_.lines[i];
+      if (cells.size() == layout_.cells || cells.size() == layout_.cells + 1) {
+        rows_.push_back(cells);
+      }
+    }
+    if (form_.delimiter != ',' && layout_.cells > 1) {
+      note(fmt::format("{} part the columns", layout_.by->name));
+    }
+  }
+
+  /// A table without a row that has numbers: its first line names the columns.
+  void lay_out_text(const Delimiter* only) {
+    const auto first = std::ranges::find_if_not(lines_, is_blank);
+    const std::string_view line = first == lines_.end() ? std::string_view() : *first;
+    layout_ = lay_out(lines_, only != nullptr ? *only : find_commonest(line), texts_);
+    const auto head = static_cast<std::size_t>(first - lines_.begin());
+    layout_.cells = head < layout_.lines.size() ? layout_.lines[head].size() : 0;
+    if (layout_.cells == 0 && head < lines_.size()) {  // a comment, or a quote never closed
+      layout_.lines[head] = {lines_[head]};
+      layout_.cells = 1;
+    }
+    layout_.first_row = head + 1;
+  }
+
+  /// What parts decimals and thousands.
+  void find_numbers() {
+    std::string groups;
+    std::string_view either;
+    bool comma = false;
+    bool point = false;
+    for (const auto& row : rows_) {
+      for (const std::string_view cell : row) {
+        const std::size_t suffix = find_suffix(cell);
+        const NumberLook look =
+            look_at_number(suffix == std::string_view::npos ? cell : cell.substr(0, suffix));
+        if (!look.is_number) continue;
+        comma = comma || look.decimal_comma;
+        point = point || (cell.find('.') != std::string_view::npos && look.groups != ".");
+        if (look.either) either = cell;
+        for (const char mark : look.groups) {
+          if (groups.find(mark) == std::string::npos) groups += mark;
+        }
+      }
+    }
+    if (!asked_.decimal.empty() && asked_.decimal != "," && asked_.decimal != ".") {
+      throw OptionError({Option{"decimal"}, " is '.' or ',', not '" + asked_.decimal + "'"});
+    }
+    const bool grouped_by_comma = groups.find(',') != std::string::npos;
+    if (!asked_.decimal.empty()) {
+      comma = asked_.decimal == ",";
+    } else if (!either.empty() && !comma && !point && !grouped_by_comma) {
+      throw OptionError(
+          {fmt::format("{}: '{}' is a number with decimals or with thousands: say ", file_, either),
+           Option{"decimal"}, " ',' or ", Option{"decimal"}, " '.'"});
+    }
+    form_.decimal = comma ? ',' : '.';
+    if (!comma && !either.empty() && !grouped_by_comma) groups += ',';
+    std::erase(groups, form_.decimal);
+    form_.thousands = groups;
+    if (comma) note("a comma is the decimal mark");
+    if (!groups.empty()) {
+      note(fmt::format("'{}' parts thousands", fmt::join(groups, "' and '")));
+    }
+  }
+
+  /// The lines above the rows that have as many cells, and whose comments have.
+  std::vector<HeadLine> head_lines() {
+    constexpr std::size_t most = 6;
+    std::vector<HeadLine> head;
+    for (std::size_t i = layout_.first_row; i > 0 && head.size() < most; --i) {
+      if (is_blank(lines_[i - 1])) continue;
+      const auto cells = cut(without_mark(lines_[i - 1]), layout_.by->mark, texts_);
+      const bool is_one = cells.size() == layout_.cells || cells.size() + 1 == layout_.cells ||
+                          (cells.size() == layout_.cells + 1 && cells.back().empty());
+      if (!is_one && (is_comment(lines_[i - 1]) || cells.empty())) continue;
+      if (!is_one) break;
+      HeadLine line{i - 1, {}};
+      for (const std::string_view cell : cells) line.cells.push_back(to_utf8(cell));
+      head.insert(head.begin(), std::move(line));
+    }
+    return head;
+  }
+
+  void read_head() {
+    const std::vector<HeadLine> lines = head_lines();
+    const TableHead head = choose_head(lines);
+    if (head.names == nullptr) {
+      note(
+          "no line names the columns: they are column_1, column_2 and so on, and `map` names them");
+      return;
+    }
+    form_.header_line = head.names->line + 1;
+    names_ = head.names->cells;
+    if (head.units != nullptr) {
+      units_ = head.units->cells;
+      note(fmt::format("line {} gives units", head.units->line + 1));
+    }
+    std::size_t left_out = 0;
+    for (std::size_t i = 0; i < layout_.first_row; ++i) {
+      const bool is_read = i + 1 == form_.header_line || is_blank(lines_[i]) ||
+                           (head.units != nullptr && i == head.units->line);
+      left_out += is_read ? 0U : 1U;
+    }
+    if (left_out > 0) {
+      note(fmt::format("{} line{} above the rows {} left out", left_out, left_out == 1 ? "" : "s",
+                       left_out == 1 ? "is" : "are"));
+    }
+  }
+
+  bool is_empty(std::size_t cell) const {
+    return std::ranges::all_of(
+        rows_, [&](const auto& row) { return cell >= row.size() || row[cell].empty(); });
+  }
+
+  /// 0, 1, 2 ... or 1, 2, 3 ...: rows that are numbered.
+  bool counts_rows(std::size_t cell) const {
+    std::optional<double> before;
+    for (const auto& row : rows_) {
+      const auto number = parse_number(row[cell]);
+      if (!number || (!before && *number > 1.0) || (before && *number != *before + 1.0)) {
+        return false;
+      }
+      before = number;
+    }
+    return before.has_value();
+  }
+
+  void name_columns() {
+    form_.cells = layout_.cells;
+    const bool ends_empty = form_.cells > 1 && is_empty(form_.cells - 1);
+    if (ends_empty && names_.size() + 1 == form_.cells) --form_.cells;
+    const bool one_more =
+        std::ranges::any_of(rows_, [&](const auto& row) { return row.size() == form_.cells + 1; });
+    form_.one_more = one_more && is_empty(form_.cells);
+    if (names_.size() == form_.cells + 1 && names_.back().empty()) names_.pop_back();
+    if (form_.one_more) note("the rows end with one delimiter more");
+    if (!names_.empty() && names_.size() + 1 == form_.cells) {
+      names_.insert(names_.begin(), "");
+      if (!units_.empty() && units_.size() + 1 == form_.cells) units_.insert(units_.begin(), "");
+    }
+    names_.resize(form_.cells);
+    units_.resize(form_.cells);
+    for (std::size_t cell = 0; cell < form_.cells; ++cell) {
+      std::string logged = names_[cell];
+      if (logged.empty()) {
+        if (is_empty(cell)) continue;
+        if (cell == 0 && form_.header_line > 0 && counts_rows(0)) {
+          note("the first column, without a name, numbers the rows and is left out");
+          continue;
+        }
+        logged = fmt::format("column_{}", cell + 1);
+        if (form_.header_line > 0) note(fmt::format("a column without a name is {}", logged));
+      }
+      form_.columns.push_back(
+          {.header = with_unit(logged, units_[cell]), .logged = logged, .cell = cell});
+    }
+    number_doubles();
+  }
+
+  /// Of several columns with one name all are numbered, so that none is taken for the other.
+  void number_doubles() {
+    std::map<std::string, std::size_t> count;
+    for (const ColumnForm& column : form_.columns) ++count[column.header];
+    std::map<std::string, std::size_t> given;
+    for (ColumnForm& column : form_.columns) {
+      if (count[column.header] < 2) continue;
+      const std::string header = column.header;
+      do {
+        column.header = fmt::format("{}.{}", header, ++given[header]);
+      } while (count.contains(column.header));
+      if (given[header] == 1) {
+        note(fmt::format("column '{}' is there {}: the first is {}", header,
+                         count[header] == 2 ? "twice" : fmt::format("{} times", count[header]),
+                         column.header));
+      }
+    }
+  }
+
+  void find_suffixes() {
+    std::vector<std::string> with;
+    for (ColumnForm& column : form_.columns) {
+      std::string suffix;
+      std::size_t such = 0;
+      std::size_t filled = 0;
+      for (const auto& row : rows_) {
+        if (column.cell >= row.size() || is_missing(row[column.cell])) continue;
+        const std::string_view cell = row[column.cell];
+        ++filled;
+        const std::size_t at = find_suffix(cell);
+        if (at == std::string_view::npos) continue;
+        if (suffix.empty()) suffix = cell.substr(at);
+        such += cell.substr(at) == suffix ? 1U : 0U;
+      }
+      if (such == 0 || 10 * such < 9 * filled) continue;
+      column.suffix = suffix;
+      column.header = with_unit(column.header, to_utf8(suffix));
+      with.push_back(column.logged);
+    }
+    if (!with.empty()) {
+      note(fmt::format("the cells of {} name their unit", fmt::join(with, ", ")));
+    }
+  }
+
+  void number_decimals() {
+    for (const auto& row : rows_) {
+      if (row.empty() || row.size() < form_.cells) continue;
+      const int decimals = count_decimals(row[form_.cells - 1], form_.decimal);
+      const bool first = &row == &rows_.front();
+      form_.last_decimals = first || form_.last_decimals == decimals ? decimals : -1;
+      if (form_.last_decimals < 0) return;
+    }
+  }
+
+  void note(std::string text) { form_.notes.push_back(std::move(text)); }
+
+  const std::string& file_;
+  const CsvForm& asked_;
+  std::vector<std::string_view> lines_;
+  std::deque<std::string> texts_;  // keeps what views point to
+  Layout layout_;
+  SampledRows rows_;
+  std::vector<std::string> names_;
+  std::vector<std::string> units_;
+  TableForm form_;
+};
+
+}  // namespace
+
+bool is_comment(std::string_view line) {
+  while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
+  if (line.starts_with('#') || line.starts_with('%') || line.starts_with("//")) return true;
+  return line.find_first_of("-=") != std::string_view::npos &&
+         line.find_first_not_of("-=+|: \t") == std::string_view::npos;
+}
+
+bool is_whole(const TableForm& form, std::span<const std::string_view> cells) {
+  return cells.size() == form.cells ||
+         (form.one_more && cells.size() == form.cells + 1 && cells.back().empty());
+}
+
+bool TableForm::is_plain() const {
+  if (delimiter != ',' || decimal != '.' || !thousands.empty() || columns.size() != cells) {
+    return false;
+  }
+  return std::ranges::all_of(columns, [](const ColumnForm& column) {
+    return column.kind == CellKind::number && column.suffix.empty();
+  });
+}
+
+TableForm recognise(const std::string& file, std::string_view text, const CsvForm& asked) {
+  return Recogniser(file, text, asked).recognise();
+}
+
+std::optional<double> read_number(const TableForm& form, const ColumnForm& column,
+                                  std::span<const std::string_view> cells) {
+  constexpr double day = 86400.0;
+  std::string_view cell = cells[column.cell];
+  switch (column.kind) {
+    case CellKind::clock:
+      return parse_clock(cell);
+    case CellKind::date_time: {
+      const auto stamp = parse_date_time(cell, column.order);
+      if (!stamp) return std::nullopt;
+      return column.is_of_day ? stamp->seconds
+                              : (stamp->days - column.first_day) * day + stamp->seconds;
+    }
+    case CellKind::dated: {
+      const auto days = parse_date(cells[column.date_cell], column.order);
+      const auto seconds = parse_clock(cell);
+      if (!days || !seconds) return std::nullopt;
+      return (*days - column.first_day) * day + *seconds;
+    }
+    case CellKind::counted: {
+      const auto count = parse_number_as(cell, form.decimal, form.thousands);
+      return count ? std::optional((*count - column.origin) * column.scale) : std::nullopt;
+    }
+    case CellKind::number:
+      break;
+  }
+  if (!column.suffix.empty() && cell.ends_with(column.suffix)) {
+    cell.remove_suffix(column.suffix.size());
+    while (cell.ends_with(' ')) cell.remove_suffix(1);
+  }
+  return parse_number_as(cell, form.decimal, form.thousands);
+}
+
+}  // namespace sepcal::files

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/files/table_head.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+
+namespace sepcal::files {
+namespace {
+
+// Beside what needs no list: "-" and "".
+constexpr std::array unit_words{
+    "%",     "a",      "amp",    "amps",    "bar",     "bool",  "c",      "celsius", "deg",
+    "degc",  "degf",   "degm",   "degree",  "degrees", "dps",   "enum",   "f",       "fahrenheit",
+    "feet",  "flag",   "fpm",    "fps",     "ft",      "g",     "gals",   "gauss",   "gph",
+    "hpa",   "hz",     "ident",  "in",      "inch",    "inhg",  "k",      "kelvin",  "kg",
+    "kgf",   "km",     "kmh",    "knots",   "kpa",     "kph",   "kt",     "kts",     "lb",
+    "lbf",   "lbs",    "m",      "mb",      "mbar",    "meter", "meters", "metre",   "metres",
+    "mg",    "mgauss", "min",    "mm",      "mmhg",    "mph",   "mps",    "mps2",    "ms",
+    "mv",    "n",      "ns",     "nt",      "ohm",     "pa",    "pct",    "percent", "psf",
+    "psi",   "rad",    "radian", "radians", "rn",      "rpm",   "s",      "sec",     "seconds",
+    "t",     "torr",   "ts",     "us",      "usec",    "ut",    "utc",    "v",       "volt",
+    "volts", "w",
+};
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return lower;
+}
+
+std::string_view without_brackets(std::string_view text) {
+  while (text.size() >= 2 && (text.front() == '(' || text.front() == '[')) {
+    text.remove_prefix(1);
+    text.remove_suffix(1);
+  }
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+bool says_nothing(std::string_view unit) {
+  constexpr std::array words{"", "-", "--", "#", "1", "none", "n/a", "unitless", "null"};
+  return std::ranges::find(words, in_lower_case(unit)) != words.end();
+}
+
+/// Whether each word of it, at blanks and signs of products and quotients, is one of a unit.
+bool is_of_unit_words(std::string_view unit) {
+  std::string word;
+  bool any = false;
+  const auto is_known = [&] {
+    while (word.size() > 1 && std::isdigit(static_cast<unsigned char>(word.back())) != 0) {
+      word.pop_back();
+    }
+    const bool known = word.empty() || std::ranges::find(unit_words, word) != unit_words.end();
+    any = any || !word.empty();
+    word.clear();
+    return known;
+  };
+  for (const char c : unit) {
+    if (std::string_view(" /*.^-+()_").find(c) == std::string_view::npos) {
+      word += c;
+    } else if (!is_known()) {
+      return false;
+    }
+  }
+  return is_known() && any;
+}
+
+/// How far a line's cells are names: there, of letters and different.
+double score_names(const HeadLine& line) {
+  std::set<std::string_view> names;
+  std::size_t units = 0;
+  for (const std::string& cell : line.cells) {
+    if (says_nothing(cell)) continue;
+    names.insert(cell);
+    units += is_unit_like(cell) ? 1U : 0U;
+  }
+  return (static_cast<double>(names.size()) - static_cast<double>(units)) /
+         static_cast<double>(line.cells.size());
+}
+
+/// Which share of the cells that are not empty are units.
+double score_units(const HeadLine& line) {
+  const auto units = std::ranges::count_if(line.cells, is_unit_like);
+  const auto empty = std::ranges::count_if(line.cells, &std::string::empty);
+  const auto filled = static_cast<double>(line.cells.size()) - static_cast<double>(empty);
+  return filled > 0.0 ? static_cast<double>(units) / filled : 0.0;
+}
+
+}  // namespace
+
+bool is_unit_like(std::string_view cell) {
+  if (cell.empty()) return false;
+  std::string unit = in_lower_case(without_brackets(cell));
+  if (says_nothing(unit)) return true;
+  if (unit.find("hh:mm") != std::string::npos || unit.starts_with("yyy")) return true;
+  for (const std::string_view mark : {"\xC2\xB0", "\xC2\xB5", "\xCE\xBC", "\xC2\xB2"}) {
+    // The signs of degrees and of micro, and a square.
+    for (auto at = unit.find(mark); at != std::string::npos; at = unit.find(mark)) {
+      unit.replace(at, mark.size(), mark == "\xC2\xB0" ? "deg" : mark == "\xC2\xB2" ? "2" : "u");
+    }
+  }
+  for (const std::string_view which : {" baro", " msl", " agl", " wgs", " gps", " true", " mag"}) {
+    if (unit.ends_with(which)) unit.resize(unit.size() - which.size());
+  }
+  return is_of_unit_words(unit);
+}
+
+TableHead choose_head(const std::vector<HeadLine>& lines) {
+  TableHead head;
+  double best = 0.0;
+  for (const HeadLine& line : lines) {
+    const double score = score_names(line);
+    if (head.names != nullptr && score <= best) continue;
+    head.names = &line;
+    best = score;
+  }
+  constexpr double least = 0.5;
+  best = least;
+  for (const HeadLine& line : lines) {
+    const double score = score_units(line);
+    if (&line == head.names || score < best || (head.units != nullptr && score == best)) continue;
+    head.units = &line;
+    best = score;
+  }
+  return head;
+}
+
+std::string with_unit(const std::string& name, std::string_view unit) {
+  unit = without_brackets(unit);
+  if (says_nothing(unit) || name.empty()) return name;
+  if (name.ends_with(')') || name.ends_with(']')) return name;
+  const std::size_t suffix = name.rfind('_');
+  if (suffix != std::string::npos && is_unit_like(std::string_view(name).substr(suffix + 1))) {
+    return name;
+  }
+  return fmt::format("{} ({})", name, unit);
+}
+
+}  // namespace sepcal::files

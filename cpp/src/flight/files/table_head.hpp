@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lines above a table's rows: which of them names the columns, which gives their units.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sepcal::files {
+
+/// "m/s", "[deg]", "ft Baro", "hh:mm:ss", "-": what stands in a row of units.
+bool is_unit_like(std::string_view cell);
+
+/// A line that may be one of the head's, cut into cells.
+struct HeadLine {
+  std::size_t line = 0;  // counted from 0
+  std::vector<std::string> cells;
+};
+
+struct TableHead {
+  const HeadLine* names = nullptr;
+  const HeadLine* units = nullptr;
+};
+
+/// Of the lines above the rows, in their order, the one that names columns, and the one of units.
+TableHead choose_head(const std::vector<HeadLine>& lines);
+
+/// "vn (m/s)"; the name alone where the unit says nothing or the name says one itself.
+std::string with_unit(const std::string& name, std::string_view unit);
+
+}  // namespace sepcal::files

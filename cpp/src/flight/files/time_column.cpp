@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/files/time_column.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "flight/files/headers.hpp"
+#include "flight/files/number_text.hpp"
+#include "flight/files/units.hpp"
+
+namespace sepcal::files {
+namespace {
+
+constexpr double day = 86400.0;
+constexpr const char* time_header = "time_s";
+
+/// "GPS Date & Time (s)" as its words, in lower case.
+std::vector<std::string> words_of(std::string_view header) {
+  std::vector<std::string> words(1);
+  for (const char c : header) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || byte >= 0x80) {
+      words.back() += static_cast<char>(std::tolower(byte));
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+bool is_called_time(const ColumnForm& column) {
+  constexpr std::array names{"time", "timestamp", "t",     "utc",   "datetime", "clock", "epoch",
+                             "date", "ts",        "stamp", "zeit",  "uhrzeit",  "temps", "heure",
+                             "hora", "tid",       "tijd",  "tempo", "timeus",   "timems"};
+  return std::ranges::any_of(words_of(column.logged), [&](const std::string& word) {
+    return std::ranges::find(names, word) != names.end();
+  });
+}
+
+/// "time_s", "Time [ms]": a name of time and the unit in full.
+bool is_time_with_unit(const ColumnForm& column) {
+  if (unit_in(column.header, "time", UnitKind::time) != nullptr) return true;
+  const std::vector<std::string> words = words_of(column.header);
+  constexpr std::array units{"s", "sec", "secs", "second", "seconds", "ms", "us"};
+  return words.size() > 1 && is_called_time(column) &&
+         std::ranges::find(units, words.back()) != units.end();
+}
+
+/// The column's cells in the sampled rows that are not empty.
+std::vector<std::string_view> cells_of(const SampledRows& rows, std::size_t cell) {
+  std::vector<std::string_view> cells;
+  for (const auto& row : rows) {
+    if (cell < row.size() && !row[cell].empty()) cells.push_back(row[cell]);
+  }
+  return cells;
+}
+
+/// Whether nearly all of some cells are such: a log begins with cells that are not filled yet.
+template <class Test>
+bool are_mostly(const std::vector<std::string_view>& cells, const Test& test) {
+  return !cells.empty() && 10 * std::ranges::count_if(cells, test) >= 9 * std::ssize(cells);
+}
+
+bool is_clock(std::string_view cell) { return parse_clock(cell).has_value(); }
+
+std::optional<double> days_of(std::string_view cell, DateOrder order, bool with_time) {
+  if (!with_time) return parse_date(cell, order);
+  const auto stamp = parse_date_time(cell, order);
+  return stamp ? std::optional(stamp->days) : std::nullopt;
+}
+
+/// The order in which dates are read; nothing where two orders tell other days, or none any.
+std::optional<DateOrder> find_order(const std::vector<std::string_view>& cells, bool with_time) {
+  const auto reads = [&](DateOrder order) {
+    return are_mostly(
+        cells, [&](std::string_view cell) { return days_of(cell, order, with_time).has_value(); });
+  };
+  const bool day_first = reads(DateOrder::day_first);
+  const bool month_first = reads(DateOrder::month_first);
+  if (!day_first && !month_first) return std::nullopt;
+  const bool differ = std::ranges::any_of(cells, [&](std::string_view cell) {
+    return days_of(cell, DateOrder::day_first, with_time) !=
+           days_of(cell, DateOrder::month_first, with_time);
+  });
+  if (day_first && month_first && differ) return std::nullopt;
+  return day_first ? DateOrder::day_first : DateOrder::month_first;
+}
+
+std::string date_text(double days) {
+  const std::chrono::sys_days date{std::chrono::days(static_cast<int>(days))};
+  const std::chrono::year_month_day ymd(date);
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(ymd.year()),
+                     static_cast<unsigned>(ymd.month()), static_cast<unsigned>(ymd.day()));
+}
+
+/// Turns `column` into time.
+void become_time(TableForm& form, ColumnForm& column, CellKind kind, const std::string& how) {
+  for (ColumnForm& other : form.columns) {
+    if (other.header == time_header) other.header += ".1";
+  }
+  form.notes.push_back(fmt::format("time is from '{}', {}", column.logged, how));
+  column.kind = kind;
+  column.header = time_header;
+}
+
+/// The first day of a column of dates.
+double first_day_of(const std::vector<std::string_view>& cells, DateOrder order, bool with_time) {
+  for (const std::string_view cell : cells) {
+    if (with_time) {
+      if (const auto stamp = parse_date_time(cell, order)) {
+        return stamp->days + std::floor(stamp->seconds / day);
+      }
+    } else if (const auto date = parse_date(cell, order)) {
+      return *date;
+    }
+  }
+  return 0.0;
+}
+
+/// The date's column that belongs to a clock's: the nearest one.
+const ColumnForm* find_date(const TableForm& form, const SampledRows& rows,
+                            const ColumnForm& clock) {
+  const ColumnForm* nearest = nullptr;
+  const auto away = [&](const ColumnForm& column) {
+    return column.cell < clock.cell ? clock.cell - column.cell : column.cell - clock.cell;
+  };
+  for (const ColumnForm& column : form.columns) {
+    const auto cells = cells_of(rows, column.cell);
+    const auto is_date = [](std::string_view cell) -> bool {
+      return parse_date(cell, DateOrder::day_first) || parse_date(cell, DateOrder::month_first);
+    };
+    if (&column == &clock || !are_mostly(cells, is_date)) continue;
+    if (are_mostly(cells, [](std::string_view cell) { return parse_number(cell).has_value(); }) &&
+        !is_called_time(column)) {
+      continue;
+    }
+    if (nearest == nullptr || away(column) < away(*nearest)) nearest = &column;
+  }
+  return nearest;
+}
+
+/// Whether several rows share a stamp.
+bool repeats(const std::vector<std::string_view>& cells) {
+  std::size_t stamps = 1;
+  for (std::size_t i = 1; i < cells.size(); ++i) stamps += cells[i] != cells[i - 1] ? 1U : 0U;
+  return cells.size() >= 2 * stamps;
+}
+
+bool take_clock(TableForm& form, const SampledRows& rows, ColumnForm& column) {
+  const ColumnForm* date = find_date(form, rows, column);
+  const auto dates = date == nullptr ? std::vector<std::string_view>() : cells_of(rows, date->cell);
+  const auto order = find_order(dates, false);
+  if (date == nullptr || !order) {
+    column.is_of_day = true;
+    become_time(form, column, CellKind::clock, "a time of day, in seconds since midnight");
+    return true;
+  }
+  column.date_cell = date->cell;
+  column.order = *order;
+  column.first_day = first_day_of(dates, *order, false);
+  become_time(form, column, CellKind::dated,
+              fmt::format("with the date in '{}', in seconds since {} 00:00", date->logged,
+                          date_text(column.first_day)));
+  return true;
+}
+
+bool take_date_time(TableForm& form, ColumnForm& column,
+                    const std::vector<std::string_view>& cells) {
+  const auto order = find_order(cells, true);
+  if (!order) {  // a time of day is left, and that is enough
+    column.order = DateOrder::day_first;
+    column.is_of_day = true;
+    become_time(form, column, CellKind::date_time,
+                "whose date can be read in two ways and is not needed: in seconds since midnight");
+    return true;
+  }
+  column.order = *order;
+  column.first_day = first_day_of(cells, *order, true);
+  become_time(
+      form, column, CellKind::date_time,
+      fmt::format("a date and a time, in seconds since {} 00:00", date_text(column.first_day)));
+  return true;
+}
+
+struct Epoch {
+  double scale;  // s a count
+  double first;  // count at 1970-01-01
+  const char* unit;
+};
+
+/// Between the years 2000 and 2100 a count since an epoch is of one of these alone.
+std::optional<Epoch> find_epoch(double count, bool whole) {
+  constexpr double year_2000 = 946'684'800.0;
+  constexpr double year_2100 = 4'102'444'800.0;
+  constexpr std::array epochs{Epoch{1.0, 0.0, "seconds"}, Epoch{1e-3, 0.0, "milliseconds"},
+                              Epoch{1e-6, 0.0, "microseconds"}, Epoch{1e-9, 0.0, "nanoseconds"}};
+  for (const Epoch& epoch : epochs) {
+    const double seconds = count * epoch.scale;
+    if (seconds >= year_2000 && seconds < year_2100) return epoch;
+  }
+  constexpr std::array calendars{Epoch{day, 25'569.0, "days (a spreadsheet's)"},
+                                 Epoch{day, 719'529.0, "days (MATLAB's)"}};
+  for (const Epoch& epoch : calendars) {
+    const double seconds = (count - epoch.first) * epoch.scale;
+    if (!whole && seconds >= year_2000 && seconds < year_2100) return epoch;
+  }
+  return std::nullopt;
+}
+
+std::vector<double> numbers_of(const TableForm& form, const std::vector<std::string_view>& cells) {
+  std::vector<double> numbers;
+  for (const std::string_view cell : cells) {
+    if (const auto number = parse_number_as(cell, form.decimal, form.thousands)) {
+      numbers.push_back(*number);
+    }
+  }
+  return numbers;
+}
+
+/// Seconds that show themselves by their fractions.
+bool shows_seconds(const std::vector<double>& numbers) {
+  constexpr double longest = 5.0;  // s between rows that are a second's fractions
+  if (numbers.size() < 2 || !std::ranges::is_sorted(numbers)) return false;
+  const double step = (numbers.back() - numbers.front()) / static_cast<double>(numbers.size() - 1);
+  return step > 0.0 && step <= longest &&
+         std::ranges::any_of(numbers, [](double number) { return number != std::floor(number); });
+}
+
+bool take_seconds(TableForm& form, const SampledRows& rows, ColumnForm& column) {
+  if (!shows_seconds(numbers_of(form, cells_of(rows, column.cell)))) return false;
+  become_time(form, column, CellKind::number, "whose fractions are of seconds");
+  return true;
+}
+
+bool take_count(TableForm& form, const SampledRows& rows, ColumnForm& column) {
+  const std::vector<double> numbers = numbers_of(form, cells_of(rows, column.cell));
+  if (numbers.size() < 2 || !std::ranges::is_sorted(numbers)) return false;
+  const bool whole =
+      std::ranges::all_of(numbers, [](double number) { return number == std::floor(number); });
+  const auto epoch = find_epoch(numbers.front(), whole);
+  if (!epoch || numbers.back() == numbers.front()) return false;
+  const double days = std::floor((numbers.front() - epoch->first) * epoch->scale / day);
+  column.scale = epoch->scale;
+  column.origin = epoch->first + days * day / epoch->scale;
+  become_time(form, column, CellKind::counted,
+              fmt::format("a count of {} since an epoch, in seconds since {} 00:00", epoch->unit,
+                          date_text(days)));
+  return true;
+}
+
+}  // namespace
+
+bool is_time_text(std::string_view cell) {
+  constexpr auto order = DateOrder::day_first;
+  constexpr auto american = DateOrder::month_first;
+  if (cell.find_first_of(":-/.") == std::string_view::npos) return false;
+  return parse_clock(cell) || parse_date_time(cell, order) || parse_date_time(cell, american) ||
+         parse_date(cell, order) || parse_date(cell, american);
+}
+
+void find_time(TableForm& form, const SampledRows& rows) {
+  const auto is_number = [&](std::string_view cell) {
+    return parse_number_as(cell, form.decimal, form.thousands).has_value();
+  };
+  const auto is_stamp = [](std::string_view cell) -> bool {
+    return parse_date_time(cell, DateOrder::day_first) ||
+           parse_date_time(cell, DateOrder::month_first);
+  };
+  for (const ColumnForm& column : form.columns) {
+    if (is_time_with_unit(column) && are_mostly(cells_of(rows, column.cell), is_number)) return;
+  }
+  // By how much they say: a date and a time, a clock, a count; of a kind those called time first.
+  // Where several rows share a stamp, seconds with fractions are better.
+  const auto take_any = [&](bool called, const auto& is_such, const auto& take) {
+    for (ColumnForm& column : form.columns) {
+      if (is_called_time(column) != called) continue;
+      const auto cells = cells_of(rows, column.cell);
+      if (!are_mostly(cells, is_such)) continue;
+      for (ColumnForm& finer : form.columns) {
+        if (repeats(cells) && is_called_time(finer) && take_seconds(form, rows, finer)) return true;
+      }
+      return take(column, cells);
+    }
+    return false;
+  };
+  const auto with_date = [&](ColumnForm& column, const auto& cells) {
+    return take_date_time(form, column, cells);
+  };
+  const auto of_day = [&](ColumnForm& column, const auto&) {
+    return take_clock(form, rows, column);
+  };
+  for (const bool called : {true, false}) {
+    if (take_any(called, is_stamp, with_date) || take_any(called, is_clock, of_day)) return;
+  }
+  for (ColumnForm& column : form.columns) {
+    if (!is_called_time(column)) continue;
+    if (take_count(form, rows, column) || take_seconds(form, rows, column)) return;
+  }
+}
+
+double RisingClock::operator()(double seconds_of_day) {
+  if (!std::isfinite(seconds_of_day)) return seconds_of_day;
+  if (begun_ && seconds_of_day + days_ < last_ - day / 2.0) days_ += day;
+  begun_ = true;
+  last_ = seconds_of_day + days_;
+  return last_;
+}
+
+}  // namespace sepcal::files
