@@ -55,10 +55,11 @@ void CsvReader::read_header() {
     const auto text = lines_->next();
     if (!text) throw Error(file_ + ": the file is empty; its first line should name the columns");
     is_foreign_text = is_foreign_text || !files::is_utf8(*text);
-    if (lines_->line() != form_->header_line) continue;
+    if (form_->header_line != 0 && lines_->line() != form_->header_line) continue;
     line_ = lines_->line();
     const std::string fault = row_->cut(*text, form_->delimiter);
     if (!fault.empty()) fail(line_, fault);
+    if (form_->header_line == 0) continue;
     plain_text_ = form_->is_plain() && !files::is_comment(*text) ? std::string(*text) : "";
   }
   if (is_foreign_text) notes_.emplace_back("the text is not UTF-8: taken for Windows-1252");

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <deque>
 #include <map>
+#include <tuple>
 
 #include "flight/files/number_text.hpp"
 #include "flight/files/row_cells.hpp"
@@ -20,7 +21,7 @@
 namespace sepcal::files {
 namespace {
 
-constexpr std::size_t most_lines = 400;   // that are looked at
+constexpr std::size_t most_lines = 200;   // that are looked at
 constexpr std::size_t most_cells = 4000;  // of a row
 
 struct Delimiter {
@@ -83,7 +84,13 @@ struct Layout {
   std::vector<std::vector<std::string_view>> lines;  // empty: nothing stands there, or a comment
   std::size_t first_row = 0;                         // among the lines
   std::size_t cells = 0;                             // of a row
-  double values = 0.0;                               // numbers and times in a row, on average
+  int head_fits = 0;    // the line above the rows has as many cells: 2; one less or more: 1
+  double values = 0.0;  // numbers and times in a row, on average
+
+  bool is_better_than(const Layout& other) const {
+    return std::tuple(head_fits, values, cells) >
+           std::tuple(other.head_fits, other.values, other.cells);
+  }
 };
 
 /// How many values a line's cells are; nothing where it is no row's.
@@ -95,6 +102,8 @@ std::optional<std::size_t> count_values(const std::vector<std::string_view>& cel
     ++filled;
     values += is_value(cells[i]) ? 1U : 0U;
   }
+  const auto is_mark = [](std::string_view cell) { return cell == "," || cell == ";"; };
+  if (std::ranges::any_of(cells, is_mark)) return std::nullopt;  // another delimiter's
   if (filled == 0) return cells.size() > 1 ? std::optional(values) : std::nullopt;
   return values > 0 && 10 * values >= 3 * filled ? std::optional(values) : std::nullopt;
 }
@@ -112,6 +121,28 @@ std::vector<std::string_view> cut(std::string_view line, char delimiter,
     kept.push_back(in_line ? cell : std::string_view(texts.back()));
   }
   return kept;
+}
+
+/// A comment's text, and any other line.
+std::string_view without_mark(std::string_view line) {
+  while (!line.empty() && (line.front() == '#' || line.front() == '%' || line.front() == ' ')) {
+    line.remove_prefix(1);
+  }
+  while (line.starts_with("//")) line.remove_prefix(2);
+  return line;
+}
+
+/// Layout::head_fits.
+int fit_head(const std::vector<std::string_view>& lines, const Layout& layout,
+             std::deque<std::string>& texts) {
+  if (layout.cells < 2) return 1;
+  for (std::size_t i = layout.first_row; i > 0; --i) {
+    if (is_blank(lines[i - 1])) continue;
+    const std::size_t cells = cut(without_mark(lines[i - 1]), layout.by->mark, texts).size();
+    if (cells == layout.cells) return 2;
+    return cells + 1 == layout.cells || cells == layout.cells + 1 ? 1 : 0;
+  }
+  return 2;
 }
 
 /// The rows begin at the first line like one that is followed by others as long.
@@ -134,6 +165,8 @@ Layout lay_out(const std::vector<std::string_view>& lines, const Delimiter& by,
     std::size_t seen = 0;
     for (std::size_t i = first; i < lines.size() && seen < followers; ++i) {
       if (layout.lines[i].empty()) continue;
+      const auto above = lines.begin() + static_cast<std::ptrdiff_t>(first);
+      if (!values[i] && std::find(lines.begin(), above, lines[i]) != above) continue;  // repeated
       ++seen;
       if (!values[i]) continue;
       ++rows;
@@ -152,6 +185,7 @@ Layout lay_out(const std::vector<std::string_view>& lines, const Delimiter& by,
       ++count;
     }
     layout.values = static_cast<double>(sum) / static_cast<double>(count);
+    layout.head_fits = fit_head(lines, layout, texts);
     break;
   }
   return layout;
@@ -181,19 +215,13 @@ const Delimiter& find_commonest(std::string_view line) {
   });
 }
 
-/// A comment's text, and any other line.
-std::string_view without_mark(std::string_view line) {
-  while (!line.empty() && (line.front() == '#' || line.front() == '%' || line.front() == ' ')) {
-    line.remove_prefix(1);
-  }
-  while (line.starts_with("//")) line.remove_prefix(2);
-  return line;
-}
-
 class Recogniser {
  public:
   Recogniser(const std::string& file, std::string_view text, const CsvForm& asked)
-      : file_(file), asked_(asked), lines_(split_lines(text)) {}
+      : file_(file), asked_(asked), lines_(split_lines(text)) {
+    // A line that ends with the file may be cut.
+    if (!text.ends_with('\n') && lines_.size() > 2) lines_.pop_back();
+  }
 
   TableForm recognise() {
     choose_layout();
@@ -217,7 +245,7 @@ class Recogniser {
     for (const Delimiter& by : delimiters) {
       if (only != nullptr && only != &by) continue;
       Layout tried = lay_out(lines_, by, texts_);
-      if (layout_.by == nullptr || tried.values > layout_.values) layout_ = std::move(tried);
+      if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
     }
     if (layout_.cells == 0) lay_out_text(only);
     form_.delimiter = layout_.by->mark;
@@ -292,10 +320,13 @@ class Recogniser {
   std::vector<HeadLine> head_lines() {
     constexpr std::size_t most = 6;
     std::vector<HeadLine> head;
-    for (std::size_t i = layout_.first_row; i > 0 && head.size() < most; --i) {
+    for (std::size_t i = std::min(layout_.first_row, lines_.size()); i > 0 && head.size() < most;
+         --i) {
       if (is_blank(lines_[i - 1])) continue;
       const auto cells = cut(without_mark(lines_[i - 1]), layout_.by->mark, texts_);
-      const bool is_one = cells.size() == layout_.cells || cells.size() + 1 == layout_.cells ||
+      if (!cells.empty() && cells.front() == "TOA5") continue;  // of a data logger, names follow
+      const bool is_one = cells.size() == layout_.cells ||
+                          (cells.size() + 1 == layout_.cells && cells.size() > 1) ||
                           (cells.size() == layout_.cells + 1 && cells.back().empty());
       if (!is_one && (is_comment(lines_[i - 1]) || cells.empty())) continue;
       if (!is_one) break;
@@ -321,7 +352,7 @@ class Recogniser {
       note(fmt::format("line {} gives units", head.units->line + 1));
     }
     std::size_t left_out = 0;
-    for (std::size_t i = 0; i < layout_.first_row; ++i) {
+    for (std::size_t i = 0; i < std::min(layout_.first_row, lines_.size()); ++i) {
       const bool is_read = i + 1 == form_.header_line || is_blank(lines_[i]) ||
                            (head.units != nullptr && i == head.units->line);
       left_out += is_read ? 0U : 1U;

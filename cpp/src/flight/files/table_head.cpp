@@ -70,8 +70,8 @@ bool is_of_unit_words(std::string_view unit) {
   return is_known() && any;
 }
 
-/// How far a line's cells are names: there, of letters and different.
-double score_names(const HeadLine& line) {
+/// How far a line's cells are names of `columns`: there, no units and different.
+double score_names(const HeadLine& line, std::size_t columns) {
   std::set<std::string_view> names;
   std::size_t units = 0;
   for (const std::string& cell : line.cells) {
@@ -80,7 +80,7 @@ double score_names(const HeadLine& line) {
     units += is_unit_like(cell) ? 1U : 0U;
   }
   return (static_cast<double>(names.size()) - static_cast<double>(units)) /
-         static_cast<double>(line.cells.size());
+         static_cast<double>(columns);
 }
 
 /// Which share of the cells that are not empty are units.
@@ -113,8 +113,10 @@ bool is_unit_like(std::string_view cell) {
 TableHead choose_head(const std::vector<HeadLine>& lines) {
   TableHead head;
   double best = 0.0;
+  std::size_t columns = 1;
+  for (const HeadLine& line : lines) columns = std::max(columns, line.cells.size());
   for (const HeadLine& line : lines) {
-    const double score = score_names(line);
+    const double score = score_names(line, columns);
     if (head.names != nullptr && score <= best) continue;
     head.names = &line;
     best = score;
