@@ -68,23 +68,25 @@ void Flight::check_header(const std::string& header) const {
   if (header == maneuver) {
     throw Error(name_ + ": column 'maneuver' is for labels, a text a row, not for numbers");
   }
-  if (find(header) != nullptr) {
+  if (std::ranges::find(columns_, header, &Column::header) != columns_.end()) {
     throw Error(fmt::format("{}: column '{}' is there twice; rename or delete one", name_, header));
   }
 }
 
 Flight::Column& Flight::column(std::string_view header) {
-  const auto found = std::ranges::find(columns_, header, &Column::header);
-  if (found == columns_.end()) {
+  const Column* found = find(header);
+  if (found == nullptr) {
     throw Error(fmt::format("{}: there is no column '{}'; {}", name_, header, list_columns()));
   }
-  return *found;
+  return columns_[static_cast<std::size_t>(found - columns_.data())];
 }
 
 Flight& Flight::rename(std::string_view header, std::string to) {
   Column& renamed = column(header);
   check_header(to);
+  if (renamed.logged.empty()) renamed.logged = renamed.header;
   renamed.header = std::move(to);
+  if (renamed.logged == renamed.header) renamed.logged.clear();
   return *this;
 }
 
@@ -140,8 +142,9 @@ void Flight::release(std::size_t first, std::size_t last) const {
 }
 
 const Flight::Column* Flight::find(std::string_view header) const {
-  const auto found = std::ranges::find(columns_, header, &Column::header);
-  return found == columns_.end() ? nullptr : &*found;
+  auto found = std::ranges::find(columns_, header, &Column::header);
+  if (found == columns_.end()) found = std::ranges::find(columns_, header, &Column::logged);
+  return found == columns_.end() || header.empty() ? nullptr : &*found;
 }
 
 std::string Flight::locate(std::size_t row) const {
@@ -154,7 +157,7 @@ std::string Flight::locate(std::size_t row) const {
 std::string Flight::list_columns() const {
   if (from_file() && columns_.size() == 1 && !maneuvers_) {
     return fmt::format("the file has: {}, and no comma in its header; is this a CSV file?",
-                       columns_.front().header);
+                       columns_.front().logged_header());
   }
   std::string list = from_file() ? "the file has: " : "the flight has: ";
   const std::size_t prefix = list.size();
@@ -164,7 +167,7 @@ std::string Flight::list_columns() const {
   };
   constexpr std::size_t most_columns = 40;
   const std::size_t listed = std::min(columns_.size(), most_columns);
-  for (std::size_t i = 0; i < listed; ++i) append(columns_[i].header);
+  for (std::size_t i = 0; i < listed; ++i) append(columns_[i].logged_header());
   if (listed < columns_.size()) append(fmt::format("{} more", columns_.size() - listed));
   if (maneuvers_ || !label_stretches_.empty()) append(maneuver);
   if (list.size() == prefix) list += "none";

@@ -3,6 +3,7 @@
 
 #include "flight/logs/chosen_columns.hpp"
 #include "flight/logs/joined_clock.hpp"
+#include "flight/logs/named_columns.hpp"
 #include "flight/logs/quaternion_columns.hpp"
 #include "flight/logs/velocity_columns.hpp"
 
@@ -11,6 +12,7 @@ namespace sepcal {
 ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
   ReadFlight read{flight, flight.notes()};
   logs::choose_columns(read.flight, choice);
+  logs::name_columns(read.flight, read.notes);
   logs::join_clock(read.flight, read.notes);
   logs::convert_quaternion(read.flight, read.notes);
   logs::turn_climb(read.flight, read.notes);

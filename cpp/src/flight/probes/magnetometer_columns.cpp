@@ -151,15 +151,16 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   } else if (builder.has({"roll", "pitch", "yaw", "bn", "be", "bd"})) {
     use_logged_field(builder);
   } else {
-    throw OptionError(
-        {flight.name() +
-             ": the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, pitch_rad, "
-             "yaw_rad with bn_ut, be_ut, bd_ut or ",
-         Option{"field"}, " N,E,D, or fit with ", Option{"field_strength"},
-         " alone" +
-             builder.ask_for_near_miss(
-                 {"hx", "hy", "hz", "roll", "pitch", "yaw", "bn", "be", "bd"}) +
-             "; " + flight.list_columns()});
+    OptionError::Message message{
+        flight.name() +
+            ": the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, pitch_rad, "
+            "yaw_rad with bn_ut, be_ut, bd_ut or ",
+        Option{"field"}, " N,E,D, or fit with ", Option{"field_strength"}, " alone"};
+    std::ranges::move(
+        builder.ask_for_near_miss({"hx", "hy", "hz", "roll", "pitch", "yaw", "bn", "be", "bd"}),
+        std::back_inserter(message));
+    message.emplace_back("; " + flight.list_columns());
+    throw OptionError(std::move(message));
   }
   builder.keep_valid();
   builder.check_time();
