@@ -69,6 +69,10 @@ class Flight {
   /// rename().
   Flight& replace(std::string_view header, std::vector<double> values);
 
+  /// The same without a copy, as view().
+  Flight& replace(std::string_view header, std::span<const double> values,
+                  std::shared_ptr<const void> owner);
+
   /// Takes a column away. Throws Error as rename().
   Flight& drop(std::string_view header);
 

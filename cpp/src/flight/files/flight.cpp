@@ -91,11 +91,16 @@ Flight& Flight::rename(std::string_view header, std::string to) {
 }
 
 Flight& Flight::replace(std::string_view header, std::vector<double> values) {
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  return replace(header, *owned, owned);
+}
+
+Flight& Flight::replace(std::string_view header, std::span<const double> values,
+                        std::shared_ptr<const void> owner) {
   Column& replaced = column(header);
   check_length(header, values.size());
-  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
-  replaced.values = *owned;
-  replaced.owner = owned;
+  replaced.values = values;
+  replaced.owner = std::move(owner);
   return *this;
 }
 

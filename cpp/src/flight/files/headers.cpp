@@ -99,7 +99,9 @@ const std::string* find_without_unit(std::string_view quantity,
                                      std::span<const std::string> candidates) {
   const auto found = std::ranges::find_if(candidates, [&](const std::string& candidate) {
     const std::vector<std::string> words = split_words(candidate);
-    if (quantity.size() == 1 || words.empty() || words.front() != quantity) return false;
+    if (quantity.size() == 1 || words.empty()) return false;
+    if (rank_name(quantity, words)) return true;
+    if (words.front() != quantity) return false;
     if (words.size() > 1 && words[1] == "rate") return false;                 // another quantity
     return words.size() <= 2 || (words.size() == 3 && words[2].size() == 1);  // "ft/s"
   });

@@ -74,6 +74,8 @@ struct OtherName {
   int rank = 1;
 };
 
+constexpr int asked_about = 9;  // a rank of names that are not taken: magnetic is not true
+
 constexpr std::array other_quantities{
     OtherName{"time", "t"},
     OtherName{"time", "timestamp"},
@@ -95,10 +97,12 @@ constexpr std::array other_quantities{
     OtherName{"yaw", "headingtrue", 1},
     OtherName{"yaw", "hdt", 1},
     OtherName{"yaw", "heading", 2},
-    OtherName{"yaw", "hdg", 3},  // Garmin's, which may be magnetic: read_as() asks for magvar
+    OtherName{"yaw", "hdg", asked_about},
+    OtherName{"yaw", "magneticheading", asked_about},
     OtherName{"mag_heading", "magneticheading"},
     OtherName{"mag_heading", "headingmagnetic"},
     OtherName{"mag_heading", "maghdg"},
+    OtherName{"mag_heading", "hdg"},  // Garmin's
     OtherName{"mag_heading", "hdm"},
     OtherName{"p", "rollrate"},
     OtherName{"q", "pitchrate"},
@@ -404,7 +408,8 @@ std::optional<Recognised> recognise(std::string_view header, const KnownQuantity
     for (std::size_t cut = 1; cut < words.size(); ++cut) {
       if (!spell_unit(Words(words).subspan(cut), unit)) continue;
       const auto rank = rank_name(quantity.name, Words(words).first(cut), whose);
-      if (rank && (!nearest || *rank < nearest->rank)) nearest = {&unit, *rank};
+      if (!rank || *rank >= asked_about) continue;
+      if (!nearest || *rank < nearest->rank) nearest = {&unit, *rank};
     }
   }
   return nearest;

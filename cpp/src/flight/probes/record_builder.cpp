@@ -318,7 +318,9 @@ std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const 
 
 void RecordBuilder::note_implausible() {
   const auto find = [this](std::string_view name) { return find_reading(name); };
-  for (const Implausible& implausible : find_implausible(find)) note(implausible.sentence);
+  for (const Implausible& implausible : find_implausible(find, field_strength_)) {
+    note(implausible.sentence);
+  }
 }
 
 ProbeRecord RecordBuilder::finish() {

@@ -78,6 +78,9 @@ class RecordBuilder {
   /// A column of the probe's own making, computed from the flight's row when finishing.
   void compute(std::string name, RowValue value);
 
+  /// Of a magnetometer, what its readings are held against: of one in counts far from 50 uT.
+  void expect_field(double strength) { field_strength_ = strength; }
+
   /// A line for people; the flight's name is put before it.
   void note(std::string_view text);
 
@@ -114,6 +117,7 @@ class RecordBuilder {
   const Flight& flight_;
   std::span<const ProbeQuantity> quantities_;
   bool drop_invalid_;
+  std::optional<double> field_strength_;
   std::map<std::string_view, LoggedQuantity> logged_;
   std::map<std::string_view, const Flight::Column*> unknown_;  // of a quantity's name in no unit
   std::vector<std::string_view> taken_;                        // quantities that the record has
