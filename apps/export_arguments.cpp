@@ -82,7 +82,7 @@ ExportOptions ExportArguments::resolve() const {
   if (!rotation_.empty()) options.rotation = choice_of<ExportRotation>("--rotation", rotation_);
   if (!mounting_.empty()) {
     options.mounting =
-        parse_triple("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");
+        parse_turn("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");
   }
   return options;
 }

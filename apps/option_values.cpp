@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "flight/probes/mounting.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::app {
@@ -29,6 +30,15 @@ std::array<double, 3> parse_triple(const std::string& option, const std::string&
   std::array<double, 3> values{};
   for (std::size_t i = 0; i < 3; ++i) values[i] = parse_value(option, without_blanks(parts[i]));
   return values;
+}
+
+std::array<double, 3> parse_turn(const std::string& option, const std::string& text,
+                                 const std::string& example) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 4) return parse_triple(option, text, example);
+  std::array<double, 4> quaternion{};
+  for (std::size_t i = 0; i < 4; ++i) quaternion[i] = parse_value(option, without_blanks(parts[i]));
+  return probes::angles_of_quaternion(quaternion);
 }
 
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text,

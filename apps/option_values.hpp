@@ -22,6 +22,11 @@ using schema::split;
 std::array<double, 3> parse_triple(const std::string& option, const std::string& text,
                                    const std::string& example);
 
+/// The same, or the four numbers of a quaternion w,x,y,z from the sensor's axes to the body's, as
+/// roll, pitch and yaw [deg]. Throws Error for one that is not of length one too.
+std::array<double, 3> parse_turn(const std::string& option, const std::string& text,
+                                 const std::string& example);
+
 /// Digits alone, at most `highest`. Throws CLI::ValidationError.
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text,
                                  std::uint64_t highest);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal-mag: calibrates three-axis magnetometers.
+#include <fmt/format.h>
+
 #include <optional>
 
+#include "flight/probes/ellipsoid.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "sepcal/detail/simulation/truth.hpp"
@@ -22,17 +25,18 @@ class Magnetometer final : public Instrument {
   void add_probe_options(CLI::App& fit) override {
     add_field(fit);
     fit.add_option("--field-strength", strength_,
-                   "its strength alone [uT]: no attitude is needed, and no rotation is seen")
+                   "its strength alone [uT]: no attitude is needed, and no rotation is seen; auto: "
+                   "that of the readings, in their own counts")
         ->type_name("F");
     mounting_option_ =
         fit.add_option("--mounting", mounting_,
-                       "how the sensor is turned against the body [deg], as autopilots have it; "
-                       "alone: to be found in the flight")
+                       "how the sensor is turned against the body [deg], as autopilots have it, or "
+                       "a quaternion W,X,Y,Z; alone: to be found in the flight")
             ->type_name("ROLL,PITCH,YAW")
             ->expected(0, 1);
   }
 
-  std::shared_ptr<const Probe> probe(const Flight& /*flight*/) const override {
+  std::shared_ptr<const Probe> probe(const Flight& flight) const override {
     if (!strength_.empty()) {
       if (is_mounting_given()) {
         throw Error(
@@ -45,7 +49,16 @@ class Magnetometer final : public Instrument {
             "--field and --field-strength contradict each other; keep --field where the attitude "
             "is logged");
       }
-      return attitude_independent_probe(parse_value("--field-strength", strength_));
+      if (strength_ != "auto") {
+        return attitude_independent_probe(parse_value("--field-strength", strength_));
+      }
+      const double radius = probes::radius_of_readings(flight);
+      tell_notes({fmt::format(
+          "{}: the field's strength is taken for the mean radius of the readings' ellipsoid, "
+          "{:.6g} in the log's own unit or counts: scale errors are against that, and the "
+          "calibrated field is in the same unit",
+          flight.name(), radius)});
+      return attitude_independent_probe(radius);
     }
     std::optional<std::array<double, 3>> field;
     if (!field_.empty()) field = parse_field();
@@ -92,8 +105,9 @@ class Magnetometer final : public Instrument {
   std::optional<Mounting> parse_mounting() const {
     if (!is_mounting_given()) return Mounting{};
     if (mounting_.empty() || mounting_ == "estimate") return std::nullopt;
-    return parse_triple("--mounting", mounting_,
-                        "0,0,90 (roll, pitch, yaw in degrees), or alone, after the flight");
+    return parse_turn("--mounting", mounting_,
+                      "0,0,90 (roll, pitch, yaw in degrees), or a quaternion w,x,y,z, or alone, "
+                      "after the flight");
   }
 
   std::string field_;

@@ -119,14 +119,16 @@ class Pitot final : public Instrument {
   void refuse_five_hole_options(const Flight& flight) const {
     if (!k_alpha_ && !k_beta_ && lever_arm_.empty()) return;
     std::vector<std::string> headers;
-    for (const Flight::Column& column : flight.columns()) headers.push_back(column.header);
-    throw Error(fmt::format(
-        "{}: {}, so this is a Pitot-static tube: --k-alpha, --k-beta and --lever-arm are for a "
-        "five-hole probe, the last for a boom with vanes too; leave them out, or log dpa_pa and "
-        "dpb_pa{} ({})",
-        flight.name(), probe_.empty() ? "there is no column dpa_*" : "--probe is pitot-static",
-        probe_.empty() ? files::ask_for_near_miss("dpa", files::UnitKind::pressure, headers) : "",
-        flight.list_columns()));
+    for (const Flight::Column& column : flight.columns()) headers.push_back(column.logged_header());
+    throw OptionError(files::around(
+        fmt::format(
+            "{}: {}, so this is a Pitot-static tube: --k-alpha, --k-beta and --lever-arm are for a "
+            "five-hole probe, the last for a boom with vanes too; leave them out, or log dpa_pa "
+            "and dpb_pa",
+            flight.name(), probe_.empty() ? "there is no column dpa_*" : "--probe is pitot-static"),
+        probe_.empty() ? files::ask_for_near_miss("dpa", files::UnitKind::pressure, headers)
+                       : OptionError::Message{},
+        fmt::format(" ({})", flight.list_columns())));
   }
 
   std::string probe_;

@@ -83,8 +83,8 @@ def test_a_missing_column_is_named_with_those_that_are_there() -> None:
 
 
 def test_an_unknown_unit(columns: dict[str, np.ndarray]) -> None:
-    columns["pt_bar"] = columns.pop("pt_pa")
-    refuse(lambda: sepcal.fit(PROBE, sepcal.Flight(columns)), "pt_bar", "hpa")
+    columns["pt_at"] = columns.pop("pt_pa")
+    refuse(lambda: sepcal.fit(PROBE, sepcal.Flight(columns)), "pt_at", "hpa", "map pt_pa=pt_at")
 
 
 def test_nan_in_a_needed_column(columns: dict[str, np.ndarray]) -> None:

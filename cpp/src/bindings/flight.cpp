@@ -78,19 +78,20 @@ void read_foreign_files(py::object reader) {
   });
 }
 
-/// [(header, values, first cell that is no number or None), ...]
+/// [(header, values, first cell that is no number or None, the log's own header or ""), ...]
 using PickledColumns =
-    std::vector<std::tuple<std::string, Array, std::optional<std::pair<std::size_t, std::string>>>>;
+    std::vector<std::tuple<std::string, Array, std::optional<std::pair<std::size_t, std::string>>,
+                           std::string>>;
 using PickledFlight = std::tuple<std::string, std::string, PickledColumns, std::vector<std::string>,
                                  std::vector<std::string>>;
 
 /// All that a flight is, so that another process says and writes the same of it.
 PickledFlight pickled(const Flight& flight) {
   PickledColumns columns;
-  for (const auto& [header, values, owner, first_text] : flight.columns()) {
+  for (const auto& [header, values, owner, first_text, logged] : flight.columns()) {
     std::optional<std::pair<std::size_t, std::string>> text;
     if (first_text) text.emplace(first_text->row, first_text->text);
-    columns.emplace_back(header, read_only_array(values, owner), std::move(text));
+    columns.emplace_back(header, read_only_array(values, owner), std::move(text), logged);
   }
   return {flight.name(), flight.sha256(), std::move(columns), maneuvers(flight), flight.notes()};
 }
@@ -98,11 +99,13 @@ PickledFlight pickled(const Flight& flight) {
 Flight unpickled(const PickledFlight& state) {
   const auto& [name, sha256, columns, labels, notes] = state;
   Flight flight(name, sha256);
-  for (const auto& [header, values, text] : columns) {
+  for (const auto& [header, values, text, logged] : columns) {
     std::optional<Flight::Cell> first_text;
     if (text) first_text = Flight::Cell{text->first, text->second};
     auto [span, owner] = view_array(values);
-    flight.view(header, span, std::move(owner), std::move(first_text));
+    const bool renamed = !logged.empty();
+    flight.view(renamed ? logged : header, span, std::move(owner), std::move(first_text));
+    if (renamed) flight.rename(logged, header);
   }
   if (!labels.empty()) flight.label(labels);
   for (const std::string& note : notes) flight.note(note);

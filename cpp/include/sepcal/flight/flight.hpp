@@ -47,6 +47,10 @@ class Flight {
     std::span<const double> values;     // rows() of them, in the header's unit; NaN for text
     std::shared_ptr<const void> owner;  // keeps the values alive; may be empty
     std::optional<Cell> first_text;     // read from a file: the first cell that is no number
+    std::string logged = {};            // the log's own header, where it is read under another
+
+    /// As the log has it.
+    const std::string& logged_header() const { return logged.empty() ? header : logged; }
   };
 
   /// An empty table. `name` opens its error messages; `sha256` is that of the file which the table
@@ -63,13 +67,17 @@ class Flight {
                std::shared_ptr<const void> owner = nullptr,
                std::optional<Cell> first_text = std::nullopt);
 
-  /// Calls a column otherwise. Throws Error as add() does for the new header, and where there is no
-  /// such column.
+  /// Calls a column otherwise; its `logged` stays what the log called it. Throws Error as add()
+  /// does for the new header, and where there is no such column.
   Flight& rename(std::string_view header, std::string to);
 
   /// Puts other values in a column's place, as many, which the flight owns. Throws Error as
   /// rename().
   Flight& replace(std::string_view header, std::vector<double> values);
+
+  /// The same without a copy, as view().
+  Flight& replace(std::string_view header, std::span<const double> values,
+                  std::shared_ptr<const void> owner);
 
   /// Takes a column away. Throws Error as rename().
   Flight& drop(std::string_view header);
@@ -126,7 +134,7 @@ class Flight {
   /// Lets the pages of rows [first, last) of mapped columns go; does nothing for others.
   void release(std::size_t first, std::size_t last) const;
 
-  /// The column with that whole header, or nullptr.
+  /// The column with that whole header, or else the one that the log has under it, or nullptr.
   const Column* find(std::string_view header) const;
 
   /// How a message names a row: "flight.csv line 17" (1 is the header), "flight row 15" (from 0).

@@ -207,7 +207,7 @@ void note_track_axes(const Log& log, std::vector<LogNote>& notes) {
 }
 
 /// Readings that no flight has, but for columns of which a note says more already.
-void note_implausible(const Log& log, std::vector<LogNote>& notes) {
+void note_implausible(const Log& log, const Settings& settings, std::vector<LogNote>& notes) {
   const auto find = [&](std::string_view quantity) -> std::optional<probes::Reading> {
     const LoggedColumn* column = log.find(quantity);
     if (column == nullptr) return std::nullopt;
@@ -218,7 +218,10 @@ void note_implausible(const Log& log, std::vector<LogNote>& notes) {
     if (std::ranges::any_of(reading.values, bad)) return std::nullopt;
     return reading;
   };
-  for (const probes::Implausible& found : probes::find_implausible(find)) {
+  const auto set = settings.find("field_strength");
+  const auto strength =
+      set == settings.end() ? std::nullopt : std::optional(set->second.front());
+  for (const probes::Implausible& found : probes::find_implausible(find, strength)) {
     const bool said = std::ranges::any_of(notes, [&](const LogNote& note) {
       return note.kind == "units" && std::ranges::any_of(found.headers, [&](const auto& header) {
                return std::ranges::find(note.columns, header) != note.columns.end();
@@ -243,7 +246,7 @@ void check_across(const Log& log, const Settings& settings, std::vector<LogNote>
     note_strength(log, *field, notes);
     note_field_axes(log, *field, notes);
   }
-  note_implausible(log, notes);
+  note_implausible(log, settings, notes);
 }
 
 }  // namespace sepcal::checks

@@ -101,32 +101,39 @@ void Flight::check_header(const std::string& header) const {
   if (header == maneuver) {
     throw Error(name_ + ": column 'maneuver' is for labels, a text a row, not for numbers");
   }
-  if (find(header) != nullptr) {
+  if (std::ranges::find(columns_, header, &Column::header) != columns_.end()) {
     throw Error(fmt::format("{}: column '{}' is there twice; rename or delete one", name_, header));
   }
 }
 
 Flight::Column& Flight::column(std::string_view header) {
-  const auto found = std::ranges::find(columns_, header, &Column::header);
-  if (found == columns_.end()) {
+  const Column* found = find(header);
+  if (found == nullptr) {
     throw Error(fmt::format("{}: there is no column '{}'; {}", name_, header, list_columns()));
   }
-  return *found;
+  return columns_[static_cast<std::size_t>(found - columns_.data())];
 }
 
 Flight& Flight::rename(std::string_view header, std::string to) {
   Column& renamed = column(header);
   check_header(to);
+  if (renamed.logged.empty()) renamed.logged = renamed.header;
   renamed.header = std::move(to);
+  if (renamed.logged == renamed.header) renamed.logged.clear();
   return *this;
 }
 
 Flight& Flight::replace(std::string_view header, std::vector<double> values) {
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  return replace(header, *owned, owned);
+}
+
+Flight& Flight::replace(std::string_view header, std::span<const double> values,
+                        std::shared_ptr<const void> owner) {
   Column& replaced = column(header);
   check_length(header, values.size());
-  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
-  replaced.values = *owned;
-  replaced.owner = owned;
+  replaced.values = values;
+  replaced.owner = std::move(owner);
   return *this;
 }
 
@@ -183,8 +190,9 @@ void Flight::release(std::size_t first, std::size_t last) const {
 }
 
 const Flight::Column* Flight::find(std::string_view header) const {
-  const auto found = std::ranges::find(columns_, header, &Column::header);
-  return found == columns_.end() ? nullptr : &*found;
+  auto found = std::ranges::find(columns_, header, &Column::header);
+  if (found == columns_.end()) found = std::ranges::find(columns_, header, &Column::logged);
+  return found == columns_.end() || header.empty() ? nullptr : &*found;
 }
 
 std::string Flight::locate(std::size_t row) const {
@@ -199,7 +207,7 @@ std::string Flight::locate(std::size_t row) const {
 std::string Flight::list_columns() const {
   if (from_file() && columns_.size() == 1 && !maneuvers_) {
     return fmt::format("the file has: {}, and no comma in its header; is this a CSV file?",
-                       columns_.front().header);
+                       columns_.front().logged_header());
   }
   std::string list = from_file() ? "the file has: " : "the flight has: ";
   const std::size_t prefix = list.size();
@@ -209,7 +217,7 @@ std::string Flight::list_columns() const {
   };
   constexpr std::size_t most_columns = 40;
   const std::size_t listed = std::min(columns_.size(), most_columns);
-  for (std::size_t i = 0; i < listed; ++i) append(columns_[i].header);
+  for (std::size_t i = 0; i < listed; ++i) append(columns_[i].logged_header());
   if (listed < columns_.size()) append(fmt::format("{} more", columns_.size() - listed));
   if (maneuvers_ || !label_stretches_.empty()) append(maneuver);
   if (list.size() == prefix) list += "none";

@@ -6,94 +6,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <numeric>
 #include <optional>
+#include <utility>
 
+#include "base/escaping.hpp"
 #include "base/name_list.hpp"
+#include "flight/files/known_names.hpp"
 
 namespace sepcal::files {
 namespace {
 
-using Words = std::span<const std::string>;
-
-/// "GPS_VN (M/S)" as its words, in lower case: gps, vn, m, s.
-std::vector<std::string> split_words(std::string_view header) {
-  std::vector<std::string> words(1);
-  for (const char c : header) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) != 0) {
-      words.back() += static_cast<char>(std::tolower(byte));
-    } else if (!words.back().empty()) {
-      words.emplace_back();
-    }
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
-
-std::string join(Words words) { return std::accumulate(words.begin(), words.end(), std::string()); }
-
-/// What a quantity or a unit is called elsewhere, without what parts the words.
-struct OtherName {
-  std::string_view ours;
-  std::string_view name;
-};
-
-constexpr std::array other_quantities{
-    OtherName{"time", "t"},
-    OtherName{"time", "timestamp"},
-    OtherName{"roll", "phi"},
-    OtherName{"pitch", "theta"},
-    OtherName{"yaw", "psi"},
-    OtherName{"yaw", "heading"},
-    OtherName{"p", "rollrate"},
-    OtherName{"q", "pitchrate"},
-    OtherName{"r", "yawrate"},
-    OtherName{"p", "gyrox"},
-    OtherName{"q", "gyroy"},
-    OtherName{"r", "gyroz"},
-    OtherName{"vn", "veln"},
-    OtherName{"vn", "vnorth"},
-    OtherName{"ve", "vele"},
-    OtherName{"ve", "veast"},
-    OtherName{"vd", "veld"},
-    OtherName{"vd", "vdown"},
-    OtherName{"airspeed", "ias"},
-    OtherName{"pt", "totalpressure"},
-    OtherName{"ps", "staticpressure"},
-    OtherName{"temp", "temperature"},
-    OtherName{"temp", "oat"},
-    OtherName{"mx", "magx"},
-    OtherName{"my", "magy"},
-    OtherName{"mz", "magz"},
-};
-
-constexpr std::array other_units{
-    OtherName{"kt", "kts"},      OtherName{"kt", "knot"},      OtherName{"kt", "knots"},
-    OtherName{"rad", "rads"},    OtherName{"deg", "degs"},     OtherName{"deg", "degree"},
-    OtherName{"deg", "degrees"}, OtherName{"s", "sec"},        OtherName{"s", "seconds"},
-    OtherName{"degc", "c"},      OtherName{"degc", "celsius"}, OtherName{"gauss", "g"},
-    OtherName{"mgauss", "mg"},   OtherName{"hpa", "mbar"},
-};
-
-/// Whether `name` is what the table calls `ours`.
-bool is_called(std::string_view ours, std::string_view name, std::span<const OtherName> table) {
-  return name == ours || std::ranges::any_of(table, [&](const OtherName& other) {
-           return other.ours == ours && other.name == name;
-         });
-}
-
-/// Whether words spell the unit: "mps", "kts" in one, or "m", "s" for what is per something.
-bool spell_unit(Words words, const Unit& unit) {
-  if (words.empty()) return false;
-  const std::string letters = join(words);
-  if (words.size() == 1) return is_called(unit.suffix, letters, other_units);
-  if (letters == unit.suffix) return true;  // "km/h"
-  const std::size_t per = unit.suffix.rfind('p');
-  const bool has_per = per != std::string_view::npos && unit.kind != UnitKind::pressure;
-  return has_per && letters == std::string(unit.suffix).erase(per, 1);
-}
+using Message = OptionError::Message;
 
 /// A header of a log, the accepted one that it nearly is, and how near.
 struct NearMiss {
@@ -104,19 +27,36 @@ struct NearMiss {
 
 constexpr std::size_t foreign = 3;  // another name counts as more slips than are allowed
 
+/// Whether the name is the quantity's but for one letter that lies beside the right key.
+bool hits_the_next_key(std::string_view quantity, std::string_view name) {
+  constexpr std::array<std::string_view, 3> keys{"qwertyuiop", "asdfghjkl", "zxcvbnm"};
+  const auto differs = std::ranges::mismatch(quantity, name);
+  if (quantity.size() != name.size() || differs.in1 == quantity.end()) return false;
+  if (!std::equal(differs.in1 + 1, quantity.end(), differs.in2 + 1)) return false;
+  return std::ranges::any_of(keys, [&](std::string_view row) {
+    const std::size_t right = row.find(*differs.in1);
+    const std::size_t hit = row.find(*differs.in2);
+    return right != row.npos && hit != row.npos && (right == hit + 1 || hit == right + 1);
+  });
+}
+
 /// Slips of a letter between a quantity and words that should name it: none in a short name, where
-/// a letter makes another quantity, two in a long one. Nothing where they are too many.
+/// a letter makes another quantity, but for the next key; two in a long one. Nothing where they are
+/// too many.
 std::optional<std::size_t> count_name_slips(std::string_view quantity, Words words) {
   constexpr std::size_t longest_short_name = 3;  // p, vn, dpa, yaw
   constexpr std::size_t longest_middling_name = 6;
-  const std::size_t slips = base::count_slips(join(words), quantity);
+  const std::string letters = join_words(words);
+  const std::size_t slips = base::count_slips(letters, quantity);
   const std::size_t allowed = quantity.size() <= longest_short_name      ? 0
                               : quantity.size() <= longest_middling_name ? 1
                                                                          : 2;
   if (slips <= allowed) return slips;
+  if (quantity.size() > 1 && hits_the_next_key(quantity, letters)) return slips;
   // Other names may stand behind a word or two of whose it is: "GPS vel N".
   for (std::size_t first = 0; first < words.size(); ++first) {
-    if (is_called(quantity, join(words.subspan(first)), other_quantities)) return foreign;
+    const auto rank = rank_name(quantity, words.subspan(first), false);
+    if (rank) return foreign + static_cast<std::size_t>(*rank);
   }
   return std::nullopt;
 }
@@ -132,7 +72,7 @@ std::optional<NearMiss> compare_header(std::string_view quantity, UnitKind kind,
   };
   const std::vector<std::string> words = split_words(header);
   for (const Unit& unit : known_units(kind)) {
-    if (join(words) == std::string(quantity).append(unit.suffix)) offer(0, unit);
+    if (join_words(words) == std::string(quantity).append(unit.suffix)) offer(0, unit);
     for (std::size_t cut = 1; cut < words.size(); ++cut) {
       if (!spell_unit(Words(words).subspan(cut), unit)) continue;
       offer(count_name_slips(quantity, Words(words).first(cut)), unit);
@@ -141,12 +81,15 @@ std::optional<NearMiss> compare_header(std::string_view quantity, UnitKind kind,
   return nearest;
 }
 
-std::optional<NearMiss> find_near_miss(std::string_view quantity, UnitKind kind,
+/// The nearest of them: several where none is nearer than the others.
+std::vector<NearMiss> find_near_misses(std::string_view quantity, UnitKind kind,
                                        std::span<const std::string> candidates) {
-  std::optional<NearMiss> nearest;
+  std::vector<NearMiss> nearest;
   for (const std::string& candidate : candidates) {
     const auto near = compare_header(quantity, kind, candidate);
-    if (near && (!nearest || near->slips < nearest->slips)) nearest = near;
+    if (!near || (!nearest.empty() && nearest.front().slips < near->slips)) continue;
+    if (!nearest.empty() && near->slips < nearest.front().slips) nearest.clear();
+    nearest.push_back(*near);
   }
   return nearest;
 }
@@ -156,7 +99,9 @@ const std::string* find_without_unit(std::string_view quantity,
                                      std::span<const std::string> candidates) {
   const auto found = std::ranges::find_if(candidates, [&](const std::string& candidate) {
     const std::vector<std::string> words = split_words(candidate);
-    if (quantity.size() == 1 || words.empty() || words.front() != quantity) return false;
+    if (quantity.size() == 1 || words.empty()) return false;
+    if (rank_name(quantity, words)) return true;
+    if (words.front() != quantity) return false;
     if (words.size() > 1 && words[1] == "rate") return false;                 // another quantity
     return words.size() <= 2 || (words.size() == 3 && words[2].size() == 1);  // "ft/s"
   });
@@ -196,10 +141,17 @@ std::vector<double> LoggedQuantity::values() const {
   return values;
 }
 
+const Unit* unit_of(const Flight::Column& column, std::string_view quantity, UnitKind kind,
+                    const Unit* bare) {
+  const Unit* unit = unit_in(column.header, quantity, kind, bare);
+  return unit != nullptr || column.logged.empty() ? unit
+                                                  : unit_in(column.logged, quantity, kind, bare);
+}
+
 std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
                                             UnitKind kind, const Unit* bare) {
   for (const Flight::Column& column : flight.columns()) {
-    const Unit* unit = unit_in(column.header, quantity, kind, bare);
+    const Unit* unit = unit_of(column, quantity, kind, bare);
     if (unit != nullptr) return LoggedQuantity{&column, unit};
   }
   return std::nullopt;
@@ -210,26 +162,49 @@ std::vector<double> read_quantity(const Flight& flight, std::string_view quantit
   return logged ? logged->values() : std::vector<double>();
 }
 
-std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
-                              std::span<const std::string> others) {
-  if (const auto near = find_near_miss(quantity, kind, others)) {
-    return fmt::format("; did you mean '{}'? Rename it to {}", near->header, near->accepted);
-  }
-  if (const std::string* header = find_without_unit(quantity, others)) {
-    return fmt::format("; '{}' says no unit that is known: convert it or rename it", *header);
-  }
-  return "";
+std::string map_pair(std::string_view accepted, std::string_view header) {
+  return base::in_shell(fmt::format("{}={}", accepted, header));
 }
 
-std::string describe_missing(std::string_view quantity, UnitKind kind,
-                             std::span<const std::string> others, const Unit* bare) {
+Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
+                          std::span<const std::string> others) {
+  const std::vector<NearMiss> near = find_near_misses(quantity, kind, others);
+  if (near.size() == 1) {
+    return {fmt::format("; did you mean '{}'? ", near[0].header), Option{"map"},
+            fmt::format(" {} reads it so", map_pair(near[0].accepted, near[0].header))};
+  }
+  if (near.size() > 1) {
+    return {fmt::format("; '{}' and '{}' could both be it: ", near[0].header, near[1].header),
+            Option{"map"}, fmt::format(" {} decides", map_pair(near[0].accepted, near[0].header))};
+  }
+  if (const std::string* header = find_without_unit(quantity, others)) {
+    const auto units = known_units(kind);
+    if (units.empty()) return {};
+    const std::string accepted = fmt::format("{}_{}", quantity, units.front().suffix);
+    std::vector<std::string_view> rest;
+    for (const Unit& unit : units.subspan(1)) rest.push_back(unit.suffix);
+    return {fmt::format("; '{}' says no unit that is known: ", *header), Option{"map"},
+            fmt::format(" {} reads it in {}{}", map_pair(accepted, *header), units.front().suffix,
+                        rest.empty() ? "" : fmt::format("; known too: {}", fmt::join(rest, ", ")))};
+  }
+  return {};
+}
+
+Message around(std::string before, Message hint, std::string after) {
+  hint.insert(hint.begin(), std::move(before));
+  hint.emplace_back(std::move(after));
+  return hint;
+}
+
+Message describe_missing(std::string_view quantity, UnitKind kind,
+                         std::span<const std::string> others, const Unit* bare) {
   const std::vector<std::string> accepted = accepted_headers(quantity, kind, bare);
   std::string text = fmt::format("column '{}' is missing", accepted.front());
   if (accepted.size() > 1) {
     text += fmt::format(" ({} would do as well)",
                         fmt::join(accepted.begin() + 1, accepted.end(), ", "));
   }
-  return text + ask_for_near_miss(quantity, kind, others);
+  return around(std::move(text), ask_for_near_miss(quantity, kind, others), "");
 }
 
 }  // namespace sepcal::files

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flight/files/units.hpp"
+#include "sepcal/error.hpp"
 #include "sepcal/flight/flight.hpp"
 
 namespace sepcal::files {
@@ -22,6 +23,10 @@ inline constexpr const char* flight_number = "flight number";
 /// names, or `bare` where it is the quantity's name alone or ends with its suffix (nullptr: there
 /// is none such). nullptr where the header is no such quantity's, or in a unit that is not known.
 const Unit* unit_in(std::string_view header, std::string_view quantity, UnitKind kind,
+                    const Unit* bare = nullptr);
+
+/// The same of a column by its header, or else by the log's own one.
+const Unit* unit_of(const Flight::Column& column, std::string_view quantity, UnitKind kind,
                     const Unit* bare = nullptr);
 
 /// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg; the
@@ -48,16 +53,23 @@ std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_vi
 /// Its values(); empty where there is none.
 std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind);
 
-/// "; did you mean 'Roll_Deg'? Rename it to roll_deg": the one of `others`, a log's headers without
-/// the quantities found, that differs from an accepted one in case and punctuation or by a slip of
-/// a letter or two in the quantity, or is what others write: "GPS_VN (m/s)", "Mag X [nT]". Where
-/// the quantity stands there with another unit or none: "; 'Airspeed' says no unit that is known
-/// ...". Empty where there is none.
-std::string ask_for_near_miss(std::string_view quantity, UnitKind kind,
-                              std::span<const std::string> others);
+/// "roll_deg='Roll, left [deg]'", as the option map takes it.
+std::string map_pair(std::string_view accepted, std::string_view header);
+
+/// "; did you mean 'rol_deg'? map roll_deg=rol_deg reads it so": the one of `others`, a log's
+/// headers without the quantities found, that differs from an accepted one in case and punctuation
+/// or by a slip of a letter or two in the quantity, or is what others write: "GPS_VN (m/s)", "Mag X
+/// [nT]". Of several that are as near: which option decides. Where the quantity stands there with
+/// another unit or none: "; 'Airspeed' says no unit that is known ...". Empty where there is none.
+OptionError::Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
+                                       std::span<const std::string> others);
+
+/// One message of what stands before a hint, the hint and what follows it.
+OptionError::Message around(std::string before, OptionError::Message hint, std::string after);
 
 /// "column 'roll_rad' is missing (roll_deg would do as well)", and ask_for_near_miss().
-std::string describe_missing(std::string_view quantity, UnitKind kind,
-                             std::span<const std::string> others, const Unit* bare = nullptr);
+OptionError::Message describe_missing(std::string_view quantity, UnitKind kind,
+                                      std::span<const std::string> others,
+                                      const Unit* bare = nullptr);
 
 }  // namespace sepcal::files

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The units that a flight log may be in, and their conversion to the one unit that is used inside:
 // SI, but microtesla for magnetic fields. Every factor is a ratio of two numbers that are exact by
-// definition (The International System of Units, 9th ed., BIPM; 1 lbf = 4.4482216152605 N).
+// definition (The International System of Units, 9th ed., BIPM; 1 lbf = 4.4482216152605 N; of
+// mercury and water the conventional columns, NIST SP 811, B.8).
 #pragma once
 
 #include <span>

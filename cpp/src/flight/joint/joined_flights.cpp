@@ -14,6 +14,8 @@
 #include "flight/files/sha256.hpp"
 #include "flight/joint/own_by_flight.hpp"
 #include "flight/logs/chosen_columns.hpp"
+#include "flight/logs/gps_time.hpp"
+#include "flight/logs/named_columns.hpp"
 #include "sepcal/detail/flight/joint.hpp"
 #include "sepcal/error.hpp"
 
@@ -51,7 +53,8 @@ std::optional<Headed> parse_header(const std::string& header) {
 /// others'.
 LogChoice names_for(const LogChoice& choice, const Flight& flight) {
   LogChoice own{.map = choice.map, .ignore = choice.ignore};
-  std::erase_if(own.map, [&](const auto& names) { return flight.find(names.second) == nullptr; });
+  std::erase_if(own.map,
+                [&](const auto& names) { return !logs::find_mapped(flight, names.second); });
   std::erase_if(own.ignore, [&](const std::string& header) {
     return flight.find(header) == nullptr && !own.map.contains(header);
   });
@@ -65,7 +68,10 @@ void check_names(const LogChoice& choice, const std::vector<Flight>& flights) {
         flights, [&](const Flight& flight) { return flight.find(header) == nullptr; });
   };
   for (const auto& [header, logged] : choice.map) {
-    if (!nobody_has(logged)) continue;
+    const bool is_somewhere = std::ranges::any_of(flights, [&](const Flight& flight) {
+      return logs::find_mapped(flight, logged).has_value();
+    });
+    if (is_somewhere) continue;
     throw OptionError({Option{"map"},
                        fmt::format(" {}={}: no flight has a column '{}'", header, logged, logged)});
   }
@@ -77,9 +83,12 @@ void check_names(const LogChoice& choice, const std::vector<Flight>& flights) {
 
 /// A flight under the names of the choice and, where a column of `first` is there in another unit,
 /// in that one.
-Flight align(const Flight& flight, const LogChoice& choice, const Flight* first) {
+Flight align(const Flight& flight, const LogChoice& choice, const Flight* first,
+             std::vector<std::string>& notes) {
   Flight aligned = flight;
-  logs::choose_columns(aligned, names_for(choice, flight));
+  logs::choose_columns(aligned, names_for(choice, flight), notes);
+  logs::name_columns(aligned, notes);
+  logs::derive_time(aligned, notes);
   if (first == nullptr) return aligned;
   for (const Flight::Column& column : first->columns()) {
     if (aligned.find(column.header) != nullptr) continue;
@@ -227,7 +236,7 @@ Flight join_flights(const std::vector<Flight>& given, const LogChoice& choice,
   check_names(choice, given);
   std::vector<Flight> flights;
   for (const Flight& flight : given) {
-    flights.push_back(align(flight, choice, flights.empty() ? nullptr : &flights.front()));
+    flights.push_back(align(flight, choice, flights.empty() ? nullptr : &flights.front(), notes));
   }
   const TimeColumn time = find_time(flights.front());
   const std::vector<std::string> headers = common_headers(flights, notes);

@@ -166,7 +166,7 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
   const auto is_logged = [&](const char* name) {
     return files::find_quantity(flight, name, UnitKind::speed).has_value();
   };
-  if (flight.is_mapped() || std::ranges::any_of(std::array{"vn", "ve", "vd"}, is_logged)) return;
+  if (flight.is_mapped() || is_logged("vn") || is_logged("ve")) return;
   Positions at{files::read_quantity(flight, "time", UnitKind::time),
                files::read_quantity(flight, "lat", UnitKind::angle),
                files::read_quantity(flight, "lon", UnitKind::angle),
@@ -199,13 +199,49 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
   }
   add_velocity(flight, "vn_mps", std::move(vn));
   add_velocity(flight, "ve_mps", std::move(ve));
-  add_velocity(flight, "vd_mps", velocity_at(rows, time, parts, down, reach));
+  if (!is_logged("vd")) {
+    add_velocity(flight, "vd_mps", velocity_at(rows, time, parts, down, reach));
+  }
   notes.push_back(fmt::format(
       "{}: velocity is from {} fixes of lat, lon and altitude, which are off by {:.2g} m (north), "
       "{:.2g} m (east) and {:.2g} m (down) from a smooth track; its errors there are about {:.2g}, "
       "{:.2g} and {:.2g} m/s",
       flight.name(), fixes.size(), north.position_error, east.position_error, down.position_error,
       north.velocity_error, east.velocity_error, down.velocity_error));
+}
+
+bool smooth_climb(Flight& flight, std::vector<std::string>& notes) {
+  const std::vector<double> time = files::read_quantity(flight, "time", UnitKind::time);
+  const auto logged = files::find_quantity(flight, "altitude", UnitKind::length);
+  constexpr std::size_t fewest = 10;
+  if (flight.is_mapped() || time.empty() || !logged) return false;
+  const std::vector<double> altitude = logged->values();
+  std::vector<std::size_t> all;
+  std::vector<std::size_t> changes;  // a value that is held is no new one
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    if (!std::isfinite(time[row]) || !std::isfinite(altitude[row])) continue;
+    if (!all.empty() && !(time[row] > time[all.back()])) continue;
+    all.push_back(row);
+    if (changes.empty() || altitude[row] != altitude[changes.back()]) changes.push_back(row);
+  }
+  if (all.size() < fewest) return false;
+  const auto parts_of = [&](const std::vector<std::size_t>& rows) {
+    return find_parts(intervals_of(at_fixes(time, rows)));
+  };
+  const bool is_held =
+      changes.size() >= fewest && parts_of(changes).size() <= parts_of(all).size();
+  const std::vector<std::size_t>& fixes = is_held ? changes : all;
+  const std::vector<double> fixed = offsets(at_fixes(time, fixes), 1.0);
+  const std::vector<double> intervals = intervals_of(fixed);
+  const std::vector<std::size_t> parts = find_parts(intervals);
+  const SmoothedTrack down = smooth_track(fixed, offsets(at_fixes(altitude, fixes), -1.0), parts);
+  std::vector<double> rows = time;
+  for (double& t : rows) t -= time[fixes[0]];
+  notes.push_back(fmt::format("{}: vd is from {}, smoothed; its error is about {:.2g} m/s",
+                              flight.name(), logged->column->logged_header(), down.velocity_error));
+  add_velocity(flight, "vd_mps",
+               velocity_at(rows, fixed, parts, down, 1.5 * base::usual_interval(intervals)));
+  return true;
 }
 
 void turn_climb(Flight& flight, std::vector<std::string>& notes) {
@@ -215,7 +251,7 @@ void turn_climb(Flight& flight, std::vector<std::string>& notes) {
   std::vector<double> down = climb->values();
   for (double& value : down) value = -value;
   notes.push_back(
-      fmt::format("{}: vd is {} turned downwards", flight.name(), climb->column->header));
+      fmt::format("{}: vd is {} turned downwards", flight.name(), climb->column->logged_header()));
   flight.add("vd_mps", std::move(down));
 }
 

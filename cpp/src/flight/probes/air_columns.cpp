@@ -42,9 +42,9 @@ void need_density(RecordBuilder& builder, const Flight& flight, std::string_view
     builder.consult({"temp", "ps"});
     builder.compute("rho", density_of(builder));
   } else {
-    throw Error(fmt::format("{}: the density is missing: log {}{}; {}", flight.name(), log_what,
-                            builder.ask_for_near_miss({"rho", "temp", "ps"}),
-                            flight.list_columns()));
+    throw OptionError(files::around(
+        fmt::format("{}: the density is missing: log {}", flight.name(), log_what),
+        builder.ask_for_near_miss({"rho", "temp", "ps"}), "; " + flight.list_columns()));
   }
 }
 
@@ -79,10 +79,11 @@ AirspeedSource choose_airspeed(const RecordBuilder& builder, const Flight& fligh
   if (reads && first == AirspeedSource::reading) return AirspeedSource::reading;
   if (builder.has({"dp"}) && (has_density || !reads)) return AirspeedSource::pressure;
   if (reads) return AirspeedSource::reading;
-  throw Error(fmt::format(
-      "{}: the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3 or "
-      "with temp_k and ps_pa{}; {}",
-      flight.name(), builder.ask_for_near_miss({"airspeed", "dp"}), flight.list_columns()));
+  throw OptionError(files::around(
+      fmt::format("{}: the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3 or "
+                  "with temp_k and ps_pa",
+                  flight.name()),
+      builder.ask_for_near_miss({"airspeed", "dp"}), "; " + flight.list_columns()));
 }
 
 void need_airspeed(RecordBuilder& builder, const Flight& flight, AirspeedSource source) {

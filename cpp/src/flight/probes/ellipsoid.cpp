@@ -6,9 +6,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "flight/files/headers.hpp"
 #include "numerics/symmetric.hpp"
 #include "sepcal/detail/triangular_factor.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::probes {
 namespace {
@@ -108,6 +112,32 @@ std::optional<Sphere> fit_sphere(const Points& points) {
   const double square = centre.squaredNorm() - (*x)[3];
   if (!(square > 0)) return std::nullopt;
   return Sphere{scaling.middle + scaling.length * centre, scaling.length * std::sqrt(square)};
+}
+
+double radius_of_readings(const Flight& flight) {
+  std::array<std::vector<double>, 3> columns;
+  constexpr std::array names{"mx", "my", "mz"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    columns[axis] = files::read_quantity(flight, names[axis], files::UnitKind::field);
+    if (!columns[axis].empty()) continue;
+    std::vector<std::string> headers;
+    for (const Flight::Column& column : flight.columns()) headers.push_back(column.logged_header());
+    throw OptionError(files::around(
+        flight.name() + ": ", files::describe_missing(names[axis], files::UnitKind::field, headers),
+        "; " + flight.list_columns()));
+  }
+  std::array<std::vector<double>, 3> readings;
+  for (std::size_t row = 0; row < flight.rows(); ++row) {
+    if (!std::isfinite(columns[0][row] + columns[1][row] + columns[2][row])) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) readings[axis].push_back(columns[axis][row]);
+  }
+  const auto ellipsoid = readings[0].empty()
+                             ? std::nullopt
+                             : fit_ellipsoid({readings[0], readings[1], readings[2]});
+  if (ellipsoid) return ellipsoid->radius();
+  throw OptionError({flight.name() + ": the readings lie on no ellipsoid, whose mean radius would be "
+                                     "the field's strength: turn the sensor all round, or give ",
+                     Option{"field_strength"}, " as a number in uT"});
 }
 
 Coverage judge_coverage(const Points& points, const Ellipsoid& ellipsoid) {

@@ -100,6 +100,20 @@ bool differs(const LoggedQuantity& logged, std::size_t rows, double field_streng
   return false;
 }
 
+/// Returns whether there is a time. Readings of a sensor that is turned by hand may have none.
+bool need_time(RecordBuilder& builder) {
+  const bool is_meant = builder.has({"time"}) || !builder.ask_for_near_miss({"time"}).empty();
+  if (is_meant) {
+    builder.need({"time"});
+    return true;
+  }
+  builder.compute("time", [](std::size_t row) { return static_cast<double>(row); });
+  builder.note(
+      "no time is logged: the rows are taken for readings a second apart; clocks, gaps and "
+      "rates are not checked, and effects of time, delays and rates mean nothing");
+  return false;
+}
+
 }  // namespace
 
 std::span<const ProbeQuantity> probes::magnetometer_quantities() {
@@ -141,7 +155,7 @@ std::span<const ProbeQuantity> probes::attitude_independent_quantities() {
 ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns& options) {
   if (options.field) check_field(*options.field);
   RecordBuilder builder(flight, magnetometer_quantities(), options.log);
-  builder.need({"time"});
+  const bool is_timed = need_time(builder);
   need_field_read(builder, options.mounting);
   const bool true_field_logged = !options.field && builder.has({"hx", "hy", "hz"});
   if (options.field) {
@@ -151,18 +165,19 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
   } else if (builder.has({"roll", "pitch", "yaw", "bn", "be", "bd"})) {
     use_logged_field(builder);
   } else {
-    throw OptionError(
-        {flight.name() +
-             ": the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, pitch_rad, "
-             "yaw_rad with bn_ut, be_ut, bd_ut or ",
-         Option{"field"}, " N,E,D, or fit with ", Option{"field_strength"},
-         " alone" +
-             builder.ask_for_near_miss(
-                 {"hx", "hy", "hz", "roll", "pitch", "yaw", "bn", "be", "bd"}) +
-             "; " + flight.list_columns()});
+    OptionError::Message message{
+        flight.name() +
+            ": the true field is missing: log hx_ut, hy_ut, hz_ut, or roll_rad, pitch_rad, "
+            "yaw_rad with bn_ut, be_ut, bd_ut or ",
+        Option{"field"}, " N,E,D, or fit with ", Option{"field_strength"}, " alone"};
+    std::ranges::move(
+        builder.ask_for_near_miss({"hx", "hy", "hz", "roll", "pitch", "yaw", "bn", "be", "bd"}),
+        std::back_inserter(message));
+    message.emplace_back("; " + flight.list_columns());
+    throw OptionError(std::move(message));
   }
   builder.keep_valid();
-  builder.check_time();
+  if (is_timed) builder.check_time();
   builder.offer({"p", "q", "r"});
   if (true_field_logged) {
     builder.offer({"roll", "pitch", "yaw"});
@@ -174,7 +189,9 @@ ProbeRecord prepare_magnetometer(const Flight& flight, const MagnetometerColumns
 ProbeRecord prepare_attitude_independent(const Flight& flight, double field_strength,
                                          const LogChoice& log) {
   RecordBuilder builder(flight, magnetometer_quantities(), log);
-  builder.need({"time", "mx", "my", "mz"});
+  builder.expect_field(field_strength);
+  const bool is_timed = need_time(builder);
+  builder.need({"mx", "my", "mz"});
   if (builder.has({"field_strength"})) {
     builder.consult({"field_strength"});
     builder.compute("field_change",
@@ -188,7 +205,7 @@ ProbeRecord prepare_attitude_independent(const Flight& flight, double field_stre
     }
   }
   builder.keep_valid();
-  builder.check_time();
+  if (is_timed) builder.check_time();
   builder.compute("field", [](std::size_t) { return 0.0; });
   builder.offer({"p", "q", "r"});
   return builder.finish();

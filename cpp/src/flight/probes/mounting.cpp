@@ -13,6 +13,7 @@
 #include <span>
 
 #include "sepcal/detail/rotation.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::probes {
 namespace {
@@ -87,6 +88,19 @@ Angles to_a_tenth(Angles angles) {
 
 Matrix3d turn_by(const Angles& angles) {
   return body_to_ned(angles[0] * degree, angles[1] * degree, angles[2] * degree);
+}
+
+Angles angles_of_quaternion(const std::array<double, 4>& quaternion) {
+  const auto [w, x, y, z] = quaternion;
+  const double length = std::hypot(std::hypot(w, x), std::hypot(y, z));
+  constexpr double off = 0.01;
+  if (!(std::abs(length - 1.0) <= off)) {
+    throw Error(fmt::format(
+        "mounting {:g},{:g},{:g},{:g}: a quaternion w,x,y,z is of length one, and this one of "
+        "{:.3g}; give three numbers for angles in degrees",
+        w, x, y, z, length));
+  }
+  return angles_of(Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix());
 }
 
 Angles angles_of(const Matrix3d& R) {

@@ -18,6 +18,10 @@ using Angles = std::array<double, 3>;  // roll, pitch, yaw [deg]
 /// R (3 x 3), from the sensor's axes to the body's.
 Eigen::Matrix3d turn_by(const Angles& angles);
 
+/// Of the rotation of a quaternion w, x, y, z from the sensor's axes to the body's, which is
+/// normalised. Throws Error where its length is off one by more than a hundredth.
+Angles angles_of_quaternion(const std::array<double, 4>& quaternion);
+
 /// Of a rotation, roll and yaw within +-180, pitch within +-90 deg.
 Angles angles_of(const Eigen::Matrix3d& R);
 

@@ -177,11 +177,15 @@ void check_pressures(const FindReading& find, std::vector<Implausible>& found) {
 
 }  // namespace
 
-std::vector<Implausible> find_implausible(const FindReading& find) {
+std::vector<Implausible> find_implausible(const FindReading& find,
+                                          std::optional<double> field_strength) {
   std::vector<Implausible> found;
   for (const QuantityRange& entry : quantity_ranges) check_range(entry, find, found);
   check_pressures(find, found);
-  check_field(read_field, read_fields, find, found);
+  // Readings in counts are judged against the strength that is given in the same.
+  const bool in_counts = field_strength && !true_fields.contains(*field_strength);
+  const double scale = in_counts ? *field_strength / 50.0 : 1.0;
+  check_field(read_field, {scale * read_fields.low, scale * read_fields.high}, find, found);
   if (!check_field(true_field_in_navigation, true_fields, find, found)) {
     check_field(true_field_in_body, true_fields, find, found);
   }

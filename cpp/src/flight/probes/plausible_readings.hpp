@@ -34,6 +34,7 @@ struct Implausible {
 /// temperature outside 150 to 400 K, a density outside 0.02 to 2 kg/m^3, a static pressure outside
 /// 5 to 120 kPa, a dynamic pressure outside 1 Pa to 50 kPa, flow-angle pressures out of proportion
 /// to it, a field outside 5 to 200 uT (read: 400 uT).
-std::vector<Implausible> find_implausible(const FindReading& find);
+std::vector<Implausible> find_implausible(
+    const FindReading& find, std::optional<double> field_strength = std::nullopt);
 
 }  // namespace sepcal::probes

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/escaping.hpp"
 #include "base/excerpt.hpp"
 #include "base/segments.hpp"
 #include "base/spool.hpp"
@@ -71,39 +72,44 @@ void RecordBuilder::drop_repeats(const std::vector<std::string>& columns) {
        fmt::format("they lie between samples of {}", fmt::join(columns, ", ")));
 }
 
-/// An unknown unit is refused only where the quantity isn't there in a known one: beside time_s, a
-/// column time_utc is a column like any other, with a note.
+/// A column of the quantity's name in an unknown unit is a column like any other, with a note;
+/// fail_missing() names it where the quantity is needed and isn't there in a known one.
 void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
   LoggedQuantity found;
   const Flight::Column* unknown = nullptr;
   for (const Flight::Column& column : flight_.columns()) {
     const std::string_view header = column.header;
-    const files::Unit* unit = files::unit_in(header, quantity.name, quantity.kind, quantity.bare);
+    const files::Unit* unit = files::unit_of(column, quantity.name, quantity.kind, quantity.bare);
     if (unit == nullptr) {
       const std::string_view name = header.substr(0, header.rfind('_'));
       if (quantity.bare == nullptr && name == quantity.name) unknown = &column;
     } else if (found.column != nullptr) {
-      throw Error(fmt::format("{}: {} is there twice, as '{}' and '{}'; rename or delete one",
-                              flight_.name(), quantity.name, found.column->header, header));
+      throw OptionError(
+          {fmt::format("{}: {} is there twice, as '{}' and '{}'; ", flight_.name(), quantity.name,
+                       found.column->logged_header(), column.logged_header()),
+           Option{"ignore"}, " " + base::in_shell(column.logged_header()), " leaves one out"});
     } else {
       found = {&column, unit};
     }
   }
-  if (found.column != nullptr) {
-    logged_.emplace(quantity.name, found);
-    if (unknown != nullptr) {
+  if (found.column != nullptr) logged_.emplace(quantity.name, found);
+  if (unknown == nullptr || unknown->header == quantity.name) return;  // take_drivers() says so
+  unknown_.emplace(quantity.name, unknown);
+}
+
+/// Once it is known what the fit needs.
+void RecordBuilder::note_unknown_units() {
+  for (const auto& [name, column] : unknown_) {
+    const auto found = logged_.find(name);
+    if (found != logged_.end()) {
       note(fmt::format("column '{}' is not read as {}, which '{}' logs: its unit is unknown",
-                       unknown->header, quantity.name, found.column->header));
+                       column->logged_header(), name, found->second.column->logged_header()));
+    } else {
+      note(
+          fmt::format("column '{}' is not read as {}, which this fit does without: its unit is "
+                      "unknown",
+                      column->logged_header(), name));
     }
-  } else if (unknown != nullptr && quantity.is_extra) {
-    if (unknown->header == quantity.name) return;  // take_drivers() says so
-    note(fmt::format("column '{}' is not read as {}, which no fit needs: its unit is unknown",
-                     unknown->header, quantity.name));
-  } else if (unknown != nullptr) {
-    throw Error(fmt::format(
-        "{}: column '{}' has no known unit; {} may be logged as: {}", flight_.name(),
-        unknown->header, quantity.name,
-        fmt::join(files::accepted_headers(quantity.name, quantity.kind, quantity.bare), ", ")));
   }
 }
 
@@ -125,19 +131,30 @@ const ProbeQuantity& RecordBuilder::quantity_of(std::string_view name) const {
 std::vector<std::string> RecordBuilder::other_headers() const {
   std::vector<std::string> others;
   for (const Flight::Column& column : flight_.columns()) {
-    if (!is_quantity(column)) others.push_back(column.header);
+    if (!is_quantity(column)) others.push_back(column.logged_header());
   }
   return others;
 }
 
-std::string RecordBuilder::ask_for_near_miss(Names names) const {
+OptionError::Message RecordBuilder::ask_for_near_miss(Names names) const {
   const std::vector<std::string> others = other_headers();
   for (const std::string_view name : names) {
     if (has({name})) continue;
-    std::string asked = files::ask_for_near_miss(name, quantity_of(name).kind, others);
+    if (unknown_.contains(name)) return files::around("; ", say_unknown(name), "");
+    auto asked = files::ask_for_near_miss(name, quantity_of(name).kind, others);
     if (!asked.empty()) return asked;
   }
-  return "";
+  return {};
+}
+
+OptionError::Message RecordBuilder::say_unknown(std::string_view name) const {
+  const ProbeQuantity& quantity = quantity_of(name);
+  const std::string& header = unknown_.at(name)->logged_header();
+  const auto accepted = files::accepted_headers(name, quantity.kind, quantity.bare);
+  return {fmt::format("column '{}' has no known unit; {} may be logged as: {}; ", header, name,
+                      fmt::join(accepted, ", ")),
+          Option{"map"},
+          fmt::format(" {} reads it as the first", files::map_pair(accepted.front(), header))};
 }
 
 void RecordBuilder::fail_missing(std::span<const std::string_view> names) const {
@@ -145,16 +162,22 @@ void RecordBuilder::fail_missing(std::span<const std::string_view> names) const 
     const ProbeQuantity& quantity = quantity_of(name);
     return files::accepted_headers(name, quantity.kind, quantity.bare).front();
   };
+  const std::string_view name = names.front();
+  const ProbeQuantity& quantity = quantity_of(name);
+  if (unknown_.contains(name)) {
+    throw OptionError(files::around(flight_.name() + ": ", say_unknown(name), ""));
+  }
   std::vector<std::string> others;
   std::ranges::transform(names.subspan(1), std::back_inserter(others), inside);
-  throw Error(fmt::format(
-      "{}: {}{}; {}{}", flight_.name(),
-      files::describe_missing(names.front(), quantity_of(names.front()).kind, other_headers(),
-                              quantity_of(names.front()).bare),
-      others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
-      flight_.list_columns(),
-      flight_.is_mapped() ? "; quaternions and positions of a streamed log are not converted"
-                          : ""));
+  throw OptionError(files::around(
+      flight_.name() + ": ",
+      files::describe_missing(name, quantity.kind, other_headers(), quantity.bare),
+      fmt::format("{}; {}{}",
+                  others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
+                  flight_.list_columns(),
+                  flight_.is_mapped()
+                      ? "; quaternions and positions of a streamed log are not converted"
+                      : "")));
 }
 
 void RecordBuilder::need(Names names) {
@@ -295,7 +318,9 @@ std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const 
 
 void RecordBuilder::note_implausible() {
   const auto find = [this](std::string_view name) { return find_reading(name); };
-  for (const Implausible& implausible : find_implausible(find)) note(implausible.sentence);
+  for (const Implausible& implausible : find_implausible(find, field_strength_)) {
+    note(implausible.sentence);
+  }
 }
 
 ProbeRecord RecordBuilder::finish() {
@@ -304,6 +329,7 @@ ProbeRecord RecordBuilder::finish() {
                             dropped_.empty() ? "there was none" : dropped_.back().reason));
   }
   note_implausible();
+  note_unknown_units();
   take_quantities();
   check_computed();
   take_drivers();

@@ -29,8 +29,8 @@ class RecordBuilder {
   using RowTest = std::function<bool(std::size_t row)>;
   using RowValue = std::function<double(std::size_t row)>;
 
-  /// `flight` as read_as() gives it. Throws Error for one of the quantities in an unknown unit, or
-  /// in two, for a column of drop_repeats or a name in a condition that is not there.
+  /// `flight` as read_as() gives it. Throws Error for one of the quantities in two units, for a
+  /// column of drop_repeats or a name in a condition that is not there.
   RecordBuilder(const Flight& flight, std::span<const ProbeQuantity> quantities,
                 const LogChoice& choice);
 
@@ -38,7 +38,7 @@ class RecordBuilder {
 
   /// Where one of these was not logged and a header nearly is its: "; did you mean ...?"; else
   /// nothing.
-  std::string ask_for_near_miss(Names names) const;
+  OptionError::Message ask_for_near_miss(Names names) const;
 
   /// Throws Error for a quantity that was not logged.
   const LoggedQuantity& logged(std::string_view name) const;
@@ -78,6 +78,9 @@ class RecordBuilder {
   /// A column of the probe's own making, computed from the flight's row when finishing.
   void compute(std::string name, RowValue value);
 
+  /// Of a magnetometer, what its readings are held against: of one in counts far from 50 uT.
+  void expect_field(double strength) { field_strength_ = strength; }
+
   /// A line for people; the flight's name is put before it.
   void note(std::string_view text);
 
@@ -92,10 +95,12 @@ class RecordBuilder {
   std::string say_not_used(const Flight::Column& column, std::size_t row,
                            const RowTest& is_valid) const;
   void find_quantity(const ProbeQuantity& quantity);
+  void note_unknown_units();
   void choose_rows(const LogChoice& choice);
   void drop_repeats(const std::vector<std::string>& columns);
   const ProbeQuantity& quantity_of(std::string_view name) const;
   std::vector<std::string> other_headers() const;
+  OptionError::Message say_unknown(std::string_view name) const;
   [[noreturn]] void fail_missing(std::span<const std::string_view> names) const;
   bool is_quantity(const Flight::Column& column) const;
   bool is_named_like_quantity(std::string_view header) const;
@@ -112,8 +117,10 @@ class RecordBuilder {
   const Flight& flight_;
   std::span<const ProbeQuantity> quantities_;
   bool drop_invalid_;
+  std::optional<double> field_strength_;
   std::map<std::string_view, LoggedQuantity> logged_;
-  std::vector<std::string_view> taken_;    // quantities that the record has
+  std::map<std::string_view, const Flight::Column*> unknown_;  // of a quantity's name in no unit
+  std::vector<std::string_view> taken_;                        // quantities that the record has
   std::vector<std::string_view> checked_;  // quantities in which every kept cell is a number
   std::vector<std::pair<std::string, RowValue>> computed_;
   KeptRows rows_;

@@ -12,6 +12,7 @@
 
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/files/flight_digest.hpp"
+#include "flight/logs/chosen_columns.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
@@ -92,7 +93,7 @@ LogChoice choice_for(const Calibration& calibration, const Flight& flight,
   if (!is_other_flight(calibration, flight)) return choice;
   // Another log may have sepcal's names already, and lack what was in the way.
   std::erase_if(choice.map, [&](const auto& names) {
-    return flight.find(names.second) == nullptr && flight.find(names.first) != nullptr;
+    return !logs::find_mapped(flight, names.second) && flight.find(names.first) != nullptr;
   });
   std::erase_if(choice.ignore, [&](const std::string& header) {
     return flight.find(header) == nullptr && !choice.map.contains(header);

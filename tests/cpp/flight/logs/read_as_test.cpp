@@ -52,6 +52,62 @@ TEST_CASE("columns are read under other names, or are as if they were not there"
   CHECK(log.columns().size() == 4);  // stays as it was
 }
 
+TEST_CASE("headers that clearly are a quantity in a unit are taken, with one note") {
+  Flight log("log");
+  log.add("Time [s]", {0, 1}).add("GPS_VN (m/s)", {1, 2}).add("Mag X [nT]", {3, 4});
+  log.add("Roll_Deg", {5, 6}).add("GPS Velocity E (m/s)", {7, 8}).add("GndSpd kt", {9, 9});
+  log.add("Volts", {12, 12});
+  const ReadFlight read = read_as(log, {});
+  CHECK(values(read.flight, "vn_mps") == std::vector<double>{1, 2});
+  CHECK(values(read.flight, "mx_nt") == std::vector<double>{3, 4});
+  CHECK(values(read.flight, "roll_deg") == std::vector<double>{5, 6});
+  CHECK(values(read.flight, "ve_mps") == std::vector<double>{7, 8});
+  CHECK(values(read.flight, "gs_kt") == std::vector<double>{9, 9});
+  CHECK(values(read.flight, "Volts") == std::vector<double>{12, 12});
+  CHECK(read.flight.find("GPS_VN (m/s)") == read.flight.find("vn_mps"));  // by its own name too
+  CHECK(read.notes ==
+        std::vector<std::string>{
+            "log: columns are read as time_s from 'Time [s]', roll_deg from 'Roll_Deg', vn_mps "
+            "from 'GPS_VN (m/s)', ve_mps from 'GPS Velocity E (m/s)', gs_kt from 'GndSpd kt', "
+            "mx_nt from 'Mag X [nT]'"});
+}
+
+TEST_CASE("what is there by its name, or could be two columns, is not taken") {
+  Flight log("log");
+  log.add("vn_mps", {0, 1}).add("GPS_VN (m/s)", {1, 2}).add("rol_deg", {3, 4});
+  log.add("North velocity (m/s)", {5, 6}).add("ve (m/s)", {1, 1}).add("VE [kt]", {2, 2});
+  log.add("Setpoint Yaw (deg)", {0, 0}).add("IMU temp (degC)", {40, 40}).add("Pitch", {1, 1});
+  const ReadFlight read = read_as(log, {});
+  CHECK(read.notes.empty());
+  for (std::size_t i = 0; i < log.columns().size(); ++i) {
+    CHECK(read.flight.columns()[i].header == log.columns()[i].header);
+  }
+}
+
+TEST_CASE("a true airspeed comes before an indicated one") {
+  Flight log("log");
+  log.add("IAS (kt)", {1, 2}).add("TAS (kt)", {3, 4});
+  const ReadFlight both = read_as(log, {});
+  CHECK(values(both.flight, "airspeed_kt") == std::vector<double>{3, 4});
+  CHECK(both.notes.front() ==
+        "log: columns are read as airspeed_kt from 'TAS (kt)' (not 'IAS (kt)')");
+  log.drop("TAS (kt)");
+  CHECK(read_as(log, {}).notes.front() ==
+        "log: columns are read as airspeed_kt from 'IAS (kt)' (for the air at sea level: its scale "
+        "grows with height)");
+}
+
+TEST_CASE("an option may name a column as the log does, though it is read otherwise") {
+  Flight log("log");
+  log.add("IAS (kt)", {1, 2}).add("TAS (kt)", {3, 4});
+  const ReadFlight read = read_as(log, {.map = {{"airspeed_kt", "IAS (kt)"}}});
+  CHECK(values(read.flight, "airspeed_kt") == std::vector<double>{1, 2});
+  CHECK(read.notes.empty());
+  CHECK(read.flight.find("airspeed_kt")->logged == "IAS (kt)");
+  CHECK(values(read_as(log, {.ignore = {"TAS (kt)"}}).flight, "airspeed_kt") ==
+        std::vector<double>{1, 2});
+}
+
 TEST_CASE("a choice of columns that can't be is refused") {
   Flight log("log");
   log.add("TAS", {40, 41}).add("airspeed_kt", {9, 9});

@@ -125,7 +125,7 @@ TEST_CASE("a flight that lacks something") {
          "the airspeed is missing: log airspeed_mps, or dp_pa with rho_kgpm3");
   refuse(make_pressure_log(), "the density is missing: log rho_kgpm3, or temp_k and ps_pa");
   refuse(make_log().erase("vd_mps"), "column 'vd_mps' is missing");
-  refuse(make_log().rename("airspeed_mps", "airspeed_mph"), "airspeed_mps, airspeed_kt");
+  refuse(make_log().rename("airspeed_mps", "airspeed_mach"), "airspeed_mps, airspeed_kt");
   Log log = make_log();
   log["airspeed_mps"][6] = not_a_number;
   refuse(log, "log row 6");

@@ -154,15 +154,24 @@ TEST_CASE("missing columns, unknown units, quantities given twice") {
               .starts_with("log: column '" + std::string(header) + "' is missing ("));
   }
   CHECK(refuse(make_five_hole_log().rename("roll_rad", "roll_grad").build()) ==
-        "log: column 'roll_grad' has no known unit; roll may be logged as: roll_rad, roll_deg");
-  CHECK(refuse(make_five_hole_log().rename("roll_rad", "roll").build()) ==
-        "log: column 'roll' has no known unit; roll may be logged as: roll_rad, roll_deg");
-  CHECK(refuse(make_five_hole_log().rename("p_radps", "p_rpm").build()) ==
-        "log: column 'p_rpm' has no known unit; p may be logged as: p_radps, p_degps");
+        "log: column 'roll_grad' has no known unit; roll may be logged as: roll_rad, roll_deg; "
+        "map roll_rad=roll_grad reads it as the first");
+  CHECK(refuse(make_five_hole_log().rename("roll_rad", "roll").build())
+            .starts_with("log: column 'roll_rad' is missing (roll_deg would do as well); 'roll' "
+                         "says no unit that is known: map roll_rad=roll reads it in rad; known "
+                         "too: deg; the flight has: "));
+  const Log without_unit = make_five_hole_log().rename("p_radps", "p_rpm");
+  CHECK(refuse(without_unit.build(), {.lever_arm = true}) ==
+        "log: column 'p_rpm' has no known unit; p may be logged as: p_radps, p_degps; map "
+        "p_radps=p_rpm reads it as the first");
+  CHECK(mentions(prepare_five_hole(without_unit.build()).notes,
+                 "column 'p_rpm' is not read as p, which this fit does without: its unit is "
+                 "unknown"));
   Log log = make_five_hole_log();
   log["roll_deg"];
   CHECK(refuse(log.build()) ==
-        "log: roll is there twice, as 'roll_rad' and 'roll_deg'; rename or delete one");
+        "log: roll is there twice, as 'roll_rad' and 'roll_deg'; ignore roll_deg leaves one "
+        "out");
 }
 
 TEST_CASE("an unknown unit beside a known one is a column like any other") {
