@@ -22,6 +22,7 @@
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
+#include "sepcal/flight/joined_rates.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "structs.hpp"
 
@@ -118,6 +119,11 @@ void check_output(const std::string& file) {
   const OutputFile opened(file);
 }
 
+Flight join_logs(const Flight& measured, const Flight& other, const std::string& how,
+                 double offset) {
+  return join_rates(measured, other, {.how = how, .offset = offset});
+}
+
 void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
       .def(py::init<std::string, std::string>(), "name"_a, "sha256"_a = "")
@@ -141,6 +147,7 @@ void define_flights(py::module_& module) {
   });
   module.def("read_foreign_files", &read_foreign_files);
   module.def("read_csv", [](const std::string& file) { return read_csv(file); }, WithoutGil());
+  module.def("join_rates", &join_logs, WithoutGil());
   module.def(
       "stream_csv",
       [](const std::string& file, const std::string& folder) { return stream_csv(file, folder); },
