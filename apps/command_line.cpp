@@ -57,6 +57,23 @@ void add_applying_options(CLI::App& apply, Arguments& arguments) {
   add_stream(apply, arguments);
 }
 
+void add_joining_options(CLI::App& join, Arguments& arguments) {
+  add_file(join, "MEASURED", arguments.flight, "the log of the sensor, whose rows stay")
+      ->required();
+  add_file(join, "OTHER", arguments.other, "the log whose columns are brought to these rows")
+      ->required();
+  join.add_option("--how", arguments.joining.how,
+                  "what stands between two samples: the straight line, or the earlier one")
+      ->type_name("linear|held")
+      ->capture_default_str();
+  join.add_option("--offset", arguments.joining.offset, "what is added to OTHER's time [s]")
+      ->type_name("S")
+      ->capture_default_str();
+  add_file(join, "-o,--output", arguments.output, "writes the joined log there")
+      ->type_name("JOINED.csv")
+      ->required();
+}
+
 /// The calibration comes first here: most exports need no flight.
 void add_exporting_options(CLI::App& verb, Arguments& arguments) {
   add_file(verb, "CALIBRATION", arguments.calibration, "what fit or add wrote with -o")->required();
@@ -82,6 +99,7 @@ class CommandLine {
         add_(add_later_verb("add", "adds a physical effect and fits again")),
         apply_(add_later_verb("apply", "adds the calibrated readings to a log", false)),
         export_(cli.add_subcommand("export", "writes what a vehicle loads of a calibration")),
+        join_(cli.add_subcommand("join", "brings another log's columns to a sensor's rows")),
         simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
     add_flight(*check_);
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
@@ -124,6 +142,7 @@ class CommandLine {
     instrument.add_flight_options(*export_);
     add_json(*export_);
 
+    add_joining_options(*join_, typed_);
     add_simulate_options(*simulate_, typed_, instrument, simulation_);
     add_json(*simulate_);
     add_json(*cli.add_subcommand("effects", "lists the physical effects a model may lack"));
@@ -139,6 +158,7 @@ class CommandLine {
     if (add_->parsed()) return verbs.add();
     if (apply_->parsed()) return verbs.apply();
     if (export_->parsed()) return verbs.export_to(exporting_.resolve());
+    if (join_->parsed()) return verbs.join();
     if (simulate_->parsed()) return verbs.simulate(simulation_.resolve());
     if (diagnose_->parsed()) return verbs.diagnose(diagnosis_);
     return verbs.effects();
@@ -188,6 +208,7 @@ class CommandLine {
   CLI::App* add_;
   CLI::App* apply_;
   CLI::App* export_;
+  CLI::App* join_;
   CLI::App* simulate_;
 };
 

@@ -9,6 +9,7 @@
 #include "delivery.hpp"
 #include "diagnose_arguments.hpp"
 #include "flight/files/text_file.hpp"
+#include "flight/files/written_flight.hpp"
 #include "progress.hpp"
 #include "running.hpp"
 #include "sepcal/detail/flight/certified.hpp"
@@ -242,6 +243,24 @@ int Verbs::simulate(SimulationOrder order) const {
       print(page("{} {}: the true parameters\n", given ? "read" : "wrote", arguments_.truth));
     }
   }
+  return 0;
+}
+
+int Verbs::join() const {
+  for (const std::string& input : {arguments_.flight, arguments_.other}) {
+    check_not_input(arguments_.output, input);
+  }
+  OutputFile output(arguments_.output);
+  const Flight joined =
+      join_rates(read_flight(), read_flight(arguments_.other, 0), arguments_.joining);
+  files::write_flight(joined, output);
+  output.commit();
+  tell_notes(joined.notes());
+  print(page("wrote {}: {} rows\n", arguments_.output, joined.rows()));
+  print(
+      page("next: {} fit {} --effect time_offset estimates what is left between the clocks; add "
+           "its tau to --offset\n",
+           instrument_.app(), base::file_in_shell(arguments_.output)));
   return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "instrument.hpp"
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/export.hpp"
+#include "sepcal/flight/joined_rates.hpp"
 #include "sepcal/profile.hpp"
 
 namespace sepcal::app {
@@ -22,6 +23,8 @@ struct Arguments {
   std::string output;
   std::string truth;
   std::string effect;
+  std::string other;         // of join: the log whose columns are brought
+  RateJoining joining = {};  // of join
   bool json = false;
   bool explain = false;   // the whole message of the fit
   bool stream = false;    // of fit and apply
@@ -48,6 +51,7 @@ class Verbs {
   /// To the file of -o; `export` is a word of C++.
   int export_to(ExportOptions options) const;
   int simulate(SimulationOrder order) const;
+  int join() const;
   int effects() const;
 
  private:

@@ -68,6 +68,7 @@ from sepcal.flight import Flight, read_csv, stream_csv
 from sepcal.geomagnetism import EarthField, earth_field
 from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
+from sepcal.joining import join
 from sepcal.joint import fit_jointly
 from sepcal.least_squares import LeastSquares, RecursiveLeastSquares, iterate_least_squares
 from sepcal.linear_systems import (
@@ -224,6 +225,7 @@ __all__ = [
     "fit_noise",
     "fit_trials",
     "iterate_least_squares",
+    "join",
     "list_log",
     "load",
     "matrix_exponential",

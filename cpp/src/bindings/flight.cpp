@@ -22,6 +22,7 @@
 #include "sepcal/flight/comparison.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
+#include "sepcal/flight/joined_rates.hpp"
 #include "sepcal/flight/stepwise.hpp"
 #include "structs.hpp"
 
@@ -121,6 +122,11 @@ void check_output(const std::string& file) {
   const OutputFile opened(file);
 }
 
+Flight join_logs(const Flight& measured, const Flight& other, const std::string& how,
+                 double offset) {
+  return join_rates(measured, other, {.how = how, .offset = offset});
+}
+
 void define_flights(py::module_& module) {
   py::class_<Flight>(module, "Flight")
       .def(py::init([](std::string name, std::string sha256) {
@@ -152,6 +158,7 @@ void define_flights(py::module_& module) {
         return read_csv(file, {}, 0, {std::move(delimiter), std::move(decimal)});
       },
       "file"_a, "delimiter"_a = "", "decimal"_a = "", WithoutGil());
+  module.def("join_rates", &join_logs, WithoutGil());
   module.def(
       "stream_csv",
       [](const std::string& file, const std::string& folder, std::string delimiter,

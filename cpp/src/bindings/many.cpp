@@ -10,11 +10,11 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "model/measurements.hpp"
 #include "released.hpp"
 #include "results.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit_many.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -94,7 +94,8 @@ PreparedFlight prepare_flight(const Model& model, const Flight& flight,
     throw Error("this model takes no flight; give its inputs and outputs as {name: array}");
   }
   const ManyOptions many = many_options(model, options, own, false);
-  ProbeRecord prepared = model.probe->prepare(read_as(flight, options.log).flight, options.log);
+  ProbeRecord prepared =
+      model.probe->prepare(probes::read_for(*model.probe, flight, options.log).flight, options.log);
   return {model.block,
           std::make_unique<FlightProblem>(*model.block, std::move(prepared.record), many)};
 }

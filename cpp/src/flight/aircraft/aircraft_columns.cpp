@@ -12,8 +12,8 @@
 #include "base/columns.hpp"
 #include "flight/aircraft/believed_rows.hpp"
 #include "flight/probes/air_columns.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "numerics/interpolated_column.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::aircraft_log {
@@ -107,7 +107,7 @@ probes::ModelQuantities quantities_of(AircraftModel model) {
 }
 
 ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log) {
-  const ReadFlight read = read_as(logged, log);
+  const ReadFlight read = probes::read_for(quantities_of(model), logged, log);
   const BelievedFlight believed = believe(read.flight, model, log);
   const Flight& flight = believed.flight;
   RecordBuilder builder(flight, quantities_of(model).list, log);

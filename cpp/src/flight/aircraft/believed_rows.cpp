@@ -7,9 +7,9 @@
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/checks/taken_rows.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/verbs/mended_flight.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::aircraft_log {
@@ -38,7 +38,7 @@ AircraftFit without_suspects(const AircraftFit& fitted, const Flight& flight,
                              std::vector<std::string>& notes) {
   AircraftOptions options = options_on(fitted, flight);
   LogChoice& log = options.calibration.log;
-  const ReadFlight read = read_as(flight, log);
+  const ReadFlight read = probes::read_for(quantities_of(options.model), flight, log);
   const verbs::MendedFlight mended = verbs::mend(quantities_of(options.model), read.flight, log);
   if (mended.all.condition.empty()) return fitted;
   log.where = checks::join_conditions(log.where, {mended.all.condition});

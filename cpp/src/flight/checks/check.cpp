@@ -12,7 +12,7 @@
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/checks/taken_rows.hpp"
 #include "flight/files/headers.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -104,7 +104,7 @@ FlightCheck check(const Probe& given, const Flight& logged, const LogChoice& cho
 FlightCheck checks::check_subject(
     const CheckedSubject& subject, const Flight& logged, const LogChoice& choice,
     const std::function<std::string(const std::string& name)>& spell) {
-  const ReadFlight read = read_as(logged, choice);
+  const ReadFlight read = probes::read_for(subject.quantities, logged, choice);
   const Flight& flight = read.flight;
   FlightCheck check{.model = subject.model,
                     .app = subject.app,

@@ -13,8 +13,8 @@
 #include "flight/export/exporter.hpp"
 #include "flight/export/kept_field.hpp"
 #include "flight/files/headers.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/verbs/prepared_flight.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/flight/apply.hpp"
 
 namespace sepcal::exporting {
@@ -107,7 +107,8 @@ std::vector<double> pick(const Record& record, const char* name,
 /// As the calibration reads its flight.
 ReadFlight read_flight(const Calibration& calibration, const Flight& flight) {
   std::vector<std::string> unused;
-  return read_as(flight, verbs::choice_for(calibration, flight, unused));
+  return probes::read_for(*calibration.probe, flight,
+                          verbs::choice_for(calibration, flight, unused));
 }
 
 ProbeReadings readings_of(const Calibration& calibration, const Flight& read,

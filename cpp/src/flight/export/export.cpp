@@ -23,11 +23,11 @@
 #include "flight/export/tube_reader.hpp"
 #include "flight/export/vehicle_notes.hpp"
 #include "flight/files/sha256.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/detail/flight/joint.hpp"
 #include "sepcal/detail/flight/output_file.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -152,7 +152,8 @@ OnAutopilot export_airspeed(const Calibration& given, const Calibration& base,
                             Exported& exported) {
   const Flight& flight = at_hand.need("what an autopilot holds is fitted anew: that");
   std::vector<std::string> unused;
-  const ReadFlight read = read_as(flight, verbs::choice_for(base, flight, unused));
+  const ReadFlight read =
+      probes::read_for(*base.probe, flight, verbs::choice_for(base, flight, unused));
   const ChosenTubeReader chosen = choose_tube_reader(read.flight, options);
   FittedAirspeed fitted = fit_airspeed(base, flight, chosen.reader, options);
   if (!options.force) {

@@ -120,9 +120,9 @@ std::span<const ProbeQuantity> probes::magnetometer_quantities() {
   using files::UnitKind;
   static constexpr std::array quantities{
       ProbeQuantity{"time", UnitKind::time},
-      ProbeQuantity{"mx", UnitKind::field},
-      ProbeQuantity{"my", UnitKind::field},
-      ProbeQuantity{"mz", UnitKind::field},
+      ProbeQuantity{.name = "mx", .kind = UnitKind::field, .is_measured = true},
+      ProbeQuantity{.name = "my", .kind = UnitKind::field, .is_measured = true},
+      ProbeQuantity{.name = "mz", .kind = UnitKind::field, .is_measured = true},
       ProbeQuantity{"hx", UnitKind::field},
       ProbeQuantity{"hy", UnitKind::field},
       ProbeQuantity{"hz", UnitKind::field},

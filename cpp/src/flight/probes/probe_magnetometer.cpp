@@ -6,13 +6,13 @@
 
 #include "base/parameter_values.hpp"
 #include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/probes/mounting.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
 #include "flight/probes/shipped.hpp"
 #include "sepcal/detail/compiled_models.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/probe.hpp"
@@ -51,7 +51,7 @@ class KnownFieldMagnetometer final : public Probe {
 
   std::unique_ptr<const Probe> settle(const Flight& flight, const LogChoice& log) const override {
     if (mounting_) return nullptr;
-    const ReadFlight read = read_as(flight, log);
+    const ReadFlight read = read_for(*this, flight, log);
     const auto found =
         find_mounting(prepare_magnetometer(read.flight, {.field = field_, .log = log}).record);
     if (!found) {

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "flight/probes/joined_quantities.hpp"
 #include "sepcal/flight/probe.hpp"
 
 namespace sepcal::probes {
@@ -20,8 +23,14 @@ logs::RowTruth rows_taken(const ModelQuantities& model, const Flight& flight,
   };
   const logs::RowTruth within = logs::rows_within_times(flight, choice);
   const logs::RowTruth holds = logs::rows_where(flight, choice, find);
-  if (!within || !holds) return within ? within : holds;
-  return [within, holds](std::size_t row) { return within(row) && holds(row); };
+  std::vector<logs::RowTruth> tests;
+  for (logs::RowTruth test : {rows_measured(quantities, flight, choice), within, holds}) {
+    if (test) tests.push_back(std::move(test));
+  }
+  if (tests.size() < 2) return tests.empty() ? logs::RowTruth() : tests.front();
+  return [tests](std::size_t row) {
+    return std::ranges::all_of(tests, [row](const logs::RowTruth& test) { return test(row); });
+  };
 }
 
 }  // namespace sepcal::probes

@@ -28,6 +28,7 @@ struct ProbeQuantity {
   const files::Unit* bare = nullptr;  // of a header that is its name alone; nullptr: none may be
   Taken taken = Taken::by_row;
   std::array<std::string_view, 2> unless = {};  // logged, these are taken in its place
+  bool is_measured = false;  // a reading of the instrument itself: joined rates stand in its rows
 };
 
 /// How a fit looks at a log: at an instrument's readings, at the coefficients of each row, or at a

@@ -14,6 +14,7 @@
 #include "base/spool.hpp"
 #include "flight/files/invalid_cells.hpp"
 #include "flight/logs/chosen_rows.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/probes/plausible_readings.hpp"
 #include "flight/probes/sampled_rows.hpp"
 #include "sepcal/effect_name.hpp"
@@ -40,6 +41,7 @@ RecordBuilder::RecordBuilder(const Flight& flight, std::span<const ProbeQuantity
     : flight_(flight),
       quantities_(quantities),
       drop_invalid_(choice.drop_invalid),
+      is_joined_(!choice.join.empty()),
       rows_(flight.rows(), release_of(flight)) {
   for (const ProbeQuantity& quantity : quantities_) find_quantity(quantity);
   choose_rows(choice);
@@ -51,6 +53,9 @@ void RecordBuilder::choose_rows(const LogChoice& choice) {
     const auto found = logged_.find(name);
     return found == logged_.end() ? std::nullopt : std::optional(found->second);
   };
+  if (const auto measured = rows_measured(quantities_, flight_, choice)) {
+    keep(measured, "they have no reading of what is measured, to whose rows the rest is joined");
+  }
   if (const auto within = logs::rows_within_times(flight_, choice)) {
     keep(within, fmt::format("they are not within the times chosen, {} to {} s",
                              choice.from_time ? fmt::format("{}", *choice.from_time) : "the first",
@@ -231,16 +236,49 @@ void RecordBuilder::keep_valid() {
       return !files::is_reading(quantity->at(row));
     });
   };
-  keep_or_refuse([&](std::size_t row) { return find_invalid(row) == quantities.end(); },
-                 "a cell of a needed column is no finite number",
-                 [&](std::size_t row) {
-                   const LoggedQuantity& quantity = **find_invalid(row);
-                   const bool time = quantity.unit->kind == files::UnitKind::time;
-                   return fmt::format("column '{}' {}, not {}", quantity.column->header,
-                                      files::describe_cell(*quantity.column, row),
-                                      time ? "a time as a number, from any start, as in 12.34"
-                                           : "a finite number");
-                 });
+  const auto is_whole = [&](std::size_t row) { return find_invalid(row) == quantities.end(); };
+  if (is_joined_) {
+    keep(is_whole, "a needed column has no samples on both sides of them");
+    return;
+  }
+  refuse_other_rates(quantities, is_whole);
+  keep_or_refuse(is_whole, "a cell of a needed column is no finite number", [&](std::size_t row) {
+    const LoggedQuantity& quantity = **find_invalid(row);
+    const bool time = quantity.unit->kind == files::UnitKind::time;
+    return fmt::format(
+        "column '{}' {}, not {}", quantity.column->header,
+        files::describe_cell(*quantity.column, row),
+        time ? "a time as a number, from any start, as in 12.34" : "a finite number");
+  });
+}
+
+/// Where columns of numbers hardly ever stand in one row, each was logged by itself.
+void RecordBuilder::refuse_other_rates(const std::vector<const LoggedQuantity*>& quantities,
+                                       const RowTest& is_whole) const {
+  if (flight_.is_mapped()) return;
+  std::vector<std::size_t> readings(quantities.size(), 0);
+  std::size_t whole = 0;
+  rows_.for_each([&](std::size_t row) {
+    for (std::size_t k = 0; k < quantities.size(); ++k) {
+      readings[k] += files::is_reading(quantities[k]->at(row)) ? 1 : 0;
+    }
+    whole += is_whole(row) ? 1 : 0;
+  });
+  const auto fewest = std::ranges::min_element(readings);
+  if (fewest == readings.end() || *fewest <= 2 * whole) return;
+  if (drop_invalid_ && whole > 0) return;
+  std::vector<std::string> rates;
+  for (std::size_t k = 0; k < quantities.size(); ++k) {
+    if (readings[k] == rows_.size()) continue;
+    rates.push_back(fmt::format("{} (in {} rows)", quantities[k]->column->header, readings[k]));
+  }
+  throw OptionError(
+      {fmt::format("{}: {} of {} rows has all that is needed: {} were logged at different times; ",
+                   flight_.name(),
+                   whole == 0 ? "none" : fmt::format("one in {}", rows_.size() / whole),
+                   rows_.size(), fmt::join(rates, ", ")),
+       Option{"join"}, " linear brings them to the rows of what is measured, ", Option{"join"},
+       " held as they last were"});
 }
 
 /// In seconds: times that differ as they were logged may be one there.

@@ -54,7 +54,7 @@ class RecordBuilder {
   bool offer(Names names);
 
   /// Throws Error for, or drops, rows in which a needed or consulted cell is no finite number,
-  /// as it stands or once converted.
+  /// as it stands or once converted. Of rates that are joined such rows are dropped.
   void keep_valid();
 
   /// Throws Error where time does not increase from one kept row to the next.
@@ -98,6 +98,8 @@ class RecordBuilder {
   void note_unknown_units();
   void choose_rows(const LogChoice& choice);
   void drop_repeats(const std::vector<std::string>& columns);
+  void refuse_other_rates(const std::vector<const LoggedQuantity*>& quantities,
+                          const RowTest& is_whole) const;
   const ProbeQuantity& quantity_of(std::string_view name) const;
   std::vector<std::string> other_headers() const;
   OptionError::Message say_unknown(std::string_view name) const;
@@ -118,6 +120,7 @@ class RecordBuilder {
   std::span<const ProbeQuantity> quantities_;
   bool drop_invalid_;
   std::optional<double> field_strength_;
+  bool is_joined_;  // to the rows of what is measured
   std::map<std::string_view, LoggedQuantity> logged_;
   std::map<std::string_view, const Flight::Column*> unknown_;  // of a quantity's name in no unit
   std::vector<std::string_view> taken_;                        // quantities that the record has

@@ -72,8 +72,10 @@ class OwnQuantities {
  public:
   explicit OwnQuantities(const Tables& tables) {
     list_.push_back({.name = "time", .kind = UnitKind::time});
-    for (const std::vector<Variable>* table : {&tables.inputs, &tables.outputs}) {
-      for (const Variable& variable : *table) add(variable);
+    for (const Variable& input : tables.inputs) add(input);
+    for (const Variable& output : tables.outputs) {
+      add(output);
+      std::ranges::find(list_, output.name, &ProbeQuantity::name)->is_measured = true;
     }
   }
 

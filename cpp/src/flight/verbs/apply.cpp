@@ -10,13 +10,12 @@
 #include <utility>
 
 #include "base/excerpt.hpp"
-#include "flight/probes/quantities.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/effect_readings.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/detail/flight/output_file.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -29,14 +28,18 @@ namespace {
 LogChoice every_row(const Calibration& calibration, const Flight& flight) {
   std::vector<std::string> unused;
   const LogChoice chosen = choice_for(calibration, flight, unused);
-  return {.map = chosen.map, .ignore = chosen.ignore, .drop_invalid = chosen.drop_invalid};
+  return {.map = chosen.map,
+          .ignore = chosen.ignore,
+          .drop_invalid = chosen.drop_invalid,
+          .join = chosen.join};
 }
 
 /// Where the calibration was fitted to some rows by what they hold or when they were: the column
 /// that says, with a 1, which rows are not such. `flight` as read_as() gives it.
 std::optional<CorrectedColumn> find_outside(const Calibration& calibration, const Flight& flight,
                                             std::vector<std::string>& notes) {
-  const LogChoice choice = choice_for(calibration, flight, notes);
+  LogChoice choice = choice_for(calibration, flight, notes);
+  choice.join.clear();  // a row without a reading is not outside of anything
   const logs::RowTruth is_taken = probes::rows_taken(*calibration.probe, flight, choice);
   if (!is_taken) return std::nullopt;
   CorrectedColumn outside{"outside_fit", std::vector<double>(flight.rows(), 0.0)};
@@ -96,7 +99,7 @@ std::vector<CorrectedColumn> apply(const Calibration& calibration, const Flight&
     return predict_along(calibration, flight, readings);
   }
   const LogChoice choice = every_row(calibration, flight);
-  ReadFlight read = read_as(flight, choice);
+  ReadFlight read = probes::read_for(*calibration.probe, flight, choice);
   ProbeReadings readings = calibration.probe->read(read.flight, choice);
   auto columns = correct_with_effects(calibration, read.flight, readings);
   check_corrected(calibration, readings, columns, flight);
@@ -138,7 +141,7 @@ Applied apply_to_file(const Calibration& calibration, const std::string& file,
     return finish(readings);
   }
   const LogChoice choice = every_row(calibration, flight);
-  const ReadFlight read = read_as(flight, choice);
+  const ReadFlight read = probes::read_for(probe, flight, choice);
   applied.notes = read.notes;
   ProbeReadings readings = probe.read(read.flight, choice);
   auto columns = stream ? std::vector<CorrectedColumn>()

@@ -13,14 +13,14 @@
 #include "flight/checks/suspect_notes.hpp"
 #include "flight/files/flight_digest.hpp"
 #include "flight/logs/chosen_columns.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/verbs/residual_comparison.hpp"
-#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::verbs {
 
 PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice& log) {
-  ReadFlight read = read_as(flight, log);
+  ReadFlight read = probes::read_for(probe, flight, log);
   MendedFlight mended = mend(probe, read.flight, log);
   ProbeRecord readings = probe.prepare(mended.flight, log);
   readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());

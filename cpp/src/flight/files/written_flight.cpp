@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/files/written_flight.hpp"
+
+#include <string>
+#include <string_view>
+
+#include "base/stop.hpp"
+#include "flight/files/csv_cells.hpp"
+
+namespace sepcal::files {
+namespace {
+
+void append_text(std::string& line, std::string_view text) {
+  if (text.find_first_of(",\"") == std::string_view::npos) {
+    line += text;
+    return;
+  }
+  line += '"';
+  for (const char c : text) line += c == '"' ? std::string(2, c) : std::string(1, c);
+  line += '"';
+}
+
+}  // namespace
+
+void write_flight(const Flight& flight, OutputFile& target) {
+  const auto labels = flight.maneuvers();
+  std::string line;
+  for (const Flight::Column& column : flight.columns()) {
+    append_text(line, column.header);
+    line += ',';
+  }
+  if (!labels.empty()) line += "maneuver,";
+  for (std::size_t row = 0; row < flight.rows(); ++row) {
+    base::heed_stop();
+    line.back() = '\n';
+    target.write(line);
+    line.clear();
+    for (const Flight::Column& column : flight.columns()) {
+      append_number(line, column.values[row]);
+      line += ',';
+    }
+    if (!labels.empty()) {
+      append_text(line, labels[row]);
+      line += ',';
+    }
+  }
+  line.back() = '\n';
+  target.write(line);
+}
+
+}  // namespace sepcal::files

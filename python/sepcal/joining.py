@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two logs of one flight as one: sensors of different rates, with clocks of their own."""
+
+from sepcal import _core
+from sepcal.flight import Flight, to_flight
+from sepcal.matrices import to_number
+
+
+def join(flight: Flight, other: Flight, how: str = "linear", offset: float = 0.0) -> Flight:
+    """Brings the columns of another log to the rows of the measured sensor's.
+
+        both = sepcal.join(sepcal.read_csv("tube.csv"), sepcal.read_csv("gnss.csv"))
+        fit = sepcal.fit(sepcal.PitotStatic(), both, effects=["time_offset"])
+
+    Nothing goes beyond the samples of a column or across its gaps, which are longer than five usual
+    intervals. Rows outside of the other log are left out; a cell in a gap is NaN. Angles, by
+    headers that end in _deg or _rad, go the short way round. Of a column that both have, that of
+    `flight` stays. `notes` of the result say all of this.
+
+    Args:
+        flight: The log of the sensor that is calibrated: its rows stay.
+        other: Of the same flight, at other times.
+        how: What stands between two samples: "linear", the straight line between them, or "held",
+            the earlier one.
+        offset: What is added to the other log's time [s]. What is left of an offset is estimated by
+            the effect `time_offset`, whose tau is then added here.
+
+    Raises:
+        Error: A log without a time, or one that runs back; clocks that have no time in common;
+            another `how`; an offset that is no number.
+    """
+    joined = _core.join_rates(
+        to_flight(flight, "sepcal.join(")._core,
+        to_flight(other, "sepcal.join(flight, ")._core,
+        how,
+        to_number("offset", offset),
+    )
+    return Flight._of(joined)
