@@ -214,8 +214,8 @@ class CommandLine {
 
 }  // namespace
 
-int run(Instrument& instrument, int argc, char** argv) {
-  CLI::App cli(instrument.summary(), instrument.app());
+int run(Instrument& instrument, const std::string& called, int argc, char** argv) {
+  CLI::App cli(instrument.summary(), called);
   CommandLine command_line(instrument, cli);
   return run(cli, argc, argv, [&] { return command_line.perform(); });
 }

@@ -72,7 +72,8 @@ class Instrument {
 };
 
 /// Runs the app: parses the command line, carries out the verb, maps every error to one line on
-/// standard error. Returns the exit code (0, 2, 4 or 5).
-int run(Instrument& instrument, int argc, char** argv);
+/// standard error. Returns the exit code (0, 2, 4 or 5). `called` is what was typed to get here:
+/// "sepcal-mag", or "sepcal mag".
+int run(Instrument& instrument, const std::string& called, int argc, char** argv);
 
 }  // namespace sepcal::app

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
 
 namespace sepcal::app {
 namespace {
@@ -25,11 +24,8 @@ void interrupt(int /*signal*/) {
   ::alarm(patience);
 }
 
-void handle(int signal, void (*handler)(int), unsigned flags) {
-  struct sigaction action{};
-  action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(flags);
-  ::sigaction(signal, &action, nullptr);
+void throw_where_interrupted() {
+  if (was_interrupted) throw Stopped();
 }
 
 bool is_ignored(int signal) {
@@ -40,15 +36,23 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
-StopScope heed_interrupts(const std::string& app) {
-  last_words = app + ": stopped by Ctrl-C\n";
-  if (!is_ignored(SIGINT)) {
-    handle(SIGALRM, &end_here, 0);
-    handle(SIGINT, &interrupt, unsigned{SA_RESTART} | SA_RESETHAND);
-  }
-  return StopScope([] {
-    if (was_interrupted) throw Stopped();
-  });
+SignalScope::SignalScope(int signal, void (*handler)(int), unsigned flags) : signal_(signal) {
+  struct sigaction action{};
+  action.sa_handler = handler;
+  action.sa_flags = static_cast<int>(flags);
+  ::sigaction(signal, &action, &before_);
 }
+
+SignalScope::~SignalScope() { ::sigaction(signal_, &before_, nullptr); }
+
+InterruptScope::InterruptScope(const std::string& called) : stop_(&throw_where_interrupted) {
+  was_interrupted = false;
+  if (is_ignored(SIGINT)) return;
+  last_words = called + ": stopped by Ctrl-C\n";
+  alarm_.emplace(SIGALRM, &end_here);
+  interrupt_.emplace(SIGINT, &interrupt, unsigned{SA_RESTART} | SA_RESETHAND);
+}
+
+InterruptScope::~InterruptScope() { ::alarm(0); }
 
 }  // namespace sepcal::app

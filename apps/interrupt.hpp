@@ -3,6 +3,8 @@
 // aren't there.
 #pragma once
 
+#include <csignal>
+#include <optional>
 #include <string>
 
 #include "sepcal/stop.hpp"
@@ -12,9 +14,33 @@ namespace sepcal::app {
 /// The exit code of what Ctrl-C ended, as shells have it.
 inline constexpr int interrupted = 130;
 
+/// A signal is taken in another way while it lives.
+class SignalScope {
+ public:
+  SignalScope(int signal, void (*handler)(int), unsigned flags = 0);
+  SignalScope(const SignalScope&) = delete;
+  SignalScope& operator=(const SignalScope&) = delete;
+  ~SignalScope();
+
+ private:
+  int signal_;
+  struct sigaction before_ = {};
+};
+
 /// While it lives, Ctrl-C throws Stopped out of the work. Where that takes more than a second, as a
 /// read from a pipe may, the process ends there and then; a second Ctrl-C ends it at once. A
-/// process that was told to ignore Ctrl-C (nohup) goes on doing so. To be called once.
-StopScope heed_interrupts(const std::string& app);
+/// process that was told to ignore Ctrl-C (nohup) goes on doing so.
+class InterruptScope {
+ public:
+  explicit InterruptScope(const std::string& called);
+  InterruptScope(const InterruptScope&) = delete;
+  InterruptScope& operator=(const InterruptScope&) = delete;
+  ~InterruptScope();
+
+ private:
+  std::optional<SignalScope> alarm_;
+  std::optional<SignalScope> interrupt_;
+  StopScope stop_;
+};
 
 }  // namespace sepcal::app

@@ -23,8 +23,6 @@ using base::page;
 
 namespace {
 
-constexpr int bad_usage = 2;
-
 std::string list_verbs(const CLI::App& cli) {
   std::string list;
   for (const CLI::App* verb : cli.get_subcommands({})) {
@@ -81,7 +79,7 @@ int refuse_usage(const CLI::App& cli, const CLI::ParseError& error) {
 }  // namespace
 
 int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error to report, not an end
+  const SignalScope full_quota(SIGXFSZ, SIG_IGN);  // an error to report, not an end
   silence_solver_log();
   cli.require_subcommand(1);
   cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
@@ -102,7 +100,7 @@ int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perfor
     return bad_usage;
   };
   try {
-    const StopScope scope = heed_interrupts(cli.get_name());
+    const InterruptScope scope(cli.get_name());
     return perform();
   } catch (const Stopped&) {
     tell(page("{}: stopped by Ctrl-C; no file was written\n", cli.get_name()));

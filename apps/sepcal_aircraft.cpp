@@ -16,6 +16,7 @@
 #include "flight/files/text_file.hpp"
 #include "interval_arguments.hpp"
 #include "option_values.hpp"
+#include "programs.hpp"
 #include "progress.hpp"
 #include "running.hpp"
 #include "sepcal/detail/flight/aircraft_file.hpp"
@@ -485,13 +486,12 @@ class AircraftApp {
 };
 
 }  // namespace
-}  // namespace sepcal::app
 
-int main(int argc, char** argv) {
-  return sepcal::app::start("sepcal-aircraft", [&] {
-    CLI::App cli("Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.",
-                 "sepcal-aircraft");
-    const sepcal::app::AircraftApp app(cli);
-    return sepcal::app::run(cli, argc, argv, [&] { return app.perform(); });
-  });
+int run_aircraft(const std::string& called, int argc, char** argv) {
+  CLI::App cli("Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.",
+               called);
+  const AircraftApp app(cli);
+  return run(cli, argc, argv, [&] { return app.perform(); });
 }
+
+}  // namespace sepcal::app

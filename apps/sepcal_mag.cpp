@@ -7,9 +7,9 @@
 #include "flight/probes/ellipsoid.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
+#include "programs.hpp"
 #include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
-#include "terminal.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -117,11 +117,10 @@ class Magnetometer final : public Instrument {
 };
 
 }  // namespace
-}  // namespace sepcal::app
 
-int main(int argc, char** argv) {
-  return sepcal::app::start("sepcal-mag", [&] {
-    sepcal::app::Magnetometer magnetometer;
-    return sepcal::app::run(magnetometer, argc, argv);
-  });
+int run_mag(const std::string& called, int argc, char** argv) {
+  Magnetometer magnetometer;
+  return run(magnetometer, called, argc, argv);
 }
+
+}  // namespace sepcal::app

@@ -9,9 +9,9 @@
 #include "flight/files/headers.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
+#include "programs.hpp"
 #include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
-#include "terminal.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -138,11 +138,10 @@ class Pitot final : public Instrument {
 };
 
 }  // namespace
-}  // namespace sepcal::app
 
-int main(int argc, char** argv) {
-  return sepcal::app::start("sepcal-pitot", [&] {
-    sepcal::app::Pitot pitot;
-    return sepcal::app::run(pitot, argc, argv);
-  });
+int run_pitot(const std::string& called, int argc, char** argv) {
+  Pitot pitot;
+  return run(pitot, called, argc, argv);
 }
+
+}  // namespace sepcal::app

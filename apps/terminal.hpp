@@ -3,17 +3,12 @@
 // else to standard error.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "base/page.hpp"
 
 namespace sepcal::app {
-
-/// Does what an app is for, with the standard streams open; returns its exit code. What ends it
-/// before the command line is there is one line.
-int start(const char* app, const std::function<int()>& perform);
 
 /// Prints a result, JSON or a page, and makes sure that it arrived: a full disc behind a
 /// redirection is an error.

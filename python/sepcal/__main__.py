@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""python -m sepcal COMMAND: what the package does from a terminal beside the two apps.
+"""`sepcal COMMAND`, also as `python -m sepcal COMMAND`: all that sepcal does from a terminal.
 
-A command is a module with add_to(commands), which registers a parser whose default `run` takes the
-arguments and returns an exit code. Bad input is one line on standard error and exit code 2, Ctrl-C
-one and 130.
+Instruments (mag, pitot, aircraft) and files are the native programs' code, run in this process, so
+that Python's readers of logs serve them too. The other commands are modules with
+add_to(commands), which registers a parser whose default `run` takes the arguments and returns an
+exit code. Bad input is one line on standard error and exit code 2, Ctrl-C one and 130.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from sepcal.reporting import command as report
 from sepcal.validation import command as validation
 
 COMMANDS = (own, report, log, field, validation)
+NAMES = ("model", "report", "log", "field", "validate")
 BAD_INPUT = 2
 INTERRUPTED = 130
 
@@ -52,19 +54,41 @@ def open_streams() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit code."""
     open_streams()
-    parser = Parser(
-        prog="sepcal",
-        description="Beside sepcal-pitot and sepcal-mag: models of your own, reports, logs.",
-    )
-    parser.add_argument("--version", action="version", version=f"sepcal {_core.__version__}")
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if is_of_own_model(words):
+        words.insert(0, "model")
+    return run_here(words) if words and words[0] in NAMES else run_native(words)
+
+
+def is_of_own_model(words: Sequence[str]) -> bool:
+    """Whether `model` is left out before the verb, as it may be beside --model."""
+    if not words or words[0] not in own.VERBS:
+        return False
+    asks_for_help = "--help" in words or "-h" in words
+    names_model = any(word.partition("=")[0] == "--model" for word in words)
+    return names_model or (asks_for_help and words[0] != "check")
+
+
+def run_native(words: Sequence[str]) -> int:
+    """What needs no Python beside the readers of logs."""
+    sys.stdout.flush()
+    try:
+        return _core.run_sepcal([os.fsencode(word) for word in words])
+    except ImportError as error:  # the aircraft's module was not built
+        return refuse(f"sepcal: {error}")
+
+
+def run_here(words: Sequence[str]) -> int:
+    """A command of the package alone."""
+    parser = Parser(prog="sepcal")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     for command in COMMANDS:
         command.add_to(commands)
     asked = "sepcal"
     try:
         try:
-            chosen = parser.parse_args(arguments)
-            asked += f" {chosen.command}"
+            chosen = parser.parse_args(words)
+            asked += " " + " ".join(filter(None, (chosen.command, getattr(chosen, "verb", None))))
             return int(chosen.run(chosen))
         finally:
             sys.stdout.flush()

@@ -23,6 +23,7 @@ __all__: list[str] = [
     "discretise_inputs",
     "fit",
     "flight_path",
+    "foreign_reader",
     "iterate_least_squares",
     "join",
     "matrix_exponential",
@@ -31,6 +32,8 @@ __all__: list[str] = [
     "python_state_model",
     "read",
     "read_aircraft",
+    "read_foreign_files",
+    "run_aircraft",
     "short_period",
     "simulate",
     "smooth",
@@ -308,6 +311,7 @@ def flight_path(
     ],
     arg3: TrajectoryOptions,
 ) -> sepcal._core.Model: ...
+def foreign_reader() -> typing.Any: ...
 def iterate_least_squares(
     arg0: collections.abc.Callable[
         [int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]],
@@ -368,6 +372,8 @@ def python_state_model(
 ) -> sepcal._core.Model: ...
 def read(arg0: str) -> Fit: ...
 def read_aircraft(arg0: str) -> str: ...
+def read_foreign_files(arg0: typing.Any) -> None: ...
+def run_aircraft(arg0: str, arg1: collections.abc.Sequence[str]) -> int: ...
 def short_period(arg0: TrajectoryOptions) -> sepcal._core.Model: ...
 def simulate(
     arg0: str,

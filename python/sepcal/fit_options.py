@@ -78,6 +78,12 @@ class FitOptions(TypedDict, total=False):
             [all].
         from_time: Takes only rows from this time on [s] [all].
         to_time: Takes only rows up to this time [s] [all].
+        delimiter: What parts the file's columns, where it can be read in two ways: ',', ';', '|',
+            tab or space [as the file shows].
+        decimal: The file's decimal mark, where it can be read in two ways: '.' or ',' [as the file
+            shows].
+        join: Brings quantities that are logged at other times to the rows of the measured one:
+            linear or held [they stand in one row].
     """
 
     effects: Sequence[str | Effect] | None
@@ -115,3 +121,6 @@ class FitOptions(TypedDict, total=False):
     where: str | None
     from_time: float | None
     to_time: float | None
+    delimiter: str | None
+    decimal: str | None
+    join: str | None

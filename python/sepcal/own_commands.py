@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`python -m sepcal VERB --model FILE.py:CLASS ...`: every verb of the apps, of your own model.
+"""`sepcal model VERB --model FILE.py:CLASS ...`: every verb of the apps, of your own model.
 
 The file is run where it is named, and nowhere else.
 """
@@ -38,21 +38,25 @@ EXIT_CODES = {
     "adequate": 0, "effect_missing": 3, "slow_change": 6, "unexplained": 6,
 }  # fmt: skip
 FORM = "FILE.py:CLASS"
+VERBS = ("check", "fit", "effects", "compare", "diagnose", "add", "intervals", "apply")
 SCALARS = {"int": int, "float": float}
 
 
 def add_to(commands: Commands[argparse.ArgumentParser]) -> None:
-    """Registers the verbs."""
-    verb = _add(commands, "check", _check, "what a log is, and what that does to a fit")
+    """Registers the command and its verbs."""
+    what = "calibrates by a model of your own, a class of Python"
+    model = commands.add_parser("model", help=what, description=what)
+    verbs = model.add_subparsers(metavar="VERB", required=True, dest="verb")
+    verb = _add(verbs, "check", _check, "what a log is, and what that does to a fit")
     _add_flights(verb)
-    verb = _add(commands, "fit", _fit, "a calibration of one flight, or of several together")
+    verb = _add(verbs, "fit", _fit, "a calibration of one flight, or of several together")
     _add_flights(verb, several=True)
     _add_output(verb, "BASE.json")
     _add_options(verb)
-    _add(commands, "effects", _effects, "the effects that the model may lack")
-    verb = _add(commands, "compare", _compare, "the residual by output, maneuver and channel")
+    _add(verbs, "effects", _effects, "the effects that the model may lack")
+    verb = _add(verbs, "compare", _compare, "the residual by output, maneuver and channel")
     _add_subject(verb)
-    verb = _add(commands, "diagnose", _diagnose, "which physical effect is missing?")
+    verb = _add(verbs, "diagnose", _diagnose, "which physical effect is missing?")
     _add_subject(verb)
     _add_output(verb, "FOUND.json", needed=False)
     verb.add_argument("--auto", action="store_true", help="adds what is advised, and asks again")
@@ -60,14 +64,14 @@ def add_to(commands: Commands[argparse.ArgumentParser]) -> None:
     verb.add_argument("--only", action="append", default=[], metavar="EFFECT", help="a candidate")
     verb.add_argument("--inject", metavar="EFFECT=SIZE", help="would it have been found?")
     verb.add_argument("--within", type=float, metavar="SECONDS", help="answers within that time")
-    verb = _add(commands, "add", _add_effect, "the calibration with one more effect")
+    verb = _add(verbs, "add", _add_effect, "the calibration with one more effect")
     _add_subject(verb)
     verb.add_argument("effect", metavar="EFFECT", help="as diagnose names it: A[temp_degc]")
     _add_output(verb, "BETTER.json")
-    verb = _add(commands, "intervals", _intervals, "profile likelihood intervals")
+    verb = _add(verbs, "intervals", _intervals, "profile likelihood intervals")
     _add_subject(verb)
     verb.add_argument("--level", type=float, default=0.95, help="default: 0.95")
-    verb = _add(commands, "apply", _apply, "the log with what the calibrated model makes of it")
+    verb = _add(verbs, "apply", _apply, "the log with what the calibrated model makes of it")
     _add_subject(verb)
     _add_output(verb, "LOG.csv")
 
@@ -89,7 +93,7 @@ def _add(
 def _run_or_name_line(run: Callable[[argparse.Namespace], int], given: argparse.Namespace) -> int:
     """Raises Error with the line of the model's file where the model itself fails."""
     try:
-        with told_work(f"sepcal {given.command}"):
+        with told_work(f"sepcal model {given.verb}"):
             return run(given)
     except (_core.Error, OSError, MemoryError):
         raise

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "python" / "sepcal"
 
 # Files that may write to a stream, and nothing else in apps/ or the library.
-WRITERS = r"^apps/(terminal|interrupt)\.cpp$"
+WRITERS = r"^apps/(terminal|starting|interrupt)\.cpp$"
 STREAM = re.compile(
     r"fmt::print\(|std::cout|std::cerr|std::clog|\bstd::fputs\(|\bstd::puts\(|\bstd::v?f?printf\("
     r"|\bstd::fwrite\([^;]*std(out|err)|::write\(STD"

@@ -218,7 +218,7 @@ def test_the_command(small: Path) -> None:
         ),
         (("report", "flight.csv", "base.json", "-o", "."), ("is a folder",)),
         (("frobnicate",), ("sepcal: ", "frobnicate")),
-        ((), ("sepcal: ", "COMMAND")),
+        ((), ("sepcal: ", "command")),
     ],
 )
 def test_bad_usage(small: Path, arguments: tuple[str, ...], words: tuple[str, ...]) -> None:

@@ -65,7 +65,7 @@ def test_a_full_standard_output_of_python(arguments: str, tmp_path: Path) -> Non
     refused = shell(f"{command_of('python -m sepcal')} {arguments} >/dev/full", tmp_path)
     assert refused.returncode == 2
     assert refused.stderr.count("\n") == 1, refused.stderr
-    assert "standard output can't be written: No space left on device" in refused.stderr
+    assert "standard output can't be written" in refused.stderr
 
 
 def make_loop(folder: Path) -> None:

@@ -75,6 +75,9 @@ const std::shared_ptr<const Probe>& subject_of(const Model& model);
 /// Throws Error where the model takes none.
 const Probe& probe_of(const Model& model);
 
+// Of both modules.
+void define_foreign_files(py::module_& module);
+
 // Of sepcal._core.
 void define_comparison(py::module_& module);
 void define_diagnosis(py::module_& module);
@@ -91,12 +94,14 @@ void define_flight(py::module_& module);
 void define_intervals(py::module_& module);
 void define_many(py::module_& module);
 void define_noise(py::module_& module);
+void define_programs(py::module_& module);
 void define_simulation(py::module_& module);
 void define_state_results(py::module_& module);
 void define_trials(py::module_& module);
 
 // Of sepcal._states.
 void define_aircraft(py::module_& module);
+void define_aircraft_program(py::module_& module);
 void define_damped_sinusoids(py::module_& module);
 void define_filters(py::module_& module);
 void define_states(py::module_& module);

@@ -69,16 +69,6 @@ std::vector<std::string> maneuvers(const Flight& flight) {
   return {flight.maneuvers().begin(), flight.maneuvers().end()};
 }
 
-/// A reader in Python for files of other forms, which is never destroyed; None: they are refused.
-void read_foreign_files(py::object reader) {
-  if (reader.is_none()) return read_foreign_files_with({});
-  auto* const kept = new py::object(std::move(reader));
-  read_foreign_files_with([kept](const std::string& file, const std::string& form) {
-    const py::gil_scoped_acquire gil;
-    return (*kept)(file, form).cast<Flight>();
-  });
-}
-
 /// [(header, values, first cell that is no number or None, the log's own header or ""), ...]
 using PickledColumns =
     std::vector<std::tuple<std::string, Array, std::optional<std::pair<std::size_t, std::string>>,
@@ -151,7 +141,6 @@ void define_flights(py::module_& module) {
   module.def("check_not_input", [](const std::string& output, const std::string& input) {
     check_not_input(output, input);
   });
-  module.def("read_foreign_files", &read_foreign_files);
   module.def(
       "read_csv",
       [](const std::string& file, std::string delimiter, std::string decimal) {

@@ -74,6 +74,7 @@ PYBIND11_MODULE(_core, module) {
   define_comparison(module);
   define_diagnosis(module);
   define_flight(module);
+  define_foreign_files(module);
   define_check(module);
   define_export(module);
   define_figures(module);
@@ -81,4 +82,5 @@ PYBIND11_MODULE(_core, module) {
   define_trials(module);
   define_simulation(module);
   define_state_results(module);
+  define_programs(module);
 }

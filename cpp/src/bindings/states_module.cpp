@@ -7,10 +7,13 @@
 
 PYBIND11_MODULE(_states, module) {
   using namespace sepcal::bindings;
-  pybind11::module_::import("sepcal._core");
+  const auto core = pybind11::module_::import("sepcal._core");
+  define_foreign_files(module);
+  module.attr("read_foreign_files")(core.attr("foreign_reader")());
   sepcal::silence_solver_log();
   define_states(module);
   define_filters(module);
   define_damped_sinusoids(module);
   define_aircraft(module);
+  define_aircraft_program(module);
 }

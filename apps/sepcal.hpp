@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `sepcal COMMAND`: the native front door. What needs Python is said to be there.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sepcal/flight/flight.hpp"
+
+namespace sepcal::app {
+
+/// The programs of a process by the names of their commands.
+struct NamedProgram {
+  std::string_view name;
+  std::function<int(const std::string& called, int argc, char** argv)> run;  // as in programs.hpp
+};
+
+/// Runs `sepcal COMMAND ...` and returns its exit code.
+int run_sepcal(const std::vector<NamedProgram>& programs, int argc, char** argv);
+
+/// The instrument whose columns a flight has, and why it is taken for that one.
+struct Guess {
+  std::string command;  // "mag", or empty where there is none
+  std::string reason;
+};
+Guess guess_instrument(const Flight& flight);
+
+}  // namespace sepcal::app
