@@ -287,7 +287,7 @@ def to_flight(flight: object, call: str, model: object = "") -> Flight:
     if isinstance(flight, str | os.PathLike):
         with reading_for(kind_of(model)):
             return read(flight)
-    if is_frame(flight) or isinstance(flight, Mapping) or is_structured(flight):
+    if is_frame(flight) or isinstance(flight, Mapping | np.ndarray):
         return Flight(flight)  # type: ignore[arg-type]
     raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}sepcal.read(file))")
 
@@ -299,13 +299,8 @@ def kind_of(model: object) -> str:
 
 def to_columns(data: object, model: "Model") -> Columns | None:
     """A model's own columns by name; None of what has not all of them: it is a flight."""
-    if isinstance(data, str | os.PathLike):
+    if isinstance(data, str | os.PathLike) or not hasattr(data, "__getitem__"):
         return None
     columns = Flight(data) if is_frame(data) else by_name(data)  # type: ignore[arg-type]
     needed = {*model._columns_in(columns), *model._measured_in(columns)}
     return columns if needed <= set(columns) else None
-
-
-def is_structured(data: object) -> bool:
-    """Whether it is an array with named columns."""
-    return isinstance(data, np.ndarray) and data.dtype.names is not None

@@ -24,7 +24,7 @@ def read(file: str, chosen: str | None) -> Table:
     Raises:
         Error: As read_log() does.
     """
-    log = open_log(file)
+    log = open_log(file, cut_off=True)  # and its notes say so
     names = [chosen] if chosen is not None else _choose(log)
     tables = [_to_table(log, name) for name in names]
     others = [sensor.name for sensor in log.sensors if sensor.name not in names]

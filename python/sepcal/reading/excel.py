@@ -49,8 +49,11 @@ def read_workbook(name: str, file: str, sha256: str, chosen: str | None) -> _cor
         try:
             with zipfile.ZipFile(file) as parts:
                 budget.take(sum(part.file_size for part in parts.infolist()), "the workbook")
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
-            sheets = _write_sheets(file, book, chosen, folder, budget)
+            with open(file, "rb") as opened:  # by its name openpyxl looks at the ending
+                book = openpyxl.load_workbook(
+                    opened, read_only=True, data_only=True, keep_links=False
+                )
+                sheets = _write_sheets(file, book, chosen, folder, budget)
         except (_core.Error, MemoryError):
             raise
         except Exception as error:  # what openpyxl raises of damage is of any kind

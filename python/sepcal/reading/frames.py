@@ -102,7 +102,8 @@ def _of_xarray(data: Any) -> Table:  # noqa: ANN401
         raise _core.Error("the Dataset has no variable of one dimension; a flight's has its time")
     dimension = max(set(lengths), key=lambda name: (lengths.count(name), name == "time"))
     found = Table()
-    for name, variable in data.variables.items():
+    for name in (*data.coords, *data.data_vars):
+        variable = data[name]
         if variable.dims != (dimension,):
             if variable.ndim:
                 found.left_out.append(str(name))

@@ -13,6 +13,7 @@ import numpy as np
 from sepcal import _core
 from sepcal.reading.extras import load
 from sepcal.reading.limits import Budget
+from sepcal.reading.pandas_hdf import pandas_frame, pandas_table
 from sepcal.reading.rates import join
 from sepcal.reading.table import Table
 from sepcal.reading.trees import Tree, tables_in
@@ -50,7 +51,9 @@ class Reader:
         if depth > DEEPEST:
             raise _core.Error(f"{self._file}: its groups are more than {DEEPEST} deep")
         if {"axis0", "axis1", "block0_items", "block0_values"} <= set(group):
-            return self._of_pandas(group)
+            return pandas_frame(self, group)
+        if "table" in group and "index_kind" in group["table"].attrs:
+            return pandas_table(self, group["table"])
         found: dict[str, np.ndarray | Tree] = {}
         for name, node in self.nodes_of(group):
             if isinstance(node, self.h5py.Group):
@@ -88,27 +91,6 @@ class Reader:
                 return None
             return np.asarray(dataset.asstr(errors="replace")[()], dtype=object)
         return _as_numbers(dataset, np.asarray(dataset[()])) if kind.kind in "fiubSV" else None
-
-    def _of_pandas(self, group: Any) -> Tree:  # noqa: ANN401
-        """A DataFrame as DataFrame.to_hdf() writes it with format="fixed"."""
-        found: dict[str, np.ndarray | Tree] = {}
-        index = self.values_of(group["axis1"])
-        if index is not None:
-            kind = group["axis1"].attrs.get("kind", b"")
-            is_date = b"datetime64" in (kind if isinstance(kind, bytes) else str(kind).encode())
-            if is_date:
-                found["time"] = index.view("M8[ns]")
-            elif not np.array_equal(index, np.arange(len(index))):  # which pandas counts itself
-                found["index"] = index
-        number = 0
-        while f"block{number}_values" in group:
-            items = self.values_of(group[f"block{number}_items"])
-            values = self.values_of(group[f"block{number}_values"])
-            if items is not None and values is not None and values.ndim == 2:
-                for name, column in zip(items.ravel(), values.T, strict=False):
-                    found[name.decode() if isinstance(name, bytes) else str(name)] = column
-            number += 1
-        return found
 
 
 def _unit_of(dataset: Any) -> object:  # noqa: ANN401

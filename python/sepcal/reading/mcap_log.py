@@ -102,11 +102,11 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
                 name = f"{channel.topic} ({channel.message_encoding})"
                 if name in skipped:
                     continue
-                if channel.id not in decoders:
-                    decoders[channel.id] = _decoder(file, channel, schema)
                 try:
+                    if channel.id not in decoders:
+                        decoders[channel.id] = _decoder(file, channel, schema)
                     values, frame = decoders[channel.id](record.data)
-                except MemoryError:
+                except (_core.Error, MemoryError):
                     raise
                 except Exception:  # of damage, anything
                     skipped[name] = None
@@ -171,7 +171,7 @@ def _walk(value: Any, name: str, found: dict[str, float], frames: list[str], dep
                 _walk(part, f"{name}[{index}]", found, frames, depth + 1)
     elif hasattr(value, "__slots__"):
         for key in value.__slots__:
-            if not key.startswith("_"):
+            if not key.startswith("_") and not key.endswith("covariance"):
                 part = getattr(value, key)
                 _walk(part, f"{name}.{key}" if name else key, found, frames, depth + 1)
 

@@ -63,7 +63,10 @@ def join(file: str, tables: Sequence[Table], chosen: str | None = None) -> Table
             f"{file}: no table of numbers is in it: columns of one length, two rows or more"
         )
     bases = _choose(file, tables, chosen)
-    return one_below_the_other([_around(base, tables) for base in bases])
+    others = [table for table in tables if not any(table is base for base in bases)]
+    if len(bases) == 1:
+        return _around(bases[0], tables)
+    return one_below_the_other([_around(base, [base, *others]) for base in bases])
 
 
 def _choose(file: str, tables: Sequence[Table], chosen: str | None) -> list[Table]:

@@ -51,11 +51,9 @@ def suffix_of(unit: object) -> str | None:
 
 
 def with_unit(name: str, unit: object) -> str:
-    """The name with the unit's suffix, where that is known and not there yet."""
+    """The name with the unit's suffix, where that is known and the name has none."""
     suffix = suffix_of(unit)
-    if suffix is None or name.lower().endswith(f"_{suffix}"):
-        return name
-    return f"{name}_{suffix}"
+    return name if suffix is None or quantity_of(name)[1] else f"{name}_{suffix}"
 
 
 def quantity_of(header: str) -> tuple[str, str]:
