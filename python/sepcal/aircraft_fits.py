@@ -330,7 +330,7 @@ class AircraftFit(Fit):
             return Flight._of(states_module().join(given, _core.Options(), self.core))
         if flight is None:
             raise _core.Error(
-                f"a loaded fit has no flight; give one: {call}sepcal.read_csv({self.core.file!r}))"
+                f"a loaded fit has no flight; give one: {call}sepcal.read({self.core.file!r}))"
             )
         return to_flight(flight, call)
 

@@ -314,7 +314,7 @@ class Calibration(Fit):
         if flight is None:
             raise _core.Error(
                 "a loaded calibration has no flight; give one: "
-                f"{call}sepcal.read_csv({self.core.file!r}))"
+                f"{call}sepcal.read({self.core.file!r}))"
             )
         return self._to_flight(flight, call)
 

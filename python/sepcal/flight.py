@@ -15,6 +15,7 @@ from sepcal.printing import as_utf8, in_line
 from sepcal.reading import AIR, MAGNETIC, read_file, reading_for
 from sepcal.reading.extras import load
 from sepcal.reading.frames import is_frame, of_frame
+from sepcal.reading.units import quantity_of
 from sepcal.whole_files import name_of, write_whole
 
 if TYPE_CHECKING:
@@ -298,9 +299,13 @@ def kind_of(model: object) -> str:
 
 
 def to_columns(data: object, model: "Model") -> Columns | None:
-    """A model's own columns by name; None of what has not all of them: it is a flight."""
+    """A model's own columns by name, and what was meant to be; None of a flight.
+
+    That has not all of them, and a column whose header ends in a unit.
+    """
     if isinstance(data, str | os.PathLike) or not hasattr(data, "__getitem__"):
         return None
     columns = Flight(data) if is_frame(data) else by_name(data)  # type: ignore[arg-type]
     needed = {*model._columns_in(columns), *model._measured_in(columns)}
-    return columns if needed <= set(columns) else None
+    is_flight = not needed <= set(columns) and any(quantity_of(str(name))[1] for name in columns)
+    return None if is_flight else columns

@@ -30,7 +30,7 @@ def frames(columns):
     yield "pandas", frame
     yield "pandas by time", frame.set_index("time_s")
     yield "pandas' own numbers", frame.convert_dtypes()
-    yield "in Fortran's order", pandas.DataFrame(frame.to_numpy(order="F"), columns=frame.columns)
+    yield "in Fortran's order", pandas.DataFrame(np.asfortranarray(frame), columns=list(frame))
     yield "a dict", columns
     if polars := _module("polars"):
         yield "polars", polars.DataFrame(columns)
