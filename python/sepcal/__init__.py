@@ -12,7 +12,7 @@ SI units, angles in rad, fields in uT. Body axes are forward-right-down, navigat
 north-east-down.
 """
 
-from sepcal import rivals, triads
+from sepcal import _core, reading, rivals, triads
 from sepcal._core import (
     Advice,
     Applied,
@@ -64,7 +64,7 @@ from sepcal.exporting import Exported, export
 from sepcal.filters import Filter, SmoothedPass
 from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
-from sepcal.flight import Flight, read_csv, stream_csv
+from sepcal.flight import Flight, read, read_csv, stream_csv
 from sepcal.geomagnetism import EarthField, earth_field
 from sepcal.geometry import Aircraft, read_aircraft
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
@@ -111,6 +111,8 @@ from sepcal.triads import Triad
 from sepcal.trial_fits import TrialFits, fit_trials
 from sepcal.trials import Estimates, Failure, TrialRecord
 from sepcal.validation import Validation, validate
+
+_core.read_foreign_files(reading.read_foreign)
 
 __all__ = [
     "Accelerometer",
@@ -233,6 +235,7 @@ __all__ = [
     "predict",
     "profile_intervals",
     "propagate",
+    "read",
     "read_aircraft",
     "read_csv",
     "read_log",

@@ -14,7 +14,7 @@ from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.fit_options import FitOptions
-from sepcal.flight import Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.geometry import Aircraft
 from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
@@ -97,7 +97,7 @@ class AircraftFit(Fit):
         parameters = len(self.parameters)
         return f"{self.model} by {self.method}: {self.status}, {parameters} parameters"
 
-    def compare(self, flight: Flight | Sequence[Flight] | None = None) -> Comparison:
+    def compare(self, flight: AnyFlight | Sequence[AnyFlight] | None = None) -> Comparison:
         """Residuals on a flight, by default the fitted one.
 
         Of another flight the initial states are estimated anew, all else is held.
@@ -110,7 +110,7 @@ class AircraftFit(Fit):
     @overload
     def diagnose(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         inject: Mapping[str, float | Sequence[float]] | None = None,
         auto: Literal[False] = False,
@@ -125,7 +125,7 @@ class AircraftFit(Fit):
     @overload
     def diagnose(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         auto: Literal[True],
         most: int | None = None,
@@ -139,7 +139,7 @@ class AircraftFit(Fit):
 
     def diagnose(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         inject: Mapping[str, float | Sequence[float]] | None = None,
         auto: bool = False,
@@ -199,7 +199,7 @@ class AircraftFit(Fit):
 
     def intervals(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         level: float = 0.95,
         names: Sequence[str] | None = None,
@@ -218,7 +218,9 @@ class AircraftFit(Fit):
         chosen = self._or_fitted(flight, "intervals(")
         return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
 
-    def add(self, effect: str, flight: Flight | Sequence[Flight] | None = None) -> AircraftFit:
+    def add(
+        self, effect: str, flight: AnyFlight | Sequence[AnyFlight] | None = None
+    ) -> AircraftFit:
         """The same fit with an effect more, as "Cm[alpha^2]" or "imu_late", from where it ended.
 
         Of Aero also a spline, "CX[spline(alpha,5)]".
@@ -231,7 +233,7 @@ class AircraftFit(Fit):
         return AircraftFit(self.core.add(chosen._core, effect), chosen)
 
     def apply(
-        self, flight: Flight | None = None, *, process_noise: Mapping[str, float] | None = None
+        self, flight: AnyFlight | None = None, *, process_noise: Mapping[str, float] | None = None
     ) -> dict[str, Array]:
         """What was flown, by header, each of shape (rows,).
 
@@ -256,7 +258,7 @@ class AircraftFit(Fit):
         return self.core.apply_to_file(name_of(file), name_of(output), given)
 
     def smooth(
-        self, process_noise: Mapping[str, float] | None = None, flight: Flight | None = None
+        self, process_noise: Mapping[str, float] | None = None, flight: AnyFlight | None = None
     ) -> Smoothed:
         """States and process noise, given all of a flight, at the fit's parameters.
 
@@ -274,7 +276,7 @@ class AircraftFit(Fit):
 
     def track(
         self,
-        flight: Flight | None = None,
+        flight: AnyFlight | None = None,
         *,
         start_rows: int = 0,
         method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
@@ -320,7 +322,7 @@ class AircraftFit(Fit):
         )
         return Track(core)
 
-    def _or_fitted(self, flight: Flight | Sequence[Flight] | None, call: str) -> Flight:
+    def _or_fitted(self, flight: AnyFlight | Sequence[AnyFlight] | None, call: str) -> Flight:
         """A flight, or several as one. Raises Error, which shows how to call again, for none."""
         flight = flight if flight is not None else self.flight
         if isinstance(flight, Sequence) and not isinstance(flight, str):
@@ -328,7 +330,7 @@ class AircraftFit(Fit):
             return Flight._of(states_module().join(given, _core.Options(), self.core))
         if flight is None:
             raise _core.Error(
-                f"a loaded fit has no flight; give one: {call}sepcal.read_csv({self.core.file!r}))"
+                f"a loaded fit has no flight; give one: {call}sepcal.read({self.core.file!r}))"
             )
         return to_flight(flight, call)
 
@@ -387,7 +389,7 @@ def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> Air
 
 
 def fit_flights(
-    model: AircraftModel, flights: Sequence[Flight], options: FitOptions
+    model: AircraftModel, flights: Sequence[AnyFlight], options: FitOptions
 ) -> AircraftFit:
     """Of several flights together, each with initial states of its own; fit_jointly() calls it."""
     given = [to_flight(one, "fit_jointly(model, [")._core for one in flights]
@@ -398,7 +400,7 @@ def fit_flights(
 
 @spelled_out()
 def two_step(
-    flight: Flight,
+    flight: AnyFlight,
     aircraft: Aircraft,
     *,
     equations: Mapping[str, Any] | None = None,

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypeGuard, overload
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.intervals import Intervals, Prediction
 from sepcal.models import Model
 from sepcal.options import to_names
@@ -111,7 +111,7 @@ class Calibration(Fit):
         """The fit alone."""
         return Fit(self)
 
-    def compare(self, flight: Flight | Sequence[Flight] | None = None) -> Comparison:
+    def compare(self, flight: AnyFlight | Sequence[AnyFlight] | None = None) -> Comparison:
         """Residuals on a flight, by default the fitted one, by maneuver and output.
 
         Of a joint fit: on all its flights, or on one of them.
@@ -125,7 +125,7 @@ class Calibration(Fit):
     @overload
     def diagnose(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         effects: Sequence[Effect] = (),
         inject: Mapping[str, float | Sequence[float]] | None = None,
@@ -141,7 +141,7 @@ class Calibration(Fit):
     @overload
     def diagnose(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         effects: Sequence[Effect] = (),
         auto: Literal[True],
@@ -156,7 +156,7 @@ class Calibration(Fit):
 
     def diagnose(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         effects: Sequence[Effect] = (),
         inject: Mapping[str, float | Sequence[float]] | None = None,
@@ -214,7 +214,7 @@ class Calibration(Fit):
         return Stepwise(self._next(stepped.fitted, chosen, effects), stepped)
 
     def add(
-        self, effect: str | Effect, flight: Flight | Sequence[Flight] | None = None
+        self, effect: str | Effect, flight: AnyFlight | Sequence[AnyFlight] | None = None
     ) -> Calibration:
         """The calibration with one more effect, refitted from these estimates.
 
@@ -229,11 +229,11 @@ class Calibration(Fit):
             Error: Bad input, as in fit(); an effect that it has already; no flight given where the
                 calibration was loaded.
         """
-        flight = self._or_fitted(flight, "add(..., ")
+        chosen = self._or_fitted(flight, "add(..., ")
         name = effect.name if isinstance(effect, Effect) else effect
         own = [effect] if isinstance(effect, Effect) else []
-        core = self.core.add(flight._core, name, to_core_effects(own))
-        return self._next(core, flight, own)
+        core = self.core.add(chosen._core, name, to_core_effects(own))
+        return self._next(core, chosen, own)
 
     def _next(self, core: _core.Calibration, flight: Flight, own: Sequence[Effect]) -> Calibration:
         """The same with more effects."""
@@ -241,7 +241,7 @@ class Calibration(Fit):
 
     def intervals(
         self,
-        flight: Flight | Sequence[Flight] | None = None,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
         *,
         level: float = 0.95,
         names: Sequence[str] | None = None,
@@ -261,7 +261,7 @@ class Calibration(Fit):
         return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
 
     def certify(
-        self, flight: Flight | None = None, *, tolerance: float = 1e-6, boxes: int = 20000
+        self, flight: AnyFlight | None = None, *, tolerance: float = 1e-6, boxes: int = 20000
     ) -> Certificate:
         """Prove that no cost within the bounds is lower, or find one; see sepcal.certify().
 
@@ -277,7 +277,7 @@ class Calibration(Fit):
         return Certificate(self.core.certify(chosen._core, tolerance, boxes))
 
     def predict(
-        self, flight: Flight | Sequence[Flight] | None = None, *, level: float = 0.95
+        self, flight: AnyFlight | Sequence[AnyFlight] | None = None, *, level: float = 0.95
     ) -> Prediction:
         """The calibrated model on a flight, by default the fitted one, with its bands.
 
@@ -287,36 +287,41 @@ class Calibration(Fit):
         chosen = self._or_fitted(flight, "predict(")
         return Prediction(self.core.predict(chosen._core, level))
 
-    def join(self, flights: Sequence[Flight]) -> Flight:
+    def join(self, flights: Sequence[AnyFlight]) -> Flight:
         """The flights of a joint fit, in any order, as the one that it is of.
 
         Raises:
             Error: Other flights than those, or one that was changed; a fit of one flight.
         """
-        return Flight._of(self.core.rejoin([to_flight(one, "join([")._core for one in flights]))
+        return Flight._of(
+            self.core.rejoin([self._to_flight(one, "join([")._core for one in flights])
+        )
 
     def _on(
-        self, flight: Flight | Sequence[Flight] | None, call: str, *, known: bool
+        self, flight: AnyFlight | Sequence[AnyFlight] | None, call: str, *, known: bool
     ) -> tuple[_core.Calibration, Flight]:
         """The calibration on a flight; `known`: with what is the flight's own."""
         chosen = self._or_fitted(flight, call)
-        if not self.flights or chosen is self.flight or not isinstance(flight, Flight):
+        if not self.flights or chosen is self.flight or _are_several(flight):
             return self.core, chosen
         return self.core.on_flight(chosen._core, known), chosen
 
-    def _or_fitted(self, flight: Flight | Sequence[Flight] | None, call: str) -> Flight:
+    def _or_fitted(self, flight: AnyFlight | Sequence[AnyFlight] | None, call: str) -> Flight:
         """A flight, or several joined. Raises Error, which shows how to call again, for none."""
         flight = flight if flight is not None else self.flight
-        if isinstance(flight, Sequence) and not isinstance(flight, str):
+        if _are_several(flight):
             return self.join(flight)
         if flight is None:
             raise _core.Error(
                 "a loaded calibration has no flight; give one: "
-                f"{call}sepcal.read_csv({self.core.file!r}))"
+                f"{call}sepcal.read({self.core.file!r}))"
             )
-        return to_flight(flight, call)
+        return self._to_flight(flight, call)
 
-    def apply(self, flight: Flight) -> dict[str, Array]:
+    def _to_flight(self, flight: object, call: str) -> Flight:
+        return to_flight(flight, call, self.core.model)
+
+    def apply(self, flight: AnyFlight) -> dict[str, Array]:
         """The corrected readings of a flight by header, each of shape (rows,).
 
         Five-hole: airspeed_cal_mps, alpha_cal_rad, beta_cal_rad. Pitot-static: airspeed_cal_mps.
@@ -326,7 +331,7 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
         """
-        core, chosen = self._on(to_flight(flight, "apply("), "apply(", known=False)
+        core, chosen = self._on(flight, "apply(", known=False)
         return core.apply(chosen._core)
 
     def apply_to_file(self, file: Path, output: Path) -> _core.Applied:
@@ -353,6 +358,12 @@ class Calibration(Fit):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _parse, (self.to_json(), self.own_effects, self.own_model)
+
+
+def _are_several(
+    flight: AnyFlight | Sequence[AnyFlight] | None,
+) -> TypeGuard[Sequence[AnyFlight]]:
+    return isinstance(flight, Sequence) and not isinstance(flight, str)
 
 
 def load(

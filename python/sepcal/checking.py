@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import Any
 
 from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
-from sepcal.flight import Flight
+from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
 from sepcal.states_module import states_module
@@ -43,14 +44,14 @@ class FlightCheck(Page, _core.FlightCheck):
         return [note._asdict() for note in self.notes]
 
 
-def check(model: AnyModel | Aero | RigidAircraft, flight: Flight) -> FlightCheck:
+def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCheck:
     """What a log is, column by column, and what that does to a calibration from it.
 
     Nothing is fitted, and a log that a fit would refuse is described all the same.
 
     Args:
         model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own, as for the fit.
-        flight: The log.
+        flight: The log, or what read() makes a flight of.
 
     Returns:
         A FlightCheck: `columns`, `notes` (worst first; each with what it is, what it does to the
@@ -59,10 +60,12 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: Flight) -> FlightCheck
     Raises:
         Error: A model that takes no flight.
     """
-    if isinstance(model, Flight) or not isinstance(flight, Flight):
+    if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
     if isinstance(model, Aero | RigidAircraft | FlightPath):
         name = model._aircraft_options()["model"]
-        return FlightCheck(states_module().check(name, flight._core))
+        chosen = to_flight(flight, "check(model, ")
+        return FlightCheck(states_module().check(name, chosen._core))
     model = as_model(model)
-    return FlightCheck(_core.check(model._core, flight._core))
+    chosen = to_flight(flight, "check(model, ", model)
+    return FlightCheck(_core.check(model._core, chosen._core))

@@ -35,7 +35,7 @@ def by_name(data: Columns) -> Columns:
     Raises Error for the name of a file, and for an array without names.
     """
     if isinstance(data, str | os.PathLike):
-        raise _core.Error(f"'{os.fspath(data)}' is the name of a file; give sepcal.read_csv(file)")
+        raise _core.Error(f"'{os.fspath(data)}' is the name of a file; give sepcal.read(file)")
     if not isinstance(data, np.ndarray):
         return data
     if data.dtype.names is None:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from sepcal import _core
 from sepcal.calibration import Calibration, Path
-from sepcal.flight import Flight
+from sepcal.flight import AnyFlight, to_flight
 from sepcal.whole_files import name_of
 
 Target = Literal["c", "cpp", "px4", "ardupilot"]
@@ -36,7 +36,7 @@ def export(
     file: Path,
     to: Target | str,
     *,
-    flight: Flight | None = None,
+    flight: AnyFlight | None = None,
     sensor: int | None = None,
     device_id: int | None = None,
     mounting: Sequence[float] | None = None,
@@ -80,7 +80,9 @@ def export(
         Error: A calibration that no vehicle should load, an effect that the vehicle can't follow, a
             value beyond what the autopilot takes, a flight that is needed and not there.
     """
-    chosen = flight if flight is not None else calibration.flight
+    chosen = calibration.flight
+    if flight is not None:
+        chosen = to_flight(flight, "export(..., flight=", calibration.core.model)
     turned = None if mounting is None else [float(angle) for angle in mounting]
     if turned is not None and len(turned) != 3:
         raise _core.Error("mounting is not three angles; give roll, pitch, yaw in degrees")

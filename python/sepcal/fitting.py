@@ -8,9 +8,9 @@ from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.aircraft_fits import AircraftFit, fit_flight
 from sepcal.calibration import Calibration
-from sepcal.columns import Columns, by_name, labels_in, take_columns, take_drivers
+from sepcal.columns import by_name, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
-from sepcal.flight import Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_columns, to_flight
 from sepcal.models import Model
 from sepcal.options import refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, name_effects, to_core_effects
@@ -21,21 +21,25 @@ from sepcal.trajectories import FlightPath
 
 @overload
 def fit(  # type: ignore[overload-overlap]  # a FlightPath is a Model
-    model: FlightPath | Aero | RigidAircraft, data: Flight, **options: Unpack[FitOptions]
+    model: FlightPath | Aero | RigidAircraft,
+    data: Flight | str | os.PathLike[str],
+    **options: Unpack[FitOptions],
 ) -> AircraftFit: ...
 
 
 @overload
-def fit(model: Model, data: Flight, **options: Unpack[FitOptions]) -> Calibration: ...
+def fit(
+    model: Model, data: Flight | str | os.PathLike[str], **options: Unpack[FitOptions]
+) -> Calibration: ...
 
 
 @overload
-def fit(model: AnyModel, data: Columns, **options: Unpack[FitOptions]) -> Fit: ...
+def fit(model: AnyModel, data: AnyFlight, **options: Unpack[FitOptions]) -> Fit: ...
 
 
 @spelled_out()
 def fit(
-    model: AnyModel | Aero | RigidAircraft, data: Flight | Columns, **options: Unpack[FitOptions]
+    model: AnyModel | Aero | RigidAircraft, data: AnyFlight, **options: Unpack[FitOptions]
 ) -> Fit:
     """Fits a model: samples xi2 and solves xi1 linearly, then maximum likelihood within bounds.
 
@@ -45,7 +49,8 @@ def fit(
         model: One of sepcal's own, of flights also Aero and RigidAircraft, or one of yours in
             Python: any object with the tables and at() of SeparableModel or, with a state, of
             StateModel. Python lets one thread in at a time, so that threads=0 then means one.
-        data: A Flight (columns with units in their headers), or the model's own inputs and outputs
+        data: A Flight (columns with units in their headers) or what read() makes one of: a file's
+            name, a DataFrame. Or, where all of these are there, the model's own inputs and outputs
             by name in the units of its tables, each of shape (N,): a dict or a DataFrame. There
             "time" [s] and "maneuver" (labels) are optional and cut the record at gaps and changes
             of label; other columns are ignored but by effects. C-contiguous float64 arrays are not
@@ -53,7 +58,8 @@ def fit(
         **options: FitOptions.
 
     Returns:
-        Of a Flight a Calibration, or the AircraftFit of a path or an aircraft; else a Fit.
+        Of a flight a Calibration, or the AircraftFit of a path or an aircraft; of the model's own
+        columns a Fit.
         Non-convergence and what the data do not determine are its `status` and `message`.
 
     Raises:
@@ -64,10 +70,13 @@ def fit(
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the data: sepcal.fit(model, flight)")
     if isinstance(model, Aero | RigidAircraft) or (
-        isinstance(model, FlightPath) and isinstance(data, Flight)
+        isinstance(model, FlightPath) and isinstance(data, Flight | str | os.PathLike)
     ):
         return fit_flight(model, to_flight(data, "fit(model, "), options)
     model = as_model(model)
+    columns_of_model = None if isinstance(data, Flight) else to_columns(data, model)
+    if columns_of_model is None:
+        data = to_flight(data, "fit(model, ", model)
     if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     effects = options.get("effects") or ()
@@ -80,7 +89,7 @@ def fit(
     refuse_log_choice(options)
     if getattr(model, "mounting", None) is not None:
         raise _core.Error("mounting turns the readings of a Flight; turn these yourself")
-    data = by_name(data)
+    data = by_name(columns_of_model or {})
     there = set(data)
     needed = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]
     columns = take_columns(model._owner, data, dict.fromkeys(needed))

@@ -1,14 +1,49 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Flight logs: the table of a CSV file, or arrays under the same headers."""
 
+import html
+import math
 import os
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Self
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol, Self, TypeAlias
+
+import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
 from sepcal.printing import as_utf8, in_line
-from sepcal.whole_files import name_of
+from sepcal.reading import AIR, MAGNETIC, read_file, reading_for
+from sepcal.reading.extras import load
+from sepcal.reading.frames import is_frame, of_frame
+from sepcal.reading.units import quantity_of
+from sepcal.whole_files import name_of, write_whole
+
+if TYPE_CHECKING:
+    import pandas
+
+    from sepcal.models import Model
+
+ROWS_SHOWN = 5
+KINDS = {  # by the model's name and by its class
+    **dict.fromkeys(("five-hole", "pitot-static", "vane-boom"), AIR),
+    **dict.fromkeys(("FiveHoleProbe", "PitotStatic", "VaneBoom"), AIR),
+    **dict.fromkeys(("magnetometer", "magnetometer-norm", "Magnetometer"), MAGNETIC),
+}
+
+
+class ArrowTable(Protocol):
+    """A table of Arrow's, polars' or another's that Arrow's C interface hands over."""
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The stream."""
+
+
+class Dataset(Protocol):
+    """xarray's."""
+
+    @property
+    def data_vars(self) -> object:
+        """Its variables."""
 
 
 class Flight(Mapping[str, Array]):
@@ -19,8 +54,9 @@ class Flight(Mapping[str, Array]):
     `flight["pt_pa"]` is a read-only array of shape (rows,) in the header's unit, uncopied.
 
     Args:
-        columns: Arrays of shape (N,) by header; a DataFrame or a structured array will do. A
-            column "maneuver" holds labels, as in a file.
+        columns: Arrays of shape (N,) by header: a dict, a structured array, a DataFrame of pandas
+            or polars, an Arrow table, an xarray Dataset. A column "maneuver" holds labels, as in a
+            file. Dates, also of an index, become time_s, seconds since midnight UTC of the first.
         maneuver: A label a row, N of them; a run of one label is a segment.
         name: What messages call the flight.
 
@@ -30,9 +66,17 @@ class Flight(Mapping[str, Array]):
     """
 
     def __init__(
-        self, columns: Columns, maneuver: Iterable[object] | None = None, name: str = "flight"
+        self,
+        columns: "Columns | ArrowTable | Dataset",
+        maneuver: Iterable[object] | None = None,
+        name: str = "flight",
     ) -> None:
-        columns = by_name(columns)
+        notes = columns.notes if isinstance(columns, Flight) else []
+        if is_frame(columns):
+            table = of_frame(columns)
+            notes = [f"{name}: {note}" for note in table.notes]
+            columns = {**table.columns, **({"maneuver": table.labels} if table.labels else {})}
+        columns = by_name(columns)  # type: ignore[arg-type]  # what is no frame has columns
         self._core = _core.Flight(as_utf8("the flight's name", name))
         for header in columns:
             if not isinstance(header, str):
@@ -44,6 +88,8 @@ class Flight(Mapping[str, Array]):
                 self._core.view(header, to_column(name, header, columns[header]))
         if maneuver is not None:
             self._core.label(to_labels(maneuver))
+        for note in notes:
+            self._core.note(note)
 
     @classmethod
     def _of(cls, core: _core.Flight) -> Self:
@@ -98,6 +144,111 @@ class Flight(Mapping[str, Array]):
         headers = ", ".join(self.columns)
         return in_line(f"<{type(self).__name__} {self.name!r}: {self.rows} rows of {headers}>")
 
+    def head(self, rows: int = ROWS_SHOWN) -> "Flight":
+        """The first rows, as a flight of the same name. Raises Error for fewer than one."""
+        if rows < 1:
+            raise _core.Error(f"head({rows}): give one row or more")
+        first = Flight(
+            {header: self[header][:rows].copy() for header in self},
+            self.maneuvers[:rows] or None,
+            self.name,
+        )
+        for note in self.notes:
+            first._core.note(note)
+        return first
+
+    def to_frame(self) -> "pandas.DataFrame":
+        """A pandas DataFrame of copies, with "maneuver" behind the first column.
+
+        Raises:
+            Error: pandas is not installed.
+        """
+        frame = load("pandas", self.name, "to_frame()").DataFrame(dict(self))
+        if self.maneuvers:
+            frame.insert(min(1, len(self)), "maneuver", self.maneuvers)
+        return frame
+
+    def to_csv(self, file: str | os.PathLike[str]) -> None:
+        """Writes a CSV file, numbers to the last bit; it appears whole or not at all.
+
+        Raises:
+            Error: The file can't be written.
+        """
+        write_whole({name_of(file): csv_of(self)})
+
+    def _repr_html_(self) -> str:
+        """A notebook's view: the first rows, and what the reader decided."""
+        rows = self.rows
+        shown = min(rows, ROWS_SHOWN)
+        labels = {"maneuver": self.maneuvers[:shown]} if self.maneuvers else {}
+        columns: dict[str, Sequence[object]] = {
+            header: [f"{value:.6g}" for value in self[header][:shown]] for header in self
+        }
+        columns |= labels
+        head = "".join(f"<th>{_escaped(header)}</th>" for header in columns)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{_escaped(cell)}</td>" for cell in cells) + "</tr>"
+            for cells in zip(*columns.values(), strict=True)
+        )
+        notes = "".join(f"<li>{_escaped(note)}</li>" for note in self.notes)
+        return (
+            f"<p>{_escaped(self.name)}: {rows} rows</p>"
+            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+            + (f"<ul>{notes}</ul>" if notes else "")
+        )
+
+
+AnyFlight: TypeAlias = Flight | Columns | ArrowTable | Dataset | str | os.PathLike[str]
+
+
+def _escaped(text: object) -> str:
+    return html.escape(in_line(text))
+
+
+def csv_of(flight: Flight) -> str:
+    """The flight as a CSV file's text; numbers to the last bit, nothing where there is none."""
+    headers = list(flight.columns)
+    columns = [
+        ["" if math.isnan(value) else repr(value) for value in flight[header].tolist()]
+        for header in headers
+    ]
+    if flight.maneuvers:
+        headers.insert(1, "maneuver")
+        columns.insert(1, flight.maneuvers)
+    rows = (",".join(map(_cell, cells)) for cells in zip(*columns, strict=True))
+    return "\n".join((",".join(map(_cell, headers)), *rows)) + "\n"
+
+
+def _cell(text: str) -> str:
+    """As it stands, or in double quotes where a comma, a quote or a line's end is in it."""
+    if not any(mark in text for mark in ',"\r\n'):
+        return text
+    return '"' + text.replace('"', '""') + '"'
+
+
+def read(data: AnyFlight, table: str | None = None) -> Flight:
+    """A flight of anything: a file of any form, or a table in memory.
+
+    Args:
+        data: A file's name: CSV, Parquet, Arrow or Feather, HDF5, .mat, .xlsx, MCAP, IGC, NMEA
+            0183, ULog or DataFlash, which is found by what is in it (docs/files.md); a DataFrame of
+            pandas or polars, an Arrow table, an xarray Dataset, a dict; a Flight, as it is.
+        table: Of a file with several tables, whose rows are taken: a sheet, a group, a topic, a
+            sensor [the one that measures]. "FILE::TABLE" says the same.
+
+    Returns:
+        A Flight; its `notes` say what was decided.
+
+    Raises:
+        Error: No such file, damaged, of another form, larger unpacked than sepcal takes, without a
+            table, with several that could be meant; a library that is not installed.
+    """
+    if isinstance(data, str | os.PathLike):
+        return Flight._of(read_file(name_of(data), table))
+    if table is not None:
+        raise _core.Error(f"table={table!r} is for files; these data are one table")
+    return data if isinstance(data, Flight) else Flight(data)
+
 
 def read_csv(file: str | os.PathLike[str]) -> Flight:
     """Reads a whole CSV flight log: one header line, comma separated, one row a sample.
@@ -125,10 +276,36 @@ def stream_csv(file: str | os.PathLike[str], folder: str | os.PathLike[str] = ""
     return Flight._of(_core.stream_csv(name_of(file), name_of(folder) if folder else ""))
 
 
-def to_flight(flight: object, call: str) -> Flight:
-    """A flight. Raises Error, which shows how to call again, for a file's name or columns."""
+def to_flight(flight: object, call: str, model: object = "") -> Flight:
+    """A flight of what read() takes; of a file the sensor of `model`, where it has several.
+
+    `model` is one, or its name.
+
+    Raises Error, which shows how to call again, for anything else.
+    """
     if isinstance(flight, Flight):
         return flight
-    is_file = isinstance(flight, str | os.PathLike)
-    given = f"sepcal.read_csv({str(flight)!r})" if is_file else "sepcal.Flight(columns)"
-    raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}{given})")
+    if isinstance(flight, str | os.PathLike):
+        with reading_for(kind_of(model)):
+            return read(flight)
+    if is_frame(flight) or isinstance(flight, Mapping | np.ndarray):
+        return Flight(flight)  # type: ignore[arg-type]
+    raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}sepcal.read(file))")
+
+
+def kind_of(model: object) -> str:
+    """What files are read for, by a model or its name: MAGNETIC, AIR or nothing in particular."""
+    return KINDS.get(model if isinstance(model, str) else type(model).__name__, "")
+
+
+def to_columns(data: object, model: "Model") -> Columns | None:
+    """A model's own columns by name, and what was meant to be; None of a flight.
+
+    That has not all of them, and a column whose header ends in a unit.
+    """
+    if isinstance(data, str | os.PathLike) or not hasattr(data, "__getitem__"):
+        return None
+    columns = Flight(data) if is_frame(data) else by_name(data)  # type: ignore[arg-type]
+    needed = {*model._columns_in(columns), *model._measured_in(columns)}
+    is_flight = not needed <= set(columns) and any(quantity_of(str(name))[1] for name in columns)
+    return None if is_flight else columns

@@ -9,7 +9,7 @@ from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.aircraft_fits import AircraftFit, fit_flights
 from sepcal.calibration import Calibration
 from sepcal.fit_options import FitOptions
-from sepcal.flight import Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import Effect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
@@ -19,7 +19,7 @@ from sepcal.trajectories import FlightPath
 @overload
 def fit_jointly(  # type: ignore[overload-overlap]
     model: Aero | RigidAircraft | FlightPath,
-    flights: Sequence[Flight],
+    flights: Sequence[AnyFlight],
     *,
     own: Sequence[str] = (),
     **options: Unpack[FitOptions],
@@ -29,7 +29,7 @@ def fit_jointly(  # type: ignore[overload-overlap]
 @overload
 def fit_jointly(
     model: AnyModel,
-    flights: Sequence[Flight],
+    flights: Sequence[AnyFlight],
     *,
     own: Sequence[str] = (),
     **options: Unpack[FitOptions],
@@ -39,7 +39,7 @@ def fit_jointly(
 @spelled_out()
 def fit_jointly(
     model: AnyModel | Aero | RigidAircraft,
-    flights: Sequence[Flight],
+    flights: Sequence[AnyFlight],
     *,
     own: Sequence[str] = (),
     **options: Unpack[FitOptions],
@@ -81,7 +81,7 @@ def fit_jointly(
         options["threads"] = options.get("threads") or 1
     core, joined = _core.calibrate_jointly(
         subject._core,
-        [to_flight(flight, "fit_jointly(model, [")._core for flight in flights],
+        [to_flight(flight, "fit_jointly(model, [", subject)._core for flight in flights],
         to_names("own", own),
         to_core(options),
         to_core_effects(effects),

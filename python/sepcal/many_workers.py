@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 
 from sepcal import _core
 from sepcal.columns import Columns, take_columns, to_labels
-from sepcal.flight import Flight, read_csv
+from sepcal.flight import Flight, to_flight
 from sepcal.models import Model
 from sepcal.options import refuse_log_choice, to_core
 
@@ -128,7 +128,7 @@ def _prepare(question: Question) -> tuple[_core.PreparedFlight, str] | None:
         return None
     options, own, model = to_core(task.options), list(task.own), task.model
     if isinstance(source, str | os.PathLike):
-        source = read_csv(source)
+        source = to_flight(source, "fit_many(model, ", model)
     if isinstance(source, Flight):
         flight = _core.prepare_flight(model._core, source._core, options, own)
         sha256, cells = source.sha256, source.rows * len(source)

@@ -46,10 +46,10 @@ def test_columns_that_are_none() -> None:
 
 
 def test_the_name_of_a_file_and_an_array_without_names() -> None:
-    refuse(lambda: sepcal.fit(SCALAR, "log.csv"), "'log.csv'", "sepcal.read_csv(")
+    refuse(lambda: sepcal.fit(SCALAR, "log.csv"), "log.csv: no such file")
     refuse(lambda: sepcal.fit("log.csv", SCALAR), "the model comes first")
     refuse(lambda: sepcal.report("base.json", "report.html"), "sepcal.load(")
-    refuse(lambda: sepcal.Flight(Path("log.csv")), "'log.csv'", "sepcal.read_csv(")
+    refuse(lambda: sepcal.Flight(Path("log.csv")), "'log.csv'", "sepcal.read(file)")
     refuse(lambda: sepcal.Flight(np.ones((3, 2))), "(3, 2)", "names no columns", "dict")
     refuse(lambda: sepcal.fit(SCALAR, np.ones(3)), "(3,)", "names no columns", "dict")
 
@@ -143,7 +143,8 @@ def test_files_that_are_no_logs(tmp_path: Path) -> None:
 
 def test_a_record_without_a_column() -> None:
     refuse(lambda: sepcal.fit(SCALAR, {"eta": ETA}), "ScalarExample1", "'z'", "eta")
-    refuse(lambda: sepcal.fit(PROBE, {"pt_pa": ETA}), "'roll'", "pt_pa", "sepcal.Flight")
+    refuse(lambda: sepcal.fit(PROBE, {"pt": ETA}), "'roll'", "pt", "sepcal.Flight")
+    refuse(lambda: sepcal.fit(PROBE, {"pt_pa": ETA}), "flight: column", "is missing", "pt_pa")
 
 
 def test_a_record_that_is_not_finite() -> None:
@@ -254,7 +255,7 @@ def test_calibrations_that_are_none(tmp_path: Path) -> None:
 def test_a_loaded_calibration_asks_for_a_flight(tmp_path: Path) -> None:
     sepcal.fit(PROBE, sepcal.simulate(PROBE, rows=300), samples=8).save(tmp_path / "base.json")
     loaded = sepcal.load(tmp_path / "base.json")
-    refuse(loaded.compare, "no flight", "read_csv")
+    refuse(loaded.compare, "no flight", "sepcal.read(")
 
 
 def test_output_that_cannot_be_written(tmp_path: Path) -> None:

@@ -134,7 +134,7 @@ def test_adding_to_a_loaded_calibration(
     base.add("wind_shear").save(tmp_path / "base.json")
     loaded = sepcal.load(tmp_path / "base.json")
     assert loaded.add("propwash", flight).to_json() == better.to_json()
-    refuse(lambda: loaded.add("propwash"), "no flight", "add(..., sepcal.read_csv('")
+    refuse(lambda: loaded.add("propwash"), "no flight", "add(..., sepcal.read('")
 
 
 def test_effects_that_cannot_be_added(base: sepcal.Calibration) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sepcal import _core
-from sepcal.flight import Flight
+from sepcal.flight import Flight, csv_of
 from sepcal.geomagnetism.models import Date
 from sepcal.logs.earth import FieldColumns, find_field
 from sepcal.logs.reading import choose_sensor, open_log, quiet
@@ -43,7 +43,7 @@ class LoggedFlight(Flight):
         Both appear whole or none does. Raises Error where they can't be written.
         """
         target = name_of(file)
-        write_whole({target: to_csv(self), sidecar_of(target): to_json(self.conversion)})
+        write_whole({target: csv_of(self), sidecar_of(target): to_json(self.conversion)})
 
 
 def read_log(
@@ -111,20 +111,6 @@ def convert(
     with np.errstate(all="ignore"):  # of damaged numbers, which are dropped
         table = build_table(log, sensor, start, end, earth)
     return LoggedFlight(log.file, sensor, table, _tell(log, sensor, table, earth))
-
-
-def to_csv(flight: Flight) -> str:
-    """The flight as a CSV file's text; numbers to the last bit, nothing where there is none."""
-    headers = list(flight.columns)
-    columns = [
-        ["" if math.isnan(value) else repr(value) for value in flight[header].tolist()]
-        for header in headers
-    ]
-    if flight.maneuvers:
-        headers.insert(1, "maneuver")
-        columns.insert(1, flight.maneuvers)
-    rows = (",".join(cells) for cells in zip(*columns, strict=True))
-    return "\n".join((",".join(headers), *rows)) + "\n"
 
 
 def to_json(conversion: dict[str, Any]) -> str:

@@ -14,7 +14,7 @@ from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import Flight
+from sepcal.flight import AnyFlight, to_flight
 from sepcal.reporting.gather import gather
 from sepcal.reporting.page import build_page, read_plotly
 from sepcal.reporting.sections import compose
@@ -27,7 +27,7 @@ Path = str | os.PathLike[str]
 def report(
     calibrations: Calibration | AircraftFit | Sequence[Calibration | AircraftFit],
     file: Path,
-    flight: Flight | None = None,
+    flight: AnyFlight | None = None,
     *,
     diagnosis: Diagnosis | None = None,
     files: Sequence[Path] = (),
@@ -67,6 +67,8 @@ def report(
     if process_noise and kinds == {Calibration}:
         raise _core.Error("process_noise is for models with a state: a flight path, an aircraft")
     plotly = read_plotly()
+    if flight is not None:
+        flight = to_flight(flight, "report(..., flight=", getattr(chain[-1].core, "model", ""))
     told, target = progress or (lambda _: None), name_of(file)
     names = [name_of(at) for at in files]
     if kinds == {AircraftFit}:

@@ -131,7 +131,7 @@ def gather(
     if flight is None:
         raise _core.Error(
             "a loaded calibration has no flight; give one: "
-            f"report(..., flight=sepcal.read_csv({last.core.file!r}))"
+            f"report(..., flight=sepcal.read({last.core.file!r}))"
         )
     report_progress("comparing")
     comparisons = [calibration.compare(flight) for calibration in chain]

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Flights from files of any form. `read_foreign` is what C++ calls for a file that is no CSV.
+
+A form is a room of its own, whose libraries are loaded when such a file is read.
+"""
+
+from __future__ import annotations
+
+from sepcal import _core
+from sepcal.reading.wanted import AIR, MAGNETIC, reading_for
+
+__all__ = ["AIR", "MAGNETIC", "read_file", "read_foreign", "reading_for"]
+
+
+def read_file(file: str, table: str | None = None) -> _core.Flight:
+    """The flight of a file of any form, CSV included.
+
+    Args:
+        file: The file, or FILE::TABLE, where a sheet, a group, a topic or a sensor is meant.
+        table: The same apart from the name.
+
+    Raises:
+        Error: No such file, no table, one that is damaged or too large, a missing library.
+    """
+    from sepcal.reading.files import read
+
+    return read(file, table)
+
+
+def read_foreign(file: str, form: str) -> _core.Flight:
+    """The flight of a file that C++ found to be no table as text. Raises Error as read_file()."""
+    from sepcal.reading.files import read_other
+
+    return read_other(file, form)

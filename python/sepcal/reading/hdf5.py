@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""HDF5: groups of datasets, also as netCDF-4, MATLAB (v7.3) and pandas write them.
+
+What a file links to outside of itself is not read.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sepcal import _core
+from sepcal.reading.extras import load
+from sepcal.reading.limits import Budget
+from sepcal.reading.pandas_hdf import pandas_frame, pandas_table
+from sepcal.reading.rates import join
+from sepcal.reading.table import Table
+from sepcal.reading.trees import Tree, tables_in
+from sepcal.reading.units import with_unit
+
+MAGIC = b"\x89HDF\r\n\x1a\n"
+DEEPEST = 16
+MOST_NODES = 20_000
+INDEX_OF_PYTABLES = "_i_"
+UNITS = ("units", "unit", "Units", "Unit", "UNITS")
+
+
+def read(file: str, chosen: str | None) -> Table:
+    """The table. Raises Error for what is damaged, too large or holds no table."""
+    h5py = load("h5py", file, "HDF5")
+    try:
+        with h5py.File(file, "r") as opened:
+            tree = Reader(file, h5py).tree_of(opened)
+    except _core.Error:
+        raise
+    except Exception as error:  # what h5py raises of damage is of any kind
+        raise _core.Error(f"{file}: the HDF5 file is damaged or cut off: {error}") from error
+    return join(file, tables_in(tree), chosen)
+
+
+class Reader:
+    """The numbers, texts and groups of an open file as a tree."""
+
+    def __init__(self, file: str, h5py: Any) -> None:  # noqa: ANN401
+        self.h5py = h5py
+        self._file, self._budget, self._left = file, Budget(file), MOST_NODES
+
+    def tree_of(self, group: Any, depth: int = 0) -> Tree:  # noqa: ANN401
+        """A group's."""
+        if depth > DEEPEST:
+            raise _core.Error(f"{self._file}: its groups are more than {DEEPEST} deep")
+        if {"axis0", "axis1", "block0_items", "block0_values"} <= set(group):
+            return pandas_frame(self, group)
+        if "table" in group and "index_kind" in group["table"].attrs:
+            return pandas_table(self, group["table"])
+        found: dict[str, np.ndarray | Tree] = {}
+        for name, node in self.nodes_of(group):
+            if isinstance(node, self.h5py.Group):
+                found[name] = self.tree_of(node, depth + 1)
+            elif (values := self.values_of(node)) is not None:
+                found[with_unit(name, _unit_of(node))] = _in_dates(node, values)
+        return found
+
+    def nodes_of(self, group: Any) -> list[tuple[str, Any]]:  # noqa: ANN401
+        """What hangs below a group by a link of its own: none outside the file."""
+        found = []
+        for name in group:
+            self._left -= 1
+            if self._left < 0:
+                raise _core.Error(
+                    f"{self._file}: it has more than {MOST_NODES} groups and datasets"
+                )
+            if name.startswith(INDEX_OF_PYTABLES):
+                continue
+            if isinstance(group.get(name, getlink=True), self.h5py.HardLink):
+                found.append((name, group[name]))
+        return found
+
+    def values_of(self, dataset: Any) -> np.ndarray | None:  # noqa: ANN401
+        """A dataset's; None of what is neither numbers nor texts, or lies in other files."""
+        if not isinstance(dataset, self.h5py.Dataset) or dataset.shape is None:
+            return None
+        if dataset.is_virtual or dataset.external or dataset.ndim > 2:
+            return None
+        kind = dataset.dtype
+        size = int(np.prod(dataset.shape, dtype=object)) * max(kind.itemsize, 8)
+        self._budget.take(size, f"'{dataset.name}'")
+        if kind.kind == "O":
+            if self.h5py.check_string_dtype(kind) is None:
+                return None
+            return np.asarray(dataset.asstr(errors="replace")[()], dtype=object)
+        return _as_numbers(dataset, np.asarray(dataset[()])) if kind.kind in "fiubSV" else None
+
+
+def _unit_of(dataset: Any) -> object:  # noqa: ANN401
+    return next((dataset.attrs[name] for name in UNITS if name in dataset.attrs), "")
+
+
+def _as_numbers(dataset: Any, values: np.ndarray) -> np.ndarray:  # noqa: ANN401
+    """As netCDF packs them: a fill value is no number, then scale_factor and add_offset."""
+    if values.dtype.kind not in "fiu":
+        return values
+    fill = dataset.attrs.get("_FillValue")
+    scale, offset = (dataset.attrs.get(n, d) for n, d in (("scale_factor", 1), ("add_offset", 0)))
+    if fill is None and "scale_factor" not in dataset.attrs and "add_offset" not in dataset.attrs:
+        return values
+    numbers = values.astype(np.float64)
+    if fill is not None:
+        numbers[values == np.ravel(fill)[0]] = np.nan
+    return np.asarray(numbers * float(np.ravel(scale)[0]) + float(np.ravel(offset)[0]))
+
+
+def _in_dates(dataset: Any, values: np.ndarray) -> np.ndarray:  # noqa: ANN401
+    """Dates of netCDF's "seconds since 2026-03-01 12:00"; other values as they are."""
+    unit = _unit_of(dataset)
+    text = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
+    step, since, start = text.partition(" since ")
+    steps = {"seconds": 1e9, "milliseconds": 1e6, "microseconds": 1e3, "nanoseconds": 1.0}
+    if not since or step not in steps or values.dtype.kind not in "fiu" or values.ndim != 1:
+        return values
+    try:
+        zero = np.datetime64(
+            start.strip().removesuffix("Z").removesuffix(" UTC")[:26].strip(), "ns"
+        )
+    except ValueError:
+        return values
+    spans = (
+        np.round(values * steps[step]) if values.dtype.kind == "f" else values * int(steps[step])
+    )
+    return np.asarray(zero + spans.astype("timedelta64[ns]"))

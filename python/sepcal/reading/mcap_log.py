@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""MCAP, the recordings of ROS 2 and Foxglove: messages in JSON, and in CDR by ROS 2's definitions.
+
+A topic is a table, its fields are columns, `linear.x`. Some of ROS's own messages say a quantity,
+a unit and axes: x forward, y left, z up of the body, east, north, up of the world (REP 103).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from sepcal import _core
+from sepcal.columns import Array
+from sepcal.logs.attitude import smooth_signs
+from sepcal.reading.clock import TIME, seconds_of
+from sepcal.reading.extras import load
+from sepcal.reading.limits import Budget
+from sepcal.reading.rates import join
+from sepcal.reading.ros import known_columns
+from sepcal.reading.table import Table, listed
+
+MAGIC = b"\x89MCAP0\r\n"
+MOST_FIELDS = 256  # of a message
+DEEPEST = 8
+LONGEST = 32  # list that becomes columns
+QUATERNION = ("qw", "qx", "qy", "qz")
+STAMP = ("header.stamp.sec", "header.stamp.nanosec")
+
+
+@dataclass
+class Topic:
+    """Messages of one topic as they come: times [ns] and numbers by field."""
+
+    name: str
+    kind: str
+    times: list[int] = field(default_factory=list)
+    columns: dict[str, list[float]] = field(default_factory=dict)
+    frame: str = ""
+
+    def add(self, time: int, values: Mapping[str, float]) -> None:
+        """A message; NaN for fields that it lacks."""
+        for name in values:
+            if name not in self.columns:
+                self.columns[name] = [np.nan] * len(self.times)
+        self.times.append(time)
+        for name, column in self.columns.items():
+            column.append(values.get(name, np.nan))
+
+
+def read(file: str, chosen: str | None) -> Table:
+    """The table of the topic that is measured, with all others. Raises Error for what can't be."""
+    topics, skipped, cut = _read_topics(file)
+    if not topics and skipped:
+        raise _core.Error(
+            f"{file}: no topic can be read: {listed(skipped)}; sepcal reads json and ROS 2's cdr"
+        )
+    timed = [(topic, *_times_of(topic)) for topic in topics]
+    first = min((times.min() for _, times, _ in timed), default=np.datetime64(0, "ns"))
+    day = first.astype("datetime64[D]")
+    tables = [_to_table(topic, seconds_of(times - day), notes) for topic, times, notes in timed]
+    joined = join(file, [table for table in tables if len(table.columns) > 1], chosen)
+    joined.notes.insert(0, f"time_s is seconds since {day} 00:00 UTC")
+    joined.notes += [f"topic {name} is left out" for name in skipped[:6]]
+    if cut:
+        joined.notes.append(f"the file is cut off or damaged ({cut}); what is whole is used")
+    return joined
+
+
+def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
+    """Topics, those that can't be read with the reason, and what is wrong with the file's end."""
+    records = load("mcap.records", file, "MCAP")
+    topics: dict[int, Topic] = {}
+    skipped: dict[str, None] = {}
+    decoders: dict[int, Any] = {}
+    schemas: dict[int, Any] = {}
+    channels: dict[int, Any] = {}
+    cut = ""
+    with open(file, "rb") as opened:
+        every = _records(file, opened, Budget(file))
+        while True:
+            try:
+                record = next(every)
+            except StopIteration:
+                break
+            except (_core.Error, MemoryError):
+                raise
+            except Exception as error:  # of damage, anything
+                cut = " ".join(str(error).split())[:100] or type(error).__name__
+                break
+            if isinstance(record, records.Schema):
+                schemas[record.id] = record
+            elif isinstance(record, records.Channel):
+                channels[record.id] = record
+            elif isinstance(record, records.Message) and record.channel_id in channels:
+                channel = channels[record.channel_id]
+                schema = schemas.get(channel.schema_id)
+                name = f"{channel.topic} ({channel.message_encoding})"
+                if name in skipped:
+                    continue
+                try:
+                    if channel.id not in decoders:
+                        decoders[channel.id] = _decoder(file, channel, schema)
+                    values, frame = decoders[channel.id](record.data)
+                except (_core.Error, MemoryError):
+                    raise
+                except Exception:  # of damage, anything
+                    skipped[name] = None
+                    continue
+                kind = schema.name if schema is not None else ""
+                topic = topics.setdefault(channel.id, Topic(channel.topic, kind))
+                topic.frame = topic.frame or frame
+                topic.add(record.log_time, values)
+    if cut and not any(topic.times for topic in topics.values()):
+        raise _core.Error(f"{file}: the MCAP file is damaged or cut off: {cut}")
+    return list(topics.values()), list(skipped), cut
+
+
+def _records(file: str, opened: Any, budget: Budget) -> Iterator[Any]:  # noqa: ANN401
+    """Every record in the file's order, those of chunks unpacked one chunk at a time."""
+    stream = load("mcap.stream_reader", file, "MCAP")
+    chunk = load("mcap.records", file, "MCAP").Chunk
+    for record in stream.StreamReader(opened, emit_chunks=True).records:
+        if isinstance(record, chunk):
+            budget.take(record.uncompressed_size, "a chunk")
+            yield from stream.breakup_chunk(record)
+        else:
+            yield record
+
+
+def _decoder(file: str, channel: Any, schema: Any) -> Any:  # noqa: ANN401
+    """Bytes to numbers by field and the frame's name."""
+    if channel.message_encoding == "json":
+        return lambda data: _flatten(json.loads(data))
+    if channel.message_encoding == "cdr" and schema is not None and schema.encoding == "ros2msg":
+        ros2 = load("mcap_ros2.decoder", file, "MCAP of ROS 2")
+        decode = ros2.DecoderFactory().decoder_for("cdr", schema)
+        return lambda data: _flatten(decode(data))
+    return _refuse
+
+
+def _refuse(_: bytes) -> tuple[dict[str, float], str]:
+    raise ValueError("unknown encoding")
+
+
+def _flatten(message: Any) -> tuple[dict[str, float], str]:  # noqa: ANN401
+    found: dict[str, float] = {}
+    frames: list[str] = []
+    _walk(message, "", found, frames, 0)
+    return found, frames[0] if frames else ""
+
+
+def _walk(value: Any, name: str, found: dict[str, float], frames: list[str], depth: int) -> None:  # noqa: ANN401
+    if depth > DEEPEST or len(found) >= MOST_FIELDS:
+        return
+    if isinstance(value, bool | int | float):
+        found[name] = float(value)
+    elif isinstance(value, str):
+        if name.endswith("frame_id"):
+            frames.append(value)
+    elif isinstance(value, Mapping):
+        for key, part in value.items():
+            _walk(part, f"{name}.{key}" if name else str(key), found, frames, depth + 1)
+    elif isinstance(value, list | tuple | np.ndarray):
+        if len(value) <= LONGEST:
+            for index, part in enumerate(value):
+                _walk(part, f"{name}[{index}]", found, frames, depth + 1)
+    elif hasattr(value, "__slots__"):
+        for key in value.__slots__:
+            if not key.startswith("_") and not key.endswith("covariance"):
+                part = getattr(value, key)
+                _walk(part, f"{name}.{key}" if name else key, found, frames, depth + 1)
+
+
+def _times_of(topic: Topic) -> tuple[np.ndarray, list[str]]:
+    """The message's own stamps, datetime64[ns], where each has one, else when it was logged."""
+    seconds, parts = (np.array(topic.columns.get(name, [np.nan])) for name in STAMP)
+    if np.isfinite(seconds).all() and np.isfinite(parts).all() and (seconds > 0).all():
+        stamps = seconds.astype(np.int64) * 1_000_000_000 + parts.astype(np.int64)
+        return stamps.view("M8[ns]"), [f"times of {topic.name} are those of header.stamp"]
+    return np.array(topic.times, dtype=np.int64).view("M8[ns]"), []
+
+
+def _to_table(topic: Topic, seconds: Array, notes: list[str]) -> Table:
+    """The topic's columns by time, those of known messages by sepcal's headers."""
+    columns = {
+        name: np.array(values)
+        for name, values in topic.columns.items()
+        if not name.startswith("header.")
+    }
+    known, taken, note = known_columns(topic.kind, columns, topic.frame)
+    columns = known | {name: v for name, v in columns.items() if name not in taken}
+    if note:
+        notes = [*notes, f"{topic.name}: {note}"]
+    if "qw" in columns:
+        q = smooth_signs(np.stack([columns[name] for name in QUATERNION], axis=1))
+        columns |= dict(zip(QUATERNION, q.T, strict=True))
+    order = np.argsort(seconds, kind="stable")
+    by_time = {name: values[order] for name, values in ({TIME: seconds} | columns).items()}
+    return Table(by_time, notes=notes, name=topic.name)
