@@ -11,6 +11,7 @@ from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.flight import Flight
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 from sepcal.states_module import states_module
 from sepcal.trajectories import FlightPath
 
@@ -19,6 +20,11 @@ class FlightCheck(Page, _core.FlightCheck):
     """A log, column by column, and notes. `print(check)` shows the page."""
 
     _shown = ("concern", "found", "effect", "advice")
+    flight: Flight | None = None  # None where it was pickled
+
+    def __init__(self, core: _core.FlightCheck, flight: Flight | None = None) -> None:
+        super().__init__(core)
+        self.flight = flight
 
     @property
     def explained(self) -> str:
@@ -33,6 +39,27 @@ class FlightCheck(Page, _core.FlightCheck):
         """The same as a dictionary; None where a number is undefined."""
         read: dict[str, Any] = json.loads(self.json)
         return read
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws what the model reads, over time; what is noted about a column is shaded there.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; a check that was pickled; the library is not
+                installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_records import picture_check
+
+        if self.flight is None:
+            raise _core.Error("a check that was pickled has no flight; check it again to draw it")
+        return as_figure(picture_check(self, self.flight), backend, theme)
 
     def _summary(self) -> str:
         count = f"{len(self.notes)} note{'' if len(self.notes) == 1 else 's'}"
@@ -63,6 +90,6 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: Flight) -> FlightCheck
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
     if isinstance(model, Aero | RigidAircraft | FlightPath):
         name = model._aircraft_options()["model"]
-        return FlightCheck(states_module().check(name, flight._core))
+        return FlightCheck(states_module().check(name, flight._core), flight)
     model = as_model(model)
-    return FlightCheck(_core.check(model._core, flight._core))
+    return FlightCheck(_core.check(model._core, flight._core), flight)
