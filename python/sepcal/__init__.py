@@ -12,7 +12,7 @@ SI units, angles in rad, fields in uT. Body axes are forward-right-down, navigat
 north-east-down.
 """
 
-from sepcal import _core, reading, rivals, triads
+from sepcal import _core, datasets, reading, rivals, triads
 from sepcal._core import (
     Advice,
     Applied,
@@ -216,6 +216,7 @@ __all__ = [
     "certify",
     "check",
     "concatenate",
+    "datasets",
     "discretise",
     "discretise_inputs",
     "earth_field",

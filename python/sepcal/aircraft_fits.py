@@ -20,6 +20,7 @@ from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import name_effects
 from sepcal.pages import Page
+from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.smoothing import Smoothed
 from sepcal.states_module import states_module
@@ -105,7 +106,7 @@ class AircraftFit(Fit):
         Raises:
             Error: Bad input, as in fit(); no flight given where the fit was loaded.
         """
-        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core))
+        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core), self.noise)
 
     @overload
     def diagnose(
@@ -272,7 +273,9 @@ class AircraftFit(Fit):
             Error: No process noise, another name; equation error, which has no state.
         """
         chosen = self._or_fitted(flight, "smooth({...}, ")
-        return Smoothed(self.core.smooth(chosen._core, dict(process_noise or {})))
+        return Smoothed(
+            self.core.smooth(chosen._core, dict(process_noise or {})), _seconds(chosen), self._units
+        )
 
     def track(
         self,
@@ -320,7 +323,51 @@ class AircraftFit(Fit):
             forgetting,
             every,
         )
-        return Track(core)
+        return Track(core, self._units)
+
+    def plot(
+        self,
+        what: Literal["fit", "channels", "states", "innovations", "process noise", "correlation"]
+        | str = "fit",
+        flight: Flight | Sequence[Flight] | None = None,
+        *,
+        process_noise: Mapping[str, float] | None = None,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws the fit on a flight, as the report does.
+
+        Args:
+            what: "fit", measured over modelled with the residuals below; "channels", residuals
+                against the channels that they follow most; "correlation" of the estimates; with
+                process noise "states", "innovations" and "process noise".
+            flight: By default the fitted one.
+            process_noise: As of smooth() [of a fit by filter error what it found].
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; bad input, as in compare(); no process noise where
+                it is needed; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_fits import picture_aircraft, picture_fit
+
+        smoothed = ("states", "innovations", "process noise")
+        choose(what, ("fit", "channels", *smoothed, "correlation"))
+        if what == "correlation":
+            return as_figure(picture_fit(self), backend, theme)
+        chosen = self._or_fitted(flight, "plot(flight=")
+        given = process_noise or {}
+        return as_figure(picture_aircraft(self, what, chosen, given), backend, theme)
+
+    @property
+    def _units(self) -> dict[str, str]:
+        """Of the parameters."""
+        return {name: parameter.unit for name, parameter in self.parameters.items()}
 
     def _or_fitted(self, flight: AnyFlight | Sequence[AnyFlight] | None, call: str) -> Flight:
         """A flight, or several as one. Raises Error, which shows how to call again, for none."""
@@ -380,6 +427,37 @@ class TwoSteps(Page):
 
     def _rows(self) -> list[Any]:
         return self.aero._rows()
+
+    def plot(
+        self,
+        what: Literal["path", "aero"] | str = "path",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws one of the steps, measured over modelled.
+
+        Args:
+            what: "path" or "aero".
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import choose
+
+        choose(what, ("path", "aero"))
+        step = self.path if what == "path" else self.aero
+        return step.plot(backend=backend, theme=theme)
+
+
+def _seconds(flight: Flight) -> Array | None:
+    """The flight's times, where they are in seconds."""
+    return flight.get("time_s")
 
 
 def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> AircraftFit:

@@ -22,6 +22,7 @@ from sepcal.models import Model
 from sepcal.options import to_names
 from sepcal.own_effect import Effect, to_core_effects
 from sepcal.own_state_model import AnyModel, to_own
+from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
 from sepcal.whole_files import name_of
@@ -120,7 +121,7 @@ class Calibration(Fit):
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
         core, chosen = self._on(flight, "compare(", known=True)
-        return Comparison(core.compare(chosen._core))
+        return Comparison(core.compare(chosen._core), self.noise)
 
     @overload
     def diagnose(
@@ -285,7 +286,44 @@ class Calibration(Fit):
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
         """
         chosen = self._or_fitted(flight, "predict(")
-        return Prediction(self.core.predict(chosen._core, level))
+        return Prediction(self.core.predict(chosen._core, level), self.noise)
+
+    def plot(
+        self,
+        what: Literal["fit", "channels", "noise", "coverage", "steps", "correlation"] | str = "fit",
+        flight: Flight | Sequence[Flight] | None = None,
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws the calibration on a flight, as the report does.
+
+        Args:
+            what: "fit", measured over modelled with the residuals below; "channels", residuals
+                against the channels that they follow most; "noise", whether what is left is noise;
+                "coverage", what the flight covered; "steps", the error after every effect that was
+                added; "correlation" of the estimates.
+            flight: By default the fitted one.
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; bad input, as in compare(); "steps" where nothing
+                was added; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_fits import picture_calibration, picture_fit, picture_steps
+
+        choose(what, ("fit", "channels", "noise", "coverage", "steps", "correlation"))
+        if what == "correlation":
+            return as_figure(picture_fit(self), backend, theme)
+        if what == "steps":
+            return as_figure(picture_steps(self), backend, theme)
+        core, chosen = self._on(flight, "plot(flight=", known=True)
+        return as_figure(picture_calibration(self, what, core, chosen), backend, theme)
 
     def join(self, flights: Sequence[AnyFlight]) -> Flight:
         """The flights of a joint fit, in any order, as the one that it is of.

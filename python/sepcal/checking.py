@@ -12,6 +12,7 @@ from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 from sepcal.states_module import states_module
 from sepcal.trajectories import FlightPath
 
@@ -20,6 +21,11 @@ class FlightCheck(Page, _core.FlightCheck):
     """A log, column by column, and notes. `print(check)` shows the page."""
 
     _shown = ("concern", "found", "effect", "advice")
+    flight: Flight | None = None  # None where it was pickled
+
+    def __init__(self, core: _core.FlightCheck, flight: Flight | None = None) -> None:
+        super().__init__(core)
+        self.flight = flight
 
     @property
     def explained(self) -> str:
@@ -34,6 +40,27 @@ class FlightCheck(Page, _core.FlightCheck):
         """The same as a dictionary; None where a number is undefined."""
         read: dict[str, Any] = json.loads(self.json)
         return read
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws what the model reads, over time; what is noted about a column is shaded there.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; a check that was pickled; the library is not
+                installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_records import picture_check
+
+        if self.flight is None:
+            raise _core.Error("a check that was pickled has no flight; check it again to draw it")
+        return as_figure(picture_check(self, self.flight), backend, theme)
 
     def _summary(self) -> str:
         count = f"{len(self.notes)} note{'' if len(self.notes) == 1 else 's'}"
@@ -65,7 +92,7 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCh
     if isinstance(model, Aero | RigidAircraft | FlightPath):
         name = model._aircraft_options()["model"]
         chosen = to_flight(flight, "check(model, ")
-        return FlightCheck(states_module().check(name, chosen._core))
+        return FlightCheck(states_module().check(name, chosen._core), chosen)
     model = as_model(model)
     chosen = to_flight(flight, "check(model, ", model)
-    return FlightCheck(_core.check(model._core, chosen._core))
+    return FlightCheck(_core.check(model._core, chosen._core), chosen)

@@ -5,16 +5,24 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Literal
 
 from sepcal import _core
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 
 
 class Comparison(Page, _core.Comparison):
     """A calibration against a flight. `print(comparison)` shows the table."""
 
     _shown = ("segment", "output", "rows", "rmse", "mean", "lag_one", "unit")
+    noise: Mapping[str, float] = MappingProxyType({})  # of the fit, by output; pickled it is lost
+
+    def __init__(self, core: _core.Comparison, noise: Mapping[str, float] | None = None) -> None:
+        super().__init__(core)
+        self.noise = noise or {}
 
     def to_json(self) -> str:
         """The JSON that the app's compare prints."""
@@ -24,6 +32,32 @@ class Comparison(Page, _core.Comparison):
         """The same as a dictionary; None where a number is undefined."""
         read: dict[str, Any] = json.loads(self.json)
         return read
+
+    def plot(
+        self,
+        what: Literal["where", "residuals"] | str = "where",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws where the model fails; against the channels: Calibration.plot("channels").
+
+        Args:
+            what: "where", the error by stretch of the flight and output; "residuals", over time.
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_fits import picture_comparison
+
+        choose(what, ("where", "residuals"))
+        return as_figure(picture_comparison(self, what), backend, theme, columns=1)
 
     def _summary(self) -> str:
         total = math.sqrt(sum(misfit.rmse**2 for misfit in self.overall) / len(self.overall))

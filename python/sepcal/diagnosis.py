@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Literal
 
 from sepcal import _core
 from sepcal._core import EffectFinding
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 
 COLUMNS = (  # of the table, one number a candidate
     "name",
@@ -67,6 +68,33 @@ class Diagnosis(Page, _core.Diagnosis):
         """The same as a dictionary; None where a number is undefined."""
         read: dict[str, Any] = json.loads(self.json)
         return read
+
+    def plot(
+        self,
+        what: Literal["candidates", "where"] | str = "candidates",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws the first twelve candidates, or where the model fails.
+
+        Args:
+            what: "candidates", what each takes off the error; "where", the error by stretch of the
+                flight and output.
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_fits import picture_diagnosis
+
+        choose(what, ("candidates", "where"))
+        return as_figure(picture_diagnosis(self, what), backend, theme)
 
     def _summary(self) -> str:
         names = ", ".join(effect.name for effect in self.found)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,7 @@ from sepcal.matrices import (
     to_whole_number,
     without_rounding,
 )
+from sepcal.plots import Backend, Theme
 from sepcal.states_module import states_module
 
 if TYPE_CHECKING:
@@ -48,6 +49,24 @@ class SmoothedPass:
     covariance: Array
     noise: Array
     noise_covariance: Array
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws every state over the samples with 2 standard deviations to either side.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_records import picture_pass
+
+        return as_figure(picture_pass(self), backend, theme)
 
 
 class Filter:

@@ -5,12 +5,14 @@ import html
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeAlias
 
 import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
+from sepcal.options import to_names
+from sepcal.plots import Backend, Theme
 from sepcal.printing import as_utf8, in_line
 from sepcal.reading import AIR, MAGNETIC, read_file, reading_for
 from sepcal.reading.extras import load
@@ -126,6 +128,33 @@ class Flight(Mapping[str, Array]):
     def maneuvers(self) -> list[str]:
         """A label a row; empty where the log has none."""
         return self._core.maneuvers
+
+    def plot(
+        self,
+        columns: Sequence[str] | None = None,
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws columns over time, maneuvers shaded.
+
+        Args:
+            columns: Their headers [the first twelve].
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: A column that there isn't; another word for one of these; the library is not
+                installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_records import picture_flight
+
+        chosen = None if columns is None else to_names("columns", columns)
+        return as_figure(picture_flight(self, chosen), backend, theme)
 
     def __getitem__(self, header: str) -> Array:
         """The column, shape (rows,), read-only; NaN where a file's cell is no number."""

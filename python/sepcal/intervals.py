@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Unpack
 
 from sepcal import _core
@@ -14,6 +14,7 @@ from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 
 
@@ -39,6 +40,24 @@ class Intervals(Page, _core.Intervals):
         read: dict[str, Any] = json.loads(self.json)
         return read
 
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws both kinds of interval, a row a parameter.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_fits import picture_intervals
+
+        return as_figure(picture_intervals(self), backend, theme)
+
     def _summary(self) -> str:
         return f"of {100 * self.level:g} %: {len(self.parameters)} parameters"
 
@@ -61,7 +80,17 @@ class Intervals(Page, _core.Intervals):
 
 
 class Prediction(_core.Prediction):
-    """What a fit says of N samples, in the outputs' units and the model's order of outputs."""
+    """What a fit says of N samples, in the outputs' units and the model's order of outputs.
+
+    Attributes:
+        outputs: Their names; pickled they are lost.
+    """
+
+    outputs: tuple[str, ...] = ()
+
+    def __init__(self, core: _core.Prediction, outputs: Iterable[str] = ()) -> None:
+        super().__init__(core)
+        self.outputs = tuple(outputs)
 
     @property
     def band(self) -> tuple[Array, Array]:
@@ -74,6 +103,24 @@ class Prediction(_core.Prediction):
         """Lower and upper limits of a new measurement, its noise included."""
         half = self.quantile * self.measurement_error
         return self.value - half, self.value + half
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws every output's value with the band of a new measurement.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_fits import picture_prediction
+
+        return as_figure(picture_prediction(self), backend, theme, columns=1)
 
 
 @spelled_out()
@@ -132,7 +179,8 @@ def predict(
         Error: Bad input, a fit of another model, a level outside (0, 1).
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=False)
-    return Prediction(_core.predict(laid, columns, labels, core, own, fit, level))
+    predicted = _core.predict(laid, columns, labels, core, own, fit, level)
+    return Prediction(predicted, fit.noise)
 
 
 def as_fitted(

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from typing import Any, Literal
+
 from sepcal import _core
+from sepcal.plots import Backend, Theme
 from sepcal.printing import page_of
 
 
@@ -19,6 +22,34 @@ class ManyFit(_core.ManyFit):
         """Flights that depart from the others, by p_holm below `level`; the surest first."""
         found = [name for name, one in self.flights.items() if one.departure.p_holm < level]
         return sorted(found, key=lambda name: self.flights[name].departure.p)
+
+    def plot(
+        self,
+        what: Literal["departures", "own"] | str = "departures",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws the flights side by side, with 2 standard errors to either side.
+
+        Args:
+            what: "departures", by how much a flight's own estimate of a shared parameter differs
+                from that of the others; "own", the parameters that every flight has for itself.
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; "own" where no flight has any; the library is not
+                installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_studies import picture_flights
+
+        choose(what, ("departures", "own"))
+        return as_figure(picture_flights(self, what), backend, theme)
 
     def __str__(self) -> str:
         width = max(map(len, self.shared))

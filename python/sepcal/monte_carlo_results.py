@@ -8,12 +8,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from sepcal._core import Error
 from sepcal.columns import Array
+from sepcal.plots import Backend, Theme
 from sepcal.printing import aligned, page_of
 from sepcal.quantiles import binomial_limits, student_quantile
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
@@ -155,6 +156,35 @@ class MonteCarlo:
             name: _study(name, estimates[:, i], errors[:, i], truth[:, i], quantiles)
             for i, name in enumerate(self.names)
         }
+
+    def plot(
+        self,
+        what: Literal["errors", "estimates"] | str | None = None,
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws how the estimates of every parameter lie about the truth.
+
+        Args:
+            what: "errors", in standard errors, before the normal distribution; "estimates" as they
+                are [the errors where the truth is known].
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; no estimates, or errors without a truth; the
+                library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_studies import picture_study
+
+        if what is not None:
+            choose(what, ("errors", "estimates"))
+        return as_figure(picture_study(self, what), backend, theme, columns=3)
 
     def _stack(self, rows: list[Array]) -> Array:
         return np.array(rows, dtype=np.float64).reshape(len(rows), len(self.names))

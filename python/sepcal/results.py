@@ -6,11 +6,14 @@ Undefined numbers (the standard error of a fixed parameter, say) are NaN.
 
 from __future__ import annotations
 
+from typing import Any, Literal
+
 import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 
 
 class Fit(Page, _core.Fit):
@@ -37,6 +40,32 @@ class Fit(Page, _core.Fit):
     def at_bound(self) -> list[str]:
         """Names of the parameters that a bound stopped."""
         return [name for name, parameter in self.parameters.items() if parameter.at_bound]
+
+    def plot(
+        self,
+        what: Literal["correlation"] | str = "correlation",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws how the estimates go together.
+
+        Args:
+            what: "correlation", of the parameters that are not fixed.
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_fits import picture_fit
+
+        choose(what, ("correlation",))
+        return as_figure(picture_fit(self), backend, theme)
 
     def _summary(self) -> str:
         return f"{self.status}, {len(self.parameters)} parameters, {self.rows} rows"

@@ -19,6 +19,25 @@ from sepcal.options import Bounds, open_ends
 from sepcal.own_model import OwnModel, Table, check_parts, to_rows
 from sepcal.own_state_model import AnyModel, as_model
 
+__all__ = [
+    "AlonsoShusterFit",
+    "ExampleInFiveStates",
+    "ExampleInThreeStates",
+    "HauptKasdinFit",
+    "MagnetometerInNineStates",
+    "SingleStageFit",
+    "TwoStepProblem",
+    "fit_alonso_shuster",
+    "fit_haupt_kasdin",
+    "fit_single_stage",
+]
+
+
+def __dir__() -> list[str]:
+    """The public names, without what they are made of."""
+    return __all__
+
+
 Solver = Literal["levenberg_marquardt", "slsqp"]
 SOLVERS = ("levenberg_marquardt", "slsqp")
 

@@ -5,18 +5,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 
 from sepcal import _core
-from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns, to_column
 from sepcal.own_state_model import AnyModel, as_model
+from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.states_module import states_module
+from sepcal.tracking import units_of_states
 
 
 class Smoothed(_core.SmoothedRecord):
-    """States and process noise, given all samples. `smoothed["alpha"]` is one state, (N,)."""
+    """States and process noise, given all samples. `smoothed["alpha"]` is one state, (N,).
+
+    Attributes:
+        time: (N,) [s]; None where the data have none, and where it was pickled.
+        units: Of states and outputs by name, as far as they are known; pickled they are lost.
+    """
+
+    time: Array | None = None
+    units: Mapping[str, str] = MappingProxyType({})
+
+    def __init__(
+        self,
+        core: _core.SmoothedRecord,
+        time: Array | None = None,
+        units: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__(core)
+        self.time, self.units = time, units_of_states(units or {})
 
     @property
     def standard_error(self) -> Array:
@@ -32,6 +53,32 @@ class Smoothed(_core.SmoothedRecord):
     def log_likelihood(self) -> float:
         """Ln L of the record's outputs, S 5.5."""
         return -self.cost - 0.5 * self.readings * math.log(2.0 * math.pi)
+
+    def plot(
+        self,
+        what: Literal["states", "innovations", "process noise"] | str = "states",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws states with their bands; innovations and noises that should be nothing.
+
+        Args:
+            what: "states", "innovations" or "process noise".
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_records import picture_smoothed
+
+        choose(what, ("states", "innovations", "process noise"))
+        return as_figure(picture_smoothed(self, what), backend, theme)
 
     def __getitem__(self, state: str) -> Array:
         """x(k|N) of one state, (N,)."""
@@ -91,6 +138,7 @@ def smooth(
         for size in fit.noise_sizes.values()
         if size.name.startswith("q_") and size.value > 0
     }
+    time = to_column(model._owner, "time", data["time"]) if "time" in set(data) else None
     return Smoothed(
         states_module().smooth(
             laid,
@@ -101,5 +149,7 @@ def smooth(
             outputs,
             dict(start or {}),
             fit if parameter_errors else None,
-        )
+        ),
+        time,
+        model.units,
     )

@@ -15,6 +15,7 @@ from sepcal._core import StepwiseStep
 from sepcal.diagnosis import Diagnosis
 from sepcal.options import to_names
 from sepcal.pages import Page, Row
+from sepcal.plots import Backend, Theme
 
 if TYPE_CHECKING:
     from sepcal import _states
@@ -67,6 +68,24 @@ class Stepwise(Page, Generic[Fitted]):
         """The same as a dictionary; None where a number is undefined."""
         read: dict[str, Any] = json.loads(self.json)
         return read
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws the error after every effect that was added, and what was promised as a tick.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_fits import picture_stepwise
+
+        return as_figure(picture_stepwise(self), backend, theme)
 
     def _summary(self) -> str:
         return f"{', '.join(self.effects) or 'nothing'} added; {self.reason}"

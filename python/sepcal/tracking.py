@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal, Unpack
+from types import MappingProxyType
+from typing import Any, Literal, Unpack
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
 from sepcal.options import LOG_CHOICE, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model
+from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.states_module import states_module
 
@@ -21,7 +23,18 @@ REFUSED = ("effects", *LOG_CHOICE)  # of a fit's options
 
 
 class Track(_core.Track):
-    """Estimates against time. `track["Za"]` is one of them, (M,)."""
+    """Estimates against time. `track["Za"]` is one of them, (M,).
+
+    Attributes:
+        units: Of states, parameters and outputs by name, as far as they are known; pickled they are
+            lost.
+    """
+
+    units: Mapping[str, str] = MappingProxyType({})
+
+    def __init__(self, core: _core.Track, units: Mapping[str, str] | None = None) -> None:
+        super().__init__(core)
+        self.units = units_of_states(units or {})
 
     def __getitem__(self, name: str) -> Array:
         """One estimate against time, (M,)."""
@@ -31,6 +44,32 @@ class Track(_core.Track):
         """Of one estimate against time, (M,)."""
         return np.asarray(self.standard_deviations[:, self._place(name)])
 
+    def plot(
+        self,
+        what: Literal["estimates", "innovations"] | str = "estimates",
+        *,
+        backend: Backend = "plotly",
+        theme: Theme = "light",
+    ) -> Any:  # noqa: ANN401
+        """Draws every estimate over time with 2 standard deviations to either side.
+
+        Args:
+            what: "estimates", of what is not held, or "innovations".
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure, choose
+        from sepcal.plotting.of_records import picture_track
+
+        choose(what, ("estimates", "innovations"))
+        return as_figure(picture_track(self, what), backend, theme)
+
     def _place(self, name: str) -> int:
         if name not in self.names:
             raise KeyError(f"there is no '{name}'; there are: {', '.join(self.names)}")
@@ -38,6 +77,16 @@ class Track(_core.Track):
 
     def __repr__(self) -> str:
         return f"<sepcal.Track {', '.join(self.names)}: {len(self.rows)} rows>"
+
+
+def units_of_states(units: Mapping[str, str]) -> dict[str, str]:
+    """With those of the states, which are their initial values', "alpha_0" or "alpha_0[turn]"."""
+    named = dict(units)
+    for name, unit in units.items():
+        state, is_initial, _ = name.partition("_0")
+        if is_initial:
+            named.setdefault(state, unit)
+    return named
 
 
 @spelled_out(without=(*REFUSED, "process_noise", "method"))
@@ -129,5 +178,6 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             _core.IterationOptions(row_iterations, tolerance),
             forgetting,
             every,
-        )
+        ),
+        model.units,
     )

@@ -11,6 +11,21 @@ from sepcal.columns import Array
 from sepcal.matrices import to_matrix
 from sepcal.own_model import Row, Table, check_parts, to_rows
 
+__all__ = [
+    "CrossCoupling",
+    "Factor",
+    "FieldInBody",
+    "Misalignment",
+    "Reference",
+    "SpecificForceInBody",
+    "Triad",
+]
+
+
+def __dir__() -> list[str]:
+    """The public names, without what they are made of."""
+    return __all__
+
 
 class Reference(Protocol):
     """What a triad sees: tables `inputs`, `outputs` (three), `nonlinear` (may be empty)."""

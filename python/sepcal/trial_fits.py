@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
 from sepcal.options import refuse_log_choice, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model
+from sepcal.plots import Backend, Theme
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,24 @@ class TrialFits:
     rows: int  # of each fit
     messages: Mapping[int, str]  # by trial, where there is something to say
     failures: Mapping[int, str]  # why a trial could not be fitted
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws how often the trials gave which estimate.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: Another word for one of these; the library is not installed.
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_studies import picture_trials
+
+        return as_figure(picture_trials(self), backend, theme, columns=3)
 
 
 @spelled_out(without=["effects"])

@@ -3,18 +3,47 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from sepcal import _core
+from sepcal._core import ChannelMisfit
 from sepcal.columns import Array
+from sepcal.comparison import Comparison
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 from sepcal.reporting.thin import keep_even
 
 MEANS = 14  # bins whose mean an added-variable plot shows
 FARTHEST = 25  # points of each output that an added-variable plot always shows
+CHANNELS = 12  # drawn; the others are named
+
+
+def best_channels(comparison: Comparison) -> list[ChannelMisfit]:
+    """Every channel with the output where it explains the most, the largest share first."""
+    best: dict[str, ChannelMisfit] = {}
+    for channel in comparison.channels:
+        best.setdefault(channel.driver, channel)
+    return list(best.values())
+
+
+def draw_channels(comparison: Comparison, read: Callable[[str], Array | None]) -> list[Figure]:
+    """Residuals over the channels that they follow most; `read` gives one's values, (N,)."""
+    outputs = [misfit.output for misfit in comparison.overall]
+    figures: list[Figure] = []
+    for channel in best_channels(comparison)[:CHANNELS]:
+        x, place = read(channel.driver), outputs.index(channel.output)
+        residual = comparison.residuals[:, place]
+        if x is None or (smooth := _core.smooth(x, residual)) is None:
+            continue
+        title = f"{channel.driver}: {words.percent(channel.share_smooth)} of {channel.output}"
+        _, _, per = channel.unit.partition(" per ")
+        x_title = f"{channel.driver} [{per}]" if per else channel.driver
+        y_title = f"{channel.output} [{comparison.overall[place].unit}]"
+        figures.append(draw_channel(title, x_title, y_title, x, residual, smooth))
+    return figures
 
 
 def draw_channel(

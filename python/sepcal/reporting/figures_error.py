@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from sepcal._core import Misfit
+from sepcal._core import HistoryEntry, Misfit
 from sepcal.markup import in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
@@ -26,6 +27,18 @@ class Step:
     held_out: float
     promised: float  # what was predicted before the effect was added
     is_next: bool = False  # not taken yet
+
+
+def steps_of(history: Sequence[HistoryEntry]) -> list[Step]:
+    """The first model and what was added to it; none where nothing was."""
+    if not history:
+        return []
+    before = history[0]
+    steps = [Step("first model", before.rmse_before, before.held_out_before, math.nan)]
+    for entry in history:
+        promised = entry.rmse_before * (1 - entry.predicted_drop)
+        steps.append(Step(f"+ {entry.effect}", entry.rmse_after, entry.held_out_after, promised))
+    return steps
 
 
 def draw_waterfall(steps: list[Step], floor: float, unit: str) -> Figure:
@@ -98,8 +111,10 @@ def _bars(
     }  # fmt: skip
 
 
-def draw_heat_strip(where: list[Misfit], outputs: list[str], floors: list[float]) -> Figure:
-    """RMSE by stretch (columns) and output (rows); the colour is its ratio to the noise floor."""
+def draw_heat_strip(
+    where: Sequence[Misfit], outputs: list[str], floors: list[float], per: str = "noise floor"
+) -> Figure:
+    """RMSE by stretch (columns) and output (rows); the colour is its ratio to what `per` calls."""
     stretches = list(dict.fromkeys(misfit.segment for misfit in where))
     shown = {(misfit.output, misfit.segment): misfit for misfit in where}
     values = np.array(
@@ -122,7 +137,7 @@ def draw_heat_strip(where: list[Misfit], outputs: list[str], floors: list[float]
         ],
         "hovertemplate": "%{customdata}<br>%{z:.2f} times the noise<extra></extra>",
         "colorbar": {
-            "title": {"text": "times the<br>noise floor"}, "thickness": 10, "outlinewidth": 0,
+            "title": {"text": f"times the<br>{per}"}, "thickness": 10, "outlinewidth": 0,
             "lenmode": "pixels", "len": 130, "y": 1, "yanchor": "top", "nticks": 4,
         },
         "text": [[words.number(value, 2) for value in row] if legible else [] for row in values],

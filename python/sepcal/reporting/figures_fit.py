@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from sepcal._core import FlightFigures
 from sepcal.columns import Array
+from sepcal.comparison import Comparison
 from sepcal.markup import in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
@@ -31,6 +34,32 @@ class Channel:
     modelled: Array
     residual: Array  # as the engine has it
     noise: float  # standard deviation
+
+
+def draw_fit(comparison: Comparison, figures: FlightFigures, noise: Mapping[str, float]) -> Figure:
+    """A calibration's outputs over time; `noise` is theirs where it was fitted."""
+    channels = [
+        Channel(
+            "strength" if misfit.output == "field" else misfit.output,
+            misfit.unit,
+            figures.measured[:, i],
+            figures.modelled[:, i],
+            comparison.residuals[:, i],
+            noise[misfit.output],
+        )
+        for i, misfit in enumerate(comparison.overall)
+    ]
+    after_gaps = [first for _, first, _ in figures.runs[1:]]
+    return draw_overlay(
+        comparison.time, channels, runs_of(comparison.time, figures.segments), after_gaps
+    )
+
+
+def runs_of(time: Array, segments: Sequence[tuple[str, int, int]]) -> list[Run]:
+    """Label, first and last time [s] of each maneuver; none where the log has no labels."""
+    if not any(label for label, _, _ in segments):
+        return []
+    return [(label, float(time[a]), float(time[b - 1])) for label, a, b in segments]
 
 
 def draw_overlay(

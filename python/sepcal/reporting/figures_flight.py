@@ -50,6 +50,7 @@ def draw_rose(title: str, degrees: Array) -> Figure:
         title,
         margin={"l": 30, "r": 30, "t": 46, "b": 26},
         polar={
+            "bgcolor": "#fff",
             "domain": {"y": [0, 0.94]},
             "angularaxis": {"direction": "clockwise", "rotation": 90, "dtick": 30,
                             "gridcolor": words.RULE, "linecolor": "#b9c1c8"},

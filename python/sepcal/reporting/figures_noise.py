@@ -86,7 +86,9 @@ def draw_quantiles(outputs: list[str], residuals: Array, noise: Array) -> Figure
     for i, output in enumerate(outputs):
         normal, found = _core.quantiles(residuals[:, i] / noise[i])
         trace = _lines(output, i, normal, found)
-        data.append({**trace, "mode": "markers", "marker": {"size": 4, **trace["line"]}})
+        data.append(
+            {**trace, "mode": "markers", "marker": {"size": 4, "color": trace["line"]["color"]}}
+        )
         furthest = max(furthest, float(normal[-1]))
     data.append({
         "type": "scatter", "mode": "lines", "name": "normal", "x": [-furthest, furthest],
@@ -102,3 +104,20 @@ def draw_quantiles(outputs: list[str], residuals: Array, noise: Array) -> Figure
         yaxis=words.axis("residual [sigma]"),
     )
     return Figure(data, layout, "Quantiles of the residuals against a normal distribution")
+
+
+def draw_noise(
+    outputs: list[str],
+    unit: str,
+    residuals: Array,
+    runs: list[Rows],
+    interval: float,
+    floors: list[float],
+    noise: Array,
+) -> list[Figure]:
+    """All three: of residuals (N, n_z) in `unit`, `floors` and `noise` their n_z sizes."""
+    return [
+        draw_autocorrelation(outputs, residuals, runs, interval),
+        draw_spectrum(outputs, unit, residuals, runs, interval, floors),
+        draw_quantiles(outputs, residuals, noise),
+    ]

@@ -17,7 +17,13 @@ POINTS = 1200  # of a small picture's curve
 
 
 def draw_with_band(
-    title: str, unit: str, time: Array, value: Array, deviation: Array, runs: list[Run]
+    title: str,
+    unit: str,
+    time: Array,
+    value: Array,
+    deviation: Array,
+    runs: list[Run],
+    x_title: str = "time [s]",
 ) -> Figure:
     """A quantity and 2 standard deviations to either side, over time [s]; arrays (N,)."""
     kept = keep_extremes(value, POINTS)
@@ -26,11 +32,17 @@ def draw_with_band(
         words.band(t, y - 2 * sd, y + 2 * sd, words.BAND),
         _line(t, y, words.MODELLED),
     ]
-    return _over_time(data, title, unit, time, runs)
+    return _over_time(data, title, unit, time, runs, x_title)
 
 
 def draw_beside_zero(
-    title: str, unit: str, time: Array, value: Array, deviation: Array, runs: list[Run]
+    title: str,
+    unit: str,
+    time: Array,
+    value: Array,
+    deviation: Array,
+    runs: list[Run],
+    x_title: str = "time [s]",
 ) -> Figure:
     """A quantity that should be nothing, before the band of 2 standard deviations about zero."""
     kept = keep_extremes(value, POINTS)
@@ -41,7 +53,7 @@ def draw_beside_zero(
     ]
     # Where nothing is known yet the band is as wide as can be, and would hide all that follows.
     reach = 1.1 * float(np.nanmax([np.nanmax(np.abs(value)), 2 * np.nanmedian(deviation)]))
-    return _over_time(data, title, unit, time, runs, range=[-reach, reach])
+    return _over_time(data, title, unit, time, runs, x_title, range=[-reach, reach])
 
 
 def _line(t: Array, y: Array, colour: str, width: float = 1.2) -> dict[str, Any]:
@@ -57,6 +69,7 @@ def _over_time(
     unit: str,
     time: Array,
     runs: list[Run],
+    x_title: str,
     **axis: object,
 ) -> Figure:
     y_title = f"{title} [{unit}]" if unit != "1" else title
@@ -65,7 +78,7 @@ def _over_time(
         title,
         margin={"l": 56, "r": 8, "t": 30, "b": 38},
         shapes=shade(runs),
-        xaxis=words.axis("time [s]", range=[float(np.min(time)), float(np.max(time))], nticks=6),
+        xaxis=words.axis(x_title, range=[float(np.min(time)), float(np.max(time))], nticks=6),
         yaxis=words.axis(y_title, nticks=5, **axis),
     )
-    return Figure(data, layout, f"{title} over time")
+    return Figure(data, layout, f"{title} over {x_title.partition(' ')[0]}")

@@ -17,6 +17,7 @@ from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import Flight
+from sepcal.reporting.figures_fit import Run, runs_of
 
 TRIED = 3  # of the ranked candidates: so many are added, to show what each explains
 
@@ -54,12 +55,9 @@ class Material:
         return self.comparisons[-1]
 
     @property
-    def maneuvers(self) -> list[tuple[str, float, float]]:
+    def maneuvers(self) -> list[Run]:
         """Label, first and last time [s] of each; none where the log has no labels."""
-        time, segments = self.comparison.time, self.figures.segments
-        if not any(label for label, _, _ in segments):
-            return []
-        return [(label, float(time[a]), float(time[b - 1])) for label, a, b in segments]
+        return runs_of(self.comparison.time, self.figures.segments)
 
     @property
     def flight_files(self) -> list[str]:

@@ -8,18 +8,21 @@ import math
 import numpy as np
 
 from sepcal import _core
-from sepcal._core import ChannelMisfit
 from sepcal.markup import Html, html
 from sepcal.reporting import advice, tables, words
-from sepcal.reporting.figures_cause import draw_added_variable, draw_channel
-from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall
-from sepcal.reporting.figures_fit import Channel, draw_overlay
+from sepcal.reporting.figures_cause import (
+    CHANNELS,
+    best_channels,
+    draw_added_variable,
+    draw_channels,
+)
+from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall, steps_of
+from sepcal.reporting.figures_fit import draw_fit
 from sepcal.reporting.gather import Material
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.sections_flight import show_coverage, show_noise
 from sepcal.reporting.thin import say_thinned
 
-CHANNELS = 12  # drawn; the others are named
 PARAMETERS = 8  # the section's number
 
 
@@ -96,13 +99,7 @@ def show_waterfall(material: Material) -> Section:
     found = material.diagnosis.found
     scale = history[-1].rmse_after if history and not unit else 1.0
     left, floor = scale * material.diagnosis.rmse, scale * material.diagnosis.noise_floor
-    steps: list[Step] = []
-    if history:
-        before = history[0]
-        steps.append(Step("first model", before.rmse_before, before.held_out_before, math.nan))
-    for entry in history:
-        promised = entry.rmse_before * (1 - entry.predicted_drop)
-        steps.append(Step(f"+ {entry.effect}", entry.rmse_after, entry.held_out_after, promised))
+    steps = steps_of(history)
     if not steps:
         held = found[0].held_out_before if found else math.nan
         steps.append(Step("this model", left, held, math.nan))
@@ -126,20 +123,8 @@ def show_waterfall(material: Material) -> Section:
 
 def show_overlay(material: Material) -> Section:
     """Every output over time."""
-    figures, comparison, maneuvers = material.figures, material.comparison, material.maneuvers
-    channels = [
-        Channel(
-            "strength" if output == "field" else output,
-            material.units[i],
-            figures.measured[:, i],
-            figures.modelled[:, i],
-            comparison.residuals[:, i],
-            float(material.noise[i]),
-        )
-        for i, output in enumerate(material.outputs)
-    ]
-    after_gaps = [first for _, first, _ in figures.runs[1:]]
-    overlay = draw_overlay(comparison.time, channels, maneuvers, after_gaps)
+    comparison, maneuvers = material.comparison, material.maneuvers
+    overlay = draw_fit(comparison, material.figures, material.last.noise)
     blocks: list[str | Figure | Grid] = [overlay]
     lead = (
         "Grey is what was measured, blue what the calibrated model says, pale blue its 2-sigma "
@@ -197,23 +182,8 @@ def show_candidates(material: Material) -> Section:
 
 def show_channels(material: Material) -> Section:
     """The channels that the residual follows most, each with the output it shows in."""
-    comparison, outputs = material.comparison, material.outputs
-    best: dict[str, ChannelMisfit] = {}
-    for channel in comparison.channels:
-        best.setdefault(channel.driver, channel)
-    figures: list[Figure] = []
-    for channel in list(best.values())[:CHANNELS]:
-        x = material.figures.channel(channel.driver)
-        residual = comparison.residuals[:, outputs.index(channel.output)]
-        if x is None or (smooth := _core.smooth(x, residual)) is None:
-            continue
-        title = f"{channel.driver}: {words.percent(channel.share_smooth)} of {channel.output}"
-        unit = material.units[outputs.index(channel.output)]
-        _, _, per = channel.unit.partition(" per ")
-        x_title = f"{channel.driver} [{per}]" if per else channel.driver
-        y_title = f"{channel.output} [{unit}]"
-        figures.append(draw_channel(title, x_title, y_title, x, residual, smooth))
-    others = list(best.values())[CHANNELS:]
+    figures = draw_channels(material.comparison, material.figures.channel)
+    others = best_channels(material.comparison)[CHANNELS:]
     blocks: list[str | Figure | Grid] = [Grid(figures, 320)]
     if others:
         most = max(channel.share_smooth for channel in others)

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from sepcal._core import FlightFigures
+from sepcal.calibration import Calibration
 from sepcal.columns import Array
+from sepcal.flight import Flight
 from sepcal.markup import Html, html
 from sepcal.models import Model
 from sepcal.reporting import tables, words
@@ -16,7 +19,7 @@ from sepcal.reporting.figures_flight import (
     draw_rose,
     draw_sphere,
 )
-from sepcal.reporting.figures_noise import draw_autocorrelation, draw_quantiles, draw_spectrum
+from sepcal.reporting.figures_noise import draw_noise
 from sepcal.reporting.gather import Material
 from sepcal.reporting.page import Figure, Grid, Section
 
@@ -30,11 +33,9 @@ def show_noise(material: Material) -> Section:
         material.comparison.residuals, material.outputs, material.figures.runs,
     )  # fmt: skip
     shortest, interval, longest = material.figures.interval
-    figures = [
-        draw_autocorrelation(outputs, residuals, runs, interval),
-        draw_spectrum(outputs, material.units[0], residuals, runs, interval, material.floors),
-        draw_quantiles(outputs, residuals, material.noise),
-    ]
+    figures = draw_noise(
+        outputs, material.units[0], residuals, runs, interval, material.floors, material.noise
+    )
     lead = (
         "Noise alone keeps its autocorrelation inside the grey band, its spectrum flat on the "
         "dotted line and its quantiles on the dashed one."
@@ -81,18 +82,16 @@ def _coverage_table(material: Material) -> Html:
 
 def show_coverage(material: Material) -> Section:
     """Directions or flow angles, heading, speed."""
-    own, told = material.last.own_model, html("")
+    own = material.last.own_model
+    figures, told = draw_coverage(material.last, material.flight, material.figures)
     if own is not None:
-        figures = _cover_inputs(material, own)
         lead = "What the inputs never were can't be calibrated: beyond, the model is a guess."
     elif material.last.core.unit == FIELD:
-        figures, told = _cover_field(material)
         lead = (
             "What was never flown can't be calibrated: directions all over the sphere separate the "
             "errors of a magnetometer's axes from its hard iron."
         )
     else:
-        figures = _cover_air(material)
         lead = (
             "What was never flown can't be calibrated: a full turn separates the wind from "
             "airspeed errors, a range of airspeeds a scale from a bias."
@@ -103,55 +102,67 @@ def show_coverage(material: Material) -> Section:
     return Section("What the flight covered", lead, blocks)
 
 
-def _find_heading(material: Material) -> tuple[Array, str] | None:
+def draw_coverage(
+    calibration: Calibration, flight: Flight, figures: FlightFigures
+) -> tuple[list[Figure], Html]:
+    """What a flight covered, and that in a sentence; of a magnetometer alone there is one."""
+    if calibration.own_model is not None:
+        return _cover_inputs(figures, calibration.own_model), html("")
+    if calibration.core.unit == FIELD:
+        return _cover_field(calibration, flight, figures)
+    return _cover_air(figures), html("")
+
+
+def _find_heading(figures: FlightFigures) -> tuple[Array, str] | None:
     """In degrees, and what it is."""
-    figures = material.figures
     if figures.heading is None:
         return None
     name = "track over ground" if figures.heading_is_track else "heading"
     return np.degrees(figures.heading), name
 
 
-def _heading_figures(material: Material) -> list[Figure]:
-    found = _find_heading(material)
+def _heading_figures(figures: FlightFigures) -> list[Figure]:
+    found = _find_heading(figures)
     return [draw_rose(f"{found[1].capitalize()} [deg]", found[0])] if found else []
 
 
-def _cover_field(material: Material) -> tuple[list[Figure], Html]:
-    applied = list(material.last.apply(material.flight).values())
-    vectors = np.stack(applied, axis=-1)[material.figures.rows]
+def _cover_field(
+    calibration: Calibration, flight: Flight, figures: FlightFigures
+) -> tuple[list[Figure], Html]:
+    applied = list(calibration.apply(flight).values())
+    vectors = np.stack(applied, axis=-1)[figures.rows]
     vectors = vectors[np.isfinite(vectors).all(axis=1)]
     visited, cells = covered_cells(vectors)
-    figures = [draw_sphere("Direction of the calibrated field in body axes", vectors)]
-    figures += _heading_figures(material)
+    drawn = [draw_sphere("Direction of the calibrated field in body axes", vectors)]
+    drawn += _heading_figures(figures)
     strength = np.linalg.norm(vectors, axis=1)
-    figures.append(draw_histogram("Strength of the calibrated field", strength, "|h| [uT]"))
+    drawn.append(draw_histogram("Strength of the calibrated field", strength, "|h| [uT]"))
     told = "<p>The field came from {} of {} equal parts of the sphere.</p>"
-    return figures, html(told, visited, cells)
+    return drawn, html(told, visited, cells)
 
 
-def _cover_inputs(material: Material, own: Model) -> list[Figure]:
-    figures = []
+def _cover_inputs(figures: FlightFigures, own: Model) -> list[Figure]:
+    drawn = []
     for name in own.inputs:
-        values = material.figures.channel(name)
+        values = figures.channel(name)
         if values is not None:
             axis = f"{name} [{own.units[name]}]"
-            figures.append(draw_histogram(f"Input {name}", values, axis))
-    return figures
+            drawn.append(draw_histogram(f"Input {name}", values, axis))
+    return drawn
 
 
-def _cover_air(material: Material) -> list[Figure]:
-    figures: list[Figure] = []
-    speed, found = material.figures.airspeed, _find_heading(material)
-    alpha, beta = (material.figures.channel(name) for name in ("alpha", "beta"))
+def _cover_air(figures: FlightFigures) -> list[Figure]:
+    drawn: list[Figure] = []
+    speed, found = figures.airspeed, _find_heading(figures)
+    alpha, beta = (figures.channel(name) for name in ("alpha", "beta"))
     if alpha is not None and beta is not None:
         a, b = np.degrees(alpha), np.degrees(beta)
-        figures.append(draw_map("Flow angles as read", b, a, "beta [deg]", "alpha [deg]"))
+        drawn.append(draw_map("Flow angles as read", b, a, "beta [deg]", "alpha [deg]"))
     elif speed is not None and found is not None:
         degrees, name = found
         title = f"Airspeed over {name}"
-        figures.append(draw_map(title, degrees, speed, f"{name} [deg]", "airspeed [m/s]"))
-    figures += _heading_figures(material)
+        drawn.append(draw_map(title, degrees, speed, f"{name} [deg]", "airspeed [m/s]"))
+    drawn += _heading_figures(figures)
     if speed is not None:
-        figures.append(draw_histogram("Airspeed as read", speed, "airspeed [m/s]"))
-    return figures
+        drawn.append(draw_histogram("Airspeed as read", speed, "airspeed [m/s]"))
+    return drawn

@@ -9,12 +9,10 @@ import platform
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from sepcal import _core
-from sepcal._core import ChannelMisfit
 from sepcal.aircraft_fits import AircraftFit
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
@@ -22,7 +20,7 @@ from sepcal.flight import Flight
 from sepcal.markup import Html, html
 from sepcal.printing import in_shell
 from sepcal.reporting import advice, tables, words
-from sepcal.reporting.figures_cause import draw_channel
+from sepcal.reporting.figures_cause import draw_channels
 from sepcal.reporting.figures_error import draw_heat_strip
 from sepcal.reporting.figures_fit import Channel, Run, draw_overlay
 from sepcal.reporting.figures_states import draw_beside_zero, draw_with_band
@@ -30,7 +28,6 @@ from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.thin import Rows, say_thinned
 from sepcal.smoothing import Smoothed
 
-CHANNELS = 12  # drawn
 WIDTH = 420  # [px] of a small picture, at least
 
 
@@ -71,6 +68,15 @@ class Flown:
             else:
                 found.append((labels[row], t, t))
         return found
+
+    def read(self, name: str) -> Array | None:
+        """A channel's values, (N,): "time", a header, or one without its unit."""
+        if name == "time":
+            return self.comparison.time
+        for header in self.flight:
+            if name in (header, header.rpartition("_")[0]):
+                return np.asarray(self.flight[header][self.rows])
+        return None
 
 
 def gather_flown(
@@ -220,6 +226,22 @@ def show_steps(flown: Flown) -> Section:
 def show_overlay(flown: Flown) -> Section:
     """Every output over time."""
     comparison = flown.comparison
+    blocks: list[str | Figure | Grid] = [draw_flown(flown)]
+    if note := say_thinned(comparison.time.size):
+        blocks.append(html('<p class="note">{}</p>', note))
+    by_filter = comparison.method == "filter-error"
+    says = "the filter foretold from the rows before" if by_filter else "the integrated model says"
+    lead = (
+        f"Grey is what was measured, blue what {says}, pale blue its 2-sigma "
+        f"band. Below each, the {'innovation' if by_filter else 'residual'} between its 2-sigma "
+        "lines: what leaves them for long is not noise."
+    )
+    return Section("Measured and modelled", lead, blocks)
+
+
+def draw_flown(flown: Flown) -> Figure:
+    """Every output over time, measured over modelled."""
+    comparison = flown.comparison
     channels = [
         Channel(
             misfit.output,
@@ -232,17 +254,7 @@ def show_overlay(flown: Flown) -> Section:
         for i, misfit in enumerate(comparison.overall)
     ]
     gaps = (np.flatnonzero(np.diff(flown.rows) > 1) + 1).tolist()
-    blocks: list[str | Figure | Grid] = [draw_overlay(comparison.time, channels, flown.runs, gaps)]
-    if note := say_thinned(comparison.time.size):
-        blocks.append(html('<p class="note">{}</p>', note))
-    by_filter = comparison.method == "filter-error"
-    says = "the filter foretold from the rows before" if by_filter else "the integrated model says"
-    lead = (
-        f"Grey is what was measured, blue what {says}, pale blue its 2-sigma "
-        f"band. Below each, the {'innovation' if by_filter else 'residual'} between its 2-sigma "
-        "lines: what leaves them for long is not noise."
-    )
-    return Section("Measured and modelled", lead, blocks)
+    return draw_overlay(comparison.time, channels, flown.runs, gaps)
 
 
 def show_where(flown: Flown) -> Section:
@@ -260,21 +272,7 @@ def show_where(flown: Flown) -> Section:
 
 def show_channels(flown: Flown) -> Section:
     """The channels that the residual follows most."""
-    comparison = flown.comparison
-    outputs = [misfit.output for misfit in comparison.overall]
-    best: dict[str, ChannelMisfit] = {}
-    for channel in comparison.channels:
-        best.setdefault(channel.driver, channel)
-    figures: list[Figure] = []
-    for channel in list(best.values())[:CHANNELS]:
-        x = _driver(flown, channel.driver)
-        place = outputs.index(channel.output)
-        residual = comparison.residuals[:, place]
-        if x is None or (smooth := _core.smooth(x, residual)) is None:
-            continue
-        title = f"{channel.driver}: {words.percent(channel.share_smooth)} of {channel.output}"
-        y_title = f"{channel.output} [{comparison.overall[place].unit}]"
-        figures.append(draw_channel(title, channel.driver, y_title, x, residual, smooth))
+    figures = draw_channels(flown.comparison, flown.read)
     lead = html(
         "Residual against each logged channel, in the output where a smooth curve explains the "
         "most of it. A curve that leaves its band about zero names a regressor to try: "
@@ -282,15 +280,6 @@ def show_channels(flown: Flown) -> Section:
     )
     blocks: list[str | Figure | Grid] = [Grid(figures, 320)] if figures else [html("<p>None.</p>")]
     return Section("Residual against the channels", lead, blocks)
-
-
-def _driver(flown: Flown, name: str) -> Array | None:
-    if name == "time":
-        return flown.comparison.time
-    for header in flown.flight:
-        if name in (header, header.rpartition("_")[0]):
-            return np.asarray(flown.flight[header][flown.rows])
-    return None
 
 
 def show_states(flown: Flown) -> list[Section]:
@@ -307,29 +296,15 @@ def show_states(flown: Flown) -> list[Section]:
             else html("<p>Equation error has no states.</p>")
         )
         return [Section("States", blocks=[said])]
-    time, rows, runs = flown.comparison.time, flown.rows, flown.runs
-
-    def draw(kind: str, names: Sequence[str], values: Array, sd: Array, picture: Any) -> Grid:  # noqa: ANN401
-        return Grid(
-            [
-                picture(
-                    name, flown.units[f"{kind} {name}"], time, values[rows, i], sd[rows, i], runs
-                )
-                for i, name in enumerate(names)
-                if f"{kind} {name}" in flown.units
-            ],
-            WIDTH,
-        )
-
     given = ", ".join(f"{name} {sd:g}" for name, sd in flown.process_noise.items())
     states = Section(
         "States",
         "Given all of the flight, with 2 standard deviations to either side, the errors of the "
         "parameters among them; process noise: "
         f"{given}.",
-        [draw("state", smoothed.states, smoothed.x, smoothed.standard_error, draw_with_band)],
+        [Grid(draw_smoothed(flown, "states"), WIDTH)],
     )
-    scaled = smoothed.innovations[rows] / smoothed.innovation_sd[rows]
+    scaled = smoothed.innovations[flown.rows] / smoothed.innovation_sd[flown.rows]
     table = [
         [
             name,
@@ -347,10 +322,7 @@ def show_states(flown: Flown) -> list[Section]:
         "large, or the model is wrong.",
         [
             tables.table(head, table),
-            draw(
-                "output", smoothed.outputs, smoothed.innovations, smoothed.innovation_sd,
-                draw_beside_zero,
-            ),
+            Grid(draw_smoothed(flown, "innovations"), WIDTH),
         ],
     )  # fmt: skip
     noise = Section(
@@ -360,10 +332,44 @@ def show_states(flown: Flown) -> list[Section]:
         "it says when.",
         [
             *list_disturbances(flown.comparison),
-            draw("noise", smoothed.noises, smoothed.w, smoothed.w_standard_error, draw_with_band),
+            Grid(draw_smoothed(flown, "process noise"), WIDTH),
         ],
     )
     return [states, innovations, noise]
+
+
+def draw_smoothed(flown: Flown, what: str) -> list[Figure]:
+    """The states, the innovations or the process noise, each with its band; there is a smoother."""
+    smoothed = flown.smoothed
+    assert smoothed is not None
+    return draw_record(smoothed, what, flown.comparison.time, flown.rows, flown.runs, flown.units)
+
+
+def draw_record(
+    smoothed: Smoothed,
+    what: str,
+    time: Array,
+    rows: Rows,
+    runs: list[Run],
+    units: Mapping[str, str],
+    x_title: str = "time [s]",
+) -> list[Figure]:
+    """The same of any record; `units` by kind and name, "state u": what is not there is not drawn.
+
+    Arrays are of the N rows that are drawn, but for those of the record itself.
+    """
+    s = smoothed
+    kind, names, values, sd = {
+        "states": ("state", s.states, s.x, s.standard_error),
+        "innovations": ("output", s.outputs, s.innovations, s.innovation_sd),
+        "process noise": ("noise", s.noises, s.w, s.w_standard_error),
+    }[what]
+    draw = draw_beside_zero if kind == "output" else draw_with_band
+    return [
+        draw(name, units[f"{kind} {name}"], time, values[rows, i], sd[rows, i], runs, x_title)
+        for i, name in enumerate(names)
+        if f"{kind} {name}" in units
+    ]
 
 
 def list_disturbances(comparison: Comparison) -> list[Html]:

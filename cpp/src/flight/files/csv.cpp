@@ -37,7 +37,7 @@ CsvReader::CsvReader(std::string file, Progress progress, const CsvForm& form)
   if (auto foreign = files::find_foreign_form(lines_->first_bytes())) {
     throw files::ForeignFile(file_, std::move(*foreign));
   }
-  form_ = std::make_unique<files::TableForm>(files::recognise(file_, lines_->peek(), form));
+  form_ = std::make_unique<files::TableForm>(files::recognise_table(file_, lines_->peek(), form));
   for (const files::ColumnForm& column : form_->columns) header_.push_back(column.header);
   read_header();
 }

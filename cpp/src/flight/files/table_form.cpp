@@ -503,7 +503,7 @@ bool TableForm::is_plain() const {
   });
 }
 
-TableForm recognise(const std::string& file, std::string_view text, const CsvForm& asked) {
+TableForm recognise_table(const std::string& file, std::string_view text, const CsvForm& asked) {
   return Recogniser(file, text, asked).recognise();
 }
 

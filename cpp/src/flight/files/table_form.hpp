@@ -56,7 +56,7 @@ struct TableForm {
 
 /// The form of the table whose text begins with these whole lines. `asked` decides where it may be
 /// read in two ways; where it doesn't, throws OptionError. `file` opens messages.
-TableForm recognise(const std::string& file, std::string_view text, const CsvForm& asked);
+TableForm recognise_table(const std::string& file, std::string_view text, const CsvForm& asked);
 
 /// Column `column` of a row, in the header's unit. Nothing where it is no finite number.
 std::optional<double> read_number(const TableForm& form, const ColumnForm& column,

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "flight/files/headers.hpp"
+#include "flight/files/known_names.hpp"
 #include "flight/files/number_text.hpp"
 #include "flight/files/units.hpp"
 
@@ -21,26 +21,11 @@ namespace {
 constexpr double day = 86400.0;
 constexpr const char* time_header = "time_s";
 
-/// "GPS Date & Time (s)" as its words, in lower case.
-std::vector<std::string> words_of(std::string_view header) {
-  std::vector<std::string> words(1);
-  for (const char c : header) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) != 0 || byte >= 0x80) {
-      words.back() += static_cast<char>(std::tolower(byte));
-    } else if (!words.back().empty()) {
-      words.emplace_back();
-    }
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
-
 bool is_called_time(const ColumnForm& column) {
   constexpr std::array names{"time", "timestamp", "t",     "utc",   "datetime", "clock", "epoch",
                              "date", "ts",        "stamp", "zeit",  "uhrzeit",  "temps", "heure",
                              "hora", "tid",       "tijd",  "tempo", "timeus",   "timems"};
-  return std::ranges::any_of(words_of(column.logged), [&](const std::string& word) {
+  return std::ranges::any_of(split_words(column.logged), [&](const std::string& word) {
     return std::ranges::find(names, word) != names.end();
   });
 }
@@ -48,7 +33,7 @@ bool is_called_time(const ColumnForm& column) {
 /// "time_s", "Time [ms]": a name of time and the unit in full.
 bool is_time_with_unit(const ColumnForm& column) {
   if (unit_in(column.header, "time", UnitKind::time) != nullptr) return true;
-  const std::vector<std::string> words = words_of(column.header);
+  const std::vector<std::string> words = split_words(column.header);
   constexpr std::array units{"s", "sec", "secs", "second", "seconds", "ms", "us"};
   return words.size() > 1 && is_called_time(column) &&
          std::ranges::find(units, words.back()) != units.end();
