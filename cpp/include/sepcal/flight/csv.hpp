@@ -55,8 +55,12 @@ class CsvReader {
 
   const std::string& file() const { return file_; }
 
-  /// Column names without the blanks round them: unique and not empty.
+  /// Column names, unique and not empty: time_s where time is read from text or counts, with their
+  /// unit where that is known, "vn (m/s)".
   const std::vector<std::string>& header() const { return header_; }
+
+  /// The same as the file has them: "Lcl Time" of time_s.
+  const std::vector<std::string>& logged() const { return logged_; }
 
   /// Goes to the next row; false at the end. Blank lines, comments and other lines without a number
   /// are passed. Throws Error for an unclosed quote, bytes that no text has, a file without any
@@ -108,6 +112,7 @@ class CsvReader {
   std::unique_ptr<files::TextLines> lines_;
   std::unique_ptr<files::TableForm> form_;
   std::vector<std::string> header_;
+  std::vector<std::string> logged_;
   std::unique_ptr<files::RowCells> row_;  // as the file has it
   std::vector<std::string_view> cells_;   // the columns'
   std::string wrong_length_;              // "5 cells, not 6"; empty: the row is whole

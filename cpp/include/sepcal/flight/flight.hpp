@@ -79,6 +79,9 @@ class Flight {
   Flight& replace(std::string_view header, std::span<const double> values,
                   std::shared_ptr<const void> owner);
 
+  /// Says what the log calls a column. Throws Error where there is none of that header.
+  Flight& call_in_log(std::string_view header, std::string logged);
+
   /// Takes a column away. Throws Error as rename().
   Flight& drop(std::string_view header);
 

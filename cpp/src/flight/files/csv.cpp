@@ -38,7 +38,10 @@ CsvReader::CsvReader(std::string file, Progress progress, const CsvForm& form)
     throw files::ForeignFile(file_, std::move(*foreign));
   }
   form_ = std::make_unique<files::TableForm>(files::recognise_table(file_, lines_->peek(), form));
-  for (const files::ColumnForm& column : form_->columns) header_.push_back(column.header);
+  for (const files::ColumnForm& column : form_->columns) {
+    header_.push_back(column.header);
+    logged_.push_back(column.logged);
+  }
   read_header();
 }
 

@@ -69,6 +69,14 @@ void append_lines(std::vector<Flight::Line>& lines, const files::RowPart& part, 
 
 /// The flight with what its reader decided.
 Flight tell_reading(Flight& flight, const CsvReader& reader, const CsvForm& form) {
+  for (std::size_t i = 0; i < reader.header().size(); ++i) {
+    const std::string& header = reader.header()[i];
+    const std::string& logged = reader.logged()[i];
+    if (header == logged || header == maneuver || std::ranges::count(reader.logged(), logged) > 1) {
+      continue;
+    }
+    flight.call_in_log(header, logged);
+  }
   for (const std::string& note : reader.notes()) {
     flight.note(fmt::format("{}: {}", flight.name(), note));
   }
@@ -120,6 +128,11 @@ Flight& Flight::rename(std::string_view header, std::string to) {
   if (renamed.logged.empty()) renamed.logged = renamed.header;
   renamed.header = std::move(to);
   if (renamed.logged == renamed.header) renamed.logged.clear();
+  return *this;
+}
+
+Flight& Flight::call_in_log(std::string_view header, std::string logged) {
+  column(header).logged = std::move(logged);
   return *this;
 }
 
